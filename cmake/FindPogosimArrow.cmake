@@ -1,0 +1,68 @@
+# Finds Apache Arrow C++ (10 or later): the system's, else the one inside the pyarrow wheel of a Python environment.
+#
+# Input:   POGOSIM_PYTHON     Python that has pyarrow (default: the project's own .venv, which ./build.sh makes)
+# Output:  pogosim::arrow     target to link: headers (as system headers) and library
+#          PogosimArrow_FOUND, PogosimArrow_VERSION, PogosimArrow_ORIGIN
+#          PogosimArrow_LIBRARY_DIR   folder of the wheel's library, for RPATHs; empty for the system's
+
+set(POGOSIM_PYTHON "${PROJECT_SOURCE_DIR}/.venv/bin/python" CACHE FILEPATH
+    "Python whose pyarrow package is used if the system has no Apache Arrow")
+
+# The system's own.
+find_package(Arrow CONFIG QUIET)
+if(Arrow_FOUND AND Arrow_VERSION VERSION_GREATER_EQUAL 10)
+    if(TARGET Arrow::arrow_shared)
+        set(_arrow_target Arrow::arrow_shared)
+    else()
+        set(_arrow_target Arrow::arrow_static)
+    endif()
+    set(PogosimArrow_VERSION "${Arrow_VERSION}")
+    set(PogosimArrow_ORIGIN "${Arrow_DIR}")
+elseif(EXISTS "${POGOSIM_PYTHON}")
+    # Asked anew at each configuration: the wheel may have been replaced by another version. -I keeps PYTHONPATH out.
+    execute_process(
+        COMMAND "${POGOSIM_PYTHON}" -I -c
+            "import pyarrow; print(pyarrow.__version__, pyarrow.get_include(), *pyarrow.get_library_dirs(), sep=';', end='')"
+        OUTPUT_VARIABLE _pyarrow RESULT_VARIABLE _pyarrow_result ERROR_VARIABLE _pyarrow_error)
+    if(_pyarrow_result EQUAL 0)
+        list(POP_FRONT _pyarrow PogosimArrow_VERSION _arrow_include)
+        # The wheel holds the library under its versioned name only: libarrow.so.2600, libarrow.2600.dylib.
+        foreach(_dir IN LISTS _pyarrow)
+            file(GLOB _found LIST_DIRECTORIES false "${_dir}/libarrow.so.*" "${_dir}/libarrow.*.dylib")
+            list(FILTER _found INCLUDE REGEX "/libarrow\\.(so\\.[0-9]+|[0-9]+\\.dylib)$")
+            list(APPEND _arrow_library ${_found})
+        endforeach()
+        if(_arrow_library)
+            list(GET _arrow_library 0 _arrow_library)
+            set(_arrow_target pogosim_pyarrow)
+            set(PogosimArrow_ORIGIN "${_arrow_library}")
+            get_filename_component(PogosimArrow_LIBRARY_DIR "${_arrow_library}" DIRECTORY)
+        else()
+            set(_arrow_problem "pyarrow ${PogosimArrow_VERSION} of ${POGOSIM_PYTHON} holds no libarrow in: ${_pyarrow}.")
+        endif()
+    else()
+        set(_arrow_problem "${POGOSIM_PYTHON} cannot import pyarrow:\n${_pyarrow_error}")
+    endif()
+else()
+    set(_arrow_problem "there is no system Arrow for CMake to find, and no ${POGOSIM_PYTHON}.")
+endif()
+
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(PogosimArrow
+    REQUIRED_VARS PogosimArrow_ORIGIN
+    VERSION_VAR PogosimArrow_VERSION
+    REASON_FAILURE_MESSAGE "${_arrow_problem}
+    Run ./build.sh once: it makes .venv with pyarrow in it. Or give a Python that has pyarrow: cmake -DPOGOSIM_PYTHON=...")
+
+if(PogosimArrow_FOUND AND NOT TARGET pogosim::arrow)
+    if(_arrow_target STREQUAL "pogosim_pyarrow")
+        # Programs in the build tree find the library by their RPATH, which CMake derives from its place.
+        add_library(pogosim_pyarrow SHARED IMPORTED)
+        set_target_properties(pogosim_pyarrow PROPERTIES
+            IMPORTED_LOCATION "${_arrow_library}"
+            INTERFACE_INCLUDE_DIRECTORIES "${_arrow_include}"
+            INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${_arrow_include}")
+    endif()
+    add_library(pogosim::arrow INTERFACE IMPORTED)
+    target_link_libraries(pogosim::arrow INTERFACE ${_arrow_target})
+endif()

@@ -1,0 +1,55 @@
+# What `cmake --install` copies: the public headers, the library, the arenas, pogosim.pc and a CMake package. The build
+# folder gets a pogosim.pc of its own, so that programs can be built against a tree that is not installed:
+#
+#   cc -std=c11 main.c -o prog $(PKG_CONFIG_PATH=build/release pkg-config --cflags --libs pogosim)
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# The installed library finds what is not in a system folder where it was at build time. CMake leaves folders inside of
+# the project out of that, such as the one of the Arrow in .venv, so this one is named.
+set_target_properties(pogosim PROPERTIES
+    VERSION "${PROJECT_VERSION}"
+    SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+    INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}"
+    INSTALL_RPATH_USE_LINK_PATH ON)
+target_include_directories(pogosim INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+
+install(TARGETS pogosim EXPORT pogosimTargets
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+    FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/arenas" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
+    FILES_MATCHING PATTERN "*.csv")
+
+# find_package(pogosim) gives pogosim::pogosim.
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pogosim")
+install(EXPORT pogosimTargets NAMESPACE pogosim:: DESTINATION "${package_dir}")
+configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/pogosimConfig.cmake.in"
+    "${PROJECT_BINARY_DIR}/cmake/pogosimConfig.cmake" INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/cmake/pogosimConfigVersion.cmake"
+    COMPATIBILITY SameMinorVersion)
+install(FILES
+    "${PROJECT_BINARY_DIR}/cmake/pogosimConfig.cmake"
+    "${PROJECT_BINARY_DIR}/cmake/pogosimConfigVersion.cmake"
+    DESTINATION "${package_dir}")
+
+# pogosim.pc, once for each of the two places. The installed one is relative to itself: the tree may be moved, and
+# `cmake --install --prefix` may choose the place late. Blanks in paths are escaped as pkg-config wants it.
+function(pogosim_pkg_config output includedir libdir)
+    string(REPLACE " " "\\ " includedir "${includedir}")
+    string(REPLACE " " "\\ " libdir "${libdir}")
+    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${output}" @ONLY)
+endfunction()
+
+file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+pogosim_pkg_config("${PROJECT_BINARY_DIR}/cmake/pogosim.pc"
+    "\${pcfiledir}/${to_prefix}${CMAKE_INSTALL_INCLUDEDIR}"
+    "\${pcfiledir}/${to_prefix}${CMAKE_INSTALL_LIBDIR}")
+install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+
+get_target_property(library_dir pogosim LIBRARY_OUTPUT_DIRECTORY)
+if(NOT library_dir)
+    get_target_property(library_dir pogosim BINARY_DIR)
+endif()
+pogosim_pkg_config("${PROJECT_BINARY_DIR}/pogosim.pc" "${PROJECT_SOURCE_DIR}/include" "${library_dir}")

@@ -1,0 +1,115 @@
+#include "base/log.hpp"
+
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr auto kDatedPattern = "[%Y-%m-%d %H:%M:%S.%e] [%^%l%$] %v";
+constexpr auto kMinimalPattern = "%v";
+
+/// Standard output below `warn`, standard error from there on.
+class ConsoleSink final : public spdlog::sinks::sink {
+public:
+    void log(spdlog::details::log_msg const& message) override {
+        (message.level >= spdlog::level::warn ? static_cast<sink&>(error_) : static_cast<sink&>(output_)).log(message);
+    }
+    void flush() override {
+        output_.flush();
+        error_.flush();
+    }
+    void set_pattern(std::string const& pattern) override {
+        output_.set_pattern(pattern);
+        error_.set_pattern(pattern);
+    }
+    void set_formatter(std::unique_ptr<spdlog::formatter> formatter) override {
+        error_.set_formatter(formatter->clone());
+        output_.set_formatter(std::move(formatter));
+    }
+
+private:
+    spdlog::sinks::stdout_color_sink_st output_;
+    spdlog::sinks::stderr_color_sink_st error_;
+};
+
+struct Loggers {
+    std::shared_ptr<spdlog::logger> simulator;
+    std::shared_ptr<spdlog::logger> robots;
+};
+
+std::shared_ptr<spdlog::logger> make_logger(char const* name, std::vector<spdlog::sink_ptr> const& sinks) {
+    auto logger = std::make_shared<spdlog::logger>(name, sinks.begin(), sinks.end());
+    logger->set_level(spdlog::level::debug);
+    logger->flush_on(spdlog::level::warn);
+    return logger;
+}
+
+spdlog::sink_ptr make_console(LogOptions const& options) {
+    auto console = std::make_shared<ConsoleSink>();
+    console->set_pattern(options.minimal ? kMinimalPattern : kDatedPattern);
+    console->set_level(options.quiet     ? spdlog::level::warn
+                       : options.verbose ? spdlog::level::debug
+                                         : spdlog::level::info);
+    return console;
+}
+
+spdlog::sink_ptr make_file(LogOptions const& options) {
+    try {
+        std::filesystem::path const path(options.file);
+        if (path.has_parent_path()) {
+            std::filesystem::create_directories(path.parent_path());
+        }
+        auto file = std::make_shared<spdlog::sinks::basic_file_sink_st>(options.file, /*truncate=*/true);
+        file->set_pattern(kDatedPattern);
+        file->set_level(options.verbose ? spdlog::level::debug : spdlog::level::info);
+        return file;
+    } catch (std::exception const& error) {
+        throw OutputError("cannot open the console file '" + options.file + "' (console_filename): " + error.what());
+    }
+}
+
+Loggers make_loggers(LogOptions const& options) {
+    std::vector<spdlog::sink_ptr> simulator_sinks{make_console(options)};
+    std::vector<spdlog::sink_ptr> robot_sinks;
+    if (options.show_robot_lines) {
+        robot_sinks.push_back(simulator_sinks.front());
+    }
+    if (!options.file.empty()) {
+        simulator_sinks.push_back(make_file(options));
+        robot_sinks.push_back(simulator_sinks.back());
+    }
+    return {make_logger("pogosim", simulator_sinks), make_logger("robot", robot_sinks)};
+}
+
+Loggers& loggers() {
+    static Loggers instance = make_loggers({});
+    return instance;
+}
+
+}  // namespace
+
+void start_logging(LogOptions const& options) {
+    loggers() = make_loggers(options);
+}
+
+spdlog::logger& log() {
+    return *loggers().simulator;
+}
+spdlog::logger& robot_log() {
+    return *loggers().robots;
+}
+
+void flush_logs() {
+    loggers().simulator->flush();
+    loggers().robots->flush();
+}
+
+}  // namespace pogosim

@@ -1,0 +1,29 @@
+// The console log. Two loggers share the sinks: `log()` speaks for the simulator, `robot_log()` for user programs'
+// printf lines. Debug and information go to the standard output, warnings and errors to the standard error.
+#pragma once
+
+#include <spdlog/logger.h>
+
+#include <string>
+
+namespace pogosim {
+
+struct LogOptions {
+    bool verbose = false;          // debug messages on console and file
+    bool quiet = false;            // console: warnings and errors only; wins over verbose
+    bool show_robot_lines = true;  // printf lines of robots on the console (the file always has them)
+    bool minimal = false;          // console lines without date and level
+    std::string file;              // path of the console file; empty: none
+};
+
+/// Installs loggers and sinks. Parent folders of the file are created. Throws OutputError if it cannot be opened.
+void start_logging(LogOptions const& options);
+
+/// Usable before start_logging: then everything from information upwards goes to the console.
+spdlog::logger& log();
+spdlog::logger& robot_log();
+
+/// Writes out what is buffered.
+void flush_logs();
+
+}  // namespace pogosim

@@ -1,0 +1,47 @@
+#include "base/nearest_name.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <vector>
+
+namespace pogosim {
+
+namespace {
+
+bool same_letter(char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+}
+
+}  // namespace
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> previous(b.size() + 1);
+    std::vector<std::size_t> current(b.size() + 1);
+    std::iota(previous.begin(), previous.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        current[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            std::size_t const substituted = previous[j] + (same_letter(a[i], b[j]) ? 0 : 1);
+            current[j + 1] = std::min({substituted, previous[j + 1] + 1, current[j] + 1});
+        }
+        std::swap(previous, current);
+    }
+    return previous[b.size()];
+}
+
+std::string nearest_name(std::string_view typed, std::span<std::string const> known) {
+    std::string best;
+    std::size_t best_distance = 0;
+    for (std::string const& name : known) {
+        std::size_t const distance = edit_distance(typed, name);
+        bool const close_enough = 3 * distance <= std::max(typed.size(), name.size());
+        if (close_enough && (best.empty() || distance < best_distance)) {
+            best = name;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,17 @@
+// "Did you mean ...?": the known name closest to what was typed.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace pogosim {
+
+/// Levenshtein distance between two texts (insertions, deletions, substitutions), ASCII case ignored.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The closest of `known`, or an empty text when nothing is close enough to be a misspelling (more than a third of the
+/// longer name would have to change).
+std::string nearest_name(std::string_view typed, std::span<std::string const> known);
+
+}  // namespace pogosim

@@ -1,0 +1,32 @@
+#include "base/nearest_name.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+namespace pogosim {
+namespace {
+
+TEST(EditDistance, CountsInsertionsDeletionsAndSubstitutions) {
+    EXPECT_EQ(edit_distance("radius", "radius"), 0U);
+    EXPECT_EQ(edit_distance("radus", "radius"), 1U);
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+    EXPECT_EQ(edit_distance("", "abc"), 3U);
+    EXPECT_EQ(edit_distance("gui", "GUI"), 0U);
+}
+
+TEST(NearestName, IsTheOneWithTheFewestChanges) {
+    std::array<std::string, 3> const known{"radius", "body_radius", "nb"};
+    EXPECT_EQ(nearest_name("radus", known), "radius");
+    EXPECT_EQ(nearest_name("bodyradius", known), "body_radius");
+}
+
+TEST(NearestName, IsEmptyWhenNothingIsClose) {
+    std::array<std::string, 2> const known{"radius", "nb"};
+    EXPECT_EQ(nearest_name("temperature", known), "");
+    EXPECT_EQ(nearest_name("x", known), "");
+}
+
+}  // namespace
+}  // namespace pogosim
