@@ -1,0 +1,30 @@
+// Text files of comma-separated values, as arenas and imported formations are.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pogosim {
+
+struct CsvLine {
+    std::size_t number = 0;  // from 1
+    std::string text;        // without spaces and tabs at either end; empty for a blank line
+};
+
+/// All lines of a text file but comments (lines that start with '#'). Accepts a UTF-8 byte order mark and line ends of
+/// every kind. Throws ConfigError when it is not a regular file that can be read, or larger than 256 MiB.
+std::vector<CsvLine> read_csv_lines(std::filesystem::path const& path);
+
+/// Fields between commas, without spaces and tabs at either end, nor one pair of double quotes around them.
+std::vector<std::string_view> split_fields(std::string_view line);
+
+/// A finite decimal number ("-1.5e3", "+2"), or nothing.
+std::optional<double> parse_number(std::string_view field);
+
+/// The text in quotes for a message: unprintable bytes as \xNN, at most 40 characters.
+std::string in_quotes(std::string_view text);
+
+}  // namespace pogosim

@@ -1,0 +1,142 @@
+#include "geometry/formation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "base/nearest_name.hpp"
+#include "geometry/formations/task.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kCommonHeading = 0.5F * kPi;
+
+struct Formation {
+    std::string name;
+    std::vector<Placement> (*place)(PlacementTask const&);
+    bool aligned;
+};
+
+std::array<Formation, 11> const& formations() {
+    static std::array<Formation, 11> const table{{
+        {"random", place_random, false},
+        {"aligned_random", place_random, true},
+        {"random_near_walls", place_near_walls, false},
+        {"aligned_random_near_walls", place_near_walls, true},
+        {"disk", place_disk, false},
+        {"aligned_disk", place_disk, true},
+        {"lloyd", place_lloyd, false},
+        {"power_lloyd", place_power_lloyd, false},
+        {"chessboard", place_chessboard, false},
+        {"aligned_chessboard", place_chessboard, true},
+        {"imported", place_imported, false},
+    }};
+    return table;
+}
+
+Formation const& formation_named(std::string const& name) {
+    auto const found = std::ranges::find(formations(), name, &Formation::name);
+    if (found != formations().end()) {
+        return *found;
+    }
+    std::string const nearest = nearest_name(name, formation_names());
+    throw ConfigError(fmt::format("initial_formation: unknown formation '{}'. {}", name,
+                                  nearest.empty() ? fmt::format("Known are {}", fmt::join(formation_names(), ", "))
+                                                  : fmt::format("Did you mean '{}'?", nearest)));
+}
+
+void check_spec(FormationSpec const& spec) {
+    struct Rule {
+        char const* key;
+        bool holds;
+        char const* expected;
+        double found;
+    };
+    Rule const rules[] = {
+        {"formation_min_space_between_neighbors", std::isfinite(spec.min_space_mm) && spec.min_space_mm >= 0.0F,
+         "a finite length >= 0 mm", spec.min_space_mm},
+        {"formation_max_space_between_neighbors", spec.max_space_mm > 0.0F, "a length > 0 mm", spec.max_space_mm},
+        {"formation_attempts_per_point", spec.attempts_per_point >= 1, "a count >= 1",
+         static_cast<double>(spec.attempts_per_point)},
+        {"formation_max_restarts", spec.max_restarts >= 0, "a count >= 0", static_cast<double>(spec.max_restarts)},
+        {"chessboard_distance_between_neighbors",
+         std::isfinite(spec.chessboard_pitch_mm) && spec.chessboard_pitch_mm > 0.0F, "a finite length > 0 mm",
+         spec.chessboard_pitch_mm},
+    };
+    for (Rule const& rule : rules) {
+        if (!rule.holds) {
+            throw ConfigError(fmt::format("{}: expected {}, found {:g}", rule.key, rule.expected, rule.found));
+        }
+    }
+}
+
+std::vector<float> placement_radii(FormationSpec const& spec, std::span<float const> radii_mm) {
+    std::vector<float> placed;
+    for (float const radius : radii_mm) {
+        assert(std::isfinite(radius) && radius >= 0.0F);
+        placed.push_back(kPlacementMargin * std::max(radius, spec.min_space_mm));
+    }
+    return placed;
+}
+
+/// No arrangement of disks covers more than the whole domain.
+void check_area(PlacementTask const& task) {
+    double covered = 0.0;
+    for (float const radius : task.radii_mm) {
+        covered += std::numbers::pi * radius * radius;
+    }
+    if (covered > task.domain.area_mm2) {
+        throw ConfigError(
+            fmt::format("formation '{}' cannot place {}: with their spacing they cover {:.3g} mm2, and the "
+                        "arena has {:.3g} mm2. Ask for fewer or enlarge arena_surface",
+                        task.spec.name, describe_objects(task), covered, task.domain.area_mm2));
+    }
+}
+
+/// Uniform in (-pi, pi].
+float random_heading(RandomStream& random) {
+    return wrap_angle(-random.uniform(-kPi, kPi));
+}
+
+}  // namespace
+
+std::span<std::string const> formation_names() {
+    static std::vector<std::string> const names = [] {
+        std::vector<std::string> all;
+        std::ranges::transform(formations(), std::back_inserter(all), &Formation::name);
+        return all;
+    }();
+    return names;
+}
+
+std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, Arena const& domain,
+                             RandomStream& random, PoseReader const& read_feather) {
+    Formation const& formation = formation_named(spec.name);
+    check_spec(spec);
+    if (radii_mm.empty()) {
+        return {};
+    }
+    std::vector<float> const radii = placement_radii(spec, radii_mm);
+    FreeSpace const space(domain);
+    PlacementTask const task{spec, radii, domain, space, random, read_feather};
+    if (formation.place != place_imported) {
+        check_area(task);
+    }
+    std::vector<Placement> placements = formation.place(task);
+    for (Placement& placement : placements) {
+        if (std::isnan(placement.heading_rad)) {
+            placement.heading_rad = formation.aligned ? kCommonHeading : random_heading(random);
+        }
+    }
+    return placements;
+}
+
+}  // namespace pogosim

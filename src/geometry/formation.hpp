@@ -1,0 +1,65 @@
+// Initial formations: where the objects stand at time 0. Adding one is one function and one line of the table in
+// formation.cpp.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/random.hpp"
+#include "geometry/arena.hpp"
+
+namespace pogosim {
+
+/// The keys `initial_formation*`, `formation_*`, `chessboard_*` and `imported_*` of a configuration.
+struct FormationSpec {
+    std::string name = "power_lloyd";
+    std::string root_object = "arena";  // category whose contour bounds the formation; "", "null" or "arena": the arena
+    Vec2 centre_mm{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
+    float min_space_mm = 0.0F;                                    // lower bound of every placement radius
+    float max_space_mm = std::numeric_limits<float>::infinity();  // random: a new point is this near some placed one
+    int attempts_per_point = 100;                                 // consecutive rejections before starting again
+    int max_restarts = 100;                                       // restarts before giving up
+    float chessboard_pitch_mm = 100.0F;
+    bool cluster_at_centre = true;  // chessboard: rings around the centre; false: spread over the bounding box
+    std::string filename;           // imported: csv or feather
+    Vec2 imported_min{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
+    Vec2 imported_max{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
+};
+
+struct Placement {
+    Vec2 position_mm;
+    float heading_rad = 0.0F;
+};
+
+/// One row of a file for the formation `imported`.
+struct ImportedPose {
+    double x = 0.0;  // mm, or in the unit of imported_min and imported_max
+    double y = 0.0;
+    double heading_rad = std::numeric_limits<double>::quiet_NaN();  // NaN: not given, drawn at random
+    double time_s = 0.0;                                            // only the rows of the smallest time count
+    std::size_t row = 0;                                            // line of a csv file, row of a table; for messages
+};
+
+/// Reads all poses of a file that is not text. Its mistakes are ConfigErrors.
+using PoseReader = std::function<std::vector<ImportedPose>(std::filesystem::path const&)>;
+
+/// Names of all formations, in the table's order.
+std::span<std::string const> formation_names();
+
+/// One pose for each object of the given radii (mm, finite, >= 0), in the same order. Placement radius of object i:
+/// r_i = 1.01 max(radius, min_space). Every object but the imported ones stands inside `domain`, at least r_i from its
+/// walls and at least r_i + r_j from object j; imported ones stand where the file says, which must be inside.
+/// `read_feather` reads the file of `imported` when its name ends in ".feather".
+/// Headings: pi/2 for aligned_*, the file's for imported, otherwise uniform in (-pi, pi].
+/// Throws ConfigError when they do not fit, after a bounded search ("formation 'disk' has places for 31 of 40 objects
+/// (largest radius 26.5 mm) in this arena. ..."); when a value of the spec makes no sense; when the imported file is
+/// unreadable or too short; or when the name is unknown. The same arguments give the same poses.
+std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, Arena const& domain,
+                             RandomStream& random, PoseReader const& read_feather = {});
+
+}  // namespace pogosim

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/error.hpp"
+#include "geometry/csv_text.hpp"
+#include "geometry/formations/task.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// Where the columns of a csv file are.
+struct Columns {
+    std::size_t x = 0;
+    std::size_t y = 1;
+    std::optional<std::size_t> angle;
+    std::optional<std::size_t> time;
+    std::size_t count = 2;  // fields that a line must have at least
+};
+
+std::optional<std::size_t> find_column(std::vector<std::string_view> const& names, std::string_view name) {
+    auto const found = std::ranges::find(names, name);
+    return found == names.end() ? std::nullopt : std::optional<std::size_t>(found - names.begin());
+}
+
+bool is_header(std::vector<std::string_view> const& fields) {
+    return std::ranges::any_of(fields, [](std::string_view f) { return !f.empty() && !parse_number(f); });
+}
+
+Columns columns_of_header(std::vector<std::string_view> const& names, std::string const& where) {
+    auto const x = find_column(names, "x");
+    auto const y = find_column(names, "y");
+    if (!x || !y) {
+        throw ConfigError(
+            fmt::format("{}: expected a header with the columns x and y (and theta or angle, and time, if "
+                        "wanted), found '{}'",
+                        where, fmt::join(names, ",")));
+    }
+    auto const theta = find_column(names, "theta");
+    auto const angle = theta ? theta : find_column(names, "angle");
+    return {*x, *y, angle, find_column(names, "time"), names.size()};
+}
+
+double number_in(std::vector<std::string_view> const& fields, std::size_t column, std::string const& where) {
+    auto const number = parse_number(fields[column]);
+    if (!number) {
+        throw ConfigError(fmt::format("{}: expected a finite number in column {}, found {}", where, column + 1,
+                                      in_quotes(fields[column])));
+    }
+    return *number;
+}
+
+ImportedPose parse_pose(std::vector<std::string_view> const& fields, Columns const& columns, std::size_t row,
+                        std::string const& where) {
+    if (fields.size() < columns.count) {
+        throw ConfigError(
+            fmt::format("{}: expected {} fields between commas, found {}", where, columns.count, fields.size()));
+    }
+    ImportedPose pose;
+    pose.x = number_in(fields, columns.x, where);
+    pose.y = number_in(fields, columns.y, where);
+    pose.row = row;
+    if (columns.angle && !fields[*columns.angle].empty()) {
+        pose.heading_rad = number_in(fields, *columns.angle, where);
+    }
+    if (columns.time) {
+        pose.time_s = number_in(fields, *columns.time, where);
+    }
+    return pose;
+}
+
+std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
+    std::vector<ImportedPose> poses;
+    std::optional<Columns> columns;
+    for (CsvLine const& line : read_csv_lines(path)) {
+        if (line.text.empty()) {
+            continue;
+        }
+        std::string const where = fmt::format("{}:{}", path.string(), line.number);
+        std::vector<std::string_view> const fields = split_fields(line.text);
+        bool const header = !columns && is_header(fields);
+        if (!columns) {
+            columns = header ? columns_of_header(fields, where) : Columns{};
+        }
+        if (!header) {
+            poses.push_back(parse_pose(fields, *columns, line.number, where));
+        }
+    }
+    return poses;
+}
+
+std::vector<ImportedPose> read_poses(PlacementTask const& task) {
+    std::filesystem::path const path = task.spec.filename;
+    if (path.empty()) {
+        throw ConfigError("formation 'imported' needs a file: set formation_filename");
+    }
+    if (path.extension() != ".feather") {
+        return read_csv_poses(path);
+    }
+    if (!task.read_feather) {
+        throw ConfigError(fmt::format("{}: Feather files cannot be read here; convert it to csv", path.string()));
+    }
+    return task.read_feather(path);
+}
+
+/// Keeps the rows of the smallest time.
+void keep_first_instant(std::vector<ImportedPose>& poses) {
+    if (!poses.empty()) {
+        double const start_s = std::ranges::min_element(poses, {}, &ImportedPose::time_s)->time_s;
+        std::erase_if(poses, [&](ImportedPose const& pose) { return pose.time_s != start_s; });
+    }
+}
+
+/// Maps numbers of the box `imported_min` to `imported_max` onto the arena's bounding box, axis by axis.
+class ImportedFrame {
+public:
+    explicit ImportedFrame(PlacementTask const& task) {
+        Vec2 const min = task.spec.imported_min;
+        Vec2 const max = task.spec.imported_max;
+        float const coordinates[] = {min.x, min.y, max.x, max.y};
+        auto const given = std::ranges::count_if(coordinates, [](float c) { return std::isfinite(c); });
+        if (given == 0) {
+            return;
+        }
+        if (given < 4 || min.x >= max.x || min.y >= max.y) {
+            throw ConfigError(
+                fmt::format("imported_formation_min_coords, imported_formation_max_coords: expected two "
+                            "corners of a box, found ({:g}, {:g}) and ({:g}, {:g})",
+                            min.x, min.y, max.x, max.y));
+        }
+        Box const box = task.domain.bounds;
+        source_ = {min, max};
+        target_ = box;
+    }
+
+    Vec2 to_mm(ImportedPose const& pose) const {
+        Vec2 const from = source_.size();
+        Vec2 const to = target_.size();
+        return {static_cast<float>(target_.min.x + (pose.x - source_.min.x) / from.x * to.x),
+                static_cast<float>(target_.min.y + (pose.y - source_.min.y) / from.y * to.y)};
+    }
+
+private:
+    Box source_{{0.0F, 0.0F}, {1.0F, 1.0F}};
+    Box target_{{0.0F, 0.0F}, {1.0F, 1.0F}};
+};
+
+}  // namespace
+
+std::vector<Placement> place_imported(PlacementTask const& task) {
+    std::vector<ImportedPose> poses = read_poses(task);
+    keep_first_instant(poses);
+    std::size_t const count = task.radii_mm.size();
+    if (poses.size() < count) {
+        throw ConfigError(
+            fmt::format("{}: expected at least {} rows of poses (of the first instant), one for each "
+                        "object, found {}",
+                        task.spec.filename, count, poses.size()));
+    }
+    poses.resize(count);
+
+    ImportedFrame const frame(task);
+    std::vector<Placement> placements;
+    for (ImportedPose const& pose : poses) {
+        Vec2 const place = frame.to_mm(pose);
+        if (!task.domain.contains(place)) {
+            throw ConfigError(
+                fmt::format("{}:{}: the position ({:g}, {:g}) mm is outside the arena, which spans "
+                            "({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm",
+                            task.spec.filename, pose.row, place.x, place.y, task.domain.bounds.min.x,
+                            task.domain.bounds.min.y, task.domain.bounds.max.x, task.domain.bounds.max.y));
+        }
+        // A heading that the file does not give stays NaN.
+        placements.push_back({place, wrap_angle(static_cast<float>(pose.heading_rad))});
+    }
+    return placements;
+}
+
+}  // namespace pogosim

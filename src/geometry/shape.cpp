@@ -1,0 +1,52 @@
+#include "geometry/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pogosim {
+
+namespace {
+
+constexpr float kSqrt3 = std::numbers::sqrt3_v<float>;
+
+bool in_triangle(float side_mm, Vec2 offset_mm) {
+    // The inscribed circle touches the middle of each side; a point is inside when it is beyond none of the three.
+    float const inradius = side_mm / (2.0F * kSqrt3);
+    Vec2 const outward[] = {{0.0F, 1.0F}, {0.5F * kSqrt3, -0.5F}, {-0.5F * kSqrt3, -0.5F}};
+    return std::ranges::all_of(outward, [&](Vec2 normal) { return dot(offset_mm, normal) <= inradius; });
+}
+
+}  // namespace
+
+float bounding_radius(Shape const& shape) {
+    switch (shape.kind) {
+        case ShapeKind::disk:
+            return shape.radius_mm;
+        case ShapeKind::rectangle:
+            return 0.5F * std::hypot(shape.width_mm, shape.height_mm);
+        case ShapeKind::triangle:
+            return shape.side_length_mm / kSqrt3;
+        case ShapeKind::global:
+        case ShapeKind::arena:
+            break;
+    }
+    return 0.0F;
+}
+
+bool contains(Shape const& shape, Vec2 offset_mm) {
+    switch (shape.kind) {
+        case ShapeKind::disk:
+            return squared_length(offset_mm) <= shape.radius_mm * shape.radius_mm;
+        case ShapeKind::rectangle:
+            return std::abs(offset_mm.x) <= 0.5F * shape.width_mm && std::abs(offset_mm.y) <= 0.5F * shape.height_mm;
+        case ShapeKind::triangle:
+            return in_triangle(shape.side_length_mm, offset_mm);
+        case ShapeKind::global:
+        case ShapeKind::arena:
+            break;
+    }
+    return true;
+}
+
+}  // namespace pogosim

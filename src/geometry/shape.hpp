@@ -1,0 +1,31 @@
+// Shapes of objects, in the object's own frame (heading along +x).
+#pragma once
+
+#include <string_view>
+
+#include "geometry/polygon.hpp"
+
+namespace pogosim {
+
+enum class ShapeKind { disk, rectangle, triangle, global, arena };
+
+/// What the `geometry` key and its companions say. Only the sizes of the named kind count.
+struct Shape {
+    ShapeKind kind = ShapeKind::disk;
+    float radius_mm = 10.0F;       // disk
+    float width_mm = 10.0F;        // rectangle, along x
+    float height_mm = 10.0F;       // rectangle, along y
+    float side_length_mm = 10.0F;  // triangle: equilateral, centroid at the origin, one corner towards -y
+
+    friend bool operator==(Shape const&, Shape const&) = default;
+};
+
+/// Radius of the smallest disk around the shape's origin that holds it, mm: the "radius" of an object for IR range,
+/// occlusion, sensors and drawing. 0 for global and arena.
+float bounding_radius(Shape const& shape);
+
+/// True when the point, given relative to the shape's origin, is inside. Global holds every point; arena is the
+/// caller's to decide and counts as everywhere here.
+bool contains(Shape const& shape, Vec2 offset_mm);
+
+}  // namespace pogosim

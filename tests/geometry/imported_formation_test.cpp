@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "geometry/formation.hpp"
+
+namespace pogosim {
+namespace {
+
+namespace fs = std::filesystem;
+
+Arena const kRoom =
+    make_arena({{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}, {{400, 200}, {600, 200}, {600, 300}, {400, 300}}});
+
+class ImportedFormation : public testing::Test {
+protected:
+    ImportedFormation()
+        : folder_(fs::path(testing::TempDir()) /
+                  ("imported_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+        fs::create_directories(folder_);
+        spec_.name = "imported";
+        spec_.filename = (folder_ / "poses.csv").string();
+    }
+    ~ImportedFormation() override { fs::remove_all(folder_); }
+
+    std::vector<Placement> place_from(std::string const& text, std::size_t count) {
+        std::ofstream(spec_.filename, std::ios::binary) << text;
+        return place_now(count);
+    }
+
+    std::vector<Placement> place_now(std::size_t count) {
+        RandomStream random(1, 1);
+        return place(spec_, std::vector<float>(count, 26.5F), kRoom, random, reader_);
+    }
+
+    /// The message, with the file's folder cut off.
+    std::string error_of(std::string const& text, std::size_t count) {
+        try {
+            place_from(text, count);
+        } catch (ConfigError const& error) {
+            std::string const message = error.what();
+            std::string const prefix = folder_.string() + "/";
+            return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+        }
+        return "";
+    }
+
+    fs::path folder_;
+    FormationSpec spec_;
+    PoseReader reader_;
+};
+
+TEST_F(ImportedFormation, ReadsPositionsInTheOrderOfTheFile) {
+    auto const placements = place_from("10,20\n30,40\n50,60\n", 2);
+    ASSERT_EQ(placements.size(), 2U);
+    EXPECT_EQ(placements[0].position_mm, (Vec2{10, 20}));
+    EXPECT_EQ(placements[1].position_mm, (Vec2{30, 40}));
+}
+
+TEST_F(ImportedFormation, HeaderNamesTheColumnsInAnyOrder) {
+    auto const placements =
+        place_from("\xEF\xBB\xBFname, theta ,y,x\r\nrobot,1.5,20,10\r\n\r\nrobot,-0.5,40,30\r\n", 2);
+    EXPECT_EQ(placements[1].position_mm, (Vec2{30, 40}));
+    EXPECT_FLOAT_EQ(placements[0].heading_rad, 1.5F);
+    EXPECT_FLOAT_EQ(placements[1].heading_rad, -0.5F);
+}
+
+TEST_F(ImportedFormation, AngleIsTakenAsItIsAndWrapped) {
+    auto const placements = place_from("x,y,angle\n10,20,0\n10,20,4\n10,20,3.14159265\n", 3);
+    EXPECT_FLOAT_EQ(placements[0].heading_rad, 0.0F);
+    EXPECT_NEAR(placements[1].heading_rad, 4.0 - 2.0 * std::numbers::pi, 1.0e-6);
+    EXPECT_NEAR(std::abs(placements[2].heading_rad), std::numbers::pi, 1.0e-6);
+}
+
+TEST_F(ImportedFormation, WithoutAnglesHeadingsAreDrawn) {
+    std::string text = "x,y,angle\n";
+    for (int i = 0; i < 20; ++i) {
+        text += "10,20,\n";
+    }
+    auto const placements = place_from(text, 20);
+    for (std::size_t i = 1; i < 20; ++i) {
+        EXPECT_NE(placements[i].heading_rad, placements[0].heading_rad);
+    }
+}
+
+TEST_F(ImportedFormation, OnlyTheRowsOfTheFirstInstantCount) {
+    std::string const text = "time,x,y\n2,1,1\n0.5,10,20\n2,2,2\n0.5,30,40\n7,3,3\n";
+    EXPECT_EQ(place_from(text, 2)[1].position_mm, (Vec2{30, 40}));
+    EXPECT_EQ(error_of(text, 3),
+              "poses.csv: expected at least 3 rows of poses (of the first instant), one for each object, found 2");
+}
+
+TEST_F(ImportedFormation, BoxOfTheFileIsMappedOntoTheArenasBox) {
+    spec_.imported_min = {-1, 10};
+    spec_.imported_max = {1, 20};
+    auto const placements = place_from("-0.5,11\n0.9,19\n0,11\n", 3);
+    EXPECT_EQ(placements[0].position_mm, (Vec2{250, 50}));
+    EXPECT_FLOAT_EQ(placements[2].position_mm.x, 500.0F);
+}
+
+TEST_F(ImportedFormation, BoxThatIsNoneIsRefused) {
+    spec_.imported_min = {-1, 10};
+    EXPECT_TRUE(error_of("0,15\n", 1).starts_with("imported_formation_min_coords, imported_formation_max_coords: "));
+    spec_.imported_max = {1, 10};
+    EXPECT_TRUE(error_of("0,15\n", 1).starts_with("imported_formation_min_coords, imported_formation_max_coords: "));
+}
+
+TEST_F(ImportedFormation, PositionOutsideTheArenaNamesItsLine) {
+    EXPECT_TRUE(
+        error_of("x,y\n10,20\n# comment\n-5,20\n", 2).starts_with("poses.csv:4: the position (-5, 20) mm is outside"));
+    EXPECT_TRUE(error_of("10,20\n500,250\n", 2).starts_with("poses.csv:2: the position (500, 250) mm is outside"));
+    EXPECT_EQ(error_of("10,20\n-5,20\n", 1), "");  // a row that nobody needs
+}
+
+TEST_F(ImportedFormation, OverlapsAreTheUsersWish) {
+    EXPECT_EQ(place_from("100,100\n100,100\n101,100\n", 3).size(), 3U);
+}
+
+TEST_F(ImportedFormation, BadRowsAreRefusedWithTheirLine) {
+    EXPECT_TRUE(error_of("x,y\n1,2\n3\n", 2).starts_with("poses.csv:3: expected 2 fields"));
+    EXPECT_TRUE(
+        error_of("1,2\n3,abc\n", 2).starts_with("poses.csv:2: expected a finite number in column 2, found 'abc'"));
+    EXPECT_TRUE(
+        error_of("1,2\nnan,4\n", 2).starts_with("poses.csv:2: expected a finite number in column 1, found 'nan'"));
+    EXPECT_TRUE(error_of("x,y,time\n1,2,\n", 1).starts_with("poses.csv:2: expected a finite number in column 3"));
+    EXPECT_TRUE(error_of("a,b\n1,2\n", 1).starts_with("poses.csv:1: expected a header with the columns x and y"));
+    EXPECT_TRUE(error_of("x;y\n1;2\n", 1).starts_with("poses.csv:1: expected a header with the columns x and y"));
+    EXPECT_TRUE(error_of("x,y\n1e300,2\n", 1).starts_with("poses.csv:2: the position"));
+    EXPECT_TRUE(error_of("", 1).starts_with("poses.csv: expected at least 1 row"));
+    EXPECT_TRUE(error_of(std::string("\0\x01\x02\xff\n", 5), 1).starts_with("poses.csv:1: "));
+}
+
+TEST_F(ImportedFormation, MissingFileOrNameIsRefused) {
+    EXPECT_THROW(place_now(1), ConfigError);
+    spec_.filename = folder_.string();
+    EXPECT_THROW(place_now(1), ConfigError);
+    spec_.filename = "";
+    EXPECT_THROW(place_now(1), ConfigError);
+}
+
+TEST_F(ImportedFormation, FeatherFilesGoToTheReaderThatIsGiven) {
+    spec_.filename = "poses.feather";
+    EXPECT_THROW(place_now(1), ConfigError);
+    fs::path asked;
+    reader_ = [&](fs::path const& path) -> std::vector<ImportedPose> {
+        asked = path;
+        return {{.x = 700, .y = 20, .heading_rad = 1.0, .time_s = 2.0, .row = 1},
+                {.x = 10, .y = 20, .heading_rad = 0.25, .time_s = 1.0, .row = 2},
+                {.x = 30, .y = 40, .time_s = 1.0, .row = 3}};
+    };
+    auto const placements = place_now(2);
+    EXPECT_EQ(asked, "poses.feather");
+    EXPECT_EQ(placements[0].position_mm, (Vec2{10, 20}));
+    EXPECT_FLOAT_EQ(placements[0].heading_rad, 0.25F);
+    EXPECT_EQ(placements[1].position_mm, (Vec2{30, 40}));
+}
+
+}  // namespace
+}  // namespace pogosim
