@@ -1,0 +1,88 @@
+// What is on the air and what has arrived: plain data between the robots' programs and the communication stage.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace pogosim {
+
+/// The eight bytes a receiver sees in front of a payload. Same fields as message_header_t of the C interface.
+struct FrameHeader {
+    std::uint8_t packet_type = 0;
+    std::uint8_t emitting_power_list = 0;
+    std::uint16_t sender_id = 0;
+    std::uint8_t sender_ir_index = 0;
+    std::uint8_t receiver_ir_index = 0;
+    std::uint16_t payload_length = 0;
+};
+
+inline constexpr int kFaceCount = 4;            // front, right, back, left
+inline constexpr std::uint8_t kAllFaces = 0xF;  // bit d: emitter d
+
+/// One transmission of one robot during this step.
+struct Emission {
+    std::uint32_t robot = 0;          // index of the sender
+    std::uint8_t emitters = 0;        // bit d: emitter d radiates
+    std::uint16_t message_bytes = 0;  // header and payload as the reception law counts them
+    float send_probability = 0.0F;    // of the sender, per tick
+    FrameHeader header;
+    std::uint32_t payload_offset = 0;  // into Air::payloads
+};
+
+/// All transmissions of the current step, in the order in which the robots made them.
+struct Air {
+    std::vector<Emission> emissions;
+    std::vector<std::byte> payloads;
+
+    std::span<std::byte const> payload_of(Emission const& emission) const {
+        return std::span(payloads).subspan(emission.payload_offset, emission.header.payload_length);
+    }
+    void clear() {
+        emissions.clear();
+        payloads.clear();
+    }
+};
+
+/// Every robot's FIFO of received messages. Messages lie one behind the other in one block per robot, so that short
+/// messages touch little memory; pages that are never used cost nothing.
+class Mailboxes {
+public:
+    Mailboxes() = default;
+
+    /// `queue_sizes[i]` messages of up to `max_payload_bytes` for robot i; all queues empty.
+    Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes);
+
+    /// Appends a message, or counts it as dropped and returns false when the queue is full.
+    bool push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
+
+    bool empty(std::size_t robot) const { return queues_[robot].count == 0; }
+    int size(std::size_t robot) const { return queues_[robot].count; }
+
+    /// Takes the oldest message out; `payload` receives payload_length bytes. False when there is none.
+    bool pop(std::size_t robot, FrameHeader& header, std::byte* payload);
+
+    void clear(std::size_t robot);
+
+    /// Messages lost to full queues since the start.
+    std::uint64_t dropped(std::size_t robot) const { return queues_[robot].dropped; }
+
+private:
+    struct Queue {
+        std::size_t block = 0;     // offset of this robot's bytes in storage_
+        std::size_t capacity = 0;  // bytes
+        std::size_t head = 0;      // first byte of the oldest message, from block
+        std::size_t tail = 0;      // one past the newest
+        int count = 0;
+        int max_count = 0;
+        std::uint64_t dropped = 0;
+    };
+
+    std::vector<Queue> queues_;
+    std::unique_ptr<std::byte[]> storage_;
+};
+
+}  // namespace pogosim

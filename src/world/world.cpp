@@ -1,0 +1,25 @@
+#include "world/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pogosim {
+
+std::int16_t LightMap::at(Vec2 point_mm) const {
+    Vec2 const offset = point_mm - origin_mm;
+    int const column = std::clamp(static_cast<int>(offset.x / cell_mm.x), 0, columns - 1);
+    int const row = std::clamp(static_cast<int>(offset.y / cell_mm.y), 0, rows - 1);
+    return level[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
+}
+
+Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b) {
+    Vec2 d = b - a;
+    if (world.periodic) {
+        Vec2 const size = world.arena.bounds.size();
+        d.x -= size.x * std::round(d.x / size.x);
+        d.y -= size.y * std::round(d.y / size.y);
+    }
+    return d;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,115 @@
+// The state of everything, as plain data in structures of arrays. Each stage of a step reads the world and writes only
+// its own part:
+//
+//   light     writes  light
+//   robot     writes  robots.led, robots.drive, air; takes messages out of mailboxes
+//   comms     writes  mailboxes, clears air
+//   physics   writes  bodies, robots.drive.fresh
+//   record    reads
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/random.hpp"
+#include "geometry/arena.hpp"
+#include "world/data_table.hpp"
+#include "world/mailbox.hpp"
+#include "world/specs.hpp"
+
+namespace pogosim {
+
+struct Rgb {
+    std::uint8_t r = 0;
+    std::uint8_t g = 0;
+    std::uint8_t b = 0;
+
+    friend bool operator==(Rgb const&, Rgb const&) = default;
+};
+
+inline constexpr int kLedCount = 5;  // 0 head, 1 front, 2 right, 3 back, 4 left
+using Leds = std::array<Rgb, kLedCount>;
+
+/// Rigid bodies. Shape: one entry per body.
+struct Bodies {
+    std::vector<Vec2> position_mm;
+    std::vector<float> heading_rad;  // not wrapped
+    std::vector<Vec2> axis;          // unit vector along the heading
+    std::vector<Vec2> velocity_mm_s;
+    std::vector<float> spin_rad_s;  // clockwise on the screen
+    std::vector<float> radius_mm;   // bounding disk
+    std::vector<Shape> shape;
+    std::vector<BodySpec> spec;
+
+    std::size_t size() const { return position_mm.size(); }
+};
+
+/// The velocity a robot's motors ask of its body.
+struct Drive {
+    Vec2 velocity_mm_s;
+    float spin_rad_s = 0.0F;
+    bool fresh = false;  // set at a control tick, cleared when physics has imposed it
+};
+
+/// Objects that run user code. Shape: one entry per robot, in order of creation.
+struct Robots {
+    std::vector<std::uint16_t> id;        // what pogobot_helper_getid() answers and the data file shows
+    std::vector<std::uint16_t> category;  // index into World::categories
+    std::vector<std::uint32_t> body;      // index into World::bodies
+    std::vector<Leds> led;
+    std::vector<Drive> drive;
+    std::vector<RandomStream> stream;  // noise of motors and sensors, losses on the air
+
+    std::size_t size() const { return id.size(); }
+};
+
+/// One category of robots.
+struct Category {
+    std::string name;
+    RobotSpec spec;
+};
+
+/// Light levels on a grid over the bounding box of the outer wall. Row 0 lies along the top.
+struct LightMap {
+    int columns = 0;
+    int rows = 0;
+    Vec2 origin_mm;
+    Vec2 cell_mm;
+    std::vector<std::int16_t> level;  // sensor counts, 0 to 32767, row by row
+
+    /// Level of the cell under the point; outside the map, that of the nearest cell.
+    std::int16_t at(Vec2 point_mm) const;
+};
+
+struct World {
+    // Time: a count of steps. time = step * time_step_s.
+    std::int64_t step = 0;
+    double time_step_s = 0.01;
+
+    // Space.
+    Arena arena;
+    bool periodic = false;           // wrap at the bounding box of the outer wall; no walls
+    bool ignore_occlusions = false;  // IR: range only, no half-plane test of emitters, no shadows
+    float temperature_c = 42.0F;
+
+    // Things.
+    std::vector<Category> categories;  // of robots, in the order of the configuration
+    Bodies bodies;
+    Robots robots;
+    LightMap light;
+
+    // Messages.
+    Air air;
+    Mailboxes mailboxes;
+
+    double time_s() const { return static_cast<double>(step) * time_step_s; }
+
+    RobotSpec const& spec_of(std::size_t robot) const { return categories[robots.category[robot]].spec; }
+};
+
+/// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.
+Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b);
+
+}  // namespace pogosim

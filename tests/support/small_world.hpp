@@ -1,0 +1,52 @@
+// Worlds made by hand, for tests of single stages.
+#pragma once
+
+#include <vector>
+
+#include "world/world.hpp"
+
+namespace pogosim::testing {
+
+/// An empty square arena of the given side, mm.
+inline World square_world(float side_mm = 1000.0F) {
+    World world;
+    world.arena.polygons = {{{0, 0}, {side_mm, 0}, {side_mm, side_mm}, {0, side_mm}}};
+    world.arena.bounds = {{0, 0}, {side_mm, side_mm}};
+    world.arena.area_mm2 = static_cast<double>(side_mm) * static_cast<double>(side_mm);
+    return world;
+}
+
+/// Radius, range and body as the article's configuration has them.
+inline RobotSpec pogobot_spec() {
+    RobotSpec spec;
+    spec.shape.radius_mm = 26.5F;
+    return spec;
+}
+
+/// Adds a robot of the world's only category (made on the first call) and returns its index.
+inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad = 0.0F,
+                               RobotSpec const& spec = pogobot_spec()) {
+    if (world.categories.empty()) {
+        world.categories.push_back({"robots", spec});
+    }
+    auto const index = static_cast<std::uint32_t>(world.robots.size());
+    world.robots.id.push_back(static_cast<std::uint16_t>(index));
+    world.robots.category.push_back(0);
+    world.robots.body.push_back(index);
+    world.robots.led.push_back({});
+    world.robots.drive.push_back({});
+    world.robots.stream.emplace_back(1, index);
+    world.bodies.position_mm.push_back(position_mm);
+    world.bodies.heading_rad.push_back(heading_rad);
+    world.bodies.axis.push_back(direction(heading_rad));
+    world.bodies.velocity_mm_s.push_back({});
+    world.bodies.spin_rad_s.push_back(0.0F);
+    world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
+    world.bodies.shape.push_back(spec.shape);
+    world.bodies.spec.push_back(spec.body);
+    std::vector<int> const sizes(world.robots.size(), spec.ir.queue_size);
+    world.mailboxes = Mailboxes(sizes, 382);
+    return index;
+}
+
+}  // namespace pogosim::testing

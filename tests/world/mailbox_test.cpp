@@ -1,0 +1,76 @@
+#include "world/mailbox.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "base/random.hpp"
+
+namespace pogosim {
+namespace {
+
+constexpr std::size_t kMaxPayload = 382;
+
+std::vector<std::byte> payload_of(std::size_t size, int value) {
+    return std::vector(size, static_cast<std::byte>(value));
+}
+
+bool push(Mailboxes& boxes, std::size_t robot, std::vector<std::byte> const& payload) {
+    FrameHeader header;
+    header.payload_length = static_cast<std::uint16_t>(payload.size());
+    return boxes.push(robot, header, payload);
+}
+
+TEST(Mailbox, GivesMessagesBackFirstInFirstOut) {
+    std::array const sizes{3};
+    Mailboxes boxes(sizes, kMaxPayload);
+    EXPECT_TRUE(boxes.empty(0));
+    push(boxes, 0, payload_of(2, 1));
+    push(boxes, 0, payload_of(0, 0));
+    push(boxes, 0, payload_of(382, 3));
+    EXPECT_EQ(boxes.size(0), 3);
+    FrameHeader header;
+    std::array<std::byte, kMaxPayload> payload{};
+    ASSERT_TRUE(boxes.pop(0, header, payload.data()));
+    EXPECT_EQ(header.payload_length, 2);
+    EXPECT_EQ(payload[1], std::byte{1});
+    ASSERT_TRUE(boxes.pop(0, header, payload.data()));
+    EXPECT_EQ(header.payload_length, 0);
+    ASSERT_TRUE(boxes.pop(0, header, payload.data()));
+    EXPECT_EQ(payload[381], std::byte{3});
+    EXPECT_FALSE(boxes.pop(0, header, payload.data()));
+}
+
+TEST(Mailbox, BehavesAsAPlainQueueForAnySequenceOfMessages) {
+    std::array const sizes{20, 1, 7};
+    Mailboxes boxes(sizes, kMaxPayload);
+    std::array<std::deque<std::vector<std::byte>>, 3> expected;
+    RandomStream random(3, 3);
+    for (int i = 0; i < 20000; ++i) {
+        std::size_t const robot = random.below(3);
+        if (random.below(2) == 0) {
+            auto const message = payload_of(random.below(kMaxPayload + 1), i % 256);
+            bool const fits = expected[robot].size() < static_cast<std::size_t>(sizes[robot]);
+            EXPECT_EQ(push(boxes, robot, message), fits);
+            if (fits) {
+                expected[robot].push_back(message);
+            }
+        } else {
+            FrameHeader header;
+            std::array<std::byte, kMaxPayload> payload{};
+            ASSERT_EQ(boxes.pop(robot, header, payload.data()), !expected[robot].empty());
+            if (!expected[robot].empty()) {
+                auto const& message = expected[robot].front();
+                ASSERT_EQ(header.payload_length, message.size());
+                EXPECT_TRUE(std::equal(message.begin(), message.end(), payload.begin()));
+                expected[robot].pop_front();
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace pogosim
