@@ -1,0 +1,129 @@
+#include "config/check_scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <regex>
+
+#include "base/log.hpp"
+#include "config/values.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// The node of a top-level key, or the whole tree when the file leaves the key out.
+Place place_of(Scenario const& scenario, std::string const& key) {
+    Node const* node = scenario.resolved.find(key);
+    return {node == nullptr ? scenario.resolved : *node, key};
+}
+
+void check_counts(Scenario const& scenario) {
+    constexpr double kMaxCount = 9007199254740992.0;  // 2^53: beyond it a double skips integers
+    struct Period {
+        char const* key;
+        double period_s;
+    };
+    std::array const periods{
+        Period{"time_step", scenario.time_step_s},
+        Period{"save_data_period", scenario.output.save_data_period_s},
+        Period{"save_video_period", scenario.view.save_video_period_s},
+    };
+    for (auto const& [key, period_s] : periods) {
+        if (period_s > 0.0 && scenario.simulation_time_s / period_s > kMaxCount) {
+            fail_at(place_of(scenario, key), fmt::format("{} s is too short for a run of {} s; use at least {} s",
+                                                         number_text(period_s), number_text(scenario.simulation_time_s),
+                                                         number_text(scenario.simulation_time_s / kMaxCount)));
+        }
+    }
+}
+
+void check_object_count(Scenario const& scenario) {
+    std::int64_t robots = 0;
+    for (ObjectConfig const& object : scenario.objects) {
+        robots += std::holds_alternative<RobotSpec>(object.spec) ? object.nb : 0;
+    }
+    if (robots > kMaxObjects) {
+        fail_at(place_of(scenario, "objects"),
+                fmt::format("expected at most {} robots in all categories, found {}", kMaxObjects, robots));
+    }
+    if (robots == 0) {
+        log().warn("{}: objects: there is no robot in this configuration; nothing will move",
+                   place_of(scenario, "objects").node.where());
+    }
+}
+
+/// Throws when the file that key `needed_by` asks for has no name.
+void require_name(Scenario const& scenario, char const* key, std::string const& name, char const* needed_by) {
+    Node const* node = scenario.resolved.find(key);
+    if (name.empty() || (node != nullptr && node->kind == Node::Kind::null)) {
+        Node const& cause = node == nullptr ? place_of(scenario, needed_by).node : *node;
+        fail_at({cause, key}, fmt::format("expected a file name, found nothing; '{}' needs it", needed_by));
+    }
+}
+
+void check_file_names(Scenario const& scenario) {
+    require_name(scenario, "arena_file", scenario.arena_file, "arena_surface");
+    if (scenario.output.enable_data_logging) {
+        require_name(scenario, "data_filename", scenario.output.data_filename, "enable_data_logging");
+    }
+    if (scenario.output.enable_console_logging) {
+        require_name(scenario, "console_filename", scenario.output.console_filename, "enable_console_logging");
+    }
+}
+
+/// The text between the only two braces of a name, or nothing when it has other braces or none.
+std::optional<std::string> only_field(std::string const& name) {
+    std::size_t const open = name.find_first_of("{}");
+    std::size_t const close = open == std::string::npos ? open : name.find_first_of("{}", open + 1);
+    bool const is_one = close != std::string::npos && name[open] == '{' && name[close] == '}' &&
+                        name.find_first_of("{}", close + 1) == std::string::npos;
+    return is_one ? std::optional(name.substr(open + 1, close - open - 1)) : std::nullopt;
+}
+
+/// A format of one floating-point number, with no width that would fill the memory.
+bool is_number_format(std::string const& field) {
+    static std::regex const pattern("(:[-+ <>^]{0,2}0?[0-9]{0,3}([.][0-9]{1,3})?[eEfFgG]?)?");
+    constexpr std::size_t kLongest = 20;
+    return field.size() <= kLongest && std::regex_match(field, pattern);
+}
+
+void check_frames_name(Scenario const& scenario) {
+    if (scenario.view.save_video_period_s <= 0.0) {
+        return;
+    }
+    std::optional<std::string> const field = only_field(scenario.view.frames_name);
+    if (!field || !is_number_format(*field)) {
+        fail_at(place_of(scenario, "frames_name"),
+                fmt::format("expected a name with one field for the time, like 'frames/f{{:010.4f}}.png', found '{}'",
+                            shown(scenario.view.frames_name)));
+    }
+}
+
+void check_formation(Scenario const& scenario) {
+    constexpr std::array<std::string_view, 3> kArena{"arena", "null", ""};
+    std::string const& root = scenario.formation.root_object;
+    bool const is_arena = std::ranges::find(kArena, root) != kArena.end();
+    if (!is_arena && std::ranges::find(scenario.objects, root, &ObjectConfig::category) == scenario.objects.end()) {
+        fail_at(place_of(scenario, "initial_formation_root_object"),
+                fmt::format("expected 'arena' or a category of 'objects', found '{}'", shown(root)));
+    }
+    if (scenario.formation.name == "imported") {
+        require_name(scenario, "formation_filename", scenario.formation.filename, "initial_formation");
+    }
+}
+
+}  // namespace
+
+void check_scenario(Scenario const& scenario) {
+    check_counts(scenario);
+    check_object_count(scenario);
+    check_file_names(scenario);
+    check_frames_name(scenario);
+    check_formation(scenario);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,121 @@
+// The tables behind a configuration. Every struct that a file can fill has one table: a line per YAML key with the
+// member it goes to, the numbers it takes, its unit and what it means. The loader reads by these tables, messages and
+// the list of known names come from them, and so does the configuration reference. Defaults are those of a
+// default-constructed struct.
+//
+//     {"body_density", &BodySpec::density, above(0).up_to(1e15), "per (100 mm)^2", "Mass per area."},
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "config/range.hpp"
+#include "config/values.hpp"
+
+namespace pogosim {
+
+/// How strictly a choice takes its names.
+struct ChoiceRule {
+    bool any_case = false;    // "Disk" is "disk"; the names of the table are in lower case
+    bool warns_only = false;  // an unknown name is a warning and the default is used, else an error
+};
+
+/// A member that takes one of several names.
+template <class T>
+struct Choice {
+    std::vector<std::string> names;
+    std::function<void(T&, std::size_t)> set;      // by index into names
+    std::function<std::string(T const&)> current;  // the name of the member's value
+    ChoiceRule rule;
+};
+
+template <class E>
+using NamedValues = std::vector<std::pair<std::string, E>>;
+
+template <class T, class E>
+Choice<T> one_of(E T::*member, NamedValues<E> const& named, ChoiceRule const& rule = {}) {
+    Choice<T> choice;
+    choice.rule = rule;
+    for (auto const& [name, value] : named) {
+        choice.names.push_back(name);
+    }
+    choice.set = [member, named](T& into, std::size_t index) { into.*member = named[index].second; };
+    choice.current = [member, named](T const& from) {
+        auto const at = std::ranges::find(named, from.*member, &std::pair<std::string, E>::second);
+        return at == named.end() ? std::string() : at->first;
+    };
+    return choice;
+}
+
+/// A key that a function of its own reads (a map of further keys, say), or that only the tools read.
+struct Elsewhere {
+    std::string_view expected;  // "a map of categories"
+};
+
+template <class T>
+using Field = std::variant<bool T::*, int T::*, std::int64_t T::*, float T::*, double T::*, std::string T::*, Vec2 T::*,
+                           IntRange T::*, std::optional<float> T::*, std::optional<std::uint32_t> T::*,
+                           std::optional<std::vector<std::string>> T::*, Choice<T>, Elsewhere>;
+
+/// One line of a table.
+template <class T>
+struct Key {
+    std::string_view name;
+    Field<T> field;
+    Range range;
+    std::string_view unit;
+    std::string_view doc;
+    bool required = false;
+};
+
+/// A line of a table without its struct: for messages and for the configuration reference.
+struct KeyDescription {
+    std::string name;
+    std::string expected;      // "a number above 0 (mm)"
+    std::string default_text;  // as YAML; empty: none
+    std::string unit;
+    std::string doc;
+    bool required = false;
+};
+
+/// One function object out of several, for std::visit.
+template <class... F>
+struct Overloaded : F... {
+    using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+/// "solid or periodic", "one of a, b, c".
+std::string names_text(std::vector<std::string> const& names);
+
+template <class T>
+KeyDescription describe(Key<T> const& key, T const& defaults) {
+    KeyDescription description;
+    description.name = key.name;
+    description.unit = key.unit;
+    description.doc = key.doc;
+    description.required = key.required;
+    std::visit(Overloaded{
+                   [&](Choice<T> const& choice) {
+                       description.expected = names_text(choice.names);
+                       description.default_text = key.required ? "" : choice.current(defaults);
+                   },
+                   [&](Elsewhere const& elsewhere) { description.expected = elsewhere.expected; },
+                   [&](auto T::*member) {
+                       description.expected = expected_text(Limits{key.range, key.unit}, defaults.*member);
+                       description.default_text = value_text(defaults.*member);
+                   },
+               },
+               key.field);
+    return description;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,121 @@
+#include "config/map_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/nearest_name.hpp"
+
+namespace pogosim {
+
+namespace {
+
+struct OldName {
+    std::string_view old_path;
+    std::string_view new_path;
+};
+
+/// Names that configurations of versions before 0.10 used.
+constexpr std::array kOldNames{
+    OldName{"nBots", "objects.<category>.nb"},
+    OldName{"commRadius", "objects.<category>.communication_radius"},
+    OldName{"msgSuccessRate", "objects.<category>.msg_success_rate"},
+    OldName{"robot_radius", "objects.<category>.radius"},
+    OldName{"initial_robot_formation", "initial_formation"},
+    OldName{"initial_light_value", "objects.<light>.value"},
+    OldName{"showComms", "show_communication_channels"},
+    OldName{"simulationTime", "simulation_time"},
+    OldName{"timeStep", "time_step"},
+    OldName{"photo_start_at", "objects.<light>.photo_start_at"},
+    OldName{"photo_start_duration", "objects.<light>.photo_start_duration"},
+};
+
+std::string suggestion(std::string const& typed, std::vector<std::string> const& known) {
+    std::string const nearest = nearest_name(shown(typed), known);
+    return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+}
+
+std::string new_place(std::string_view path) {
+    auto const old = std::ranges::find(kOldNames, path, &OldName::old_path);
+    return old == kOldNames.end() ? "" : fmt::format("; it is now '{}'", old->new_path);
+}
+
+}  // namespace
+
+std::string names_text(std::vector<std::string> const& names) {
+    return names.size() <= 2 ? fmt::format("{}", fmt::join(names, " or "))
+                             : fmt::format("one of {}", fmt::join(names, ", "));
+}
+
+MapReader::MapReader(Node const& map, std::string path, bool strict)
+    : map_(map), path_(std::move(path)), strict_(strict) {
+    if (map.kind != Node::Kind::map && map.kind != Node::Kind::null) {
+        fail_expected(place(), "a map of keys");
+    }
+}
+
+Node const* MapReader::find(std::string_view key) const {
+    Node const* value = map_.find(key);
+    return value == nullptr || value->kind == Node::Kind::null ? nullptr : value;
+}
+
+std::string MapReader::path_of(std::string_view key) const {
+    return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+std::optional<std::size_t> MapReader::pick(Place const& place, std::vector<std::string> const& names,
+                                           ChoiceRule const& rule, std::string const& default_name) {
+    Node const& node = place.node;
+    std::string const typed = rule.any_case ? lower_case(node.scalar) : node.scalar;
+    auto const found = std::ranges::find(names, typed);
+    if (node.kind == Node::Kind::scalar && found != names.end()) {
+        return static_cast<std::size_t>(found - names.begin());
+    }
+    if (node.kind == Node::Kind::null && default_name.empty()) {
+        return std::nullopt;  // a required key: refused as missing later
+    }
+    bool const is_null = node.kind == Node::Kind::null || (node.kind == Node::Kind::scalar && typed == "null");
+    bool const only_warns = is_null || (rule.warns_only && node.kind == Node::Kind::scalar);
+    std::string const complaint = fmt::format("expected {}, found {}", names_text(names), found_text(node));
+    if (default_name.empty() || !only_warns) {
+        fail_at(place, complaint + suggestion(typed, names));
+    }
+    log().warn("{}: {}: {}; '{}' is used", node.where(), place.path, complaint, default_name);
+    return std::nullopt;
+}
+
+void MapReader::refuse_missing_keys() const {
+    for (KeyDescription const& key : known_) {
+        if (key.required && find(key.name) == nullptr) {
+            fail_at(place(), fmt::format("the key '{}' is missing; expected {}", key.name, key.expected));
+        }
+    }
+}
+
+void MapReader::report_unknown(std::string const& key, Node const& value) const {
+    std::vector<std::string> names;
+    std::ranges::transform(known_, std::back_inserter(names), &KeyDescription::name);
+    std::string const path = shown(path_of(key));
+    std::string const renamed = new_place(path);
+    std::string const hint = renamed.empty() ? suggestion(key, names) : renamed;
+    if (strict_) {
+        throw ConfigError(fmt::format("{}: unknown key '{}'{} (--strict)", value.where(), path, hint));
+    }
+    log().warn("{}: unknown key '{}' is ignored{}", value.where(), path, hint);
+}
+
+void MapReader::finish() const {
+    refuse_missing_keys();
+    for (auto const& [key, value] : map_.entries) {
+        if (std::ranges::find(known_, key, &KeyDescription::name) == known_.end()) {
+            report_unknown(key, value);
+        }
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,85 @@
+#include "config/object_types.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/nearest_name.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::array kTypes{
+    ObjectType{"pogobot", "Robot with two motors and four infrared emitters.", read_pogobot},
+    ObjectType{"static_light", "Lamp that stands still.", read_static_light},
+};
+
+/// Types of the configuration format that this version cannot simulate.
+constexpr std::array kNotYet{"pogobject",
+                             "pogowall",
+                             "membrane",
+                             "rectmembrane",
+                             "active_object",
+                             "passive_object",
+                             "rotating_ray_of_light",
+                             "alternating_rays_of_light",
+                             "orbiting_static_light"};
+
+std::vector<std::string> type_names() {
+    std::vector<std::string> names;
+    std::ranges::transform(kTypes, std::back_inserter(names),
+                           [](ObjectType const& type) { return std::string(type.name); });
+    return names;
+}
+
+ObjectType const& type_at(Place const& place) {
+    std::string const typed = lower_case(place.node.scalar);
+    auto const type = std::ranges::find(kTypes, typed, &ObjectType::name);
+    if (type != kTypes.end()) {
+        return *type;
+    }
+    std::vector<std::string> const names = type_names();
+    if (std::ranges::find(kNotYet, typed) != kNotYet.end()) {
+        fail_at(place, fmt::format("type '{}' is not supported yet; supported: {}", typed, fmt::join(names, ", ")));
+    }
+    std::string const nearest = nearest_name(shown(typed), names);
+    fail_at(place, fmt::format("expected {}, found {}{}", names_text(names), found_text(place.node),
+                               nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+}
+
+}  // namespace
+
+std::span<ObjectType const> object_types() {
+    return kTypes;
+}
+
+std::span<Key<ObjectConfig> const> object_keys() {
+    static std::string const expected = names_text(type_names());
+    static std::array const keys{
+        Key<ObjectConfig>{"type", Elsewhere{expected}, any(), "", "What the objects are; capitals do not matter.",
+                          /*required=*/true},
+        Key<ObjectConfig>{"nb", &ObjectConfig::nb, between(0, kMaxObjects), "", "How many objects."},
+    };
+    return keys;
+}
+
+ObjectConfig read_object(std::string const& category, Node const& node, bool strict) {
+    MapReader reader(node, "objects." + category, strict);
+    ObjectConfig object;
+    object.category = category;
+    object.where = node.where();
+    reader.read(object_keys(), object);
+    if (Node const* type_node = reader.find("type")) {
+        ObjectType const& type = type_at({*type_node, reader.path_of("type")});
+        object.type = type.name;
+        type.read(reader, object);
+    }
+    reader.finish();
+    return object;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,81 @@
+// `--set key.path=value`.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "config/dotted_path.hpp"
+#include "config/tree.hpp"
+#include "config/tree_limits.hpp"
+#include "config/yaml_text.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr auto kSource = "--set";
+
+/// A value given on the command line has no line.
+void forget_lines(Node& node) {
+    node.source = kSource;
+    node.line = 0;
+    for (auto& [key, value] : node.entries) {
+        forget_lines(value);
+    }
+    std::ranges::for_each(node.items, forget_lines);
+}
+
+/// The node one step further down the path; maps are made where nothing is.
+Node& step_into(Node& parent, std::string const& key, std::string const& assignment) {
+    if (Node* child = child_at(parent, key)) {
+        return *child;
+    }
+    if (parent.kind == Node::Kind::sequence) {
+        throw ConfigError(fmt::format("{} '{}': '{}' is not one of the {} places of the list there (from 0)", kSource,
+                                      assignment, key, parent.items.size()));
+    }
+    if (parent.kind == Node::Kind::scalar) {
+        throw ConfigError(fmt::format("{} '{}': '{}' would be inside the single value '{}' ({})", kSource, assignment,
+                                      key, parent.scalar, parent.where()));
+    }
+    parent.kind = Node::Kind::map;
+    Node& made = parent.entries.emplace_back(key, Node{}).value;
+    made.source = kSource;
+    return made;
+}
+
+Node& make_path(Node& root, std::string_view dotted_path, std::string const& assignment) {
+    Node* node = &root;
+    for (std::size_t depth = 0; depth < kMaxDepth; ++depth) {
+        if (Node* exact = node->find(dotted_path)) {
+            return *exact;
+        }
+        SplitPath const path = split_path(dotted_path);
+        if (path.first.empty()) {
+            throw ConfigError(fmt::format("{} '{}': a name in the key path is empty", kSource, assignment));
+        }
+        node = &step_into(*node, path.first, assignment);
+        if (path.last) {
+            return *node;
+        }
+        dotted_path = path.rest;
+    }
+    throw ConfigError(fmt::format("{}: the key path has more than {} names", kSource, kMaxDepth));
+}
+
+}  // namespace
+
+void apply_override(Node& root, std::string const& assignment) {
+    std::size_t const equals = assignment.find('=');
+    if (equals == std::string::npos) {
+        throw ConfigError(fmt::format("{} '{}': expected key.path=value", kSource, assignment));
+    }
+    Node value = parse_yaml(assignment.substr(equals + 1), fmt::format("{} '{}'", kSource, assignment));
+    forget_lines(value);
+    make_path(root, assignment.substr(0, equals), assignment) = std::move(value);
+    if (size_of(root).depth > kMaxDepth) {
+        throw ConfigError(fmt::format("{} '{}': nested deeper than {} levels", kSource, assignment, kMaxDepth));
+    }
+}
+
+}  // namespace pogosim

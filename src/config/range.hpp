@@ -1,0 +1,64 @@
+// Which numbers a key takes.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace pogosim {
+
+/// An interval, and whether the special numbers are welcome.
+struct Range {
+    double min = -std::numeric_limits<double>::infinity();
+    double max = std::numeric_limits<double>::infinity();
+    bool without_min = false;  // min itself is outside
+    bool with_infinity = false;
+    bool with_nan = false;
+
+    constexpr Range up_to(double new_max) const {
+        Range range = *this;
+        range.max = new_max;
+        return range;
+    }
+    constexpr Range or_infinity() const {
+        Range range = *this;
+        range.with_infinity = true;
+        return range;
+    }
+    constexpr Range or_nan() const {
+        Range range = *this;
+        range.with_nan = true;
+        return range;
+    }
+
+    bool contains(double value) const {
+        if (std::isnan(value)) {
+            return with_nan;
+        }
+        if (std::isinf(value)) {
+            return with_infinity && value >= min;
+        }
+        return (without_min ? value > min : value >= min) && value <= max;
+    }
+
+    /// " above 0", " from 0 to 1", ...; empty when every number will do.
+    std::string text() const;
+};
+
+constexpr Range any() {
+    return {};
+}
+constexpr Range at_least(double min) {
+    return {.min = min};
+}
+constexpr Range above(double min) {
+    return {.min = min, .without_min = true};
+}
+constexpr Range between(double min, double max) {
+    return {.min = min, .max = max};
+}
+
+/// A number as people write it: "1000000", "0.01", "1e+30", ".nan".
+std::string number_text(double value);
+
+}  // namespace pogosim

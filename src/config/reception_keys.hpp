@@ -1,0 +1,20 @@
+// `msg_success_rate`: the probability that a message is received.
+#pragma once
+
+#include "config/map_reader.hpp"
+#include "world/specs.hpp"
+
+namespace pogosim {
+
+/// The law a robot's `msg_success_rate` asks for; `robot` reads the map it stands in. Absent: `realistic`.
+///
+///   static      P = rate
+///   realistic   the four-parameter law with its own defaults, whatever else the map holds
+///   dynamic     with alpha, beta, gamma or delta, but neither zeta nor theta: the four-parameter law;
+///               otherwise the article's law. Parameters that are not given have the defaults of the law.
+ReceptionSpec read_reception(MapReader const& robot);
+
+/// The same from the map `msg_success_rate` itself; the caller finishes the reader.
+ReceptionSpec read_reception_map(MapReader& reader);
+
+}  // namespace pogosim

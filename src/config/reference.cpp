@@ -1,0 +1,32 @@
+#include "config/reference.hpp"
+
+#include "config/object_types.hpp"
+#include "config/reception_keys.hpp"
+#include "config/scenario_keys.hpp"
+
+namespace pogosim {
+
+std::vector<KeyGroup> configuration_reference() {
+    Node const nothing;
+    std::vector<KeyGroup> groups;
+
+    MapReader top(nothing, "", false);
+    Scenario scenario;
+    read_top_level(top, scenario);
+    groups.push_back({"", "", "Top level.", top.known_keys()});
+
+    for (ObjectType const& type : object_types()) {
+        MapReader reader(nothing, "objects.<category>", false);
+        ObjectConfig object;
+        reader.read(object_keys(), object);
+        type.read(reader, object);
+        groups.push_back({"objects.<category>", std::string(type.name), std::string(type.doc), reader.known_keys()});
+    }
+
+    MapReader reception(nothing, "objects.<category>.msg_success_rate", false);
+    read_reception_map(reception);
+    groups.push_back({"objects.<category>.msg_success_rate", "", "Reception of messages.", reception.known_keys()});
+    return groups;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,98 @@
+// Everything a configuration file says, typed and checked. Defaults stand here (and in the specs of the world) and
+// nowhere else; the tables in *_keys.cpp bind them to their YAML keys.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/tree.hpp"
+#include "geometry/formation.hpp"
+#include "world/specs.hpp"
+
+namespace pogosim {
+
+enum class BoundaryCondition { solid, periodic };
+enum class LogFormat { dated, minimal };
+
+/// Robots are numbered from 0 in 16 bits.
+inline constexpr int kMaxObjects = 65535;
+
+/// One entry of `objects`.
+struct ObjectConfig {
+    std::string category;                    // its name in the configuration
+    std::string type;                        // lower case, "pogobot"
+    int nb = 1;                              // how many
+    std::optional<Vec2> position_mm;         // both x and y given: all stand there; else the formation places them
+    std::variant<RobotSpec, LampSpec> spec;  // by type
+    std::string where;                       // file:line, for messages
+};
+
+/// Window and drawing; read and kept for the window.
+struct ViewConfig {
+    bool gui = true;
+    int window_width_px = 800;
+    int window_height_px = 800;
+    double gui_speed_up = 1.0;  // simulated seconds per second of wall clock
+    double mm_to_pixels = 1.0;
+    bool show_time = true;
+    bool show_scale_bar = true;
+    bool show_communication_channels = false;
+    bool show_communication_channels_above_all = false;
+    bool show_lateral_leds = true;
+    bool show_light_levels = false;
+    bool show_trajectory_traces = false;
+    double save_video_period_s = -1.0;  // <= 0: no frames
+    std::string frames_name = "frames/f{:010.4f}.png";
+    bool delete_old_files = false;
+};
+
+/// Data file and console file.
+struct OutputConfig {
+    bool enable_data_logging = true;
+    std::string data_filename = "data.feather";
+    double save_data_period_s = 1.0;                     // <= 0: only the rows of time 0
+    std::optional<std::vector<std::string>> fields;      // data_logger_fields; absent: all columns
+    std::optional<std::vector<std::string>> categories;  // data_logger_category; absent: all categories
+    std::int64_t flush_row_count = 1048576;              // rows per record batch
+    bool led_column = false;                             // data_logger_led: adds led_rgb, the head LED as 0xRRGGBB
+    bool enable_console_logging = false;
+    std::string console_filename = "console.txt";
+    LogFormat log_format = LogFormat::dated;
+};
+
+struct Scenario {
+    std::string arena_file = "test.csv";
+    double arena_surface_mm2 = 1.0e6;
+    bool arena_stretch = false;
+    BoundaryCondition boundary = BoundaryCondition::solid;
+    double wall_friction = 0.05;
+    double wall_restitution = 0.5;
+    bool ignore_occlusions = false;
+    double arena_temperature_c = 42.0;
+    double simulation_time_s = 100.0;
+    double time_step_s = 0.01;
+    std::optional<std::uint32_t> seed;  // absent: drawn from the system
+    double user_code_timeout_s = 10.0;  // processor time one call of user code may take; 0: no limit
+    int light_map_columns = 100;
+    int light_map_rows = 100;
+    FormationSpec formation;
+    ViewConfig view;
+    OutputConfig output;
+    std::vector<ObjectConfig> objects;  // in the order of the file
+    Node parameters;                    // the map `parameters`, for user code
+    Node resolved;                      // the whole resolved tree, unknown keys included
+};
+
+struct LoadOptions {
+    std::vector<std::string> overrides;  // --set, in order
+    bool strict = false;                 // unknown keys are errors
+};
+
+/// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ..."; warns once for each
+/// unknown key, naming the nearest known one.
+Scenario load_scenario(std::string const& path, LoadOptions const& options);
+
+}  // namespace pogosim

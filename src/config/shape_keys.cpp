@@ -1,0 +1,56 @@
+#include "config/shape_keys.hpp"
+
+#include <array>
+
+namespace pogosim {
+
+namespace {
+
+using K = Key<Shape>;
+
+constexpr ChoiceRule kAnyCase{.any_case = true};
+
+}  // namespace
+
+std::span<K const> disk_geometry_keys() {
+    static std::array const keys{
+        K{"geometry", one_of(&Shape::kind, {{"disk", ShapeKind::disk}}, kAnyCase), any(), "",
+          "Shape of the object; capitals do not matter.", /*required=*/true},
+    };
+    return keys;
+}
+
+std::span<K const> any_geometry_keys() {
+    static std::array const keys{
+        K{"geometry",
+          one_of(&Shape::kind,
+                 {{"global", ShapeKind::global},
+                  {"arena", ShapeKind::arena},
+                  {"disk", ShapeKind::disk},
+                  {"rectangle", ShapeKind::rectangle},
+                  {"triangle", ShapeKind::triangle}},
+                 kAnyCase),
+          any(), "", "Shape: everywhere, inside the arena's polygons, or around the centre; capitals do not matter.",
+          /*required=*/true},
+    };
+    return keys;
+}
+
+std::span<K const> disk_size_keys() {
+    static std::array const keys{
+        K{"radius", &Shape::radius_mm, above(0).up_to(kMaxLength), "mm", "Radius of a disk."},
+    };
+    return keys;
+}
+
+std::span<K const> other_size_keys() {
+    static std::array const keys{
+        K{"body_width", &Shape::width_mm, above(0).up_to(kMaxLength), "mm", "Size of a rectangle along x."},
+        K{"body_height", &Shape::height_mm, above(0).up_to(kMaxLength), "mm", "Size of a rectangle along y."},
+        K{"side_length", &Shape::side_length_mm, above(0).up_to(kMaxLength), "mm",
+          "Side of an equilateral triangle, one corner towards -y."},
+    };
+    return keys;
+}
+
+}  // namespace pogosim

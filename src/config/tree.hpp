@@ -1,0 +1,61 @@
+// A configuration as it was written: an ordered tree of plain values, each knowing the file and line it came from.
+// Nothing here depends on the YAML library.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace pogosim {
+
+/// One YAML node.
+struct Node {
+    enum class Kind { null, scalar, sequence, map };
+    struct Entry;
+
+    Kind kind = Kind::null;
+    std::string scalar;   // text of a scalar, unquoted
+    bool quoted = false;  // the scalar stood in quotes: it is a text even if it looks like a number
+    std::vector<Entry> entries;  // of a map, in the order of the file
+    std::vector<Node> items;     // of a sequence
+    std::string source;          // file name, or "--set"
+    int line = 0;                // from 1; 0: no line (--set)
+
+    /// The value under `key` of a map, or nullptr.
+    Node const* find(std::string_view key) const;
+    Node* find(std::string_view key);
+
+    /// "conf/simple.yaml:14" or "--set".
+    std::string where() const;
+};
+
+/// One key of a map and its value.
+struct Node::Entry {
+    std::string key;
+    Node value;
+
+    Entry(std::string entry_key, Node entry_value) : key(std::move(entry_key)), value(std::move(entry_value)) {}
+};
+
+/// Reads a YAML file. Throws ConfigError ("file:line: ...") for a missing or unreadable file, a syntax error, a
+/// document that is not a map, nesting deeper than 100, or more than a million nodes once aliases are followed. A key
+/// that stands twice in one map is a warning, the last one wins. `<<` merges maps as in YAML 1.1.
+Node read_yaml_file(std::string const& path);
+
+/// Applies one `--set a.b.c=value`: the value is YAML; maps on the way are made where they are missing, a number walks
+/// into a sequence, `\.` is a dot inside a key. Throws ConfigError when the text has no '=' or a path runs through a
+/// scalar.
+void apply_override(Node& root, std::string const& assignment);
+
+/// The tree a single run sees: `default_option` in place of batch options and optimisation domains (null where there is
+/// none), hierarchical alternatives replaced by their `default`. See the configuration reference, "Value resolution".
+Node resolve_options(Node const& root);
+
+/// YAML text of the tree; reading it again gives the same tree.
+std::string to_yaml(Node const& root);
+
+/// The node at a dotted path below `root` ("p.k", "list.0", `a\.b`; an exact dotted key wins), or nullptr.
+Node const* find_path(Node const& root, std::string_view dotted_path);
+
+}  // namespace pogosim

@@ -1,0 +1,305 @@
+#include "config/values.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+
+#include "base/error.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// Digits in bases other than ten, behind their prefix.
+std::optional<double> number_in_base(std::string_view digits, int base) {
+    std::uint64_t value = 0;
+    auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, base);
+    bool const is_whole = error == std::errc() && end == digits.data() + digits.size();
+    return is_whole ? std::optional(static_cast<double>(value)) : std::nullopt;
+}
+
+std::size_t count_digits(std::string_view text) {
+    auto const is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    return static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
+}
+
+/// True for digits with at most one point, and an optional exponent; no sign.
+bool is_decimal(std::string_view text) {
+    std::size_t const whole = count_digits(text);
+    text.remove_prefix(whole);
+    std::size_t fraction = 0;
+    if (text.starts_with('.')) {
+        fraction = count_digits(text.substr(1));
+        text.remove_prefix(1 + fraction);
+    }
+    if (whole + fraction == 0) {
+        return false;
+    }
+    if (text.starts_with('e') || text.starts_with('E')) {
+        text.remove_prefix(1);
+        if (text.starts_with('+') || text.starts_with('-')) {
+            text.remove_prefix(1);
+        }
+        std::size_t const exponent = count_digits(text);
+        return exponent > 0 && exponent == text.size();
+    }
+    return text.empty();
+}
+
+std::optional<double> unsigned_number(std::string const& text) {
+    if (text.starts_with("0x") || text.starts_with("0X")) {
+        return number_in_base(std::string_view(text).substr(2), 16);
+    }
+    if (text.starts_with("0o")) {
+        return number_in_base(std::string_view(text).substr(2), 8);
+    }
+    if (text == ".inf" || text == ".Inf" || text == ".INF") {
+        return std::numeric_limits<double>::infinity();
+    }
+    return is_decimal(text) ? std::optional(std::strtod(text.c_str(), nullptr)) : std::nullopt;
+}
+
+std::string with_unit(std::string text, std::string_view unit) {
+    return unit.empty() ? text : fmt::format("{} ({})", text, unit);
+}
+
+/// The limits, narrowed to what the type holds and a double holds exactly.
+template <class Integer>
+Limits limits_of_type(Limits limits) {
+    constexpr double kExact = 9007199254740992.0;  // 2^53
+    using Type = std::numeric_limits<Integer>;
+    limits.range.min = std::max({limits.range.min, static_cast<double>(Type::min()), -kExact});
+    limits.range.max = std::min({limits.range.max, static_cast<double>(Type::max()), kExact});
+    return limits;
+}
+
+template <class Integer>
+std::string expected_integer(Limits const& limits) {
+    return with_unit("an integer" + limits_of_type<Integer>(limits).range.text(), limits.unit);
+}
+
+template <class Integer>
+void read_integer(Place const& place, Limits const& limits, Integer& value) {
+    std::optional<double> const number = number_of(place.node);
+    if (!number || !limits_of_type<Integer>(limits).range.contains(std::trunc(*number))) {
+        fail_expected(place, expected_integer<Integer>(limits));
+    }
+    value = static_cast<Integer>(*number);
+}
+
+std::string expected_number(Limits const& limits) {
+    return with_unit("a number" + limits.range.text(), limits.unit);
+}
+
+/// The range is checked after rounding to the type, so that what passes is in the range for everyone who uses it.
+template <class Real>
+void read_real(Place const& place, Limits const& limits, Real& value) {
+    std::optional<double> const number = number_of(place.node);
+    if (!number || !limits.range.contains(static_cast<Real>(*number))) {
+        fail_expected(place, expected_number(limits));
+    }
+    value = static_cast<Real>(*number);
+}
+
+/// Reads a list of exactly two values.
+template <class T>
+std::array<T, 2> read_pair(Place const& place, Limits const& limits, std::string const& expected) {
+    if (place.node.kind != Node::Kind::sequence || place.node.items.size() != 2) {
+        fail_expected(place, expected);
+    }
+    std::array<T, 2> pair{};
+    read_value({place.node.items[0], place.path + ".0"}, limits, pair[0]);
+    read_value({place.node.items[1], place.path + ".1"}, limits, pair[1]);
+    return pair;
+}
+
+}  // namespace
+
+std::string lower_case(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+std::string found_text(Node const& node) {
+    switch (node.kind) {
+        case Node::Kind::null:
+            return "nothing";
+        case Node::Kind::sequence:
+            return "a list";
+        case Node::Kind::map:
+            return "a map";
+        case Node::Kind::scalar:
+            break;
+    }
+    return number_of(node) ? node.scalar : fmt::format("'{}'", shown(node.scalar));
+}
+
+std::string shown(std::string_view text) {
+    constexpr std::size_t kMaxLength = 60;
+    std::string line(text.substr(0, kMaxLength));
+    // Cut between characters: bytes 10xxxxxx continue one.
+    while (text.size() > kMaxLength && !line.empty() &&
+           (static_cast<unsigned char>(text[line.size()]) & 0xC0U) == 0x80U) {
+        line.pop_back();
+    }
+    std::ranges::replace_if(
+        line, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+    return text.size() > kMaxLength ? line + "..." : line;
+}
+
+void fail_at(Place const& place, std::string_view what) {
+    throw ConfigError(fmt::format("{}: {}: {}", place.node.where(), shown(place.path), what));
+}
+
+void fail_expected(Place const& place, std::string_view expected) {
+    fail_at(place, fmt::format("expected {}, found {}", expected, found_text(place.node)));
+}
+
+std::optional<double> number_of(Node const& node) {
+    if (node.kind != Node::Kind::scalar) {
+        return std::nullopt;
+    }
+    std::string const& text = node.scalar;
+    if (text == ".nan" || text == ".NaN" || text == ".NAN") {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    bool const is_signed = text.starts_with('+') || text.starts_with('-');
+    std::optional<double> const number = unsigned_number(is_signed ? text.substr(1) : text);
+    return number && text.starts_with('-') ? std::optional(-*number) : number;
+}
+
+std::optional<bool> truth_of(Node const& node) {
+    constexpr std::array<std::string_view, 3> kTrue{"true", "yes", "on"};
+    constexpr std::array<std::string_view, 3> kFalse{"false", "no", "off"};
+    if (node.kind != Node::Kind::scalar) {
+        return std::nullopt;
+    }
+    std::string const text = lower_case(node.scalar);
+    if (std::ranges::find(kTrue, text) != kTrue.end()) {
+        return true;
+    }
+    return std::ranges::find(kFalse, text) != kFalse.end() ? std::optional(false) : std::nullopt;
+}
+
+void read_value(Place const& place, Limits const& limits, bool& value) {
+    std::optional<bool> const truth = truth_of(place.node);
+    if (!truth) {
+        fail_expected(place, expected_text(limits, value));
+    }
+    value = *truth;
+}
+
+void read_value(Place const& place, Limits const& limits, int& value) {
+    read_integer(place, limits, value);
+}
+void read_value(Place const& place, Limits const& limits, std::int64_t& value) {
+    read_integer(place, limits, value);
+}
+void read_value(Place const& place, Limits const& limits, std::uint32_t& value) {
+    read_integer(place, limits, value);
+}
+void read_value(Place const& place, Limits const& limits, float& value) {
+    read_real(place, limits, value);
+}
+void read_value(Place const& place, Limits const& limits, double& value) {
+    read_real(place, limits, value);
+}
+
+void read_value(Place const& place, Limits const& limits, std::string& value) {
+    if (place.node.kind != Node::Kind::scalar) {
+        fail_expected(place, expected_text(limits, value));
+    }
+    value = place.node.scalar;
+}
+
+void read_value(Place const& place, Limits const& limits, Vec2& value) {
+    auto const [x, y] = read_pair<float>(place, limits, expected_text(limits, value));
+    value = {x, y};
+}
+
+void read_value(Place const& place, Limits const& limits, IntRange& value) {
+    auto const [min, max] = read_pair<int>(place, limits, expected_text(limits, value));
+    if (min > max) {
+        fail_at(place, fmt::format("expected [smallest, largest], found [{}, {}]", min, max));
+    }
+    value = {min, max};
+}
+
+void read_value(Place const& place, Limits const& limits, std::vector<std::string>& value) {
+    if (place.node.kind != Node::Kind::sequence) {
+        fail_expected(place, expected_text(limits, value));
+    }
+    value.clear();
+    for (std::size_t i = 0; i < place.node.items.size(); ++i) {
+        read_value({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits, value.emplace_back());
+    }
+}
+
+std::string expected_text(Limits const& /*limits*/, bool) {
+    return "true or false";
+}
+std::string expected_text(Limits const& limits, int) {
+    return expected_integer<int>(limits);
+}
+std::string expected_text(Limits const& limits, std::int64_t) {
+    return expected_integer<std::int64_t>(limits);
+}
+std::string expected_text(Limits const& limits, std::uint32_t) {
+    return expected_integer<std::uint32_t>(limits);
+}
+std::string expected_text(Limits const& limits, float) {
+    return expected_number(limits);
+}
+std::string expected_text(Limits const& limits, double) {
+    return expected_number(limits);
+}
+std::string expected_text(Limits const& /*limits*/, std::string const&) {
+    return "a text";
+}
+std::string expected_text(Limits const& limits, Vec2) {
+    return with_unit("a list [x, y] of two numbers" + limits.range.text(), limits.unit);
+}
+std::string expected_text(Limits const& limits, IntRange) {
+    return with_unit("a list [smallest, largest] of two integers" + limits.range.text(), limits.unit);
+}
+std::string expected_text(Limits const& /*limits*/, std::vector<std::string> const&) {
+    return "a list of names";
+}
+
+std::string value_text(bool value) {
+    return value ? "true" : "false";
+}
+std::string value_text(int value) {
+    return std::to_string(value);
+}
+std::string value_text(std::int64_t value) {
+    return std::to_string(value);
+}
+std::string value_text(std::uint32_t value) {
+    return std::to_string(value);
+}
+std::string value_text(float value) {
+    return std::isfinite(value) ? fmt::format("{:g}", value) : number_text(value);
+}
+std::string value_text(double value) {
+    return number_text(value);
+}
+std::string value_text(std::string const& value) {
+    return fmt::format("\"{}\"", value);
+}
+std::string value_text(Vec2 value) {
+    return fmt::format("[{}, {}]", value_text(value.x), value_text(value.y));
+}
+std::string value_text(IntRange value) {
+    return fmt::format("[{}, {}]", value.min, value.max);
+}
+std::string value_text(std::vector<std::string> const& value) {
+    return fmt::format("[{}]", fmt::join(value, ", "));
+}
+
+}  // namespace pogosim

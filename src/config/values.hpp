@@ -1,0 +1,102 @@
+// From one node to one value: numbers, truths, texts, pairs and lists, each checked, each error with its place.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/vec2.hpp"
+#include "config/range.hpp"
+#include "config/tree.hpp"
+#include "world/specs.hpp"
+
+namespace pogosim {
+
+/// A value of the configuration: the node and its key path ("objects.robots.nb").
+struct Place {
+    Node const& node;
+    std::string path;
+};
+
+/// What a number has to be. The unit is for messages and documentation.
+struct Limits {
+    Range range = {};
+    std::string_view unit = {};
+};
+
+/// Throws ConfigError "file:line: path: expected <expected>, found <what is there>".
+[[noreturn]] void fail_expected(Place const& place, std::string_view expected);
+
+/// Throws ConfigError "file:line: path: <what>".
+[[noreturn]] void fail_at(Place const& place, std::string_view what);
+
+/// What stands at a node, for messages: "-3", "'many'", "a list".
+std::string found_text(Node const& node);
+
+/// ASCII capitals made small.
+std::string lower_case(std::string text);
+
+/// A user's text for a message: without line breaks, cut when long.
+std::string shown(std::string_view text);
+
+/// Decimal ("12", "1.0e6", ".5"), hexadecimal ("0x1F") and octal ("0o17") numbers, ".inf", ".nan". Quotes do not
+/// matter: some tools write 1.0e6 as a text.
+std::optional<double> number_of(Node const& node);
+
+/// true, false, yes, no, on, off in any case.
+std::optional<bool> truth_of(Node const& node);
+
+/// read_value: the node as a value of that type, or ConfigError. Integers drop the fraction of a number.
+void read_value(Place const& place, Limits const& limits, bool& value);
+void read_value(Place const& place, Limits const& limits, int& value);
+void read_value(Place const& place, Limits const& limits, std::int64_t& value);
+void read_value(Place const& place, Limits const& limits, std::uint32_t& value);
+void read_value(Place const& place, Limits const& limits, float& value);
+void read_value(Place const& place, Limits const& limits, double& value);
+void read_value(Place const& place, Limits const& limits, std::string& value);
+void read_value(Place const& place, Limits const& limits, Vec2& value);
+void read_value(Place const& place, Limits const& limits, IntRange& value);
+void read_value(Place const& place, Limits const& limits, std::vector<std::string>& value);
+
+template <class T>
+void read_value(Place const& place, Limits const& limits, std::optional<T>& value) {
+    read_value(place, limits, value.emplace());
+}
+
+/// expected_text: what a key of that type takes, "a number above 0 (mm)".
+std::string expected_text(Limits const& limits, bool);
+std::string expected_text(Limits const& limits, int);
+std::string expected_text(Limits const& limits, std::int64_t);
+std::string expected_text(Limits const& limits, std::uint32_t);
+std::string expected_text(Limits const& limits, float);
+std::string expected_text(Limits const& limits, double);
+std::string expected_text(Limits const& limits, std::string const&);
+std::string expected_text(Limits const& limits, Vec2);
+std::string expected_text(Limits const& limits, IntRange);
+std::string expected_text(Limits const& limits, std::vector<std::string> const&);
+
+template <class T>
+std::string expected_text(Limits const& limits, std::optional<T> const&) {
+    return expected_text(limits, T{});
+}
+
+/// value_text: a value as YAML.
+std::string value_text(bool value);
+std::string value_text(int value);
+std::string value_text(std::int64_t value);
+std::string value_text(std::uint32_t value);
+std::string value_text(float value);
+std::string value_text(double value);
+std::string value_text(std::string const& value);
+std::string value_text(Vec2 value);
+std::string value_text(IntRange value);
+std::string value_text(std::vector<std::string> const& value);
+
+template <class T>
+std::string value_text(std::optional<T> const& value) {
+    return value ? value_text(*value) : "";
+}
+
+}  // namespace pogosim

@@ -1,0 +1,499 @@
+#include "config/scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "config/yaml_text.hpp"
+#include "config_file.hpp"
+
+using namespace pogosim;
+using namespace pogosim::config_file;
+
+namespace {
+
+RobotSpec robot(std::string const& keys) {
+    return std::get<RobotSpec>(load(kRobots + keys).objects.at(0).spec);
+}
+
+LampSpec lamp(std::string const& keys) {
+    return std::get<LampSpec>(load(kLamp + keys).objects.at(1).spec);
+}
+
+ReceptionSpec reception(std::string const& map) {
+    return robot("    msg_success_rate: " + map + "\n").ir.reception;
+}
+
+}  // namespace
+
+TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
+    Warnings const warnings;
+    Scenario const s = load("unrelated: 1\n");
+    EXPECT_EQ(s.arena_file, "test.csv");
+    EXPECT_EQ(s.arena_surface_mm2, 1.0e6);
+    EXPECT_FALSE(s.arena_stretch);
+    EXPECT_EQ(s.boundary, BoundaryCondition::solid);
+    EXPECT_EQ(s.wall_friction, 0.05);
+    EXPECT_EQ(s.wall_restitution, 0.5);
+    EXPECT_FALSE(s.ignore_occlusions);
+    EXPECT_EQ(s.arena_temperature_c, 42.0);
+    EXPECT_EQ(s.simulation_time_s, 100.0);
+    EXPECT_EQ(s.time_step_s, 0.01);
+    EXPECT_EQ(s.seed, std::nullopt);
+    EXPECT_EQ(s.light_map_columns, 100);
+    EXPECT_EQ(s.light_map_rows, 100);
+    EXPECT_TRUE(s.objects.empty());
+    EXPECT_EQ(s.parameters.kind, Node::Kind::null);
+
+    FormationSpec const& f = s.formation;
+    EXPECT_EQ(f.name, "power_lloyd");
+    EXPECT_EQ(f.root_object, "arena");
+    EXPECT_TRUE(std::isnan(f.centre_mm.x) && std::isnan(f.centre_mm.y));
+    EXPECT_EQ(f.min_space_mm, 0.0F);
+    EXPECT_TRUE(std::isinf(f.max_space_mm));
+    EXPECT_EQ(f.attempts_per_point, 100);
+    EXPECT_EQ(f.max_restarts, 100);
+    EXPECT_EQ(f.chessboard_pitch_mm, 100.0F);
+    EXPECT_TRUE(f.cluster_at_centre);
+    EXPECT_EQ(f.filename, "");
+    EXPECT_TRUE(std::isnan(f.imported_min.x) && std::isnan(f.imported_max.y));
+
+    ViewConfig const& v = s.view;
+    EXPECT_EQ(v.window_width_px, 800);
+    EXPECT_EQ(v.window_height_px, 800);
+    EXPECT_EQ(v.gui_speed_up, 1.0);
+    EXPECT_EQ(v.mm_to_pixels, 1.0);
+    EXPECT_TRUE(v.gui && v.show_time && v.show_scale_bar && v.show_lateral_leds);
+    EXPECT_FALSE(v.show_communication_channels || v.show_communication_channels_above_all || v.show_light_levels ||
+                 v.show_trajectory_traces || v.delete_old_files);
+    EXPECT_EQ(v.save_video_period_s, -1.0);
+    EXPECT_EQ(v.frames_name, "frames/f{:010.4f}.png");
+
+    OutputConfig const& o = s.output;
+    EXPECT_TRUE(o.enable_data_logging);
+    EXPECT_EQ(o.data_filename, "data.feather");
+    EXPECT_EQ(o.save_data_period_s, 1.0);
+    EXPECT_EQ(o.fields, std::nullopt);
+    EXPECT_EQ(o.categories, std::nullopt);
+    EXPECT_EQ(o.flush_row_count, 1048576);
+    EXPECT_FALSE(o.led_column || o.enable_console_logging);
+    EXPECT_EQ(o.console_filename, "console.txt");
+    EXPECT_EQ(o.log_format, LogFormat::dated);
+}
+
+TEST(Scenario, DefaultsOfRobotsAreThoseOfTheConfigurationSheet) {
+    Scenario const s = load("objects: {robots: {type: pogobot, geometry: disk}}\n");
+    ASSERT_EQ(s.objects.size(), 1U);
+    EXPECT_EQ(s.objects[0].nb, 1);
+    EXPECT_EQ(s.objects[0].position_mm, std::nullopt);
+    RobotSpec const spec = std::get<RobotSpec>(s.objects[0].spec);
+    EXPECT_EQ(spec.shape, Shape{});
+    EXPECT_EQ(spec.shape.radius_mm, 10.0F);
+    EXPECT_EQ(spec.body.linear_damping, 0.0F);
+    EXPECT_EQ(spec.body.angular_damping, 0.0F);
+    EXPECT_EQ(spec.body.density, 10.0F);
+    EXPECT_EQ(spec.body.friction, 0.3F);
+    EXPECT_EQ(spec.body.restitution, 0.5F);
+    EXPECT_EQ(spec.max_linear_speed_mm_s, 100.0F);
+    EXPECT_EQ(spec.max_angular_speed_rad_s, 1.0F);
+    EXPECT_EQ(spec.linear_noise_stddev, 0.0F);
+    EXPECT_EQ(spec.angular_noise_stddev, 0.0F);
+    EXPECT_EQ(spec.motor_bias.min, 0);
+    EXPECT_EQ(spec.photosensor_bias.max, 0);
+    EXPECT_EQ(spec.photosensor_noise_stddev, 0.0F);
+    EXPECT_EQ(spec.clock_drift_stddev_us, 0.0F);
+    EXPECT_EQ(spec.ir.range_mm, 80.0F);
+    EXPECT_EQ(spec.ir.queue_size, 20);
+    EXPECT_TRUE(spec.rotate_leds_45_deg);
+}
+
+TEST(Scenario, TheArticlesExampleLoadsWithoutAWarning) {
+    Warnings const warnings;
+    Scenario const s = load_scenario(POGOSIM_SOURCE_DIR "/conf/simple.yaml", {.overrides = {}, .strict = true});
+    EXPECT_EQ(warnings.text(), "");
+    EXPECT_EQ(s.view.window_width_px, 600);
+    EXPECT_EQ(s.arena_file, "arenas/disk.csv");
+    EXPECT_EQ(s.arena_surface_mm2, 1.0e6);
+    EXPECT_EQ(s.output.data_filename, "frames/data.feather");
+    EXPECT_EQ(s.seed, 0U);
+    EXPECT_EQ(s.simulation_time_s, 50.0);
+    EXPECT_EQ(s.view.gui_speed_up, 10.0);
+    EXPECT_EQ(s.formation.name, "random");
+    ASSERT_EQ(s.objects.size(), 2U);
+    EXPECT_EQ(s.objects[0].category, "global_light");
+    EXPECT_EQ(s.objects[0].type, "static_light");
+    LampSpec const lamp = std::get<LampSpec>(s.objects[0].spec);
+    EXPECT_EQ(lamp.shape.kind, ShapeKind::global);
+    EXPECT_EQ(lamp.value, 200);
+    EXPECT_EQ(lamp.photo_start_at_s, 1.0F);
+    EXPECT_EQ(s.objects[1].category, "robots");
+    EXPECT_EQ(s.objects[1].nb, 100);
+    RobotSpec const robot = std::get<RobotSpec>(s.objects[1].spec);
+    EXPECT_EQ(robot.shape.radius_mm, 26.5F);
+    EXPECT_EQ(robot.body.linear_damping, 0.3F);
+    EXPECT_EQ(robot.max_angular_speed_rad_s, 2.0F);
+    EXPECT_EQ(robot.ir.reception.law, ReceptionLaw::power);
+    EXPECT_EQ(robot.ir.reception.alpha, 1.0e-6);
+    EXPECT_EQ(robot.ir.reception.delta, 1.1897);
+    EXPECT_EQ(s.parameters.find("run_duration_max")->scalar, "5000");
+}
+
+TEST(Scenario, EveryTopLevelKeyReachesItsMember) {
+    Warnings const warnings;
+    Scenario const s = load(kRobots + R"(
+arena_file: a.csv
+arena_surface: 2e5
+arena_stretch: yes
+boundary_condition: periodic
+wall_friction: 0.1
+wall_restitution: 0.9
+communication_ignore_occlusions: true
+arena_temperature: 20
+simulation_time: 12.5
+time_step: 0.005
+seed: 4294967295
+user_code_timeout: 3
+light_map_nb_bin_x: 10
+light_map_nb_bin_y: 20
+initial_formation: chessboard
+initial_formation_root_object: robots
+initial_formation_center: [1, .nan]
+formation_min_space_between_neighbors: 3
+formation_max_space_between_neighbors: 60
+formation_attempts_per_point: 7
+formation_max_restarts: 8
+chessboard_distance_between_neighbors: 70
+formation_cluster_at_center: off
+formation_filename: f.csv
+imported_formation_min_coords: [0, 1]
+imported_formation_max_coords: [2, 3]
+GUI: false
+GUI_speed_up: 4
+window_width: 100
+window_height: 200
+mm_to_pixels: 0.5
+show_time: false
+show_scale_bar: false
+show_communication_channels: true
+show_communication_channels_above_all: true
+show_lateral_LEDs: false
+show_light_levels: true
+show_trajectory_traces: true
+save_video_period: 0.5
+frames_name: "f/{}.png"
+delete_old_files: true
+enable_data_logging: true
+data_filename: d.feather
+save_data_period: 0
+data_logger_fields: [time, x]
+data_logger_category: [robots]
+data_logger_flush_row_count: 5
+data_logger_led: true
+enable_console_logging: true
+console_filename: c.txt
+log_format: minimal
+progress_bar: true
+result_filename_format: "r_{objects.robots.nb}.feather"
+result_new_columns: [objects.robots.nb]
+optimization: {algorithm: cmaes}
+parameters: {any: thing}
+)",
+                            {.overrides = {}, .strict = true});
+    EXPECT_EQ(warnings.text(), "");
+    EXPECT_EQ(s.arena_file, "a.csv");
+    EXPECT_EQ(s.arena_surface_mm2, 2e5);
+    EXPECT_TRUE(s.arena_stretch);
+    EXPECT_EQ(s.boundary, BoundaryCondition::periodic);
+    EXPECT_EQ(s.wall_friction, 0.1);
+    EXPECT_EQ(s.wall_restitution, 0.9);
+    EXPECT_TRUE(s.ignore_occlusions);
+    EXPECT_EQ(s.arena_temperature_c, 20.0);
+    EXPECT_EQ(s.simulation_time_s, 12.5);
+    EXPECT_EQ(s.time_step_s, 0.005);
+    EXPECT_EQ(s.seed, 4294967295U);
+    EXPECT_EQ(s.user_code_timeout_s, 3.0);
+    EXPECT_EQ(s.light_map_columns, 10);
+    EXPECT_EQ(s.light_map_rows, 20);
+    EXPECT_EQ(s.formation.name, "chessboard");
+    EXPECT_EQ(s.formation.root_object, "robots");
+    EXPECT_EQ(s.formation.centre_mm.x, 1.0F);
+    EXPECT_TRUE(std::isnan(s.formation.centre_mm.y));
+    EXPECT_EQ(s.formation.min_space_mm, 3.0F);
+    EXPECT_EQ(s.formation.max_space_mm, 60.0F);
+    EXPECT_EQ(s.formation.attempts_per_point, 7);
+    EXPECT_EQ(s.formation.max_restarts, 8);
+    EXPECT_EQ(s.formation.chessboard_pitch_mm, 70.0F);
+    EXPECT_FALSE(s.formation.cluster_at_centre);
+    EXPECT_EQ(s.formation.filename, "f.csv");
+    EXPECT_EQ(s.formation.imported_min, (Vec2{0, 1}));
+    EXPECT_EQ(s.formation.imported_max, (Vec2{2, 3}));
+    EXPECT_FALSE(s.view.gui);
+    EXPECT_EQ(s.view.gui_speed_up, 4.0);
+    EXPECT_EQ(s.view.window_width_px, 100);
+    EXPECT_EQ(s.view.window_height_px, 200);
+    EXPECT_EQ(s.view.mm_to_pixels, 0.5);
+    EXPECT_FALSE(s.view.show_time || s.view.show_scale_bar || s.view.show_lateral_leds);
+    EXPECT_TRUE(s.view.show_communication_channels && s.view.show_communication_channels_above_all &&
+                s.view.show_light_levels && s.view.show_trajectory_traces && s.view.delete_old_files);
+    EXPECT_EQ(s.view.save_video_period_s, 0.5);
+    EXPECT_EQ(s.view.frames_name, "f/{}.png");
+    EXPECT_EQ(s.output.data_filename, "d.feather");
+    EXPECT_EQ(s.output.save_data_period_s, 0.0);
+    EXPECT_EQ(s.output.fields, (std::vector<std::string>{"time", "x"}));
+    EXPECT_EQ(s.output.categories, std::vector<std::string>{"robots"});
+    EXPECT_EQ(s.output.flush_row_count, 5);
+    EXPECT_TRUE(s.output.led_column && s.output.enable_console_logging);
+    EXPECT_EQ(s.output.console_filename, "c.txt");
+    EXPECT_EQ(s.output.log_format, LogFormat::minimal);
+    EXPECT_EQ(s.parameters.find("any")->scalar, "thing");
+}
+
+TEST(Scenario, EveryRobotKeyReachesItsMember) {
+    Warnings const warnings;
+    Scenario const s = load(R"(
+objects:
+  r:
+    type: PogoBot
+    geometry: Disk
+    nb: 3
+    x: 10
+    y: 20.5
+    radius: 30
+    body_linear_damping: 1
+    body_angular_damping: 2
+    body_density: 1e12
+    body_friction: 0.4
+    body_restitution: 0.6
+    max_linear_speed: 50
+    max_angular_speed: 3
+    linear_noise_stddev: 0.01
+    angular_noise_stddev: 0.02
+    angular_systematic_bias_domain: [-5, 6]
+    photosensors_systematic_bias_domain: [-7, 8]
+    photosensors_noise_stddev: 9
+    temporal_noise_stddev: 11
+    communication_radius: 133
+    message_queue_size: 5
+    rotate_LEDs_45_deg: false
+    msg_success_rate: {type: static, rate: 0.25}
+)",
+                            {.overrides = {}, .strict = true});
+    EXPECT_EQ(warnings.text(), "");
+    ObjectConfig const& object = s.objects.at(0);
+    EXPECT_EQ(object.category, "r");
+    EXPECT_EQ(object.type, "pogobot");
+    EXPECT_EQ(object.nb, 3);
+    EXPECT_EQ(object.position_mm, (Vec2{10.0F, 20.5F}));
+    EXPECT_EQ(object.where, "x.yaml:3");
+    RobotSpec const spec = std::get<RobotSpec>(object.spec);
+    EXPECT_EQ(spec.shape.radius_mm, 30.0F);
+    EXPECT_EQ(spec.body.linear_damping, 1.0F);
+    EXPECT_EQ(spec.body.angular_damping, 2.0F);
+    EXPECT_EQ(spec.body.density, 1e12F);
+    EXPECT_EQ(spec.body.friction, 0.4F);
+    EXPECT_EQ(spec.body.restitution, 0.6F);
+    EXPECT_EQ(spec.max_linear_speed_mm_s, 50.0F);
+    EXPECT_EQ(spec.max_angular_speed_rad_s, 3.0F);
+    EXPECT_EQ(spec.linear_noise_stddev, 0.01F);
+    EXPECT_EQ(spec.angular_noise_stddev, 0.02F);
+    EXPECT_EQ(spec.motor_bias.min, -5);
+    EXPECT_EQ(spec.motor_bias.max, 6);
+    EXPECT_EQ(spec.photosensor_bias.min, -7);
+    EXPECT_EQ(spec.photosensor_bias.max, 8);
+    EXPECT_EQ(spec.photosensor_noise_stddev, 9.0F);
+    EXPECT_EQ(spec.clock_drift_stddev_us, 11.0F);
+    EXPECT_EQ(spec.ir.range_mm, 133.0F);
+    EXPECT_EQ(spec.ir.queue_size, 5);
+    EXPECT_FALSE(spec.rotate_leds_45_deg);
+    EXPECT_EQ(spec.ir.reception.law, ReceptionLaw::constant);
+    EXPECT_EQ(spec.ir.reception.rate, 0.25);
+}
+
+TEST(Scenario, EveryLightKeyReachesItsMember) {
+    Warnings const warnings;
+    Scenario const s = load(R"(
+objects:
+  r: {type: pogobot, geometry: disk}
+  l:
+    type: static_light
+    geometry: rectangle
+    radius: 5
+    body_width: 6
+    body_height: 7
+    side_length: 8
+    light_mode: plane
+    value: 100
+    edge_value: 200
+    gradient_radius: 300
+    plane_angle: 1.5
+    plane_half_span: 400
+    photo_start_at: 2
+    photo_start_duration: 3
+    photo_start_value: 1000
+    x: 11
+    y: 12
+)",
+                            {.overrides = {}, .strict = true});
+    EXPECT_EQ(warnings.text(), "");
+    LampSpec const spec = std::get<LampSpec>(s.objects.at(1).spec);
+    EXPECT_EQ(spec.shape, (Shape{ShapeKind::rectangle, 5, 6, 7, 8}));
+    EXPECT_EQ(spec.mode, LightMode::plane);
+    EXPECT_EQ(spec.value, 100);
+    EXPECT_EQ(spec.edge_value, 200);
+    EXPECT_EQ(spec.gradient_radius_mm, 300.0F);
+    EXPECT_EQ(spec.plane_angle_rad, 1.5F);
+    EXPECT_EQ(spec.plane_half_span_mm, 400.0F);
+    EXPECT_EQ(spec.photo_start_at_s, 2.0F);
+    EXPECT_EQ(spec.photo_start_duration_s, 3.0F);
+    EXPECT_EQ(spec.photo_start_value, 1000);
+    EXPECT_EQ(spec.centre_mm, (Vec2{11, 12}));
+}
+
+TEST(Scenario, LightsStandAtZeroAndAreUniformByDefault) {
+    LampSpec const spec = lamp("");
+    EXPECT_EQ(spec.mode, LightMode::uniform);
+    EXPECT_EQ(spec.centre_mm, Vec2{});
+    EXPECT_EQ(spec.value, 10);
+    EXPECT_EQ(spec.photo_start_at_s, -1.0F);
+    EXPECT_EQ(lamp("    x: 5\n").centre_mm, (Vec2{5, 0}));
+}
+
+TEST(Scenario, EveryShapeIsAShapeOfLight) {
+    for (auto const& [name, kind] : {std::pair{"global", ShapeKind::global}, std::pair{"ARENA", ShapeKind::arena},
+                                     std::pair{"disk", ShapeKind::disk}, std::pair{"Rectangle", ShapeKind::rectangle},
+                                     std::pair{"triangle", ShapeKind::triangle}}) {
+        Scenario const s = load(std::string("objects: {r: {type: pogobot, geometry: disk}, l: {type: static_light, "
+                                            "geometry: ") +
+                                name + "}}\n");
+        EXPECT_EQ(std::get<LampSpec>(s.objects.at(1).spec).shape.kind, kind) << name;
+    }
+}
+
+TEST(Scenario, UnknownLightModeWarnsAndIsStatic) {
+    Warnings const warnings;
+    EXPECT_EQ(lamp("    light_mode: disco\n").mode, LightMode::uniform);
+    EXPECT_EQ(warnings.text(),
+              "x.yaml:6: objects.lamp.light_mode: expected one of static, gradient, plane, found 'disco'; 'static' is "
+              "used\n");
+}
+
+TEST(Scenario, EveryFormationIsAccepted) {
+    for (std::string const& name : formation_names()) {
+        EXPECT_EQ(load(kRobots + "formation_filename: f.csv\ninitial_formation: " + name + "\n").formation.name, name);
+    }
+}
+
+TEST(Scenario, ReceptionWithoutAKeyIsTheRealisticLaw) {
+    for (ReceptionSpec const& spec : {robot("").ir.reception, reception("{type: realistic}"), reception("~"),
+                                      reception("{type: realistic, alpha: 7}")}) {
+        EXPECT_EQ(spec.law, ReceptionLaw::power);
+        EXPECT_EQ(spec.alpha, 4e-6);
+        EXPECT_EQ(spec.beta, 2.8096);
+        EXPECT_EQ(spec.gamma, 2.3807);
+        EXPECT_EQ(spec.delta, 1.2457);
+    }
+}
+
+TEST(Scenario, DynamicReceptionWithZetaOrThetaOrNothingIsTheArticlesLaw) {
+    for (char const* map : {"{type: dynamic}", "{type: dynamic, zeta: 0.05720136}", "{type: dynamic, theta: 0.001}"}) {
+        ReceptionSpec const spec = reception(map);
+        EXPECT_EQ(spec.law, ReceptionLaw::article) << map;
+        EXPECT_EQ(spec.alpha, 1.03215183) << map;
+        EXPECT_EQ(spec.beta, 0.00073859) << map;
+        EXPECT_EQ(spec.gamma, 3.14782227) << map;
+        EXPECT_EQ(spec.delta, 3.52543753) << map;
+        EXPECT_EQ(spec.zeta, 0.05720136) << map;
+        EXPECT_EQ(spec.theta, 0.001) << map;
+    }
+    ReceptionSpec const spec = reception("{type: dynamic, alpha: 2, zeta: 3}");
+    EXPECT_EQ(spec.law, ReceptionLaw::article);
+    EXPECT_EQ(spec.alpha, 2.0);
+    EXPECT_EQ(spec.zeta, 3.0);
+    EXPECT_EQ(spec.beta, 0.00073859);
+}
+
+TEST(Scenario, DynamicReceptionWithOnlyTheFourParametersIsTheOlderLaw) {
+    ReceptionSpec const spec = reception("{type: dynamic, beta: 3}");
+    EXPECT_EQ(spec.law, ReceptionLaw::power);
+    EXPECT_EQ(spec.alpha, 4e-6);
+    EXPECT_EQ(spec.beta, 3.0);
+    EXPECT_EQ(spec.gamma, 2.3807);
+}
+
+TEST(Scenario, NullCountsAsAbsent) {
+    Scenario const s = load(kRobots + "time_step:\nseed: ~\ndata_logger_fields: null\nparameters:\n");
+    EXPECT_EQ(s.time_step_s, 0.01);
+    EXPECT_EQ(s.seed, std::nullopt);
+    EXPECT_EQ(s.output.fields, std::nullopt);
+}
+
+TEST(Scenario, NullBoundaryIsSolidWithAWarning) {
+    for (char const* text : {"null", "'null'", ""}) {
+        Warnings const warnings;
+        EXPECT_EQ(load(kRobots + "boundary_condition: " + text + "\n").boundary, BoundaryCondition::solid);
+        EXPECT_EQ(warnings.lines().size(), 1U) << text;
+        EXPECT_NE(warnings.text().find("x.yaml:6: boundary_condition: expected solid or periodic"), std::string::npos);
+    }
+}
+
+TEST(Scenario, ObjectsKeepTheOrderOfTheFile) {
+    Scenario const s = load(
+        "objects:\n  zeta: {type: pogobot, geometry: disk}\n  alpha: {type: pogobot, geometry: disk}\n"
+        "  mid: {type: static_light, geometry: global}\n");
+    ASSERT_EQ(s.objects.size(), 3U);
+    EXPECT_EQ(s.objects[0].category, "zeta");
+    EXPECT_EQ(s.objects[1].category, "alpha");
+    EXPECT_EQ(s.objects[2].category, "mid");
+}
+
+TEST(Scenario, ConfigurationWithoutRobotsOnlyWarns) {
+    for (char const* text : {"objects:\n", "objects: {}\n", "seed: 1\n",
+                             "objects: {l: {type: static_light, geometry: "
+                             "global}}\n"}) {
+        Warnings const warnings;
+        load(text);
+        EXPECT_EQ(warnings.text(), "x.yaml:1: objects: there is no robot in this configuration; nothing will move\n")
+            << text;
+    }
+}
+
+TEST(Scenario, BatchOptionsGiveTheirDefaultOption) {
+    Scenario const s = load(
+        "arena_file: {batch_options: [a.csv, b.csv], default_option: c.csv}\n"
+        "time_step: {batch_options: [0.1, 0.2]}\n"
+        "objects:\n  robots:\n    type: pogobot\n    geometry: disk\n"
+        "    nb: {batch_options: [100, 200], default_option: 50}\n"
+        "    batch_hierarchical_options:\n      name: size\n      default: {radius: 20}\n      big: {radius: 40}\n");
+    EXPECT_EQ(s.arena_file, "c.csv");
+    EXPECT_EQ(s.time_step_s, 0.01);
+    EXPECT_EQ(s.objects.at(0).nb, 50);
+    EXPECT_EQ(std::get<RobotSpec>(s.objects.at(0).spec).shape.radius_mm, 20.0F);
+}
+
+TEST(Scenario, SetWinsOverTheFileAndOverItsOptions) {
+    std::string const text = kRobots +
+                             "    nb: {batch_options: [1, 2], default_option: 1}\n"
+                             "    batch_hierarchical_options: {default: {max_linear_speed: 10}}\n";
+    Scenario const s = load(text, {.overrides = {"objects.robots.nb=7", "objects.robots.max_linear_speed=20", "seed=3",
+                                                 "seed=4", "time_step={default_option: 0.5, batch_options: []}"}});
+    EXPECT_EQ(s.objects.at(0).nb, 7);
+    EXPECT_EQ(std::get<RobotSpec>(s.objects.at(0).spec).max_linear_speed_mm_s, 20.0F);
+    EXPECT_EQ(s.seed, 4U);
+    EXPECT_EQ(s.time_step_s, 0.5);
+    EXPECT_EQ(s.resolved.find("seed")->scalar, "4");
+}
+
+TEST(Scenario, ResolvedTreeKeepsUnknownKeysAndReadsBackTheSame) {
+    Warnings const warnings;
+    Scenario const s = load(kRobots + "mystery: {deep: [1, '1']}\narena_surface: 1.0e6\n");
+    std::string const yaml = to_yaml(s.resolved);
+    EXPECT_NE(yaml.find("mystery:\n  deep:\n    - 1\n    - \"1\"\n"), std::string::npos);
+    EXPECT_NE(yaml.find("arena_surface: 1.0e6\n"), std::string::npos);
+    EXPECT_EQ(to_yaml(parse_yaml(yaml, "again.yaml")), yaml);
+    Scenario const again = load(yaml);
+    EXPECT_EQ(again.objects.at(0).category, "robots");
+}
+
+TEST(Scenario, NumbersInQuotesAreNumbers) {
+    EXPECT_EQ(load(kRobots + "arena_surface: '1.0e5'\n").arena_surface_mm2, 1e5);
+}

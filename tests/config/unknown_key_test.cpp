@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include "config/scenario.hpp"
+#include "config_file.hpp"
+
+using namespace pogosim;
+using namespace pogosim::config_file;
+
+namespace {
+
+std::vector<std::string> warnings_of(std::string const& text) {
+    Warnings const warnings;
+    load(text);
+    return warnings.lines();
+}
+
+using Lines = std::vector<std::string>;
+
+}  // namespace
+
+TEST(UnknownKey, WarnsOnceAndNamesTheNearestKey) {
+    EXPECT_EQ(warnings_of(kRobots + "    radus: 3\n"),
+              Lines{"x.yaml:6: unknown key 'objects.robots.radus' is ignored; did you mean 'radius'?"});
+    EXPECT_EQ(warnings_of(kRobots + "simulation_tme: 3\n"),
+              Lines{"x.yaml:6: unknown key 'simulation_tme' is ignored; did you mean 'simulation_time'?"});
+    EXPECT_EQ(warnings_of(kRobots + "    msg_success_rate: {type: static, rat: 1}\n"),
+              Lines{"x.yaml:6: unknown key 'objects.robots.msg_success_rate.rat' is ignored; did you mean 'rate'?"});
+}
+
+TEST(UnknownKey, WithoutALikeKeyNamesNone) {
+    EXPECT_EQ(warnings_of(kRobots + "qwertzuiop: 3\n"), Lines{"x.yaml:6: unknown key 'qwertzuiop' is ignored"});
+}
+
+TEST(UnknownKey, NearestKeyIsOneOfTheSameObjectType) {
+    EXPECT_EQ(warnings_of(kRobots + "    photo_start_at: 3\n"),
+              Lines{"x.yaml:6: unknown key 'objects.robots.photo_start_at' is ignored"});
+    EXPECT_EQ(warnings_of(kLamp + "    photo_start_att: 3\n"),
+              Lines{"x.yaml:6: unknown key 'objects.lamp.photo_start_att' is ignored; did you mean 'photo_start_at'?"});
+}
+
+TEST(UnknownKey, OldNamesAreToldTheirNewOnes) {
+    EXPECT_EQ(warnings_of(kRobots + "nBots: 3\n"),
+              Lines{"x.yaml:6: unknown key 'nBots' is ignored; it is now 'objects.<category>.nb'"});
+    for (char const* old :
+         {"commRadius", "msgSuccessRate", "robot_radius", "initial_robot_formation", "initial_light_value", "showComms",
+          "simulationTime", "timeStep", "photo_start_at", "photo_start_duration"}) {
+        Lines const lines = warnings_of(kRobots + old + ": 3\n");
+        ASSERT_EQ(lines.size(), 1U) << old;
+        EXPECT_NE(lines[0].find("it is now '"), std::string::npos) << old;
+    }
+}
+
+TEST(UnknownKey, NothingUnderParametersIsUnknown) {
+    EXPECT_TRUE(warnings_of(kRobots + "parameters: {radus: 1, p: {q: 2}}\noptimization: {any: thing}\n").empty());
+}
+
+TEST(UnknownKey, IsAnErrorWhenStrict) {
+    EXPECT_EQ(load_error(kRobots + "    radus: 3\n", {.overrides = {}, .strict = true}),
+              "x.yaml:6: unknown key 'objects.robots.radus'; did you mean 'radius'? (--strict)");
+    EXPECT_EQ(load_error(kRobots + "    msg_success_rate: {type: static, rat: 1}\n", {.overrides = {}, .strict = true}),
+              "x.yaml:6: unknown key 'objects.robots.msg_success_rate.rat'; did you mean 'rate'? (--strict)");
+    EXPECT_EQ(load_error(kRobots, {.overrides = {"objects.robots.radus=3"}, .strict = true}),
+              "--set: unknown key 'objects.robots.radus'; did you mean 'radius'? (--strict)");
+}
+
+TEST(UnknownKey, BracesAndPercentSignsInItAreShownAsTheyAre) {
+    EXPECT_EQ(warnings_of(kRobots + "'{}%s': 3\n"), Lines{"x.yaml:6: unknown key '{}%s' is ignored"});
+}
