@@ -1,0 +1,224 @@
+// Rigid bodies with Box2D 2.4. The only file that includes it. One unit of Box2D is 100 mm.
+#include <box2d/box2d.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/error.hpp"
+#include "physics/physics_engine.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr float kMmPerUnit = 100.0F;
+constexpr int kVelocityIterations = 6;
+constexpr int kPositionIterations = 3;
+// Box2D sees a contact once it is there, so a pair overlaps by what it has approached since. Steps are cut into
+// sub-steps in which no two robots at full speed approach by more than this, as long as that is not too many.
+constexpr float kApproachMm = 1.0F;
+constexpr int kMaxSubsteps = 8;
+// Box2D lets shapes sink into each other by its tolerance, half of it on either side. Shapes are larger by that half,
+// so that they rest at their true distance.
+constexpr float kSkin = b2_linearSlop / 2.0F;
+// Box2D calls slower collisions inelastic; its own limit of 1 unit/s is the full speed of a robot.
+constexpr float kRestitutionThreshold = 0.05F;  // units/s
+// Corners of a wall that lie closer together than this are joined; Box2D's tolerance is 0.5 mm.
+constexpr float kShortestEdgeMm = 1.0F;
+// A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
+constexpr float kSweptShare = 0.5F;
+
+b2Vec2 to_box2d(Vec2 mm) {
+    return {mm.x / kMmPerUnit, mm.y / kMmPerUnit};
+}
+Vec2 from_box2d(b2Vec2 units) {
+    return {units.x * kMmPerUnit, units.y * kMmPerUnit};
+}
+
+std::vector<b2Vec2> wall_corners(Polygon const& polygon, bool outer) {
+    std::vector<b2Vec2> corners;
+    Vec2 last = polygon.back();
+    for (Vec2 const corner : polygon) {
+        if (length(corner - last) >= kShortestEdgeMm) {
+            corners.push_back(to_box2d(corner));
+            last = corner;
+        }
+    }
+    if (corners.size() < 3) {
+        throw ConfigError(
+            "the arena is too small to build walls: its corners lie less than 1 mm apart. Enlarge arena_surface "
+            "(mm^2)");
+    }
+    // Chains push to one side: inwards for the outer wall, outwards for holes.
+    bool const clockwise_on_screen = signed_area(polygon) > 0.0;
+    if (clockwise_on_screen == outer) {
+        std::reverse(corners.begin(), corners.end());
+    }
+    return corners;
+}
+
+void add_shape(b2Body& body, Shape const& shape, b2FixtureDef& fixture) {
+    switch (shape.kind) {
+        case ShapeKind::rectangle: {
+            b2PolygonShape box;
+            box.SetAsBox(shape.width_mm / 2.0F / kMmPerUnit, shape.height_mm / 2.0F / kMmPerUnit);
+            fixture.shape = &box;
+            body.CreateFixture(&fixture);
+            return;
+        }
+        case ShapeKind::triangle: {
+            float const height = shape.side_length_mm * std::numbers::sqrt3_v<float> / 2.0F;
+            std::array<b2Vec2, 3> const corners{to_box2d({0.0F, -height * 2.0F / 3.0F}),
+                                                to_box2d({shape.side_length_mm / 2.0F, height / 3.0F}),
+                                                to_box2d({-shape.side_length_mm / 2.0F, height / 3.0F})};
+            b2PolygonShape triangle;
+            triangle.Set(corners.data(), static_cast<int32>(corners.size()));
+            fixture.shape = &triangle;
+            body.CreateFixture(&fixture);
+            return;
+        }
+        default: {
+            b2CircleShape disk;
+            disk.m_radius = bounding_radius(shape) / kMmPerUnit + kSkin;
+            fixture.shape = &disk;
+            body.CreateFixture(&fixture);
+        }
+    }
+}
+
+/// Sub-steps of one step: see kApproachMm.
+int substeps_for(World const& world) {
+    float fastest_mm_s = 0.0F;
+    for (Category const& category : world.categories) {
+        fastest_mm_s = std::max(fastest_mm_s, category.spec.max_linear_speed_mm_s);
+    }
+    auto const approach_mm = 2.0F * fastest_mm_s * static_cast<float>(world.time_step_s);
+    return static_cast<int>(std::clamp(std::ceil(approach_mm / kApproachMm), 1.0F, static_cast<float>(kMaxSubsteps)));
+}
+
+class Box2dEngine final : public PhysicsEngine {
+public:
+    Box2dEngine(World const& world, WallSpec const& walls) : engine_(b2Vec2_zero) {
+        engine_.SetContinuousPhysics(false);
+        if (!world.periodic) {
+            add_walls(world.arena, walls);
+        }
+        for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+            bodies_.push_back(add_body(world.bodies, i));
+        }
+    }
+
+    void advance(World& world) override {
+        impose_drives(world);
+        int const substeps = substeps_for(world);
+        for (int i = 0; i < substeps; ++i) {
+            engine_.Step(static_cast<float>(world.time_step_s / substeps), kVelocityIterations, kPositionIterations);
+        }
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            read_back(world, i);
+        }
+    }
+
+private:
+    void add_walls(Arena const& arena, WallSpec const& walls) {
+        b2BodyDef definition;
+        b2Body* const ground = engine_.CreateBody(&definition);
+        for (std::size_t i = 0; i < arena.polygons.size(); ++i) {
+            std::vector<b2Vec2> const corners = wall_corners(arena.polygons[i], i == 0);
+            b2ChainShape chain;
+            chain.m_radius = kSkin;
+            chain.CreateLoop(corners.data(), static_cast<int32>(corners.size()));
+            b2FixtureDef fixture;
+            fixture.shape = &chain;
+            fixture.friction = walls.friction;
+            fixture.restitution = walls.restitution;
+            fixture.restitutionThreshold = kRestitutionThreshold;
+            ground->CreateFixture(&fixture);
+        }
+    }
+
+    b2Body* add_body(Bodies const& bodies, std::size_t i) {
+        b2BodyDef definition;
+        definition.type = b2_dynamicBody;
+        definition.position = to_box2d(bodies.position_mm[i]);
+        definition.angle = bodies.heading_rad[i];
+        definition.linearVelocity = to_box2d(bodies.velocity_mm_s[i]);
+        definition.angularVelocity = bodies.spin_rad_s[i];
+        definition.linearDamping = bodies.spec[i].linear_damping;
+        definition.angularDamping = bodies.spec[i].angular_damping;
+        b2Body* const body = engine_.CreateBody(&definition);
+        b2FixtureDef fixture;
+        fixture.density = bodies.spec[i].density;
+        fixture.friction = bodies.spec[i].friction;
+        fixture.restitution = bodies.spec[i].restitution;
+        fixture.restitutionThreshold = kRestitutionThreshold;
+        add_shape(*body, bodies.shape[i], fixture);
+        return body;
+    }
+
+    void impose_drives(World& world) {
+        Robots& robots = world.robots;
+        for (std::size_t i = 0; i < robots.size(); ++i) {
+            Drive& drive = robots.drive[i];
+            if (!drive.fresh) {
+                continue;
+            }
+            drive.fresh = false;
+            b2Body& body = *bodies_[robots.body[i]];
+            body.SetLinearVelocity(to_box2d(drive.velocity_mm_s));
+            body.SetAngularVelocity(drive.spin_rad_s);
+            sweep_if_fast(body, drive, world.bodies.radius_mm[robots.body[i]], world.time_step_s);
+        }
+    }
+
+    /// Continuous collision detection costs, so only those use it who need it.
+    void sweep_if_fast(b2Body& body, Drive const& drive, float radius_mm, double time_step_s) {
+        double const step_mm = length(drive.velocity_mm_s) * time_step_s;
+        if (step_mm > kSweptShare * radius_mm) {
+            engine_.SetContinuousPhysics(true);
+            body.SetBullet(true);
+        }
+    }
+
+    void read_back(World& world, std::size_t i) {
+        b2Body& body = *bodies_[i];
+        if (!body.IsAwake()) {
+            world.bodies.velocity_mm_s[i] = {};
+            world.bodies.spin_rad_s[i] = 0.0F;
+            return;
+        }
+        if (world.periodic) {
+            wrap(world.arena.bounds, body);
+        }
+        b2Transform const& pose = body.GetTransform();
+        world.bodies.position_mm[i] = from_box2d(pose.p);
+        world.bodies.axis[i] = {pose.q.c, pose.q.s};
+        world.bodies.heading_rad[i] = body.GetAngle();
+        world.bodies.velocity_mm_s[i] = from_box2d(body.GetLinearVelocity());
+        world.bodies.spin_rad_s[i] = body.GetAngularVelocity();
+    }
+
+    static void wrap(Box const& bounds, b2Body& body) {
+        Vec2 const position = from_box2d(body.GetPosition());
+        Vec2 const size = bounds.size();
+        Vec2 const turns{std::floor((position.x - bounds.min.x) / size.x),
+                         std::floor((position.y - bounds.min.y) / size.y)};
+        if (turns != Vec2{}) {
+            body.SetTransform(to_box2d(position - Vec2{turns.x * size.x, turns.y * size.y}), body.GetAngle());
+        }
+    }
+
+    b2World engine_;
+    std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
+};
+
+}  // namespace
+
+std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls) {
+    return std::make_unique<Box2dEngine>(world, walls);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,27 @@
+// Moves the bodies. A small interface, so that another engine is one more file.
+#pragma once
+
+#include <memory>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+class PhysicsEngine {
+public:
+    virtual ~PhysicsEngine() = default;
+
+    /// Imposes fresh drives, advances all bodies by one time step and writes their poses and velocities back.
+    virtual void advance(World& world) = 0;
+};
+
+struct WallSpec {
+    float friction = 0.05F;
+    float restitution = 0.5F;
+};
+
+/// Box2D behind the interface. Takes the arena and the bodies, with poses and velocities, as they are in the world now.
+/// Throws ConfigError when the arena is too small to build walls.
+std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls);
+
+}  // namespace pogosim

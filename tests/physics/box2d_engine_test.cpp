@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "physics/physics_engine.hpp"
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+using testing::add_robot;
+using testing::square_world;
+
+RobotSpec body(float restitution, float friction = 0.0F, float damping = 0.0F) {
+    RobotSpec spec = testing::pogobot_spec();
+    spec.body = {.linear_damping = damping,
+                 .angular_damping = damping,
+                 .density = 10.0F,
+                 .friction = friction,
+                 .restitution = restitution};
+    return spec;
+}
+
+void run(World& world, double seconds, WallSpec const& walls = {}) {
+    auto const engine = make_box2d_engine(world, walls);
+    auto const steps = std::lround(seconds / world.time_step_s);
+    for (long i = 0; i < steps; ++i) {
+        engine->advance(world);
+    }
+}
+
+TEST(Physics, FreeBodyMovesStraightAtConstantSpeed) {
+    World world = square_world(5000.0F);
+    add_robot(world, {1000, 1000}, 0.0F, body(0.5F));
+    world.bodies.velocity_mm_s[0] = {100, 50};
+    world.bodies.spin_rad_s[0] = 1.0F;
+    run(world, 10.0);
+    EXPECT_NEAR(world.bodies.position_mm[0].x, 2000.0F, 0.1F);
+    EXPECT_NEAR(world.bodies.position_mm[0].y, 1500.0F, 0.1F);
+    EXPECT_NEAR(world.bodies.heading_rad[0], 10.0F, 1e-3F);
+}
+
+TEST(Physics, DampedBodySlowsDownExponentially) {
+    World world = square_world(5000.0F);
+    add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 0.3F));
+    world.bodies.velocity_mm_s[0] = {100, 0};
+    world.bodies.spin_rad_s[0] = 2.0F;
+    run(world, 5.0);
+    // The engine's implicit step differs from the exponential by a factor of 1 - damping * time step / 2.
+    float const left = std::exp(-0.3F * 5.0F);
+    EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * left, 0.2F);
+    EXPECT_NEAR(world.bodies.spin_rad_s[0], 2.0F * left, 0.005F);
+    EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 100.0F / 0.3F * (1.0F - left), 1.0F);
+}
+
+TEST(Physics, ElasticHeadOnCollisionSwapsTheVelocities) {
+    World world = square_world(5000.0F);
+    add_robot(world, {1000, 1000}, 0.0F, body(1.0F));
+    add_robot(world, {1100, 1000}, 0.0F, body(1.0F));
+    world.bodies.velocity_mm_s[0] = {100, 0};
+    world.bodies.velocity_mm_s[1] = {-50, 0};
+    run(world, 1.0);
+    EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, -50.0F, 0.5F);
+    EXPECT_NEAR(world.bodies.velocity_mm_s[1].x, 100.0F, 0.5F);
+}
+
+TEST(Physics, CollisionKeepsMomentumAndLosesSpeedByTheRestitution) {
+    World world = square_world(5000.0F);
+    add_robot(world, {1000, 1000}, 0.0F, body(0.5F));
+    add_robot(world, {1100, 1000}, 0.0F, body(0.2F));
+    world.bodies.velocity_mm_s[0] = {100, 0};
+    run(world, 1.0);
+    Vec2 const a = world.bodies.velocity_mm_s[0];
+    Vec2 const b = world.bodies.velocity_mm_s[1];
+    EXPECT_NEAR(a.x + b.x, 100.0F, 0.1F);
+    EXPECT_NEAR(b.x - a.x, 50.0F, 0.5F);  // the larger of both restitutions
+}
+
+TEST(Physics, WallThrowsABodyBackByItsRestitution) {
+    for (Vec2 const velocity : {Vec2{100, 0}, Vec2{-100, 0}, Vec2{0, 100}, Vec2{0, -100}}) {
+        World world = square_world(300.0F);
+        add_robot(world, {150, 150}, 0.0F, body(0.0F));
+        world.bodies.velocity_mm_s[0] = velocity;
+        run(world, 1.8, {.friction = 0.0F, .restitution = 0.5F});
+        EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, -0.5F * velocity.x, 1.0F);
+        EXPECT_NEAR(world.bodies.velocity_mm_s[0].y, -0.5F * velocity.y, 1.0F);
+    }
+}
+
+TEST(Physics, HolesPushOutwards) {
+    World world = square_world(1000.0F);
+    world.arena.polygons.push_back({{400, 400}, {600, 400}, {600, 600}, {400, 600}});
+    add_robot(world, {200, 500}, 0.0F, body(0.0F));
+    world.bodies.velocity_mm_s[0] = {100, 0};
+    run(world, 5.0, {.friction = 0.0F, .restitution = 0.0F});
+    EXPECT_NEAR(world.bodies.position_mm[0].x, 400.0F - 26.5F, 1.0F);
+}
+
+TEST(Physics, FastBodyDoesNotJumpAWall) {
+    World world = square_world(1000.0F);
+    add_robot(world, {500, 500}, 0.0F, body(0.0F));
+    world.robots.drive[0] = {.velocity_mm_s = {15000, 0}, .spin_rad_s = 0.0F, .fresh = true};
+    run(world, 1.0);
+    EXPECT_LT(world.bodies.position_mm[0].x, 1000.0F - 26.5F + 1.0F);
+}
+
+TEST(Physics, DriveIsImposedOnce) {
+    World world = square_world(5000.0F);
+    add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 1.0F));
+    world.robots.drive[0] = {.velocity_mm_s = {100, 0}, .spin_rad_s = 1.0F, .fresh = true};
+    run(world, 1.0);
+    EXPECT_FALSE(world.robots.drive[0].fresh);
+    EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * std::exp(-1.0F), 0.5F);
+}
+
+TEST(Physics, BodyLeavingAPeriodicWorldComesBackOnTheOtherSide) {
+    World world = square_world(1000.0F);
+    world.periodic = true;
+    add_robot(world, {950, 20}, 0.0F, body(0.5F));
+    world.bodies.velocity_mm_s[0] = {100, -100};
+    run(world, 1.0);
+    EXPECT_NEAR(world.bodies.position_mm[0].x, 50.0F, 0.1F);
+    EXPECT_NEAR(world.bodies.position_mm[0].y, 920.0F, 0.1F);
+}
+
+}  // namespace
+}  // namespace pogosim
