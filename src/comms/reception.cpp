@@ -1,0 +1,31 @@
+#include "comms/reception.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pogosim {
+
+double reception_probability(ReceptionSpec const& spec, double message_bytes, double send_probability,
+                             double cluster_size) {
+    double const m = message_bytes;
+    double const p = send_probability;
+    double const c = cluster_size;
+    double probability = spec.rate;
+    switch (spec.law) {
+        case ReceptionLaw::constant:
+            break;
+        case ReceptionLaw::article: {
+            double const collisions = spec.beta * std::pow(p, spec.gamma) * std::pow(c, spec.delta);
+            probability = 1.0 / (spec.alpha + collisions * std::exp(spec.zeta * m) + spec.theta * p * c);
+            break;
+        }
+        case ReceptionLaw::power:
+            probability =
+                1.0 / (1.0 + spec.alpha * std::pow(m, spec.beta) * std::pow(p, spec.gamma) * std::pow(c, spec.delta));
+            break;
+    }
+    // Fitted parameters may leave the range, or the real numbers.
+    return probability > 0.0 ? std::min(probability, 1.0) : 0.0;
+}
+
+}  // namespace pogosim

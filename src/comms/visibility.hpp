@@ -1,0 +1,81 @@
+// Who sees whom by infrared.
+//
+//            front (0)             An emitter sits on the rim at 0, 90, 180 and 270 degrees and radiates over the half
+//          ___ ^ ___               plane in front of it. It reaches another robot when that robot's border is within
+//          range
+//         /         \              of the emitter, its centre lies in the half plane, and nearer robots that the
+//         emitter
+//  left  <    (3)    >  right (1)  sees leave at least a part of it uncovered.
+//         \___ _ ___/
+//              v
+//            back (2)
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/grid.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// One robot that an emission reaches.
+struct Receiver {
+    std::uint32_t robot = 0;
+    Vec2 from_emitter_mm;  // from the emitter (the nearest one that sees it) to the receiver's centre
+};
+
+class Visibility {
+public:
+    /// Sorts the robots by place. Call once per step before the queries.
+    void update(World const& world);
+
+    /// The robots that the given emitters of `robot` (bit d: emitter d) reach, each once, through the nearest emitter
+    /// that sees it, in the order of their indices. Valid until the next call.
+    std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters);
+
+private:
+    /// A robot that may be in reach, in the sender's own frame (x along its heading).
+    struct Candidate {
+        std::uint32_t robot;
+        Vec2 offset_mm;
+        float radius_mm;
+        float nearest_mm2;     // squared distance from the nearest emitter that sees it
+        Vec2 from_emitter_mm;  // in the sender's frame
+    };
+
+    /// A candidate as one emitter sees it; `low` and `high` are the edges of its shadow, see pseudo_angle().
+    struct Sight {
+        float distance_mm2;
+        float low;
+        float high;
+        std::uint32_t candidate;
+        Vec2 from_emitter_mm;  // x along the emitter's outward normal
+    };
+
+    struct Interval {
+        float low;
+        float high;
+    };
+
+    void gather_candidates(World const& world, std::uint32_t robot);
+    void look(World const& world, std::uint32_t robot, int emitter);
+    bool is_covered(Sight const& sight) const;
+    void cover(Sight const& sight);
+
+    UniformGrid grid_;
+    float largest_radius_mm_ = 0.0F;
+    std::vector<Vec2> positions_;
+    std::vector<Candidate> candidates_;
+    std::vector<Sight> sights_;
+    std::vector<Interval> shadows_;  // disjoint, sorted
+    std::vector<Receiver> receivers_;
+};
+
+/// Faces of `receiver` that see a point at `emitter_mm` (relative to the receiver's centre, in the world's axes) within
+/// `range_mm`: bit d for face d. At least one: the face turned most towards the point.
+std::uint8_t faces_that_see(World const& world, std::uint32_t receiver, Vec2 emitter_mm, float range_mm);
+
+}  // namespace pogosim

@@ -1,0 +1,185 @@
+#include "comms/visibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <vector>
+
+#include "base/random.hpp"
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+using testing::add_robot;
+using testing::square_world;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kRadius = 26.5F;
+constexpr std::uint8_t kFront = 1;
+constexpr std::uint8_t kRight = 2;
+constexpr std::uint8_t kBack = 4;
+constexpr std::uint8_t kLeft = 8;
+
+std::vector<std::uint32_t> reached(World const& world, std::uint32_t robot, std::uint8_t emitters) {
+    Visibility visibility;
+    visibility.update(world);
+    std::vector<std::uint32_t> result;
+    for (Receiver const& receiver : visibility.receivers(world, robot, emitters)) {
+        result.push_back(receiver.robot);
+    }
+    return result;
+}
+
+using Robots = std::vector<std::uint32_t>;
+
+TEST(Visibility, RangeGoesFromTheEmitterToTheReceiversBorder) {
+    // Centre distance at which the front emitter just reaches: radius + range + radius.
+    float const limit = kRadius + 80.0F + kRadius;
+    World near = square_world();
+    add_robot(near, {500, 500});
+    add_robot(near, {500 + limit - 0.01F, 500});
+    EXPECT_EQ(reached(near, 0, kFront), Robots{1});
+
+    World far = square_world();
+    add_robot(far, {500, 500});
+    add_robot(far, {500 + limit + 0.01F, 500});
+    EXPECT_TRUE(reached(far, 0, kAllFaces).empty());
+}
+
+TEST(Visibility, EachEmitterShinesToItsOwnSide) {
+    World world = square_world();
+    add_robot(world, {500, 500}, 0.0F);
+    add_robot(world, {600, 500});  // ahead
+    add_robot(world, {500, 600});  // below on the screen: to the right
+    add_robot(world, {400, 500});  // behind
+    add_robot(world, {500, 400});  // to the left
+    EXPECT_EQ(reached(world, 0, kFront), Robots{1});
+    EXPECT_EQ(reached(world, 0, kRight), Robots{2});
+    EXPECT_EQ(reached(world, 0, kBack), Robots{3});
+    EXPECT_EQ(reached(world, 0, kLeft), Robots{4});
+    EXPECT_EQ(reached(world, 0, kAllFaces), (Robots{1, 2, 3, 4}));
+}
+
+TEST(Visibility, EmittersTurnWithTheRobot) {
+    World world = square_world();
+    add_robot(world, {500, 500}, kPi / 2.0F);  // heading down the screen
+    add_robot(world, {500, 600});
+    add_robot(world, {400, 500});
+    EXPECT_EQ(reached(world, 0, kFront), Robots{1});
+    EXPECT_EQ(reached(world, 0, kRight), Robots{2});
+}
+
+TEST(Visibility, NearRobotHidesTheOneStraightBehindIt) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    add_robot(world, {555, 500});
+    add_robot(world, {609, 500});
+    EXPECT_EQ(reached(world, 0, kAllFaces), Robots{1});
+    world.ignore_occlusions = true;
+    EXPECT_EQ(reached(world, 0, kAllFaces), (Robots{1, 2}));
+}
+
+TEST(Visibility, PartlyHiddenRobotIsSeen) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    add_robot(world, {590, 480});  // hides bearings of -41 to 6 degrees from the front emitter
+    add_robot(world, {612, 530});  // spans 2 to 36 degrees
+    EXPECT_EQ(reached(world, 0, kFront), (Robots{1, 2}));
+}
+
+TEST(Visibility, TwoShadowsThatTouchHideWhatNeitherHidesAlone) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    add_robot(world, {560, 526});
+    add_robot(world, {560, 474});
+    add_robot(world, {625, 500});
+    EXPECT_EQ(reached(world, 0, kFront), (Robots{1, 2}));
+}
+
+TEST(Visibility, OmnidirectionalEmissionComesFromTheNearestEmitterThatSees) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    add_robot(world, {580, 540});
+    Visibility visibility;
+    visibility.update(world);
+    auto const receivers = visibility.receivers(world, 0, kAllFaces);
+    ASSERT_EQ(receivers.size(), 1U);
+    // The front emitter at (526.5, 500) is nearer than the right one at (500, 526.5).
+    EXPECT_NEAR(receivers[0].from_emitter_mm.x, 580.0F - 526.5F, 1e-3F);
+    EXPECT_NEAR(receivers[0].from_emitter_mm.y, 40.0F, 1e-3F);
+}
+
+TEST(Visibility, PeriodicWorldIsSeenAcrossTheSeam) {
+    World world = square_world();
+    add_robot(world, {980, 500});
+    add_robot(world, {60, 500});
+    EXPECT_TRUE(reached(world, 0, kAllFaces).empty());
+    world.periodic = true;
+    EXPECT_EQ(reached(world, 0, kFront), Robots{1});
+    EXPECT_EQ(reached(world, 1, kBack), Robots{0});
+}
+
+TEST(Visibility, RobotWithoutRangeIsMute) {
+    World world = square_world();
+    RobotSpec mute = testing::pogobot_spec();
+    mute.ir.range_mm = 0.0F;
+    add_robot(world, {500, 500}, 0.0F, mute);
+    add_robot(world, {553, 500}, 0.0F, mute);
+    EXPECT_TRUE(reached(world, 0, kAllFaces).empty());
+}
+
+TEST(Visibility, WithoutOcclusionsTheGridFindsWhatAllPairsFind) {
+    for (bool const periodic : {false, true}) {
+        World world = square_world();
+        world.periodic = periodic;
+        world.ignore_occlusions = true;
+        RandomStream random(7, 1);
+        for (int i = 0; i < 150; ++i) {
+            add_robot(world, {random.uniform(0, 1000), random.uniform(0, 1000)}, random.uniform(-kPi, kPi));
+        }
+        for (std::uint32_t i = 0; i < 150; ++i) {
+            Robots expected;
+            for (std::uint32_t j = 0; j < 150; ++j) {
+                bool in_reach = false;
+                for (int emitter = 0; emitter < kFaceCount; ++emitter) {
+                    float const angle = world.bodies.heading_rad[i] + static_cast<float>(emitter) * kPi / 2.0F;
+                    Vec2 const point = world.bodies.position_mm[i] + kRadius * direction(angle);
+                    Vec2 const d = shortest_vector(world, point, world.bodies.position_mm[j]);
+                    in_reach = in_reach || length(d) <= 80.0F + kRadius;
+                }
+                if (j != i && in_reach) {
+                    expected.push_back(j);
+                }
+            }
+            EXPECT_EQ(reached(world, i, kAllFaces), expected) << "robot " << i << ", periodic " << periodic;
+        }
+    }
+}
+
+TEST(Faces, EmitterStraightAheadIsSeenByTheFrontFaceOnly) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    EXPECT_EQ(faces_that_see(world, 0, {60, 0}, 80.0F), kFront);
+    EXPECT_EQ(faces_that_see(world, 0, {0, 60}, 80.0F), kRight);
+    EXPECT_EQ(faces_that_see(world, 0, {-60, 0}, 80.0F), kBack);
+    EXPECT_EQ(faces_that_see(world, 0, {0, -60}, 80.0F), kLeft);
+}
+
+TEST(Faces, EmitterOnTheDiagonalIsSeenByBothFacesBesideIt) {
+    World world = square_world();
+    add_robot(world, {500, 500}, kPi / 2.0F);  // front points down the screen, right to the left of it
+    EXPECT_EQ(faces_that_see(world, 0, {-50, 50}, 80.0F), kFront | kRight);
+}
+
+TEST(Faces, AtLeastOneFaceReceives) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    // Close by on the diagonal, behind the plane of every face.
+    EXPECT_EQ(faces_that_see(world, 0, {20, 19}, 80.0F), kFront);
+    // Seen by the front face, but out of its reach.
+    EXPECT_EQ(faces_that_see(world, 0, {200, 0}, 80.0F), kFront);
+}
+
+}  // namespace
+}  // namespace pogosim
