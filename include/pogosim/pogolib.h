@@ -1,0 +1,48 @@
+// Pogolib for simulated robots: the functions of the Pogobot SDK, one header per part of the robot.
+#ifndef POGOSIM_POGOLIB_H
+#define POGOSIM_POGOLIB_H
+
+// A program may test SIMULATOR to add what only the simulator has.
+#ifndef SIMULATOR
+#define SIMULATOR
+#endif
+
+#ifdef __cplusplus
+extern "C++" {
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+}
+#endif
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define POGOLIB_RELEASE_VERSION "v2.6"
+
+// A variable that each robot has for itself: the simulator puts in the running robot's value. Thread-local, so that
+// robots can run on several threads.
+#define POGO_PER_ROBOT __thread
+#define POGO_BEGIN_API _Pragma("GCC visibility push(default)")
+#define POGO_END_API _Pragma("GCC visibility pop")
+
+// The real main() is the simulator's; it calls the program's once for each robot.
+#define main robot_main
+
+#include "pogosim/pogolib/console.h"
+#include "pogosim/pogolib/helper.h"
+#include "pogosim/pogolib/infrared.h"
+#include "pogosim/pogolib/leds.h"
+#include "pogosim/pogolib/motors.h"
+#include "pogosim/pogolib/sensors.h"
+#include "pogosim/pogolib/timers.h"
+
+#endif

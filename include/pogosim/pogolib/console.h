@@ -1,0 +1,43 @@
+// What a robot prints. Text is kept until a line is complete; the line then goes to the log of the run as
+// "[ROBOT #<id>] [PRINTF] <line>".
+#ifndef POGOSIM_POGOLIB_CONSOLE_H
+#define POGOSIM_POGOLIB_CONSOLE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+POGO_BEGIN_API
+
+/// As printf of the robot's own libc: `long` has 32 bits there, so %ld and %lu print an int32_t or uint32_t.
+/// Returns the number of characters, or a negative value for a bad format.
+int pogosim_printf(char const* format, ...);
+int pogosim_vprintf(char const* format, va_list arguments);
+int pogosim_putchar(int character);
+int pogosim_puts(char const* text);
+
+/// The program's main(), renamed by pogosim/pogolib.h.
+int robot_main(void);
+
+POGO_END_API
+#ifdef __cplusplus
+}
+extern "C++" {
+namespace std {  // for std::printf and the like, which the macros below turn into these
+using ::pogosim_printf;
+using ::pogosim_putchar;
+using ::pogosim_puts;
+using ::pogosim_vprintf;
+}  // namespace std
+}
+#endif
+
+#undef printf
+#undef putchar
+#undef puts
+#undef vprintf
+#define printf(...) pogosim_printf(__VA_ARGS__)
+#define putchar(character) pogosim_putchar(character)
+#define puts(text) pogosim_puts(text)
+#define vprintf(format, arguments) pogosim_vprintf(format, arguments)
+
+#endif

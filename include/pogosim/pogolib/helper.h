@@ -1,0 +1,31 @@
+// Start-up, identity and battery.
+#ifndef POGOSIM_POGOLIB_HELPER_H
+#define POGOSIM_POGOLIB_HELPER_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+POGO_BEGIN_API
+
+/// Prepares the hardware of a real robot; nothing to do here.
+void pogobot_init(void);
+
+/// Identifier of this robot: 0, 1, 2, ... for robots, 65535 downwards for walls and membranes.
+uint16_t pogobot_helper_getid(void);
+
+/// A seed for srand(). The first one a robot asks for is different on every robot of a run and depends on nothing but
+/// the seed of the run and the robot.
+int16_t pogobot_helper_getRandSeed(void);
+
+/// Prints the version of the SDK.
+void pogobot_helper_print_version(void);
+
+/// Battery voltage, mV. A simulated battery is always full: 32767.
+int16_t pogobot_battery_voltage_read(void);
+
+POGO_END_API
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,25 @@
+// The five RGB LEDs. 0 to 255 per channel; above about 25 they dazzle on a real robot.
+#ifndef POGOSIM_POGOLIB_LEDS_H
+#define POGOSIM_POGOLIB_LEDS_H
+
+typedef struct {
+    uint8_t r, g, b;
+} color_t;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+POGO_BEGIN_API
+
+/// Colour of the head LED (0).
+void pogobot_led_setColor(uint8_t const r, uint8_t const g, uint8_t const b);
+
+/// Colour of LED `id`: 0 head, 1 front, 2 right, 3 back, 4 left. Other values do nothing.
+void pogobot_led_setColors(uint8_t const r, uint8_t const g, uint8_t const b, uint8_t id);
+
+POGO_END_API
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,49 @@
+// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stands still while user code
+// runs and goes on when the robot sleeps; but a loop that waits for it ends, as each look at the clock beyond the
+// thousandth of a tick takes a microsecond. Differences beyond the range of int32_t (35 minutes) stay at its ends.
+#ifndef POGOSIM_POGOLIB_TIMERS_H
+#define POGOSIM_POGOLIB_TIMERS_H
+
+/// A point in time. Declare, embed, copy and pass it by address; its fields are the library's.
+typedef struct time_reference_t {
+    uint32_t hardware_value_at_time_origin;
+    int64_t origin_us;
+} time_reference_t;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+POGO_BEGIN_API
+
+/// Origin = now.
+void pogobot_stopwatch_reset(time_reference_t* stopwatch);
+/// Now - origin.
+int32_t pogobot_stopwatch_get_elapsed_microseconds(time_reference_t* stopwatch);
+/// Now - origin, then origin = now.
+int32_t pogobot_stopwatch_lap(time_reference_t* stopwatch);
+/// Origin += offset: a positive offset makes the elapsed time smaller.
+void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, int32_t microseconds_offset);
+
+/// The timer expires in so many microseconds.
+void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go);
+/// Time left; negative once it has expired.
+int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer);
+/// True when the time left is negative.
+bool pogobot_timer_has_expired(time_reference_t* timer);
+/// Sleeps for the time left.
+void pogobot_timer_wait_for_expiry(time_reference_t* timer);
+/// Moves the expiry by the offset: arms a periodic timer again without drift.
+void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset);
+
+/// Sleeps: the robot's next tick comes so much later. Zero and less do nothing.
+void msleep(int milliseconds);
+
+/// Prepares the clock of a real robot; nothing to do here.
+void pli_timer_sleep_stopwatch_init(void);
+
+POGO_END_API
+#ifdef __cplusplus
+}
+#endif
+
+#endif

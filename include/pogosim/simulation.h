@@ -1,0 +1,155 @@
+// What only the simulator has: configuration values for a program's globals, columns in the data file, callbacks.
+// Programs keep its use inside #ifdef SIMULATOR.
+#ifndef POGOSIM_SIMULATION_H
+#define POGOSIM_SIMULATION_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+POGO_BEGIN_API
+
+// ---- The run ----
+
+/// Number of objects that run code, walls and membranes included.
+uint32_t get_nb_robots(void);
+/// Ends the run after the current time step.
+void stop_simulation(void);
+
+// ---- Callbacks: SET_CALLBACK(callback_name, function), in main() after pogobot_start() ----
+
+#define SET_CALLBACK(callback_name, fn) ((callback_name) = (fn))
+
+/// Once, before any user_init: read the configuration here.
+extern POGO_PER_ROBOT void (*callback_global_setup)(void);
+/// Once, after every user_init, when data is logged: declare columns here.
+extern POGO_PER_ROBOT void (*callback_create_data_schema)(void);
+/// For each object at time 0 and at each save period: set the values of its row.
+extern POGO_PER_ROBOT void (*callback_export_data)(void);
+/// 60 times a second, before the robots, in a context of its own (category "__system", no body).
+extern POGO_PER_ROBOT void (*callback_global_step)(void);
+/// For each object when the run has ended.
+extern POGO_PER_ROBOT void (*callback_robot_end)(void);
+/// When a robot is clicked in the window.
+extern POGO_PER_ROBOT void (*callback_robot_click)(void);
+
+// ---- Configuration: values under `parameters:` ----
+
+// Each sets the variable to the value under `parameters.<name>` (dots walk into maps and lists), or to the default when
+// it is absent. A value of the wrong type or out of range ends the run with a message.
+void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
+void init_float_from_configuration(float* variable, char const* name, float const default_value);
+void init_double_from_configuration(double* variable, char const* name, double const default_value);
+void init_int32_from_configuration(int32_t* variable, char const* name, int32_t const default_value);
+void init_uint32_from_configuration(uint32_t* variable, char const* name, uint32_t const default_value);
+void init_int16_from_configuration(int16_t* variable, char const* name, int16_t const default_value);
+void init_uint16_from_configuration(uint16_t* variable, char const* name, uint16_t const default_value);
+void init_int8_from_configuration(int8_t* variable, char const* name, int8_t const default_value);
+void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t const default_value);
+
+/// Arrays take their first `size` values from a list; an absent or empty list changes nothing, a shorter one is an
+/// error.
+void init_float_array_from_configuration(float* array, char const* name, size_t const size);
+void init_double_array_from_configuration(double* array, char const* name, size_t const size);
+/// Texts are cut to `size` - 1 characters; an absent one changes nothing.
+void init_string_from_configuration(char* text, char const* name, size_t const size);
+
+// ---- Data file ----
+
+/// Adds a column; only in callback_create_data_schema. Two columns of one name end the run with a message.
+void data_add_column_int8(char const* name);
+void data_add_column_int16(char const* name);
+void data_add_column_int32(char const* name);
+void data_add_column_int64(char const* name);
+void data_add_column_double(char const* name);
+void data_add_column_string(char const* name);
+void data_add_column_bool(char const* name);
+void data_add_column_float16(char const* name);
+
+/// Value of a column in this object's row; only in callback_export_data. A column not set is null. An unknown column or
+/// another type ends the run with a message; a column left out by `data_logger_fields` is ignored.
+void data_set_value_int8(char const* name, int8_t value);
+void data_set_value_int16(char const* name, int16_t value);
+void data_set_value_int32(char const* name, int32_t value);
+void data_set_value_int64(char const* name, int64_t value);
+void data_set_value_double(char const* name, double value);
+void data_set_value_string(char const* name, char const* value);
+void data_set_value_bool(char const* name, bool value);
+void data_set_value_float16(char const* name, float value);
+
+/// Whether this object's row is written this time. Enabled again before each callback.
+void enable_data_export(void);
+void disable_data_export(void);
+
+POGO_END_API
+#ifdef __cplusplus
+}
+#endif
+
+#ifdef __cplusplus
+extern "C++" {
+inline void pogosim_init_variable(bool& v, char const* name) {
+    init_bool_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(float& v, char const* name) {
+    init_float_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(double& v, char const* name) {
+    init_double_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(int32_t& v, char const* name) {
+    init_int32_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(uint32_t& v, char const* name) {
+    init_uint32_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(int16_t& v, char const* name) {
+    init_int16_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(uint16_t& v, char const* name) {
+    init_uint16_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(int8_t& v, char const* name) {
+    init_int8_from_configuration(&v, name, v);
+}
+inline void pogosim_init_variable(uint8_t& v, char const* name) {
+    init_uint8_from_configuration(&v, name, v);
+}
+inline void pogosim_init_array(float* a, char const* name, size_t n) {
+    init_float_array_from_configuration(a, name, n);
+}
+inline void pogosim_init_array(double* a, char const* name, size_t n) {
+    init_double_array_from_configuration(a, name, n);
+}
+inline void pogosim_init_array(char* a, char const* name, size_t n) {
+    init_string_from_configuration(a, name, n);
+}
+}
+/// Sets a variable from `parameters.<its name>`; its present value is the default.
+#define init_from_configuration(variable) pogosim_init_variable((variable), #variable)
+/// The same for arrays of float or double, and for texts (arrays of char).
+#define init_array_from_configuration(array) pogosim_init_array((array), #array, sizeof(array) / sizeof((array)[0]))
+#else
+// clang-format off
+/// Sets a variable from `parameters.<its name>`; its present value is the default. Types: bool, float, double and
+/// integers of up to 32 bits.
+#define init_from_configuration(variable)              \
+    _Generic((variable),                           \
+        bool: init_bool_from_configuration,        \
+        float: init_float_from_configuration,      \
+        double: init_double_from_configuration,    \
+        int32_t: init_int32_from_configuration,    \
+        uint32_t: init_uint32_from_configuration,  \
+        int16_t: init_int16_from_configuration,    \
+        uint16_t: init_uint16_from_configuration,  \
+        int8_t: init_int8_from_configuration,      \
+        uint8_t: init_uint8_from_configuration)(&(variable), #variable, (variable))
+/// The same for arrays of float or double, and for texts (arrays of char).
+#define init_array_from_configuration(array) \
+    _Generic(&(array)[0],                              \
+        float *: init_float_array_from_configuration,  \
+        double *: init_double_array_from_configuration, \
+        char *: init_string_from_configuration)((array), #array, sizeof(array) / sizeof((array)[0]))
+// clang-format on
+#endif
+
+#endif

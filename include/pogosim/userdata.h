@@ -1,0 +1,27 @@
+// User data: the variables of one robot. In the simulator `mydata` points to the block of the robot that has the
+// processor; on a real robot it is the address of a global, which the compiler folds away.
+//
+//     typedef struct { uint8_t age; } USERDATA;
+//     DECLARE_USERDATA(USERDATA);    // beside the struct, wherever it is needed
+//     REGISTER_USERDATA(USERDATA);   // once per program
+//
+// Both work with and without the semicolon. All bytes are zero at the start.
+#ifndef POGOSIM_USERDATA_H
+#define POGOSIM_USERDATA_H
+
+#ifdef REAL_ROBOT
+
+#define DECLARE_USERDATA(T) extern T myuserdata;
+#define REGISTER_USERDATA(T) T myuserdata;
+#define mydata (&myuserdata)
+
+#else
+
+#define DECLARE_USERDATA(T) extern POGO_PER_ROBOT T* mydata;
+#define REGISTER_USERDATA(T)         \
+    size_t UserdataSize = sizeof(T); \
+    POGO_PER_ROBOT T* mydata = 0;
+
+#endif
+
+#endif
