@@ -1,0 +1,88 @@
+// simulation.h: values under `parameters` for a program's globals.
+#include <algorithm>
+#include <concepts>
+#include <cstring>
+#include <limits>
+
+#include "robot/context.hpp"
+#include "robot/user_guard.hpp"
+
+using pogosim::context;
+using pogosim::without_exceptions;
+
+namespace {
+
+template <std::integral T>
+void read_integer(T* variable, char const* name, T default_value) {
+    without_exceptions([&] {
+        auto const found =
+            context.services->parameters->integer(name, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
+        *variable = found ? static_cast<T>(*found) : default_value;
+    });
+}
+
+template <std::floating_point T>
+void read_number(T* variable, char const* name, T default_value) {
+    without_exceptions([&] {
+        auto const found = context.services->parameters->number(name);
+        *variable = found ? static_cast<T>(*found) : default_value;
+    });
+}
+
+template <std::floating_point T>
+void read_numbers(T* array, char const* name, std::size_t size) {
+    without_exceptions([&] {
+        if (auto const found = context.services->parameters->numbers(name, size)) {
+            std::transform(found->begin(), found->end(), array, [](double value) { return static_cast<T>(value); });
+        }
+    });
+}
+
+}  // namespace
+
+void init_bool_from_configuration(bool* variable, char const* name, bool const default_value) {
+    without_exceptions([&] { *variable = context.services->parameters->boolean(name).value_or(default_value); });
+}
+
+void init_float_from_configuration(float* variable, char const* name, float const default_value) {
+    read_number(variable, name, default_value);
+}
+void init_double_from_configuration(double* variable, char const* name, double const default_value) {
+    read_number(variable, name, default_value);
+}
+void init_int32_from_configuration(int32_t* variable, char const* name, int32_t const default_value) {
+    read_integer(variable, name, default_value);
+}
+void init_uint32_from_configuration(uint32_t* variable, char const* name, uint32_t const default_value) {
+    read_integer(variable, name, default_value);
+}
+void init_int16_from_configuration(int16_t* variable, char const* name, int16_t const default_value) {
+    read_integer(variable, name, default_value);
+}
+void init_uint16_from_configuration(uint16_t* variable, char const* name, uint16_t const default_value) {
+    read_integer(variable, name, default_value);
+}
+void init_int8_from_configuration(int8_t* variable, char const* name, int8_t const default_value) {
+    read_integer(variable, name, default_value);
+}
+void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t const default_value) {
+    read_integer(variable, name, default_value);
+}
+
+void init_float_array_from_configuration(float* array, char const* name, size_t const size) {
+    read_numbers(array, name, size);
+}
+void init_double_array_from_configuration(double* array, char const* name, size_t const size) {
+    read_numbers(array, name, size);
+}
+
+void init_string_from_configuration(char* text, char const* name, size_t const size) {
+    without_exceptions([&] {
+        auto const found = context.services->parameters->text(name);
+        if (found && size > 0) {
+            std::size_t const length = std::min(found->size(), size - 1);
+            std::memcpy(text, found->data(), length);
+            text[length] = '\0';
+        }
+    });
+}

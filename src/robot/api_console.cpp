@@ -1,0 +1,100 @@
+// pogolib/console.h: printf of the robots.
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/log.hpp"
+#include "robot/context.hpp"
+#include "robot/user_guard.hpp"
+
+using pogosim::context;
+
+namespace {
+
+constexpr std::size_t kShortText = 512;
+
+/// A format in which a single `l` before an integer conversion is gone: `long` has 32 bits on the robot, and programs
+/// print uint32_t with %lu.
+std::string with_robot_longs(std::string_view format) {
+    std::string result;
+    result.reserve(format.size());
+    for (std::size_t i = 0; i < format.size(); ++i) {
+        result += format[i];
+        if (format[i] != '%') {
+            continue;
+        }
+        // Flags, width and precision stand between '%' and the length.
+        std::size_t const length = std::min(format.find_first_not_of("-+ #0123456789.*'", i + 1), format.size());
+        result += format.substr(i + 1, length - i - 1);
+        bool const single_l =
+            length + 1 < format.size() && format[length] == 'l' && std::strchr("diouxX", format[length + 1]) != nullptr;
+        i = single_l ? length : length - 1;
+        // The conversion, or a second '%', is copied here so that "%%" does not start another one.
+        if (i + 1 < format.size()) {
+            result += format[++i];
+        }
+    }
+    return result;
+}
+
+void print_complete_lines(std::string& text) {
+    std::size_t start = 0;
+    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', start)) {
+        pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(),
+                                  std::string_view(text).substr(start, end - start));
+        start = end + 1;
+    }
+    text.erase(0, start);
+}
+
+void print(std::string_view text) {
+    pogosim::without_exceptions([&] {
+        context.computer->printed += text;
+        print_complete_lines(context.computer->printed);
+    });
+}
+
+}  // namespace
+
+int pogosim_vprintf(char const* format, va_list arguments) {
+    int size = -1;
+    pogosim::without_exceptions([&] {
+        std::string const host_format = with_robot_longs(format);
+        va_list again;
+        va_copy(again, arguments);
+        char text[kShortText];
+        size = std::vsnprintf(text, sizeof(text), host_format.c_str(), arguments);
+        if (size >= static_cast<int>(sizeof(text))) {
+            std::vector<char> long_text(static_cast<std::size_t>(size) + 1);
+            std::vsnprintf(long_text.data(), long_text.size(), host_format.c_str(), again);
+            print({long_text.data(), static_cast<std::size_t>(size)});
+        } else if (size > 0) {
+            print({text, static_cast<std::size_t>(size)});
+        }
+        va_end(again);
+    });
+    return size;
+}
+
+int pogosim_printf(char const* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int const size = pogosim_vprintf(format, arguments);
+    va_end(arguments);
+    return size;
+}
+
+int pogosim_putchar(int character) {
+    char const text = static_cast<char>(character);
+    print({&text, 1});
+    return static_cast<unsigned char>(character);
+}
+
+int pogosim_puts(char const* text) {
+    print(text);
+    print("\n");
+    return 0;
+}

@@ -1,0 +1,143 @@
+// simulation.h: columns and values of the data file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "robot/context.hpp"
+#include "robot/user_guard.hpp"
+
+using pogosim::CellValue;
+using pogosim::ColumnType;
+using pogosim::ConfigError;
+using pogosim::context;
+using pogosim::DataExport;
+using pogosim::without_exceptions;
+
+namespace {
+
+/// As in the names of the functions.
+constexpr std::array<std::string_view, 8> kTypeNames{"int8",   "int16",  "int32", "int64",
+                                                     "double", "string", "bool",  "float16"};
+
+std::string_view name_of(ColumnType type) {
+    return kTypeNames[static_cast<std::size_t>(type)];
+}
+
+void add_column(char const* name, ColumnType type) {
+    without_exceptions([&] {
+        DataExport& data = context.services->data;
+        if (!data.declaring) {
+            throw ConfigError(fmt::format("data_add_column_{}(\"{}\") belongs into callback_create_data_schema",
+                                          name_of(type), name));
+        }
+        bool const known =
+            std::any_of(data.columns.begin(), data.columns.end(), [&](auto const& c) { return c.name == name; });
+        if (known) {
+            throw ConfigError(fmt::format("data_add_column_{}(\"{}\"): the data file already has a column of this name",
+                                          name_of(type), name));
+        }
+        data.columns.push_back({.name = name, .type = type});
+    });
+}
+
+/// Columns are few; programs set them in the order in which they declared them, so the search starts behind the last
+/// one.
+std::size_t find_column(DataExport& data, char const* name) {
+    std::size_t const count = data.columns.size();
+    for (std::size_t tried = 0; tried < count; ++tried) {
+        std::size_t const i = (data.next_column + tried) % count;
+        if (data.columns[i].name == name) {
+            data.next_column = i + 1;
+            return i;
+        }
+    }
+    throw ConfigError(
+        fmt::format("data_set_value: the data file has no column '{}'; declare it with data_add_column_* in "
+                    "callback_create_data_schema",
+                    name));
+}
+
+void set_value(char const* name, ColumnType type, CellValue value) {
+    without_exceptions([&] {
+        DataExport& data = context.services->data;
+        if (!data.filling) {
+            context.services->warn_once("data_set_value_* has no effect outside callback_export_data");
+            return;
+        }
+        std::size_t const column = find_column(data, name);
+        if (data.columns[column].type != type) {
+            throw ConfigError(fmt::format("data_set_value_{}(\"{}\"): the column was declared as {}", name_of(type),
+                                          name, name_of(data.columns[column].type)));
+        }
+        data.row.values[column] = std::move(value);
+    });
+}
+
+}  // namespace
+
+void data_add_column_int8(char const* name) {
+    add_column(name, ColumnType::int8);
+}
+void data_add_column_int16(char const* name) {
+    add_column(name, ColumnType::int16);
+}
+void data_add_column_int32(char const* name) {
+    add_column(name, ColumnType::int32);
+}
+void data_add_column_int64(char const* name) {
+    add_column(name, ColumnType::int64);
+}
+void data_add_column_double(char const* name) {
+    add_column(name, ColumnType::float64);
+}
+void data_add_column_string(char const* name) {
+    add_column(name, ColumnType::text);
+}
+void data_add_column_bool(char const* name) {
+    add_column(name, ColumnType::boolean);
+}
+void data_add_column_float16(char const* name) {
+    add_column(name, ColumnType::float16);
+}
+
+void data_set_value_int8(char const* name, int8_t value) {
+    set_value(name, ColumnType::int8, std::int64_t{value});
+}
+void data_set_value_int16(char const* name, int16_t value) {
+    set_value(name, ColumnType::int16, std::int64_t{value});
+}
+void data_set_value_int32(char const* name, int32_t value) {
+    set_value(name, ColumnType::int32, std::int64_t{value});
+}
+void data_set_value_int64(char const* name, int64_t value) {
+    set_value(name, ColumnType::int64, std::int64_t{value});
+}
+void data_set_value_double(char const* name, double value) {
+    set_value(name, ColumnType::float64, value);
+}
+void data_set_value_string(char const* name, char const* value) {
+    set_value(name, ColumnType::text, value != nullptr ? CellValue(std::string(value)) : CellValue());
+}
+void data_set_value_bool(char const* name, bool value) {
+    set_value(name, ColumnType::boolean, value);
+}
+void data_set_value_float16(char const* name, float value) {
+    set_value(name, ColumnType::float16, static_cast<double>(value));
+}
+
+void enable_data_export() {
+    context.services->data.row.exported = true;
+}
+void disable_data_export() {
+    context.services->data.row.exported = false;
+}
+
+uint32_t get_nb_robots() {
+    return static_cast<uint32_t>(context.world->robots.size());
+}
+void stop_simulation() {
+    context.services->stop_requested = true;
+}

@@ -1,0 +1,77 @@
+// pogolib/helper.h, and three functions of the C library: rand() and srand(), which on simulated robots draw from the
+// robot's own stream as they do on real ones, and exit(), which ends the run so that its data file is complete.
+// Programs call them by their usual names; this library stands before libc in the search order.
+#include <dlfcn.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "robot/context.hpp"
+#include "robot/user_guard.hpp"
+
+using pogosim::context;
+
+namespace {
+
+constexpr std::int16_t kFullBattery = 32767;
+
+/// The stream of srand(seed): the same numbers for the same seed on every robot, as on the real ones.
+pogosim::RandomStream stream_of_seed(unsigned seed) {
+    return {seed, 0x72616e64};
+}
+
+/// Outside user code (a library that calls rand()).
+pogosim::RandomStream& outside_stream() {
+    static thread_local pogosim::RandomStream stream = stream_of_seed(1);
+    return stream;
+}
+
+pogosim::RandomStream& current_stream() {
+    return context.computer != nullptr ? context.computer->random : outside_stream();
+}
+
+}  // namespace
+
+extern "C" {
+
+__attribute__((visibility("default"))) int rand(void) noexcept {
+    return static_cast<int>(current_stream().bits() & static_cast<unsigned>(RAND_MAX));
+}
+
+__attribute__((visibility("default"))) void srand(unsigned seed) noexcept {
+    current_stream() = stream_of_seed(seed);
+}
+
+__attribute__((visibility("default"))) void exit(int status) noexcept {
+    if (pogosim::inside_user_code()) {
+        char what[32];
+        std::snprintf(what, sizeof(what), "called exit(%d)", status);
+        pogosim::leave_user_code(what, static_cast<pogosim::ExitCode>(status & 0xFF));
+    }
+    reinterpret_cast<void (*)(int)>(dlsym(RTLD_NEXT, "exit"))(status);
+    std::abort();  // not reached
+}
+}
+
+void pogobot_init() {}
+
+uint16_t pogobot_helper_getid() {
+    return context.has_robot() ? context.world->robots.id[context.robot] : uint16_t{0};
+}
+
+int16_t pogobot_helper_getRandSeed() {
+    pogosim::Computer& computer = *context.computer;
+    if (!computer.seed_taken) {
+        computer.seed_taken = true;
+        return computer.first_seed;
+    }
+    return static_cast<int16_t>(computer.seeds.bits());
+}
+
+void pogobot_helper_print_version() {
+    pogosim_printf(" Pogolib Version : %s\n", POGOLIB_RELEASE_VERSION);
+}
+
+int16_t pogobot_battery_voltage_read() {
+    return kFullBattery;
+}

@@ -1,0 +1,189 @@
+// pogolib/infrared.h: what user code says goes on the air of the world; comms delivers it after every robot has run.
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "base/log.hpp"
+#include "robot/context.hpp"
+#include "robot/user_guard.hpp"
+
+using pogosim::context;
+using pogosim::FrameHeader;
+using pogosim::kAllFaces;
+using pogosim::kFaceCount;
+
+namespace {
+
+// The article's library counts these for a message's size: 3 bytes in front of a short payload, 8 of a long one.
+constexpr std::uint16_t kShortHeaderBytes = 3;
+constexpr std::uint16_t kLongHeaderBytes = 8;
+
+constexpr std::uint32_t kSent = 0;
+constexpr std::uint32_t kNotSent = 1;
+
+static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
+
+/// Puts one transmission on the air.
+std::uint32_t emit(std::uint8_t emitters, FrameHeader header, std::uint16_t header_bytes, std::uint8_t const* payload) {
+    bool const valid =
+        header.payload_length <= MAX_PAYLOAD_SIZE_BYTES && (payload != nullptr || header.payload_length == 0);
+    if (!valid) {
+        return kNotSent;
+    }
+    if (!context.has_robot() || emitters == 0 || context.computer->ir_power == 0) {
+        return kSent;
+    }
+    pogosim::Air& air = context.world->air;
+    air.emissions.push_back({.robot = context.robot,
+                             .emitters = emitters,
+                             .message_bytes = static_cast<std::uint16_t>(header_bytes + header.payload_length),
+                             .send_probability = std::min<float>(percent_msgs_sent_per_ticks, 100.0F) / 100.0F,
+                             .header = header,
+                             .payload_offset = static_cast<std::uint32_t>(air.payloads.size())});
+    auto const bytes = std::as_bytes(std::span(payload, header.payload_length));
+    air.payloads.insert(air.payloads.end(), bytes.begin(), bytes.end());
+    return kSent;
+}
+
+std::uint8_t emitters_of(ir_direction direction) {
+    int const index = static_cast<int>(direction);
+    return index >= 0 && index < kFaceCount ? static_cast<std::uint8_t>(1U << index) : kAllFaces;
+}
+
+/// Power list that drives these emitters with the robot's power.
+std::uint8_t power_list(std::uint8_t emitters) {
+    unsigned list = 0;
+    for (unsigned face = 0; face < kFaceCount; ++face) {
+        if ((emitters >> face & 1U) != 0) {
+            list |= static_cast<unsigned>(context.computer->ir_power) << (face * pogobot_infrared_emitter_width_bits);
+        }
+    }
+    return static_cast<std::uint8_t>(list);
+}
+
+/// What receivers see of the emitters: 4 for all of them, else the first one.
+std::uint8_t sender_index(std::uint8_t emitters) {
+    return emitters == kAllFaces ? static_cast<std::uint8_t>(ir_all)
+                                 : static_cast<std::uint8_t>(__builtin_ctz(emitters | 1U << kFaceCount));
+}
+
+std::uint32_t send_long(std::uint8_t emitters, std::uint8_t list, std::uint8_t const* payload, std::uint16_t size) {
+    FrameHeader const header{.packet_type = ir_t_user,
+                             .emitting_power_list = list,
+                             .sender_id = pogobot_helper_getid(),
+                             .sender_ir_index = sender_index(emitters),
+                             .receiver_ir_index = 0,
+                             .payload_length = size};
+    return emit(emitters, header, kLongHeaderBytes, payload);
+}
+
+std::uint32_t send_short(std::uint8_t emitters, std::uint8_t const* payload, std::uint16_t size) {
+    // A short header carries neither sender nor emitter.
+    FrameHeader const header{.packet_type = ir_t_short,
+                             .emitting_power_list = 0,
+                             .sender_id = 0xFF,
+                             .sender_ir_index = 0xF,
+                             .receiver_ir_index = 0,
+                             .payload_length = size};
+    return emit(emitters, header, kShortHeaderBytes, payload);
+}
+
+}  // namespace
+
+uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size) {
+    return send_long(kAllFaces, power_list(kAllFaces), message, message_size);
+}
+
+uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size) {
+    uint32_t errors = 0;
+    for (int face = 0; face < kFaceCount; ++face) {
+        errors += pogobot_infrared_sendLongMessage_uniSpe(static_cast<ir_direction>(face), message, message_size);
+    }
+    return errors;
+}
+
+uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* const message,
+                                                 uint16_t const message_size) {
+    std::uint8_t const emitters = emitters_of(dir);
+    return send_long(emitters, power_list(emitters), message, message_size);
+}
+
+uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size) {
+    return send_short(kAllFaces, message, message_size);
+}
+
+uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size) {
+    return send_short(emitters_of(dir), message, message_size);
+}
+
+uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
+    if (message == nullptr) {
+        return kNotSent;
+    }
+    message->header._packet_type = ir_t_user;
+    message->header._sender_id = pogobot_helper_getid();
+    std::uint8_t const list = message->header._emitting_power_list;
+    std::uint8_t emitters = 0;
+    for (unsigned face = 0; face < kFaceCount; ++face) {
+        if (get_infrared_emitter_dir(face, list) != 0) {
+            emitters = static_cast<std::uint8_t>(emitters | 1U << face);
+        }
+    }
+    if (emitters == 0) {
+        context.services->warn_once(
+            "pogobot_infrared_sendRawLongMessage: every power in _emitting_power_list is 0, so "
+            "nothing is sent, as on a real robot");
+    }
+    return send_long(emitters, list, message->payload, message->header.payload_length);
+}
+
+uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message) {
+    if (message == nullptr) {
+        return kNotSent;
+    }
+    message->header._packet_type = ir_t_short;
+    return send_short(emitters_of(dir), message->payload, message->header.payload_length);
+}
+
+void pogobot_infrared_set_power(uint8_t power) {
+    context.computer->ir_power = std::min<uint8_t>(power, pogobot_infrared_emitter_power_max);
+}
+
+void pogobot_infrared_update() {}
+
+int pogobot_infrared_message_available() {
+    return context.has_robot() && !context.world->mailboxes.empty(context.robot) ? 1 : 0;
+}
+
+void pogobot_infrared_clear_message_queue() {
+    if (context.has_robot()) {
+        context.world->mailboxes.clear(context.robot);
+    }
+}
+
+void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) {
+    FrameHeader header;
+    std::array<std::byte, MAX_PAYLOAD_SIZE_BYTES> payload;
+    if (!context.has_robot() || !context.world->mailboxes.pop(context.robot, header, payload.data())) {
+        context.services->warn_once(
+            "pogobot_infrared_recover_next_message was called with no message waiting: ask "
+            "pogobot_infrared_message_available() first");
+        return;
+    }
+    // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES).
+    std::size_t const size = std::min<std::size_t>(header.payload_length, max_payload_bytes);
+    header.payload_length = static_cast<std::uint16_t>(size);
+    std::memcpy(&message->header, &header, sizeof(header));
+    std::memcpy(message->payload, payload.data(), size);
+    std::memset(message->payload + size, 0, max_payload_bytes - size);
+}
+
+void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t /*ir_index*/) {
+    if (counter != nullptr) {
+        *counter = {};
+    }
+}
+
+void pogobot_infrared_reset_receiver_error_counter() {}
+
+void pogobot_infrared_ll_init() {}

@@ -1,0 +1,67 @@
+// pogolib/sensors.h
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "robot/context.hpp"
+
+using pogosim::context;
+using pogosim::Vec2;
+
+namespace {
+
+/// Unit vectors from the centre to the sensors, in the robot's frame: 180, 320 and 40 degrees.
+constexpr std::array<Vec2, pogosim::kPhotosensorCount> kPhotosensors{Vec2{-1.0F, 0.0F}, Vec2{0.76604444F, -0.64278761F},
+                                                                     Vec2{0.76604444F, 0.64278761F}};
+
+// Ranges of the ICM-20689 on the robot: +-16 g, +-2000 degrees per second, -40 to 85 degrees Celsius.
+constexpr float kMaxAcceleration = 16.0F * 9.80665F;
+constexpr float kMaxSpin = 2000.0F * std::numbers::pi_v<float> / 180.0F;
+constexpr float kMinTemperature = -40.0F;
+constexpr float kMaxTemperature = 85.0F;
+constexpr float kMmPerM = 1000.0F;
+
+/// Mean acceleration over the last tick in the robot's frame, m/s2: x forward, y to the right.
+Vec2 acceleration_in_body_frame() {
+    auto const& meter = context.computer->accelerometer;
+    if (meter.interval_s <= 0.0F) {
+        return {};
+    }
+    Vec2 const change = meter.current_mm_s - meter.previous_mm_s;
+    Vec2 const axis = context.world->bodies.axis[context.body()];
+    return (1.0F / (meter.interval_s * kMmPerM)) * Vec2{dot(change, axis), cross(axis, change)};
+}
+
+}  // namespace
+
+int16_t pogobot_photosensors_read(uint8_t sensor_number) {
+    if (sensor_number >= pogosim::kPhotosensorCount || !context.has_robot()) {
+        return -1;
+    }
+    pogosim::World& world = *context.world;
+    auto const& bodies = world.bodies;
+    std::uint32_t const body = context.body();
+    Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor_number], bodies.axis[body]);
+    int level = world.light.at(bodies.position_mm[body] + offset) + context.computer->photosensor_bias[sensor_number];
+    float const noise = context.spec().photosensor_noise_stddev;
+    if (noise > 0.0F) {
+        level += static_cast<int>(noise * world.robots.stream[context.robot].normal());
+    }
+    return static_cast<int16_t>(std::clamp<int>(level, INT16_MIN, INT16_MAX));
+}
+
+void pogobot_imu_read(float* acc, float* gyro) {
+    std::fill_n(acc, 3, 0.0F);
+    std::fill_n(gyro, 3, 0.0F);
+    if (!context.has_robot()) {
+        return;
+    }
+    Vec2 const acceleration = acceleration_in_body_frame();
+    acc[0] = std::clamp(acceleration.y, -kMaxAcceleration, kMaxAcceleration);
+    acc[1] = std::clamp(acceleration.x, -kMaxAcceleration, kMaxAcceleration);
+    gyro[2] = std::clamp(-context.world->bodies.spin_rad_s[context.body()], -kMaxSpin, kMaxSpin);
+}
+
+float pogobot_imu_readTemp() {
+    return std::clamp(context.world->temperature_c, kMinTemperature, kMaxTemperature);
+}

@@ -1,0 +1,81 @@
+// pogolib/timers.h
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "robot/context.hpp"
+
+using pogosim::context;
+
+namespace {
+
+constexpr std::int64_t kMicrosecondsPerMillisecond = 1000;
+
+// User code takes no simulated time, so a program that waits in a loop for a stopwatch or a timer would wait for ever.
+// Beyond this many looks at the clock within one tick each one takes a microsecond, as on the real robot.
+constexpr int kFreeClockReads = 1000;
+constexpr std::int64_t kClockReadUs = 1;
+
+std::int64_t now_us() {
+    pogosim::Computer& self = *context.computer;
+    if (++self.clock_reads > kFreeClockReads) {
+        self.clock_us += kClockReadUs;
+    }
+    return self.clock_us;
+}
+
+int32_t saturate(std::int64_t us) {
+    return static_cast<int32_t>(
+        std::clamp<std::int64_t>(us, std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::max()));
+}
+
+void set_origin(time_reference_t* reference, std::int64_t origin_us) {
+    reference->origin_us = origin_us;
+    reference->hardware_value_at_time_origin = static_cast<uint32_t>(origin_us);
+}
+
+}  // namespace
+
+void pogobot_stopwatch_reset(time_reference_t* stopwatch) {
+    set_origin(stopwatch, now_us());
+}
+
+int32_t pogobot_stopwatch_get_elapsed_microseconds(time_reference_t* stopwatch) {
+    return saturate(now_us() - stopwatch->origin_us);
+}
+
+int32_t pogobot_stopwatch_lap(time_reference_t* stopwatch) {
+    int32_t const elapsed = pogobot_stopwatch_get_elapsed_microseconds(stopwatch);
+    pogobot_stopwatch_reset(stopwatch);
+    return elapsed;
+}
+
+void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, int32_t microseconds_offset) {
+    set_origin(stopwatch, stopwatch->origin_us + microseconds_offset);
+}
+
+void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go) {
+    set_origin(timer, now_us() + microseconds_to_go);
+}
+
+int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer) {
+    return saturate(timer->origin_us - now_us());
+}
+
+bool pogobot_timer_has_expired(time_reference_t* timer) {
+    return pogobot_timer_get_remaining_microseconds(timer) < 0;
+}
+
+void pogobot_timer_wait_for_expiry(time_reference_t* timer) {
+    context.computer->clock_us = std::max(context.computer->clock_us, timer->origin_us);
+}
+
+void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset) {
+    pogobot_stopwatch_offset_origin_microseconds(timer, microseconds_offset);
+}
+
+void msleep(int milliseconds) {
+    context.computer->clock_us += std::max(0, milliseconds) * kMicrosecondsPerMillisecond;
+}
+
+void pli_timer_sleep_stopwatch_init() {}

@@ -1,0 +1,87 @@
+// A robot's own computer: what its processor, memory and peripherals remember between two ticks. Plain data, one per
+// robot.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "base/random.hpp"
+#include "pogobase.h"
+#include "world/world.hpp"
+
+// The user's headers rename these for user programs; the simulator wants the real ones.
+#undef main
+#undef printf
+#undef putchar
+#undef puts
+#undef vprintf
+
+namespace pogosim {
+
+/// Values of the main loop's globals while another robot has the processor.
+struct LoopGlobals {
+    std::uint32_t ticks = 0;
+    std::uint8_t loop_hz = 60;
+    std::uint8_t max_messages_per_tick = 3;
+    std::uint8_t send_percent = 20;
+    std::int8_t error_led = 3;
+    void (*receive)(message_t*) = nullptr;
+    bool (*send)() = nullptr;
+    std::uint32_t sent = 0;
+    std::uint32_t received = 0;
+    std::uint32_t milliseconds = 0;
+    std::uint32_t error_shown_at_ms = 0;
+    time_reference_t global_timer = {};
+    time_reference_t loop_timer = {};
+};
+
+/// What the program registered for this robot.
+struct Program {
+    void (*init)() = nullptr;
+    void (*step)() = nullptr;
+    void (*export_data)() = nullptr;
+    void (*end)() = nullptr;
+    void (*click)() = nullptr;
+};
+
+inline constexpr int kMotorCount = 3;  // right, left, back: the order of motor_id
+
+struct Motors {
+    std::array<std::uint16_t, kMotorCount> power{};
+    std::array<std::uint8_t, kMotorCount> direction{0, 1, 0};
+    std::array<std::uint8_t, kMotorCount> stored_direction{0, 1, 0};
+    std::array<std::uint16_t, kMotorCount> stored_power{512, 512, 0};
+    float bias = 0.0F;    // PWM units: left + bias, right - bias
+    bool driven = false;  // a motor function was called: the motors impose a velocity from now on
+};
+
+inline constexpr int kPhotosensorCount = 3;  // back, front left, front right
+
+/// Velocity of the body at the last two ticks, for the accelerometer.
+struct Accelerometer {
+    Vec2 previous_mm_s;
+    Vec2 current_mm_s;
+    float interval_s = 0.0F;      // between the two; 0 before the second tick
+    std::int64_t current_us = 0;  // the robot's clock at the last tick
+};
+
+struct Computer {
+    std::int64_t clock_us = 0;        // the robot's own time
+    std::int64_t clock_drift_us = 0;  // added at every tick
+    int clock_reads = 0;              // since the tick began
+    Program program;
+    std::byte* user_data = nullptr;
+    LoopGlobals loop;
+    Motors motors;
+    Accelerometer accelerometer;
+    std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
+    std::uint8_t ir_power = 1;
+    RandomStream random;          // rand() and srand() of the program
+    RandomStream seeds;           // getRandSeed(), from the second call on
+    std::int16_t first_seed = 0;  // its first answer, different on every robot
+    bool seed_taken = false;
+    std::string printed;  // a line not yet complete
+};
+
+}  // namespace pogosim

@@ -1,0 +1,71 @@
+// Who has the processor: what the functions of the C interface work on.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/computer.hpp"
+#include "world/data_table.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Where the values under `parameters` come from. Functions throw ConfigError for a value of the wrong type or range
+/// and return nothing for an absent one.
+class ParameterSource {
+public:
+    virtual ~ParameterSource() = default;
+    virtual std::optional<bool> boolean(std::string const& name) const = 0;
+    virtual std::optional<double> number(std::string const& name) const = 0;
+    /// Text of a fraction is truncated.
+    virtual std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) const = 0;
+    virtual std::optional<std::string> text(std::string const& name) const = 0;
+    /// The first `size` numbers of a list; nothing for an absent or empty list.
+    virtual std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size) const = 0;
+};
+
+/// The user's columns and the row being filled.
+struct DataExport {
+    std::vector<ColumnSpec> columns;
+    DataRow row;
+    bool declaring = false;       // inside callback_create_data_schema
+    bool filling = false;         // inside callback_export_data
+    std::size_t next_column = 0;  // where the search for the next value's column starts
+};
+
+/// What user code can reach beside its own robot.
+struct RunServices {
+    ParameterSource const* parameters = nullptr;
+    DataExport data;
+    bool stop_requested = false;
+    std::vector<char const*> warned;  // texts of warn_once
+
+    /// Logs the text (a literal) as a warning with the robot's name, the first time.
+    void warn_once(char const* text);
+};
+
+inline constexpr std::uint32_t kNoRobot = std::numeric_limits<std::uint32_t>::max();
+
+struct Context {
+    World* world = nullptr;
+    RunServices* services = nullptr;
+    Computer* computer = nullptr;    // never null while user code runs
+    std::uint32_t robot = kNoRobot;  // index in World::robots; kNoRobot in the context of callback_global_step
+    std::int64_t step_time_us = 0;   // simulated time of this step
+    char const* phase = "";          // "user_step", for messages
+
+    bool has_robot() const { return robot != kNoRobot; }
+    std::uint32_t body() const { return world->robots.body[robot]; }
+    RobotSpec const& spec() const { return world->spec_of(robot); }
+};
+
+/// The context of this thread.
+extern constinit thread_local Context context;
+
+/// "robot #3 of category 'robots', tick 17": who had the processor.
+std::string current_robot_name();
+
+}  // namespace pogosim

@@ -1,0 +1,39 @@
+#include "robot/drive.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr float kFullPower = 1023.0F;
+constexpr float kLinearNoiseUnit = 100.0F;  // mm/s per unit of linear_noise_stddev
+
+/// Forward is direction bit 1 on the left and 0 on the right.
+float signed_power(Motors const& motors, motor_id motor, std::uint8_t forward_bit) {
+    float const power = motors.power[motor];
+    return motors.direction[motor] == forward_bit ? power : -power;
+}
+
+}  // namespace
+
+void drive(World& world, std::size_t robot, Motors const& motors) {
+    RobotSpec const& spec = world.spec_of(robot);
+    float const left = signed_power(motors, motorL, 1) + motors.bias;
+    float const right = signed_power(motors, motorR, 0) - motors.bias;
+
+    float const speed = spec.max_linear_speed_mm_s * (left + right) / (2.0F * kFullPower);
+    Vec2 velocity = speed * world.bodies.axis[world.robots.body[robot]];
+    float spin = spec.max_angular_speed_rad_s * (left - right) / (kFullPower / 2.0F);
+
+    RandomStream& stream = world.robots.stream[robot];
+    if (spec.linear_noise_stddev > 0.0F) {
+        float const noise_mm_s = kLinearNoiseUnit * spec.linear_noise_stddev;
+        velocity.x += noise_mm_s * stream.normal();
+        velocity.y += noise_mm_s * stream.normal();
+    }
+    if (spec.angular_noise_stddev > 0.0F) {
+        spin += spec.angular_noise_stddev * stream.normal();
+    }
+    world.robots.drive[robot] = {.velocity_mm_s = velocity, .spin_rad_s = spin, .fresh = true};
+}
+
+}  // namespace pogosim

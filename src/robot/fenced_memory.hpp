@@ -1,0 +1,31 @@
+// Zeroed memory between two pages that nobody may touch: a program that writes beyond the end of its user data stops
+// there, and does not destroy the simulator's own.
+#pragma once
+
+#include <cstddef>
+
+namespace pogosim {
+
+class FencedMemory {
+public:
+    FencedMemory() = default;
+
+    /// The end of the block lies right before the forbidden page, as far as its alignment of 64 bytes allows. Throws
+    /// std::bad_alloc.
+    explicit FencedMemory(std::size_t bytes);
+    ~FencedMemory();
+
+    FencedMemory(FencedMemory const&) = delete;
+    FencedMemory& operator=(FencedMemory const&) = delete;
+    FencedMemory(FencedMemory&& other) noexcept;
+    FencedMemory& operator=(FencedMemory&& other) noexcept;
+
+    std::byte* data() const { return data_; }
+
+private:
+    void* mapping_ = nullptr;
+    std::size_t mapped_bytes_ = 0;
+    std::byte* data_ = nullptr;
+};
+
+}  // namespace pogosim

@@ -1,0 +1,276 @@
+#include "robot/programs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "robot/drive.hpp"
+#include "robot/user_guard.hpp"
+
+// What the user's program defines. The weak ones stand in for a program without REGISTER_USERDATA.
+extern "C" {
+__attribute__((weak, visibility("default"))) std::size_t UserdataSize = 0;
+__attribute__((weak, visibility("default"))) __thread void* mydata = nullptr;
+
+POGO_PER_ROBOT void (*callback_global_setup)() = nullptr;
+POGO_PER_ROBOT void (*callback_create_data_schema)() = nullptr;
+POGO_PER_ROBOT void (*callback_export_data)() = nullptr;
+POGO_PER_ROBOT void (*callback_global_step)() = nullptr;
+POGO_PER_ROBOT void (*callback_robot_end)() = nullptr;
+POGO_PER_ROBOT void (*callback_robot_click)() = nullptr;
+}
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kUserDataAlignment = 64;  // a cache line; more than any C type asks for
+constexpr double kMicrosecondsPerSecond = 1e6;
+constexpr char const* kSystemCategory = "__system";
+
+// Ids of the random streams that do not belong to one robot's body.
+constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
+constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
+
+std::size_t user_data_stride() {
+    std::size_t const bytes = std::max<std::size_t>(UserdataSize, 1);
+    return (bytes + kUserDataAlignment - 1) / kUserDataAlignment * kUserDataAlignment;
+}
+
+void load_globals(LoopGlobals const& loop) {
+    pogobot_ticks = loop.ticks;
+    main_loop_hz = loop.loop_hz;
+    max_nb_processed_msg_per_tick = loop.max_messages_per_tick;
+    percent_msgs_sent_per_ticks = loop.send_percent;
+    error_codes_led_idx = loop.error_led;
+    msg_rx_fn = loop.receive;
+    msg_tx_fn = loop.send;
+    nb_msgs_sent = loop.sent;
+    nb_msgs_recv = loop.received;
+    _current_time_milliseconds = loop.milliseconds;
+    _error_code_initial_time = loop.error_shown_at_ms;
+    _global_timer = loop.global_timer;
+    timer_main_loop = loop.loop_timer;
+}
+
+LoopGlobals stored_globals() {
+    return {.ticks = pogobot_ticks,
+            .loop_hz = main_loop_hz,
+            .max_messages_per_tick = max_nb_processed_msg_per_tick,
+            .send_percent = percent_msgs_sent_per_ticks,
+            .error_led = error_codes_led_idx,
+            .receive = msg_rx_fn,
+            .send = msg_tx_fn,
+            .sent = nb_msgs_sent,
+            .received = nb_msgs_recv,
+            .milliseconds = _current_time_milliseconds,
+            .error_shown_at_ms = _error_code_initial_time,
+            .global_timer = _global_timer,
+            .loop_timer = timer_main_loop};
+}
+
+/// A bijection of 16 bits, so that every robot's first seed is different.
+std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
+    auto const odd_factor = static_cast<std::uint16_t>(key | 1U);
+    auto const offset = static_cast<std::uint16_t>(key >> 16U);
+    return static_cast<std::int16_t>(static_cast<std::uint16_t>(id * odd_factor + offset));
+}
+
+int draw_between(IntRange range, RandomStream& stream) {
+    return range.min + static_cast<int>(stream.below(static_cast<std::uint32_t>(range.max - range.min) + 1U));
+}
+
+/// In the robot's own time, in which ticks are evenly spaced: steps and ticks do not coincide.
+void measure_velocity(Accelerometer& meter, Vec2 velocity_mm_s, std::int64_t clock_us, bool first) {
+    constexpr float seconds_per_us = 1e-6F;
+    meter.previous_mm_s = meter.current_mm_s;
+    meter.current_mm_s = velocity_mm_s;
+    meter.interval_s = first ? 0.0F : static_cast<float>(clock_us - meter.current_us) * seconds_per_us;
+    meter.current_us = clock_us;
+}
+
+}  // namespace
+
+Programs::Programs(World& world, RunServices& services, std::uint64_t seed)
+    : world_(world), services_(services), computers_(world.robots.size()) {
+    allocate_user_data();
+    draw_individual_differences(seed);
+}
+
+Programs::~Programs() {
+    context = {};
+}
+
+std::size_t Programs::user_data_bytes() {
+    return UserdataSize;
+}
+
+void Programs::allocate_user_data() {
+    // One block for all, the last place for the global step.
+    std::size_t const stride = user_data_stride();
+    user_data_ = FencedMemory(stride * (computers_.size() + 1));
+    for (std::size_t i = 0; i < computers_.size(); ++i) {
+        computers_[i].user_data = user_data_.data() + i * stride;
+    }
+    system_.user_data = user_data_.data() + computers_.size() * stride;
+}
+
+void Programs::draw_individual_differences(std::uint64_t seed) {
+    std::uint64_t const key = mix64(seed + 1);
+    for (std::uint32_t i = 0; i < computers_.size(); ++i) {
+        Computer& self = computers_[i];
+        RobotSpec const& spec = world_.spec_of(i);
+        RandomStream& stream = world_.robots.stream[i];
+        self.random = RandomStream(seed, kRandStreams + i);
+        self.seeds = RandomStream(seed, kSeedStreams + i);
+        self.first_seed = scatter_id(world_.robots.id[i], key);
+        self.motors.bias = static_cast<float>(draw_between(spec.motor_bias, stream));
+        for (std::int32_t& bias : self.photosensor_bias) {
+            bias = draw_between(spec.photosensor_bias, stream);
+        }
+        self.clock_drift_us = std::lround(spec.clock_drift_stddev_us * stream.normal());
+    }
+    system_.random = RandomStream(seed, kRandStreams + kNoRobot);
+    system_.seeds = RandomStream(seed, kSeedStreams + kNoRobot);
+}
+
+Computer& Programs::computer(std::uint32_t robot) {
+    return robot == kNoRobot ? system_ : computers_[robot];
+}
+
+void Programs::enter(std::uint32_t robot, char const* phase) {
+    Computer& self = computer(robot);
+    context = {.world = &world_, .services = &services_, .computer = &self, .robot = robot, .phase = phase};
+    mydata = self.user_data;
+    self.clock_reads = 0;
+    load_globals(self.loop);
+    restart_watch();
+}
+
+void Programs::leave() {
+    context.computer->loop = stored_globals();
+}
+
+void Programs::call(std::uint32_t robot, char const* phase, void (*function)()) {
+    if (function != nullptr) {
+        enter(robot, phase);
+        function();
+        leave();
+    }
+}
+
+void Programs::run_main(std::uint32_t robot) {
+    enter(robot, "main");
+    callback_export_data = callback_robot_end = callback_robot_click = nullptr;
+    robot_main();
+    leave();
+    Program& program = computer(robot).program;
+    program.export_data = callback_export_data;
+    program.end = callback_robot_end;
+    program.click = callback_robot_click;
+}
+
+void Programs::start() {
+    auto const count = static_cast<std::uint32_t>(computers_.size());
+    if (count == 0) {
+        // Nobody to run main(): only what the global callbacks need.
+        run_main(kNoRobot);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        run_main(i);
+    }
+    call(count == 0 ? kNoRobot : count - 1, "global_setup", callback_global_setup);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        call(i, "user_init", computers_[i].program.init);
+    }
+}
+
+void Programs::declare_columns() {
+    services_.data.declaring = true;
+    call(kNoRobot, "create_data_schema", callback_create_data_schema);
+    services_.data.declaring = false;
+}
+
+void Programs::run_step() {
+    std::int64_t const now_us = std::llround(world_.time_s() * kMicrosecondsPerSecond);
+    if (callback_global_step != nullptr && now_us >= system_.clock_us) {
+        enter(kNoRobot, "global_step");
+        pogo_main_loop_step(callback_global_step);
+        leave();
+    }
+    auto const count = static_cast<std::uint32_t>(computers_.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (now_us < computers_[i].clock_us) {
+            continue;
+        }
+        if (computers_[i].loop.loop_hz == 0) {
+            computers_[i].clock_us = now_us;  // without a sleep the clock follows the steps
+        }
+        tick(i);
+    }
+}
+
+void Programs::tick(std::uint32_t robot) {
+    Computer& self = computers_[robot];
+    std::uint32_t const body = world_.robots.body[robot];
+    measure_velocity(self.accelerometer, world_.bodies.velocity_mm_s[body], self.clock_us, self.loop.ticks == 0);
+    enter(robot, "user_step");
+    pogo_main_loop_step(self.program.step);
+    leave();
+    // A drift may not turn the clock back.
+    std::int64_t const slept_us = self.clock_us - self.loop.loop_timer.origin_us;
+    self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);
+    if (self.motors.driven) {
+        drive(world_, robot, self.motors);
+    }
+}
+
+void Programs::export_row(std::size_t robot) {
+    DataExport& data = services_.data;
+    data.row.values.assign(data.columns.size(), CellValue());
+    data.row.exported = true;
+    data.filling = true;
+    data.next_column = 0;
+    call(static_cast<std::uint32_t>(robot), "export_data", computers_[robot].program.export_data);
+    data.filling = false;
+}
+
+void Programs::end() {
+    for (std::uint32_t i = 0; i < computers_.size(); ++i) {
+        call(i, "robot_end", computers_[i].program.end);
+    }
+}
+
+int Programs::highest_loop_hz() const {
+    int highest = 0;
+    for (Computer const& self : computers_) {
+        highest = std::max<int>(highest, self.loop.loop_hz);
+    }
+    return highest;
+}
+
+}  // namespace pogosim
+
+using pogosim::context;
+
+char const* get_current_robot_category() {
+    if (!context.has_robot()) {
+        return pogosim::kSystemCategory;
+    }
+    return context.world->categories[context.world->robots.category[context.robot]].name.c_str();
+}
+
+bool current_robot_category_is(char const* category) {
+    return category != nullptr && std::string_view(category) == get_current_robot_category();
+}
+
+void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* category) {
+    if (!current_robot_category_is(category)) {
+        return;
+    }
+    context.computer->program.init = user_init;
+    context.computer->program.step = user_step;
+    pogobot_ticks = 0;
+    pogobot_stopwatch_reset(&_global_timer);
+    pogobot_stopwatch_reset(&timer_main_loop);
+}

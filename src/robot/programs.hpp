@@ -1,0 +1,64 @@
+// The user's program on every robot: start, ticks, callbacks. The only place that calls user code. Every public
+// function that does so belongs inside call_user_code().
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "robot/context.hpp"
+#include "robot/fenced_memory.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+class Programs {
+public:
+    /// Makes a computer for each robot of the world and one for the global step. `services` and `world` outlive this.
+    Programs(World& world, RunServices& services, std::uint64_t seed);
+    ~Programs();
+
+    Programs(Programs const&) = delete;
+    Programs& operator=(Programs const&) = delete;
+
+    /// Runs main() for each robot, then callback_global_setup, then every user_init.
+    void start();
+
+    /// callback_create_data_schema: fills the services' columns.
+    void declare_columns();
+
+    /// One step: the global step, then every robot whose clock has come.
+    void run_step();
+
+    /// callback_export_data of one robot. Its row is in the services' data afterwards.
+    void export_row(std::size_t robot);
+
+    /// callback_robot_end of every robot.
+    void end();
+
+    /// Ticks this robot has executed.
+    std::uint32_t ticks(std::size_t robot) const { return computers_[robot].loop.ticks; }
+
+    /// The highest main_loop_hz of all robots.
+    int highest_loop_hz() const;
+
+    /// Bytes of one robot's user data.
+    static std::size_t user_data_bytes();
+
+private:
+    void allocate_user_data();
+    void draw_individual_differences(std::uint64_t seed);
+    void enter(std::uint32_t robot, char const* phase);
+    void leave();
+    void run_main(std::uint32_t robot);
+    void call(std::uint32_t robot, char const* phase, void (*function)());
+    void tick(std::uint32_t robot);
+    Computer& computer(std::uint32_t robot);
+
+    World& world_;
+    RunServices& services_;
+    std::vector<Computer> computers_;
+    Computer system_;  // of the global step
+    FencedMemory user_data_;
+};
+
+}  // namespace pogosim

@@ -1,0 +1,211 @@
+#include "robot/user_guard.hpp"
+
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csetjmp>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kSignalStackBytes = 64 * 1024;
+constexpr unsigned kRescueSeconds = 10;
+constexpr double kWatchPeriodS = 0.25;  // of processor time
+
+struct Guard {
+    sigjmp_buf return_point;
+    std::atomic<bool> inside = false;
+    // Where a crash outside user code goes.
+    sigjmp_buf rescue_point;
+    std::atomic<bool> rescuable = false;
+    std::atomic<unsigned long> calls = 0;
+    // What ended the call; plain memory, as a signal handler writes it.
+    std::array<char, 512> what{};
+    ExitCode code = ExitCode::user_program;
+    // Watch over processor time.
+    double timeout_s = 0.0;
+    double period_s = kWatchPeriodS;
+    double seen_busy_s = 0.0;
+    unsigned long calls_seen = 0;
+};
+
+Guard guard;
+
+void set_reason(char const* text) {
+    std::strncpy(guard.what.data(), text, guard.what.size() - 1);
+    guard.what.back() = '\0';
+}
+
+[[noreturn]] void jump_out(ExitCode code) {
+    guard.code = code;
+    guard.inside = false;
+    siglongjmp(guard.return_point, 1);
+}
+
+struct CrashName {
+    int signal;
+    char const* name;
+};
+constexpr std::array kCrashes{
+    CrashName{SIGSEGV, "segmentation fault"},
+    CrashName{SIGBUS, "bus error"},
+    CrashName{SIGFPE, "arithmetic error (such as an integer division by zero)"},
+    CrashName{SIGILL, "illegal instruction"},
+    CrashName{SIGABRT, "abort() (such as a failed assert)"},
+};
+
+void describe_crash(int signal, siginfo_t const& info) {
+    auto const* const crash =
+        std::find_if(kCrashes.begin(), kCrashes.end(), [&](CrashName const& c) { return c.signal == signal; });
+    if (signal == SIGSEGV || signal == SIGBUS) {
+        std::snprintf(guard.what.data(), guard.what.size(), "%s at address %p", crash->name, info.si_addr);
+    } else {
+        set_reason(crash->name);
+    }
+}
+
+/// Memory is destroyed beyond what the run needs to end well.
+void on_hopeless_rescue(int /*signal*/) {
+    constexpr std::string_view text =
+        "pogosim: crashed again while the data file was being completed; it may be unreadable. Build the program with "
+        "-fsanitize=address to find where it writes to memory that is not its own.\n";
+    [[maybe_unused]] auto const written = write(STDERR_FILENO, text.data(), text.size());
+    _exit(static_cast<int>(ExitCode::user_program));
+}
+
+void on_crash(int signal, siginfo_t* info, void* /*context*/) {
+    // What follows may hang on destroyed memory.
+    std::signal(SIGALRM, on_hopeless_rescue);
+    alarm(kRescueSeconds);
+    if (guard.inside) {
+        describe_crash(signal, *info);
+        jump_out(ExitCode::user_program);
+    }
+    if (guard.rescuable.exchange(false)) {
+        describe_crash(signal, *info);
+        siglongjmp(guard.rescue_point, 1);
+    }
+    on_hopeless_rescue(signal);
+}
+
+void on_watch(int /*signal*/) {
+    if (!guard.inside || guard.calls != guard.calls_seen) {
+        guard.calls_seen = guard.calls;
+        guard.seen_busy_s = 0.0;
+        return;
+    }
+    guard.seen_busy_s += guard.period_s;
+    if (guard.seen_busy_s >= guard.timeout_s) {
+        std::snprintf(guard.what.data(), guard.what.size(),
+                      "did not return within %g s of processor time (user_code_timeout); messages and sensors do not "
+                      "change while user code runs, so a step must not wait for them in a loop",
+                      guard.timeout_s);
+        jump_out(ExitCode::user_program);
+    }
+}
+
+void install(int signal, int flags, void (*with_info)(int, siginfo_t*, void*), void (*plain)(int)) {
+    struct sigaction action = {};
+    sigemptyset(&action.sa_mask);
+    // A handler leaves by a jump, so its signal must not stay blocked.
+    action.sa_flags = flags | SA_NODEFER;
+    if (with_info != nullptr) {
+        action.sa_flags |= SA_SIGINFO;
+        action.sa_sigaction = with_info;
+    } else {
+        action.sa_handler = plain;
+    }
+    sigaction(signal, &action, nullptr);
+}
+
+void use_signal_stack() {
+    // A stack overflow in user code needs another stack for its handler.
+    static std::array<char, kSignalStackBytes> memory;
+    stack_t stack = {};
+    stack.ss_sp = memory.data();
+    stack.ss_size = memory.size();
+    sigaltstack(&stack, nullptr);
+}
+
+void start_watch(double timeout_s) {
+    guard.timeout_s = timeout_s;
+    guard.period_s = std::min(kWatchPeriodS, timeout_s / 4.0);
+    install(SIGVTALRM, SA_RESTART, nullptr, on_watch);
+    itimerval timer = {};
+    timer.it_interval.tv_usec = std::max<suseconds_t>(1000, static_cast<suseconds_t>(guard.period_s * 1e6));
+    timer.it_value = timer.it_interval;
+    setitimer(ITIMER_VIRTUAL, &timer, nullptr);
+}
+
+}  // namespace
+
+void install_user_guard(double timeout_s) {
+    use_signal_stack();
+    for (CrashName const& crash : kCrashes) {
+        install(crash.signal, SA_ONSTACK, on_crash, nullptr);
+    }
+    if (timeout_s > 0.0) {
+        start_watch(timeout_s);
+    }
+}
+
+std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
+    if (sigsetjmp(guard.return_point, 0) != 0) {
+        return UserFailure{guard.what.data(), guard.code};
+    }
+    guard.inside = true;
+    restart_watch();
+    try {
+        body();
+    } catch (std::exception const& error) {
+        guard.inside = false;
+        return UserFailure{std::string("C++ exception: ") + error.what(), ExitCode::user_program};
+    } catch (...) {
+        guard.inside = false;
+        return UserFailure{"C++ exception", ExitCode::user_program};
+    }
+    guard.inside = false;
+    return std::nullopt;
+}
+
+std::optional<UserFailure> call_simulator_code(std::function<void()> const& body) {
+    if (sigsetjmp(guard.rescue_point, 0) != 0) {
+        return UserFailure{std::string("the simulator crashed (") + guard.what.data() +
+                               "), most likely because the user program wrote to memory that is not its own; build the "
+                               "program with -fsanitize=address to find where",
+                           ExitCode::user_program};
+    }
+    guard.rescuable = true;
+    body();
+    guard.rescuable = false;
+    return std::nullopt;
+}
+
+void restart_watch() {
+    guard.calls.store(guard.calls.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+bool inside_user_code() {
+    return guard.inside;
+}
+
+void leave_user_code(char const* what, ExitCode code) {
+    if (!guard.inside) {
+        std::fprintf(stderr, "pogosim: %s\n", what);
+        std::abort();
+    }
+    set_reason(what);
+    jump_out(code);
+}
+
+}  // namespace pogosim

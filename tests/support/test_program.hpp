@@ -1,0 +1,34 @@
+// A user program whose functions each test chooses. It stands in for the C program that a simulation normally runs.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "pogobase.h"
+
+#undef main
+#undef printf
+#undef putchar
+#undef puts
+#undef vprintf
+
+/// User data of the test program.
+struct TestData {
+    std::array<std::int64_t, 8> number;
+};
+extern "C" {
+DECLARE_USERDATA(TestData)
+}
+
+namespace pogosim::testing {
+
+/// What robot_main() does, for each robot. Set it at the start of a test.
+extern std::function<void()> program_main;
+
+/// The usual program: one init and one step for the category "robots".
+inline void use_program(void (*init)(), void (*step)()) {
+    program_main = [=] { pogobot_start(init, step); };
+}
+
+}  // namespace pogosim::testing
