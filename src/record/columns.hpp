@@ -1,0 +1,51 @@
+// The columns of the data file, and their cells that are not yet written. Tables in columns.cpp say what there is;
+// which of it a file has is chosen once, so that a row costs one indirect call per column.
+#pragma once
+
+#include <arrow/builder.h>
+#include <arrow/result.h>
+#include <arrow/type.h>
+
+#include <memory>
+#include <vector>
+
+#include "record/data_file.hpp"
+#include "world/data_table.hpp"
+
+namespace pogosim {
+
+struct BuiltInColumn;   // filled from the built-in part of a row
+struct UserColumnType;  // how cells of a user column are stored
+
+class Columns {
+public:
+    /// Columns in the order of the file. Warns about entries of `options.fields` that name no column. Throws
+    /// ConfigError if a name is empty or stands twice, or if `options.fields` leaves no column.
+    explicit Columns(DataFileOptions const& options);
+
+    arrow::FieldVector const& fields() const { return fields_; }
+
+    /// Adds one cell to each column; `user` as in DataFile::append.
+    arrow::Status append(ObjectRow const& row, std::vector<CellValue> const& user);
+
+    /// The cells added since the last call, one array per column.
+    arrow::Result<arrow::ArrayVector> take();
+
+private:
+    struct BuiltIn {
+        BuiltInColumn const* column;
+        std::unique_ptr<arrow::ArrayBuilder> cells;
+    };
+    struct User {
+        UserColumnType const* type;
+        std::size_t index;  // into the user part of a row
+        std::unique_ptr<arrow::ArrayBuilder> cells;
+    };
+
+    arrow::FieldVector fields_;
+    std::vector<BuiltIn> built_ins_;
+    std::vector<User> users_;
+    std::size_t user_column_count_;
+};
+
+}  // namespace pogosim

@@ -1,0 +1,68 @@
+// The data file: Apache Feather V2 (Arrow IPC, zstd), one row per object and save time. The only room that includes
+// Arrow.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "world/data_table.hpp"
+
+namespace pogosim {
+
+struct DataFileOptions {
+    std::string path{};                                // parent folders are created
+    std::vector<ColumnSpec> user_columns{};            // behind the built-in ones
+    std::optional<std::vector<std::string>> fields{};  // allow-list of columns, built-in and user; absent: all
+    bool subpart_column = false;                       // adds subpart_id
+    bool led_column = false;                           // adds led_rgb
+    std::int64_t flush_row_count = 1048576;            // rows per record batch, > 0
+    std::vector<std::pair<std::string, std::string>> metadata{};  // of the schema, UTF-8
+};
+
+/// Built-in part of one row.
+struct ObjectRow {
+    float time_s = 0.0F;
+    std::string_view category;
+    std::int32_t id = 0;
+    std::optional<std::int64_t> ticks{};  // null for objects without a program
+    float x_mm = 0.0F;                    // NaN for walls
+    float y_mm = 0.0F;
+    float angle_rad = 0.0F;  // (-pi, pi]; NaN for walls and membranes
+    std::int16_t subpart = -1;
+    std::int32_t led_rgb = 0;  // head LED as 0xRRGGBB
+};
+
+/// Columns: time float32, robot_category utf8, robot_id int32, pogobot_ticks int64, x, y, angle float32,
+/// [subpart_id int16], [led_rgb int32], then the user's. Every failure to write throws OutputError naming the path and
+/// the system's reason; nothing is lost silently.
+class DataFile {
+public:
+    /// Opens the file, so that an unwritable path is known before the run.
+    explicit DataFile(DataFileOptions const& options);
+
+    /// Closes what is still open, as far as it can be written; errors are logged.
+    ~DataFile();
+
+    DataFile(DataFile const&) = delete;
+    DataFile& operator=(DataFile const&) = delete;
+
+    /// Adds a row. `user` holds one value per user column, in their order (monostate: null).
+    void append(ObjectRow const& row, std::vector<CellValue> const& user);
+
+    /// Writes what is buffered and the footer, and checks that all of it reached the disk. Further calls do nothing.
+    void close();
+
+    /// Rows appended so far.
+    std::int64_t row_count() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pogosim

@@ -1,0 +1,99 @@
+#include "record/imported_poses.hpp"
+
+#include <arrow/api.h>
+#include <arrow/io/api.h>
+#include <arrow/ipc/api.h>
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace pogosim {
+
+namespace {
+
+[[noreturn]] void fail(std::filesystem::path const& path, std::string const& reason) {
+    throw ConfigError(fmt::format("formation_filename: cannot take poses from '{}': {}", path.string(), reason));
+}
+
+template <class Value>
+Value value_or_fail(std::filesystem::path const& path, arrow::Result<Value> result) {
+    if (!result.ok()) {
+        fail(path, result.status().message());
+    }
+    return std::move(result).ValueUnsafe();
+}
+
+/// One of the names' columns, or nullptr.
+std::shared_ptr<arrow::Array> find_column(arrow::RecordBatch const& batch, std::initializer_list<char const*> names) {
+    for (char const* const name : names) {
+        if (auto column = batch.GetColumnByName(name)) {
+            return column;
+        }
+    }
+    return nullptr;
+}
+
+/// The numbers of a column; NaN where it is null.
+std::vector<double> numbers_of(std::filesystem::path const& path, arrow::Array const& column, char const* name) {
+    std::vector<double> numbers;
+    for (std::int64_t i = 0; i < column.length(); ++i) {
+        auto const scalar = value_or_fail(path, column.GetScalar(i));
+        if (!scalar->is_valid) {
+            numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+            continue;
+        }
+        auto const number = scalar->CastTo(arrow::float64());
+        if (!number.ok()) {
+            fail(path, fmt::format("column '{}' holds {}, expected numbers", name, column.type()->ToString()));
+        }
+        numbers.push_back(static_cast<arrow::DoubleScalar const&>(**number).value);
+    }
+    return numbers;
+}
+
+void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& batch,
+                  std::vector<ImportedPose>& poses) {
+    auto const x = find_column(batch, {"x"});
+    auto const y = find_column(batch, {"y"});
+    if (!x || !y) {
+        fail(path, "it has no columns 'x' and 'y'");
+    }
+    auto const xs = numbers_of(path, *x, "x");
+    auto const ys = numbers_of(path, *y, "y");
+    auto const angle = find_column(batch, {"theta", "angle"});
+    auto const angles = angle ? numbers_of(path, *angle, "angle") : std::vector<double>();
+    auto const time = find_column(batch, {"time"});
+    auto const times = time ? numbers_of(path, *time, "time") : std::vector<double>();
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+        ImportedPose pose;
+        pose.x = xs[i];
+        pose.y = ys[i];
+        pose.row = poses.size();
+        if (!angles.empty()) {
+            pose.heading_rad = angles[i];
+        }
+        if (!times.empty()) {
+            pose.time_s = times[i];
+        }
+        poses.push_back(pose);
+    }
+}
+
+}  // namespace
+
+std::vector<ImportedPose> read_imported_feather(std::filesystem::path const& path) {
+    auto const file = value_or_fail(path, arrow::io::ReadableFile::Open(path.string()));
+    auto const reader = value_or_fail(path, arrow::ipc::RecordBatchFileReader::Open(file));
+    std::vector<ImportedPose> poses;
+    for (int i = 0; i < reader->num_record_batches(); ++i) {
+        append_poses(path, *value_or_fail(path, reader->ReadRecordBatch(i)), poses);
+    }
+    return poses;
+}
+
+}  // namespace pogosim

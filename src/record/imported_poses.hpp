@@ -1,0 +1,15 @@
+// Poses from the data file of an earlier run, for the formation `imported`.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "geometry/formation.hpp"
+
+namespace pogosim {
+
+/// All rows of a Feather V2 file with columns x and y, optionally theta or angle (rad) and time (s). Throws ConfigError
+/// when the file cannot be read or a column is missing or not numeric.
+std::vector<ImportedPose> read_imported_feather(std::filesystem::path const& path);
+
+}  // namespace pogosim

@@ -1,0 +1,79 @@
+#include "record/utf8.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace pogosim {
+
+namespace {
+
+/// Sequences by lead byte: their length, and what the second byte may be (later ones are 0x80 to 0xBF).
+struct SequenceRule {
+    unsigned char lead_min, lead_max;
+    std::size_t length;
+    unsigned char second_min, second_max;
+};
+
+constexpr std::array<SequenceRule, 9> kRules{{
+    {0x00, 0x7F, 1, 0x00, 0x00},
+    {0xC2, 0xDF, 2, 0x80, 0xBF},
+    {0xE0, 0xE0, 3, 0xA0, 0xBF},
+    {0xE1, 0xEC, 3, 0x80, 0xBF},
+    {0xED, 0xED, 3, 0x80, 0x9F},
+    {0xEE, 0xEF, 3, 0x80, 0xBF},
+    {0xF0, 0xF0, 4, 0x90, 0xBF},
+    {0xF1, 0xF3, 4, 0x80, 0xBF},
+    {0xF4, 0xF4, 4, 0x80, 0x8F},
+}};
+
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+
+/// Length of the well-formed sequence at the start of a text that is not empty; 0 if there is none.
+std::size_t sequence_length(std::string_view text) {
+    auto const byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    auto const* const rule = std::find_if(kRules.begin(), kRules.end(), [&](SequenceRule const& candidate) {
+        return byte(0) >= candidate.lead_min && byte(0) <= candidate.lead_max;
+    });
+    if (rule == kRules.end() || text.size() < rule->length) {
+        return 0;
+    }
+    if (rule->length > 1 && (byte(1) < rule->second_min || byte(1) > rule->second_max)) {
+        return 0;
+    }
+    for (std::size_t i = 2; i < rule->length; ++i) {
+        if (byte(i) < 0x80 || byte(i) > 0xBF) {
+            return 0;
+        }
+    }
+    return rule->length;
+}
+
+}  // namespace
+
+std::size_t well_formed_prefix(std::string_view text) {
+    std::size_t good = 0;
+    while (good < text.size()) {
+        std::size_t const length = sequence_length(text.substr(good));
+        if (length == 0) {
+            break;
+        }
+        good += length;
+    }
+    return good;
+}
+
+std::string replace_malformed(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        std::size_t const good = well_formed_prefix(text);
+        result += text.substr(0, good);
+        text.remove_prefix(good);
+        if (!text.empty()) {
+            result += kReplacement;
+            text.remove_prefix(1);
+        }
+    }
+    return result;
+}
+
+}  // namespace pogosim

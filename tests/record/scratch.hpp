@@ -1,0 +1,71 @@
+// A folder for the files of one test, and reading a data file back with Arrow itself.
+#pragma once
+
+#include <arrow/api.h>
+#include <arrow/io/file.h>
+#include <arrow/ipc/reader.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace pogosim {
+
+/// Tests that write files: `path("a")` lies in a folder of this test's own, which is removed afterwards.
+class FileTest : public testing::Test {
+protected:
+    FileTest() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "pogosim_record_XXXXXX").string();
+        if (mkdtemp(pattern.data()) == nullptr) {
+            throw std::runtime_error("cannot make a folder like " + pattern);
+        }
+        folder_ = pattern;
+    }
+    ~FileTest() override { std::filesystem::remove_all(folder_); }
+
+    std::string path(std::string const& name) const { return (folder_ / name).string(); }
+
+private:
+    std::filesystem::path folder_;
+};
+
+/// What a data file holds.
+struct ReadBack {
+    std::shared_ptr<arrow::Table> table;
+    std::vector<std::int64_t> rows_of_batch;
+
+    std::vector<std::string> column_names() const { return table->ColumnNames(); }
+
+    std::shared_ptr<arrow::Scalar> cell(std::string const& column, std::int64_t row) const {
+        return table->GetColumnByName(column)->GetScalar(row).ValueOrDie();
+    }
+
+    /// Cell as Arrow prints it; "null" for null.
+    std::string text(std::string const& column, std::int64_t row) const { return cell(column, row)->ToString(); }
+};
+
+inline ReadBack read_back(std::string const& path) {
+    auto const file = arrow::io::ReadableFile::Open(path).ValueOrDie();
+    auto const reader = arrow::ipc::RecordBatchFileReader::Open(file).ValueOrDie();
+    ReadBack result;
+    arrow::RecordBatchVector batches;
+    for (int i = 0; i < reader->num_record_batches(); ++i) {
+        batches.push_back(reader->ReadRecordBatch(i).ValueOrDie());
+        result.rows_of_batch.push_back(batches.back()->num_rows());
+    }
+    result.table = arrow::Table::FromRecordBatches(reader->schema(), batches).ValueOrDie();
+    if (auto const status = result.table->ValidateFull(); !status.ok()) {
+        throw std::runtime_error(path + ": " + status.ToString());
+    }
+    return result;
+}
+
+inline std::string bytes_of(std::string const& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace pogosim
