@@ -1,0 +1,95 @@
+#include "app/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "base/nearest_name.hpp"
+#include "pogosim/version.h"
+#include "robot/user_guard.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// Empty for a decimal number that fits 32 bits, else what is wrong.
+std::string is_seed(std::string const& text) {
+    bool const digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    bool const fits = digits && text.size() <= 10 && std::stoull(text) <= std::numeric_limits<std::uint32_t>::max();
+    return fits ? "" : "expected a whole number from 0 to 4294967295, found '" + text + "'";
+}
+
+/// CLI11 reads "-nr" as "-n -r", so it gets the long name instead.
+std::vector<std::string> normalised_arguments(int argc, char const* const* argv) {
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    std::replace(arguments.begin(), arguments.end(), std::string("-nr"), std::string("--do-not-show-robot-msg"));
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+    return arguments;
+}
+
+void declare_options(CLI::App& app, CommandLine& options) {
+    app.add_option("-c,--config", options.config, "YAML file that describes the run")->required()->type_name("FILE");
+    app.add_flag("-g,--no-GUI", options.no_gui, "run without a window");
+    app.add_flag("-v,--verbose", options.verbose, "show debug messages");
+    app.add_flag("-q,--quiet", options.quiet, "show warnings and errors only; wins over -v");
+    app.add_flag("--do-not-show-robot-msg", options.hide_robot_lines,
+                 "(also -nr) keep what robots print off the console; the console file still has it");
+    app.add_option("-s,--seed", options.seed, "seed of the random numbers, 0 to 4294967295; overrides the file's")
+        ->type_name("N")
+        ->check(is_seed);
+    app.add_flag("-P,--progress", options.progress_bar, "show a progress bar");
+    app.add_option("--set", options.overrides,
+                   "override an entry of the configuration, such as objects.robots.nb=50; may be repeated")
+        ->type_name("KEY.PATH=VALUE")
+        ->allow_extra_args(false);
+    app.add_flag("--strict", options.strict, "treat unknown keys of the configuration as errors");
+    app.set_version_flag("-V,--version", "pogosim " POGOSIM_VERSION_STRING, "print the version and end");
+    app.set_help_flag("-h,--help", "print this help and end");
+}
+
+std::string base_name(std::string const& path) {
+    return path.substr(path.find_last_of('/') + 1);
+}
+
+int report_usage(CLI::App const& app, std::string const& problem) {
+    std::fprintf(stderr, "Error: %s\nUsage: %s -c FILE [options]; -h lists them\n", problem.c_str(),
+                 app.get_name().c_str());
+    return static_cast<int>(ExitCode::usage);
+}
+
+/// "unknown argument '--sead'; did you mean '--seed'?"
+std::string unknown_argument(CLI::App const& app) {
+    std::vector<std::string> const unknown = app.remaining();
+    auto const option = std::find_if(unknown.begin(), unknown.end(), [](auto const& text) { return text[0] == '-'; });
+    std::string const& typed = option != unknown.end() ? *option : unknown.back();
+    std::vector<std::string> known;
+    for (CLI::Option const* known_option : app.get_options()) {
+        for (std::string const& name : known_option->get_lnames()) {
+            known.push_back("--" + name);
+        }
+    }
+    std::string const nearest = nearest_name(typed, known);
+    return "unknown argument '" + typed + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
+}
+
+}  // namespace
+
+ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
+    ParsedCommandLine parsed;
+    CLI::App app{"Simulates a swarm of Pogobots that run this program.", argc > 0 ? base_name(argv[0]) : "pogosim"};
+    app.footer("Exit codes: 0 done, 2 wrong usage or configuration, 3 the program failed, 130 interrupted.");
+    declare_options(app, parsed.options);
+    try {
+        app.parse(normalised_arguments(argc, argv));
+    } catch (CLI::Success const& asked) {
+        parsed.exit_code = app.exit(asked);
+    } catch (CLI::ExtrasError const&) {
+        parsed.exit_code = report_usage(app, unknown_argument(app));
+    } catch (CLI::ParseError const& error) {
+        parsed.exit_code = report_usage(app, error.what());
+    }
+    return parsed;
+}
+
+}  // namespace pogosim

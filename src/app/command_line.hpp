@@ -1,0 +1,32 @@
+// The command line of every simulated program.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pogosim {
+
+struct CommandLine {
+    std::string config;
+    bool no_gui = false;
+    bool verbose = false;
+    bool quiet = false;
+    bool hide_robot_lines = false;
+    bool progress_bar = false;
+    bool strict = false;
+    std::optional<std::uint32_t> seed;
+    std::vector<std::string> overrides;  // --set, in order
+};
+
+/// What the arguments ask for; or, when they ask for help or the version or are wrong, the exit code of the program
+/// after everything has been printed.
+struct ParsedCommandLine {
+    CommandLine options;
+    std::optional<int> exit_code;
+};
+
+ParsedCommandLine parse_command_line(int argc, char const* const* argv);
+
+}  // namespace pogosim

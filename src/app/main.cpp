@@ -1,0 +1,68 @@
+// The program's real main(). The user's main(), renamed robot_main, is called once for each robot.
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include "app/command_line.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "config/scenario.hpp"
+#include "sim/interrupt.hpp"
+#include "sim/simulation.hpp"
+
+namespace {
+
+using namespace pogosim;
+
+ExitCode simulate(CommandLine const& options) {
+    // Until the configuration is known, warnings go to a console as the command line asks.
+    LogOptions logging;
+    logging.verbose = options.verbose;
+    logging.quiet = options.quiet;
+    logging.show_robot_lines = !options.hide_robot_lines;
+    start_logging(logging);
+
+    Scenario scenario = load_scenario(options.config, {.overrides = options.overrides, .strict = options.strict});
+    if (options.seed) {
+        scenario.seed = options.seed;
+    }
+    logging.minimal = scenario.output.log_format == LogFormat::minimal;
+    if (scenario.output.enable_console_logging) {
+        logging.file = scenario.output.console_filename;
+    }
+    start_logging(logging);
+
+    if (scenario.view.gui && !options.no_gui) {
+        log().info("this version has no window yet; the run goes on without one");
+    }
+    if (scenario.view.save_video_period_s > 0.0) {
+        log().info("this version draws no frames yet (save_video_period)");
+    }
+
+    catch_interrupts();
+    Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar});
+    return simulation.run();
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv) {
+    ParsedCommandLine const parsed = parse_command_line(argc, argv);
+    if (parsed.exit_code) {
+        return *parsed.exit_code;
+    }
+    ExitCode code = ExitCode::usage;
+    try {
+        code = simulate(parsed.options);
+    } catch (std::exception const& error) {
+        flush_logs();
+        std::fprintf(stderr, "Error: %s\n", error.what());
+    }
+    flush_logs();
+    if (code == ExitCode::user_program) {
+        // The user's program may have destroyed memory: no destructors on top of that.
+        std::fflush(nullptr);
+        std::_Exit(static_cast<int>(code));
+    }
+    return static_cast<int>(code);
+}

@@ -1,0 +1,12 @@
+// Ctrl-C and its relatives (SIGINT, SIGTERM, SIGHUP): the run ends after the present step, with a complete data file.
+#pragma once
+
+namespace pogosim {
+
+/// Catches the signals from now on. The first one asks the run to end; a second one also leaves user code that hangs.
+void catch_interrupts();
+
+/// True once one of them has come.
+bool interrupted();
+
+}  // namespace pogosim

@@ -1,0 +1,34 @@
+// A line on the standard error that shows how far a run is.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace pogosim {
+
+class ProgressBar {
+public:
+    /// `total` steps. Disabled bars do nothing. On a terminal the line is redrawn in place ten times a second,
+    /// elsewhere a line is printed at each tenth of the run.
+    ProgressBar(std::int64_t total, double time_step_s, bool enabled);
+
+    void show(std::int64_t done);
+
+    /// Leaves the line as it is and goes to the next.
+    void finish(std::int64_t done);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void draw(std::int64_t done) const;
+
+    std::int64_t total_;
+    double time_step_s_;
+    bool enabled_;
+    bool terminal_;
+    std::int64_t next_tenth_ = 1;
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point last_drawn_ = start_;
+};
+
+}  // namespace pogosim

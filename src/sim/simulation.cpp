@@ -1,0 +1,229 @@
+#include "sim/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "base/log.hpp"
+#include "pogosim/version.h"
+#include "sim/build_world.hpp"
+#include "sim/interrupt.hpp"
+#include "sim/progress_bar.hpp"
+#include "sim/run_metadata.hpp"
+
+namespace pogosim {
+
+namespace {
+
+// A time that should be a whole number of periods or steps may differ from it in the last bits.
+constexpr double kWholeTolerance = 1e-6;
+
+std::uint32_t seed_of(Scenario const& scenario) {
+    return scenario.seed ? *scenario.seed : static_cast<std::uint32_t>(std::random_device{}());
+}
+
+std::vector<bool> recorded_categories(Scenario const& scenario, World const& world) {
+    std::vector<bool> recorded;
+    for (Category const& category : world.categories) {
+        auto const& allowed = scenario.output.categories;
+        recorded.push_back(!allowed || std::find(allowed->begin(), allowed->end(), category.name) != allowed->end());
+    }
+    return recorded;
+}
+
+std::int32_t packed_rgb(Rgb color) {
+    return color.r << 16 | color.g << 8 | color.b;
+}
+
+ObjectRow row_of(World const& world, std::size_t robot, std::uint32_t ticks) {
+    std::uint32_t const body = world.robots.body[robot];
+    return {.time_s = static_cast<float>(world.time_s()),
+            .category = world.categories[world.robots.category[robot]].name,
+            .id = world.robots.id[robot],
+            .ticks = ticks,
+            .x_mm = world.bodies.position_mm[body].x,
+            .y_mm = world.bodies.position_mm[body].y,
+            .angle_rad = wrap_angle(world.bodies.heading_rad[body]),
+            .led_rgb = packed_rgb(world.robots.led[robot][0])};
+}
+
+}  // namespace
+
+Simulation::Simulation(Scenario scenario, RunOptions options)
+    : scenario_(std::move(scenario)),
+      options_(options),
+      seed_(seed_of(scenario_)),
+      world_(build_world(scenario_, seed_)),
+      parameters_(scenario_.parameters),
+      services_{.parameters = &parameters_, .data = {}, .stop_requested = false, .warned = {}},
+      programs_(world_, services_, seed_),
+      lighting_(lamps_of(scenario_)),
+      physics_(make_box2d_engine(world_, {.friction = static_cast<float>(scenario_.wall_friction),
+                                          .restitution = static_cast<float>(scenario_.wall_restitution)})),
+      category_is_recorded_(recorded_categories(scenario_, world_)),
+      stages_(options.measure_stages) {}
+
+Simulation::~Simulation() = default;
+
+std::int64_t Simulation::step_count() const {
+    return static_cast<std::int64_t>(std::ceil(scenario_.simulation_time_s / world_.time_step_s - kWholeTolerance));
+}
+
+bool Simulation::is_over() const {
+    return world_.step >= step_count() || services_.stop_requested || interrupted();
+}
+
+ExitCode Simulation::run() {
+    std::optional<UserFailure> failure;
+    std::optional<UserFailure> const crash = call_simulator_code([&] { failure = run_steps(); });
+    // The message first: completing the file may fail after a crash that destroyed memory.
+    if (crash || failure) {
+        report(crash ? *crash : *failure);
+        finish();
+        return crash ? crash->code : failure->code;
+    }
+    finish();
+    if (interrupted()) {
+        log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), data_file_note());
+        return ExitCode::interrupted;
+    }
+    return ExitCode::done;
+}
+
+std::optional<UserFailure> Simulation::run_steps() {
+    std::optional<UserFailure> failure = start();
+    ProgressBar progress(step_count(), world_.time_step_s, options_.progress_bar);
+    while (!failure && !is_over()) {
+        failure = step();
+        progress.show(world_.step);
+    }
+    progress.finish(world_.step);
+    if (!failure) {
+        failure = call_user_code([this] { programs_.end(); });
+    }
+    return failure;
+}
+
+std::optional<UserFailure> Simulation::start() {
+    log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s", seed_, world_.robots.size(),
+                Programs::user_data_bytes(), step_count(), world_.time_step_s);
+    install_user_guard(scenario_.user_code_timeout_s);
+    lighting_.update(world_);
+    if (auto failure = call_user_code([this] { programs_.start(); })) {
+        return failure;
+    }
+    fit_time_step();
+    if (auto failure = open_data_file()) {
+        return failure;
+    }
+    return record_if_due();
+}
+
+std::optional<UserFailure> Simulation::step() {
+    stages_.begin_step();
+    lighting_.update(world_);
+    stages_.end(Stage::light);
+    if (auto failure = call_user_code([this] { programs_.run_step(); })) {
+        return failure;
+    }
+    stages_.end(Stage::robots);
+    channel_.deliver(world_);
+    stages_.end(Stage::messages);
+    physics_->advance(world_);
+    stages_.end(Stage::physics);
+    ++world_.step;
+    auto failure = record_if_due();
+    stages_.end(Stage::record);
+    return failure;
+}
+
+void Simulation::finish() {
+    if (data_file_) {
+        data_file_->close();
+    }
+    report_losses();
+}
+
+void Simulation::fit_time_step() {
+    int const hz = programs_.highest_loop_hz();
+    if (hz > 0 && world_.time_step_s > 1.0 / hz) {
+        log().warn(
+            "time_step is lowered from {} s to {:.6f} s, so that a robot with main_loop_hz {} gets all its ticks",
+            world_.time_step_s, 1.0 / hz, hz);
+        world_.time_step_s = 1.0 / hz;
+    }
+}
+
+std::optional<UserFailure> Simulation::open_data_file() {
+    OutputConfig const& output = scenario_.output;
+    if (!output.enable_data_logging) {
+        return std::nullopt;
+    }
+    if (auto failure = call_user_code([this] { programs_.declare_columns(); })) {
+        return failure;
+    }
+    data_file_ = std::make_unique<DataFile>(DataFileOptions{.path = output.data_filename,
+                                                            .user_columns = services_.data.columns,
+                                                            .fields = output.fields,
+                                                            .led_column = output.led_column,
+                                                            .flush_row_count = output.flush_row_count,
+                                                            .metadata = run_metadata(scenario_, world_.arena, seed_)});
+    return std::nullopt;
+}
+
+std::optional<UserFailure> Simulation::record_if_due() {
+    double const period_s = scenario_.output.save_data_period_s;
+    bool const at_start = world_.step == 0;
+    if (!data_file_ || (period_s <= 0.0 && !at_start)) {
+        return std::nullopt;
+    }
+    // Rows belong to the first step at or after each multiple of the period.
+    double const periods = at_start ? 0.0 : world_.time_s() / period_s + kWholeTolerance;
+    if (periods < static_cast<double>(next_row_time_)) {
+        return std::nullopt;
+    }
+    next_row_time_ = static_cast<std::int64_t>(periods) + 1;
+    return record_rows();
+}
+
+std::optional<UserFailure> Simulation::record_rows() {
+    for (std::size_t i = 0; i < world_.robots.size(); ++i) {
+        if (!category_is_recorded_[world_.robots.category[i]]) {
+            continue;
+        }
+        if (auto failure = call_user_code([this, i] { programs_.export_row(i); })) {
+            return failure;
+        }
+        if (services_.data.row.exported) {
+            data_file_->append(row_of(world_, i, programs_.ticks(i)), services_.data.row.values);
+        }
+    }
+    return std::nullopt;
+}
+
+void Simulation::report(UserFailure const& failure) const {
+    bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
+    log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {} of {}, t = {:.4f} s: {}{}",
+              failed ? "failed" : "ended", context.phase, current_robot_name(), world_.time_s(), failure.what,
+              data_file_note());
+}
+
+std::string Simulation::data_file_note() const {
+    return data_file_ ? fmt::format(". The data file '{}' is complete up to there", scenario_.output.data_filename)
+                      : "";
+}
+
+void Simulation::report_losses() const {
+    std::uint64_t dropped = 0;
+    for (std::size_t i = 0; i < world_.robots.size(); ++i) {
+        dropped += world_.mailboxes.dropped(i);
+    }
+    if (dropped > 0) {
+        log().info("{} messages were lost because a robot's queue was full (message_queue_size)", dropped);
+    }
+}
+
+}  // namespace pogosim
