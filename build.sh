@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Builds the library and, in place, all examples. Installs what is missing first.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+usage="Usage: ./build.sh [Release|Debug]
+
+Builds the library (in build/release or build/debug) and the examples (examples/NAME/NAME). Default: Release.
+  -h, --help   this text"
+
+case "$#:${1:-Release}" in
+    [01]:Release | [01]:Debug) type=${1:-Release} ;;
+    1:-h | 1:--help) echo "$usage" && exit 0 ;;
+    *) echo "$usage" >&2 && exit 2 ;;
+esac
+
+. scripts/bootstrap.sh
+bootstrap build
+
+folder=build/$(printf %s "$type" | tr '[:upper:]' '[:lower:]')
+say "Building ($type)"
+configure "$folder" "$type" -DPOGOSIM_BUILD_EXAMPLES=ON -DPOGOSIM_BUILD_TESTS=OFF -DPOGOSIM_BUILD_BENCH=OFF ||
+    fail "cmake could not configure $folder" "See its message above"
+cmake --build "$folder" --parallel "$(processors)" || fail "the compiler" "See its message above"
+
+echo "Built the library in $folder and the examples in their folders ($type)."
+echo "Try:  ./examples/hanabi/hanabi -c conf/simple.yaml"

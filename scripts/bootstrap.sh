@@ -1,0 +1,157 @@
+# Installs what the project needs: packages of the system, and Python packages in the project's own .venv. Meant to be
+# sourced by build.sh, test.sh and demo.sh from the project's folder:
+#
+#   . scripts/bootstrap.sh
+#   bootstrap build          # or: test, tidy
+#
+# What is there already is not asked for again, so that a repeat costs next to nothing. POGOSIM_PACKAGES=skip leaves the
+# system alone, for machines where somebody else installs packages.
+# shellcheck shell=bash
+
+apt_packages="build-essential cmake ninja-build ccache pkg-config
+    libbox2d-dev libyaml-cpp-dev libspdlog-dev libfmt-dev libcli11-dev libgtest-dev libbenchmark-dev
+    python3 python3-venv ca-certificates"
+apt_tidy_packages="clang-tidy"
+brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark python3"
+brew_tidy_packages="llvm"
+
+# A caller's own Python settings must not leak into the project's environment.
+unset PYTHONPATH PYTHONHOME VIRTUAL_ENV PIP_USER PIP_TARGET PIP_PREFIX PIP_REQUIRE_VIRTUALENV
+
+say() { printf '\033[1m==> %s\033[0m\n' "$*"; }
+
+# fail WHAT HINT: one clear line, and the end.
+fail() {
+    printf '%s: failed: %s. %s\n' "${0##*/}" "$1" "$2" >&2
+    exit 1
+}
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    else
+        sudo "$@"
+    fi
+}
+
+missing_apt_packages() {
+    local installed package
+    # shellcheck disable=SC2086 # a list of words
+    installed=" $(dpkg-query -W -f '${Package}:${db:Status-Status} ' $1 2>/dev/null)"
+    for package in $1; do
+        case $installed in
+            *" $package:installed "*) ;;
+            *) printf '%s ' "$package" ;;
+        esac
+    done
+}
+
+install_with_apt() {
+    local missing
+    missing=$(missing_apt_packages "$1")
+    [ -n "$missing" ] || return 0
+    if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
+        fail "packages are missing and only root can install them" "As root: apt-get install $missing"
+    fi
+    say "Installing with apt (takes a minute or two): $missing"
+    as_root apt-get -o DPkg::Lock::Timeout=300 update -qq ||
+        fail "apt-get update" "Check the network and /etc/apt/sources.list, then start again"
+    # shellcheck disable=SC2086 # a list of words
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
+        install -y -qq --no-install-recommends $missing >/dev/null ||
+        fail "apt-get install $missing" "See apt's message above; needed is Debian 12, Ubuntu 24.04 or later"
+}
+
+install_with_brew() {
+    local cellar package missing=""
+    cellar=$(brew --prefix)/opt
+    for package in $1; do
+        [ -e "$cellar/$package" ] || missing="$missing $package"
+    done
+    [ -n "$missing" ] || return 0
+    say "Installing with Homebrew:$missing"
+    # shellcheck disable=SC2086 # a list of words
+    brew install -q $missing || fail "brew install$missing" "See Homebrew's message above"
+}
+
+# install_packages build|test|tidy
+install_packages() {
+    local apt=$apt_packages brew=$brew_packages
+    if [ "$1" = tidy ]; then
+        apt="$apt $apt_tidy_packages"
+        brew="$brew $brew_tidy_packages"
+    fi
+    if [ "${POGOSIM_PACKAGES:-}" = skip ]; then
+        return
+    elif command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
+        install_with_apt "$apt"
+    elif command -v brew >/dev/null; then
+        install_with_brew "$brew"
+    else
+        printf 'Neither apt nor Homebrew is here. Install these (names of Debian):\n' >&2
+        # shellcheck disable=SC2086 # a list of words
+        printf '  %s\n' $apt >&2
+        fail "packages cannot be installed" "When they are there: POGOSIM_PACKAGES=skip $0"
+    fi
+}
+
+system_python() {
+    if [ "$(uname)" = Linux ] && [ -x /usr/bin/python3 ]; then
+        printf /usr/bin/python3
+    else
+        command -v python3
+    fi
+}
+
+# make_venv build|test: .venv with the Python package of the project, editable, and what it depends on. A stamp tells
+# for which pyproject.toml and folder that was done; an environment does not survive a move.
+make_venv() {
+    local root extra="" stamp=.venv/stamp-$1 key python
+    root=$(pwd -P)
+    key="$(cksum <python/pyproject.toml) $root"
+    if [ "$(cat "$stamp" 2>/dev/null)" = "$key" ] && .venv/bin/python -c '' 2>/dev/null; then
+        return
+    fi
+
+    if [ "$(cat .venv/root 2>/dev/null)" != "$root" ] || ! .venv/bin/python -m pip --version >/dev/null 2>&1; then
+        python=$(system_python) || fail "there is no python3" "Install Python 3.9 or later"
+        say "Making .venv with $python"
+        "$python" -m venv --clear .venv || fail "$python -m venv" "See Python's message above; remove .venv and start again"
+        printf '%s' "$root" >.venv/root
+    fi
+    if [ "$1" = test ]; then
+        extra="[test]"
+    fi
+    say "Installing Python packages in .venv"
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --editable "./python$extra" ||
+        fail "pip install ./python$extra" "See pip's message above: check the network, then start again"
+    printf '%s' "$key" | tee .venv/stamp-build >"$stamp"
+}
+
+# bootstrap build|test|tidy
+bootstrap() {
+    install_packages "$1"
+    case $1 in
+        build) make_venv build ;;
+        *) make_venv test ;;
+    esac
+}
+
+# configure FOLDER TYPE [options of cmake]: a folder of a project that was moved is made anew.
+configure() {
+    local folder=$1 type=$2 generator=""
+    shift 2
+    mkdir -p "$folder"
+    if [ -f "$folder/CMakeCache.txt" ]; then
+        grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$(pwd -P)" "$folder/CMakeCache.txt" || rm -rf "$folder"
+    fi
+    if command -v ninja >/dev/null && [ ! -f "$folder/CMakeCache.txt" ]; then
+        generator=-GNinja
+    fi
+    cmake -S "$(pwd -P)" -B "$folder" ${generator:+"$generator"} -DCMAKE_BUILD_TYPE="$type" "$@" >"$folder.log" 2>&1 || {
+        cat "$folder.log" >&2
+        return 1
+    }
+}
+
+processors() { getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2; }

@@ -1,0 +1,153 @@
+#!/usr/bin/env bash
+# Runs every test. Installs what is missing first. The last line counts tests and checks: "N passed, N failed".
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+usage="Usage: ./test.sh [--quick] [--tidy]
+
+Builds Release and runs the C++ tests (CTest) and the Python tests (pytest); builds Debug with sanitizers and runs the
+C++ tests again; checks formatting (clang-format, ruff), Python style (ruff) and types (mypy).
+  --quick      the Release build and its tests only
+  --tidy       clang-tidy over the C++ sources, too (slow)
+  -h, --help   this text"
+
+quick=no
+needs="test"
+for argument in "$@"; do
+    case $argument in
+        --quick) quick=yes ;;
+        --tidy) needs=tidy ;;
+        -h | --help) echo "$usage" && exit 0 ;;
+        *) echo "$usage" >&2 && exit 2 ;;
+    esac
+done
+
+. scripts/bootstrap.sh
+bootstrap "$needs"
+
+python=.venv/bin/python
+reports=build/reports
+mkdir -p "$reports"
+passed=0
+failed=0
+failures=""
+
+count() {  # count PASSED FAILED WHAT
+    passed=$((passed + $1))
+    failed=$((failed + $2))
+    [ "$2" -eq 0 ] || failures="$failures  $3: $2 failed
+"
+}
+
+# check WHAT COMMAND...: one check, which passes if the command does.
+check() {
+    local what=$1
+    shift
+    say "$what"
+    if "$@"; then
+        count 1 0 "$what"
+    else
+        count 0 1 "$what"
+        return 1
+    fi
+}
+
+# suite WHAT REPORT COMMAND...: many tests; the command leaves a JUnit report. One that ends badly without a failed test
+# (a crash, no tests at all) counts as one failure.
+suite() {
+    local what=$1 report=$2 status=0 counts
+    shift 2
+    say "$what"
+    rm -f "$report"
+    "$@" || status=$?
+    counts=$("$python" scripts/count_tests.py "$report") || counts="0 1"
+    if [ "$status" -ne 0 ] && [ "${counts#* }" -eq 0 ]; then
+        counts="${counts% *} 1"
+    fi
+    # shellcheck disable=SC2086 # two numbers
+    count $counts "$what"
+}
+
+# build_tree FOLDER TYPE [options of cmake]
+build_tree() {
+    configure "$@" && cmake --build "$1" --parallel "$(processors)"
+}
+
+run_ctest() {  # run_ctest FOLDER REPORT
+    ctest --test-dir "$1" --output-on-failure --no-tests=error --parallel "$(processors)" --output-junit "$PWD/$2" \
+        >"$1/ctest.log" 2>&1 || {
+        grep -v ' Passed ' "$1/ctest.log"
+        return 1
+    }
+    tail -n 4 "$1/ctest.log"
+}
+
+release_tests() {
+    check "Release build" build_tree build/release Release -DPOGOSIM_BUILD_EXAMPLES=ON -DPOGOSIM_BUILD_TESTS=ON \
+        -DPOGOSIM_BUILD_BENCH=ON || return 0
+    suite "C++ tests (Release)" "$reports/release.xml" run_ctest build/release "$reports/release.xml"
+}
+
+python_tests() {
+    suite "Python tests" "$reports/python.xml" \
+        "$python" -m pytest -q -c python/pyproject.toml --rootdir . tests/python --junitxml "$reports/python.xml"
+}
+
+# Whether leaks can be looked for: that needs ptrace, which many containers forbid.
+leak_sanitizer_works() {
+    echo 'int main() { return 0; }' >"$reports/leak.cpp"
+    c++ -fsanitize=address "$reports/leak.cpp" -o "$reports/leak" && ASAN_OPTIONS=detect_leaks=1 "$reports/leak" 2>/dev/null
+}
+
+sanitized_tests() {
+    local leaks=1
+    if ! leak_sanitizer_works; then
+        echo "Leaks are not looked for: LeakSanitizer needs ptrace, which this machine or container forbids."
+        leaks=0
+    fi
+    # The build runs the test programs too: it asks them for the names of their tests.
+    export ASAN_OPTIONS=detect_leaks=$leaks UBSAN_OPTIONS=print_stacktrace=1
+    check "Debug build with sanitizers" build_tree build/sanitized Debug -DPOGOSIM_SANITIZE=ON -DPOGOSIM_WERROR=ON \
+        -DPOGOSIM_BUILD_EXAMPLES=OFF -DPOGOSIM_BUILD_TESTS=ON -DPOGOSIM_BUILD_BENCH=OFF || return 0
+    suite "C++ tests (sanitizers)" "$reports/sanitized.xml" run_ctest build/sanitized "$reports/sanitized.xml"
+}
+
+# cpp_files: everything that clang-format looks after, separated by zero bytes.
+cpp_files() {
+    find . \( -name build -o -name .venv -o -name .git \) -prune -o \
+        \( -name '*.c' -o -name '*.h' -o -name '*.[ch]pp' \) -print0
+}
+
+clang_format() { cpp_files | xargs -0 .venv/bin/clang-format --dry-run -Werror; }
+
+clang_tidy() {
+    local tidy
+    tidy=$(command -v clang-tidy || command -v clang-tidy-14 || echo "$(brew --prefix llvm)/bin/clang-tidy")
+    find src -name '*.cpp' -print0 |
+        xargs -0 -n 1 -P "$(processors)" "$tidy" -p build/release --quiet --extra-arg=-Wno-unknown-warning-option
+}
+
+style_checks() {
+    local ruff="$python -m ruff"
+    check "C++ formatting (clang-format 14)" clang_format || true
+    # shellcheck disable=SC2086 # a command with arguments
+    check "Python style (ruff)" $ruff check --config python/pyproject.toml python tests/python scripts || true
+    # shellcheck disable=SC2086
+    check "Python formatting (ruff)" $ruff format --check --config python/pyproject.toml python tests/python scripts || true
+    check "Python types (mypy --strict)" "$python" -m mypy --config-file python/pyproject.toml python/pogosim || true
+}
+
+release_tests
+python_tests
+if [ "$quick" = no ]; then
+    sanitized_tests
+    style_checks
+fi
+if [ "$needs" = tidy ]; then
+    check "clang-tidy" clang_tidy || true
+fi
+
+echo
+printf '%s' "$failures"
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,30 @@
+"""What all Python tests share: modules beside them, and test programs compiled once."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "python"), str(ROOT / "bench")]
+
+from running import PROGRAMS, compile_program  # noqa: E402
+
+Compile = Callable[[str], Path]
+
+
+@pytest.fixture(scope="session")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Compile:
+    """Return a function from the name of a file in tests/programs to the program, compiled at the first call."""
+    compiled: dict[str, Path] = {}
+
+    def compile_once(name: str) -> Path:
+        if name not in compiled:
+            source = PROGRAMS / name
+            compiled[name] = compile_program(tmp_path_factory.mktemp(source.stem) / source.stem, source)
+        return compiled[name]
+
+    return compile_once

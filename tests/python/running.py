@@ -1,0 +1,155 @@
+"""Compiling and running programs as a user does: a compiler, pkg-config, a configuration file and a command line."""
+
+from __future__ import annotations
+
+import copy
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pyarrow as pa
+import yaml
+from pogosim.utils import load_dataframe
+from pyarrow import ipc
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAMS = ROOT / "tests" / "programs"
+LIBRARY = "libpogosim.dylib" if sys.platform == "darwin" else "libpogosim.so"
+
+SCENE: dict[str, Any] = {
+    "arena_file": "arenas/disk.csv",
+    "arena_surface": 1.0e6,
+    "simulation_time": 2.0,
+    "time_step": 0.01,
+    "save_data_period": 0.1,
+    "data_filename": "data.feather",
+    "seed": 1,
+    "GUI": False,
+    "objects": {"robots": {"type": "pogobot", "nb": 3, "geometry": "disk", "radius": 26.5}},
+}
+
+Settings = Mapping[str, object]
+
+
+def scene(settings: Settings) -> dict[str, Any]:
+    """Return the scene with some keys (dotted paths) changed; None takes a key out."""
+    result = copy.deepcopy(SCENE)
+    for path, value in settings.items():
+        *parents, key = path.split(".")
+        node = result
+        for parent in parents:
+            node = node.setdefault(parent, {})
+        if value is None:
+            del node[key]
+        else:
+            node[key] = value
+    return result
+
+
+@dataclass(frozen=True)
+class Run:
+    """A program that has ended."""
+
+    code: int
+    output: str
+    errors: str
+    folder: Path
+
+    @property
+    def text(self) -> str:
+        """All that was printed."""
+        return self.output + self.errors
+
+    @property
+    def robot_lines(self) -> list[str]:
+        """What robots printed, without date and level: "[ROBOT #0] [PRINTF] hello"."""
+        return [line[line.index("[ROBOT #") :] for line in self.output.splitlines() if "[ROBOT #" in line]
+
+    def frame(self, name: str = "data.feather") -> pd.DataFrame:
+        """Rows of the data file."""
+        return load_dataframe(self.folder / name)[0]
+
+    def table(self, name: str = "data.feather") -> pa.Table:
+        """The data file with its types and metadata."""
+        with ipc.open_file(self.folder / name) as reader:
+            return reader.read_all()
+
+
+def write_scene(folder: Path, settings: Settings) -> Path:
+    """Write scene.yaml in a folder, which is made."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "scene.yaml"
+    path.write_text(yaml.safe_dump(scene(settings), sort_keys=False))
+    return path
+
+
+def start(program: Path, folder: Path, settings: Settings | None = None) -> subprocess.Popen[str]:
+    """Start a program headless in a folder, to be disturbed while it runs."""
+    write_scene(folder, settings or {})
+    command = [str(program), "-c", "scene.yaml", "-g"]
+    return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def run(program: Path, folder: Path, settings: Settings | None = None, arguments: Sequence[str] = ()) -> Run:
+    """Run a program headless in a folder, with scene.yaml made there."""
+    write_scene(folder, settings or {})
+    return run_command(program, folder, ["-c", "scene.yaml", "-g", *arguments])
+
+
+def run_command(program: Path, folder: Path, arguments: Sequence[str]) -> Run:
+    """Run a program with these arguments in a folder."""
+    ended = subprocess.run(
+        [str(program), *arguments], cwd=folder, capture_output=True, text=True, timeout=120, check=False
+    )
+    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+
+
+def example(name: str) -> Path:
+    """Return a built example program."""
+    path = ROOT / "examples" / name / name
+    assert path.exists(), f"{path} is not built: run ./build.sh"
+    return path
+
+
+@cache
+def build_folder() -> Path:
+    """Return the folder of the built library: POGOSIM_BUILD_DIR, or else the newest without sanitizers."""
+    if chosen := os.environ.get("POGOSIM_BUILD_DIR"):
+        return Path(chosen).resolve()
+    libraries = sorted((ROOT / "build").glob(f"*/src/{LIBRARY}"), key=lambda path: path.stat().st_mtime)
+    folders = [library.parents[1] for library in libraries]
+    usable = [f for f in folders if "POGOSIM_SANITIZE:BOOL=ON" not in (f / "CMakeCache.txt").read_text()]
+    assert usable, f"no {LIBRARY} in {ROOT / 'build'}/*/src: run ./build.sh"
+    return usable[-1]
+
+
+def pkg_config(*arguments: str) -> list[str]:
+    """Ask pkg-config about the built library."""
+    environment = {**os.environ, "PKG_CONFIG_PATH": str(build_folder())}
+    command = ["pkg-config", *arguments, "pogosim"]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.split()
+
+
+def compile_program(
+    output: Path, *sources: Path, compiler: str | None = None, flags: Sequence[str] = ("-Wall", "-Wextra", "-Werror")
+) -> Path:
+    """Compile sources of one language to a program; a warning fails."""
+    is_cpp = sources[0].suffix == ".cpp"
+    command = [compiler or ("c++" if is_cpp else "cc"), "-std=c++20" if is_cpp else "-std=c11", "-O1", *flags]
+    command += [str(source) for source in sources]
+    command += [*pkg_config("--cflags", "--libs"), "-o", str(output)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"{' '.join(command)}\n{done.stderr}"
+    return output
+
+
+def compiler(*names: str) -> str | None:
+    """Return the first of these compilers that is installed."""
+    return next((name for name in names if shutil.which(name)), None)

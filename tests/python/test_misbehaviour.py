@@ -1,0 +1,190 @@
+"""Nothing is lost: whatever ends a run, the data file is readable and a message says where it happened."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Compile
+from running import Run, run, start
+
+# Robot 1 misbehaves in tick 10, which begins at 0.16 s: ticks last 16 ms.
+WHERE = "in user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s"
+SAVED_TIMES = [0.0, 0.1]
+
+
+def misbehave(program: Compile, folder: Path, kind: str, place: str = "user_step", **parameters: object) -> Run:
+    chosen = {"kind": kind, "place": place, **parameters}
+    return run(program("misbehave.c"), folder, {"parameters": chosen, "user_code_timeout": 0.25})
+
+
+def saved_times(result: Run) -> list[float]:
+    frame = result.frame()
+    assert len(frame) == 3 * frame["time"].nunique()
+    return [round(float(t), 4) for t in frame["time"].unique()]
+
+
+def test_program_that_behaves_ends_with_0_and_says_nothing(program: Compile, tmp_path: Path) -> None:
+    result = misbehave(program, tmp_path, "nothing")
+    assert (result.code, result.errors) == (0, "")
+    np.testing.assert_allclose(saved_times(result), np.arange(21) * 0.1, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "what"),
+    [
+        ("write_to_null", "segmentation fault at address"),
+        ("divide_by_zero", "integer division by zero"),
+        ("abort", r"abort\(\)"),
+        ("overflow_the_stack", "segmentation fault at address"),
+        ("write_beyond_userdata", "segmentation fault at address"),
+        ("loop_for_ever", r"did not return within 0\.25 s of processor time \(user_code_timeout\)"),
+    ],
+)
+def test_crash_in_user_code_ends_with_3_a_message_and_a_readable_file(
+    program: Compile, tmp_path: Path, kind: str, what: str
+) -> None:
+    result = misbehave(program, tmp_path, kind)
+    assert result.code == 3
+    assert f"the user program failed {WHERE}: " in result.errors
+    assert re.search(what, result.errors)
+    assert "The data file 'data.feather' is complete up to there" in result.errors
+    assert saved_times(result) == SAVED_TIMES
+
+
+@pytest.mark.parametrize(("kind", "code", "verb"), [("exit_with_7", 7, "failed"), ("exit_with_0", 0, "ended")])
+def test_exit_in_user_code_keeps_its_code_and_the_data(
+    program: Compile, tmp_path: Path, kind: str, code: int, verb: str
+) -> None:
+    result = misbehave(program, tmp_path, kind)
+    assert result.code == code
+    assert f"the user program {verb} {WHERE}: called exit({code})" in result.errors
+    assert saved_times(result) == SAVED_TIMES
+
+
+def test_robot_that_stops_the_simulation_ends_it_well(program: Compile, tmp_path: Path) -> None:
+    result = misbehave(program, tmp_path, "stop_simulation")
+    assert (result.code, result.errors) == (0, "")
+    assert saved_times(result) == SAVED_TIMES
+
+
+def test_cpp_exception_is_reported_with_its_text(program: Compile, tmp_path: Path) -> None:
+    result = run(program("throw.cpp"), tmp_path)
+    assert result.code == 3
+    assert f"the user program failed {WHERE}: C++ exception: a tyre is flat" in result.errors
+    assert saved_times(result) == SAVED_TIMES
+
+
+@pytest.mark.parametrize(
+    ("place", "who"),
+    [
+        ("main", "robot #1 of category 'robots', tick 0, t = 0.0000 s"),
+        ("global_setup", "robot #2 of category 'robots', tick 0, t = 0.0000 s"),
+        ("user_init", "robot #1 of category 'robots', tick 0, t = 0.0000 s"),
+        ("create_data_schema", "the simulator's own context, tick 0, t = 0.0000 s"),
+        ("export_data", "robot #1 of category 'robots', tick 6, t = 0.1000 s"),
+        ("global_step", "the simulator's own context, tick 10, t = 0.1600 s"),
+        ("robot_end", "robot #1 of category 'robots', tick 125, t = 2.0000 s"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["write_to_null", "loop_for_ever"])
+def test_failure_in_any_function_of_the_program_names_the_function(
+    program: Compile, tmp_path: Path, place: str, who: str, kind: str
+) -> None:
+    result = misbehave(program, tmp_path, kind, place)
+    assert result.code == 3
+    assert f"the user program failed in {place} of {who}: " in result.errors
+    # There is a file as soon as its columns are known.
+    if place in ("export_data", "global_step", "robot_end"):
+        assert len(result.frame()) > 0
+    else:
+        assert not (tmp_path / "data.feather").exists()
+
+
+@pytest.mark.parametrize(
+    ("kind", "place", "what"),
+    [
+        ("set_unknown_column", "export_data", "no column 'nobody declared this'"),
+        ("set_wrong_type", "export_data", 'data_set_value_double("declared_as_int16"): the column was declared as int16'),
+        ("declare_column_twice", "create_data_schema", "already has a column of this name"),
+        ("declare_column_twice", "user_step", "belongs into callback_create_data_schema"),
+    ],
+)
+def test_wrong_use_of_columns_ends_with_2_and_names_the_column(
+    program: Compile, tmp_path: Path, kind: str, place: str, what: str
+) -> None:
+    result = misbehave(program, tmp_path, kind, place)
+    assert result.code == 2
+    assert what in result.errors
+    assert result.errors.count("\n") == 1
+
+
+def test_values_set_outside_of_the_callback_warn_once(program: Compile, tmp_path: Path) -> None:
+    result = misbehave(program, tmp_path, "set_wrong_type")
+    assert result.code == 0
+    assert result.errors.count("data_set_value_* has no effect outside callback_export_data") == 1
+
+
+@pytest.mark.parametrize("value", ["many", 1.0e10, [1, 2]])
+def test_parameter_of_the_wrong_type_ends_with_2_and_names_the_key(
+    program: Compile, tmp_path: Path, value: object
+) -> None:
+    result = misbehave(program, tmp_path, "read_number", "user_init", number=value)
+    assert result.code == 2
+    assert "scene.yaml:" in result.errors
+    assert "parameters.number: expected an integer" in result.errors
+
+
+def wait_until_it_runs(process: subprocess.Popen[str]) -> None:
+    assert process.stdout is not None
+    assert "first tick" in process.stdout.readline()
+
+
+def end(process: subprocess.Popen[str], folder: Path) -> Run:
+    output, errors = process.communicate(timeout=60)
+    return Run(process.returncode, output, errors, folder)
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_interrupted_run_ends_with_130_and_complete_data(program: Compile, tmp_path: Path, name: str) -> None:
+    process = start(program("misbehave.c"), tmp_path, {"simulation_time": 1.0e6, "save_data_period": 1.0})
+    wait_until_it_runs(process)
+    time.sleep(0.2)
+    process.send_signal(signal.Signals[name])
+    result = end(process, tmp_path)
+    assert result.code == 130
+    match = re.search(r"interrupted at t = ([0-9.]+) s\. The data file 'data\.feather' is complete", result.errors)
+    assert match
+    times = saved_times(result)
+    assert times == list(range(len(times)))
+    assert times[-1] == int(float(match.group(1)))
+
+
+def test_second_interrupt_ends_user_code_that_hangs(program: Compile, tmp_path: Path) -> None:
+    process = start(program("misbehave.c"), tmp_path, {"user_code_timeout": 0, "parameters.kind": "loop_for_ever"})
+    wait_until_it_runs(process)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.2)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    result = end(process, tmp_path)
+    assert result.code == 130
+    assert f"{WHERE}: interrupted again before it returned" in result.errors
+    assert saved_times(result) == SAVED_TIMES
+
+
+def test_run_under_nohup_survives_the_end_of_its_terminal(program: Compile, tmp_path: Path) -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        process = start(program("misbehave.c"), tmp_path, {"simulation_time": 3000.0})
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    wait_until_it_runs(process)
+    process.send_signal(signal.SIGHUP)
+    assert end(process, tmp_path).code == 0

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pogosim.utils import init_logging, load_dataframe, parse_configuration, save_figure
+from pyarrow import feather
+
+
+def write(path: Path, metadata: dict[str, str]) -> Path:
+    table = pa.table({"time": pa.array([0.0, 1.5], pa.float32()), "x": pa.array([10.0, None], pa.float32())})
+    feather.write_feather(table.replace_schema_metadata(metadata), path, compression="zstd")
+    return path
+
+
+def test_rows_come_back_as_pandas_reads_them(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.feather", {})
+    frame, _ = load_dataframe(path)
+    pd.testing.assert_frame_equal(frame, pd.read_feather(path))
+    assert frame["time"].dtype == np.float32
+
+
+def test_path_may_be_a_text(tmp_path: Path) -> None:
+    frame, _ = load_dataframe(str(write(tmp_path / "a.feather", {})))
+    assert len(frame) == 2
+
+
+def test_all_metadata_come_back_and_the_configuration_is_a_dictionary(tmp_path: Path) -> None:
+    metadata = {"program_version": "v1.2.3", "configuration": "seed: 7\nobjects:\n  robots: {nb: 3}\n", "é": "ü"}
+    _, read = load_dataframe(write(tmp_path / "a.feather", metadata))
+    assert read["program_version"] == "v1.2.3"
+    assert read["é"] == "ü"
+    assert read["configuration"] == {"seed": 7, "objects": {"robots": {"nb": 3}}}
+
+
+def test_file_without_metadata_has_an_empty_configuration(tmp_path: Path) -> None:
+    frame = pd.DataFrame({"x": [1.0]})
+    table = pa.Table.from_pandas(frame).replace_schema_metadata(None)
+    feather.write_feather(table, tmp_path / "a.feather")
+    _, read = load_dataframe(tmp_path / "a.feather")
+    assert read == {"configuration": {}}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a: 1\nb: [x, 2.5]", {"a": 1, "b": ["x", 2.5]}),
+        ("arena_surface: 1.0e6", {"arena_surface": "1.0e6"}),  # PyYAML follows YAML 1.1
+        ('{"a": true,\t"b": null}', {"a": True, "b": None}),
+        ("{'a': 'one ' 'text'}", {"a": "one text"}),  # a Python literal only
+        ("{'a' 'b': 1, []: 2}", {}),
+        ("[" * 100_000, {}),
+        ("", {}),
+        ("just a text", {}),
+        ("- a\n- list", {}),
+        ("a: [1", {}),
+        ("a: !!python/object:os.system {}", {}),
+        ("\x00", {}),
+    ],
+)
+def test_configuration_is_read_as_yaml_json_or_literal_and_else_empty(text: str, expected: object) -> None:
+    assert parse_configuration(text) == expected
+
+
+@given(st.text())
+def test_no_text_breaks_the_parser_of_configurations(text: str) -> None:
+    assert isinstance(parse_configuration(text), dict)
+
+
+def test_missing_file_is_a_file_not_found_error(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        load_dataframe(tmp_path / "none.feather")
+
+
+@pytest.mark.parametrize("content", [b"", b"not a table, but long enough to hold a footer"])
+def test_file_of_another_kind_is_refused_by_name(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "a.feather"
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=r"a\.feather is not a complete Feather file"):
+        load_dataframe(path)
+
+
+def test_truncated_file_is_refused_by_name(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.feather", {})
+    path.write_bytes(path.read_bytes()[:-20])
+    with pytest.raises(ValueError, match=r"a\.feather is not a complete Feather file"):
+        load_dataframe(path)
+
+
+def test_figure_is_saved_in_a_new_folder_and_closed(tmp_path: Path) -> None:
+    plt.switch_backend("agg")
+    plt.figure()
+    plt.plot([0, 1], [0, 1])
+    save_figure(tmp_path / "new" / "a.png", dpi=50)
+    assert (tmp_path / "new" / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert plt.get_fignums() == []
+
+
+@pytest.mark.parametrize(("verbose", "level"), [(False, logging.INFO), (True, logging.DEBUG)])
+def test_verbose_logging_starts_at_debug(verbose: bool, level: int) -> None:
+    root = logging.getLogger()
+    handlers, before = root.handlers[:], root.level
+    try:
+        init_logging(verbose)
+        assert root.level == level
+    finally:
+        root.handlers[:] = handlers
+        root.setLevel(before)
