@@ -24,11 +24,11 @@ constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;
 
 constexpr std::array kDataFolders{POGOSIM_INSTALLED_DATA_DIR, POGOSIM_SOURCE_DATA_DIR};
 
-/// The arena file: below the working folder, else below the data folders.
-std::filesystem::path find_arena_file(std::string const& name) {
+/// A file that the configuration names: below the working folder, else below the data folders.
+std::filesystem::path find_file(std::string const& name) {
     std::filesystem::path const path(name);
     std::error_code ignored;
-    if (path.is_absolute() || std::filesystem::exists(path, ignored)) {
+    if (path.empty() || path.is_absolute() || std::filesystem::exists(path, ignored)) {
         return path;
     }
     for (std::filesystem::path const folder : kDataFolders) {
@@ -44,7 +44,7 @@ ArenaOutline unit_square() {
 }
 
 void build_arena(Scenario const& scenario, World& world) {
-    ArenaOutline outline = read_arena_file(find_arena_file(scenario.arena_file));
+    ArenaOutline outline = read_arena_file(find_file(scenario.arena_file));
     world.periodic = scenario.boundary == BoundaryCondition::periodic;
     if (outline.polygons.empty()) {
         log().warn("arena file '{}' is empty: the arena is a square with a periodic boundary", scenario.arena_file);
@@ -102,8 +102,10 @@ Arena formation_domain(Scenario const& scenario, World const& world) {
 void place_robots(Scenario const& scenario, World& world, std::uint32_t seed) {
     RandomStream random(seed, kFormationStream);
     std::vector<float> const radii = radii_to_place(scenario);
+    FormationSpec formation = scenario.formation;
+    formation.filename = find_file(formation.filename).string();
     std::vector<Placement> const placements =
-        place(scenario.formation, radii, formation_domain(scenario, world), random, read_imported_feather);
+        place(formation, radii, formation_domain(scenario, world), random, read_imported_feather);
     auto next = placements.begin();
     for (ObjectConfig const& object : scenario.objects) {
         auto const* const spec = std::get_if<RobotSpec>(&object.spec);

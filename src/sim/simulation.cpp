@@ -77,20 +77,24 @@ bool Simulation::is_over() const {
 }
 
 ExitCode Simulation::run() {
+    running = this;
+    std::atexit(finish_at_exit);
     std::optional<UserFailure> failure;
     std::optional<UserFailure> const crash = call_simulator_code([&] { failure = run_steps(); });
+    if (crash) {
+        failure = crash;
+    }
     // The message first: completing the file may fail after a crash that destroyed memory.
-    if (crash || failure) {
-        report(crash ? *crash : *failure);
-        finish();
-        return crash ? crash->code : failure->code;
+    ExitCode const code = failure ? report(*failure) : interrupted() ? ExitCode::interrupted : ExitCode::done;
+    if (code == ExitCode::user_program && !data_file_ && scenario_.output.enable_data_logging) {
+        make_data_file();  // without rows: the file of an earlier run must not pass for this one's
     }
     finish();
-    if (interrupted()) {
-        log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), data_file_note());
-        return ExitCode::interrupted;
+    if (code == ExitCode::interrupted) {
+        log().warn("interrupted at t = {:.4f} s; the data file is complete up to there", world_.time_s());
     }
-    return ExitCode::done;
+    running = nullptr;
+    return code;
 }
 
 std::optional<UserFailure> Simulation::run_steps() {
@@ -158,20 +162,26 @@ void Simulation::fit_time_step() {
 }
 
 std::optional<UserFailure> Simulation::open_data_file() {
-    OutputConfig const& output = scenario_.output;
-    if (!output.enable_data_logging) {
+    if (!scenario_.output.enable_data_logging) {
         return std::nullopt;
     }
     if (auto failure = call_user_code([this] { programs_.declare_columns(); })) {
         return failure;
     }
-    data_file_ = std::make_unique<DataFile>(DataFileOptions{.path = output.data_filename,
-                                                            .user_columns = services_.data.columns,
-                                                            .fields = output.fields,
-                                                            .led_column = output.led_column,
-                                                            .flush_row_count = output.flush_row_count,
-                                                            .metadata = run_metadata(scenario_, world_.arena, seed_)});
+    make_data_file();
     return std::nullopt;
+}
+
+void Simulation::make_data_file() {
+    OutputConfig const& output = scenario_.output;
+    DataFileOptions options;
+    options.path = output.data_filename;
+    options.user_columns = services_.data.columns;
+    options.fields = output.fields;
+    options.led_column = output.led_column;
+    options.flush_row_count = output.flush_row_count;
+    options.metadata = run_metadata(scenario_, world_.arena, seed_);
+    data_file_ = std::make_unique<DataFile>(options);
 }
 
 std::optional<UserFailure> Simulation::record_if_due() {

@@ -51,6 +51,7 @@ public:
 private:
     std::optional<UserFailure> run_steps();
     std::optional<UserFailure> open_data_file();
+    void make_data_file();
     std::optional<UserFailure> record_if_due();
     std::optional<UserFailure> record_rows();
     void fit_time_step();

@@ -10,60 +10,75 @@ constexpr std::size_t kHeaderBytes = sizeof(FrameHeader);
 
 }  // namespace
 
-Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes) {
-    std::size_t total = 0;
-    queues_.reserve(queue_sizes.size());
-    for (int const max_count : queue_sizes) {
-        std::size_t const capacity = static_cast<std::size_t>(max_count) * (kHeaderBytes + max_payload_bytes);
-        queues_.push_back({.block = total, .capacity = capacity, .max_count = max_count});
-        total += capacity;
+void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader const& header,
+                           std::span<std::byte const> payload) {
+    std::size_t const needed = kHeaderBytes + payload.size();
+    if (tail + needed > capacity) {
+        // There is room once the messages already read are gone.
+        std::memmove(block, block + head, tail - head);
+        tail -= head;
+        head = 0;
     }
-    storage_ = std::make_unique_for_overwrite<std::byte[]>(total);
+    std::memcpy(block + tail, &header, kHeaderBytes);
+    if (!payload.empty()) {
+        std::memcpy(block + tail + kHeaderBytes, payload.data(), payload.size());
+    }
+    tail += static_cast<std::uint32_t>(needed);
+    ++count;
+}
+
+void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::byte* payload) {
+    std::memcpy(&header, block + head, kHeaderBytes);
+    std::memcpy(payload, block + head + kHeaderBytes, header.payload_length);
+    head += static_cast<std::uint32_t>(kHeaderBytes + header.payload_length);
+    if (--count == 0) {
+        head = tail = 0;
+    }
+}
+
+Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes) : queues_(queue_sizes.size()) {
+    std::size_t total = 0;
+    for (std::size_t i = 0; i < queues_.size(); ++i) {
+        Queue& queue = queues_[i];
+        queue.max_count = static_cast<std::uint32_t>(queue_sizes[i]);
+        queue.far_block = total;
+        queue.far_capacity = queue.max_count * (kHeaderBytes + max_payload_bytes);
+        total += queue.far_capacity;
+    }
+    far_blocks_ = std::make_unique_for_overwrite<std::byte[]>(total);
 }
 
 bool Mailboxes::push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
     Queue& queue = queues_[robot];
-    if (queue.count == queue.max_count) {
+    if (queue.near.count + queue.far.count == queue.max_count) {
         ++queue.dropped;
         return false;
     }
-    std::byte* const block = storage_.get() + queue.block;
-    std::size_t const needed = kHeaderBytes + payload.size();
-    if (queue.tail + needed > queue.capacity) {
-        // The block holds max_count of the longest messages, so there is room once the read ones are gone.
-        std::memmove(block, block + queue.head, queue.tail - queue.head);
-        queue.tail -= queue.head;
-        queue.head = 0;
+    // Once a message lies far, the next ones do too, so that all near ones are older.
+    if (queue.far.count == 0 && queue.near.has_room(kHeaderBytes + payload.size(), kNearBytes)) {
+        queue.near.push(queue.near_block.data(), kNearBytes, header, payload);
+    } else {
+        queue.far.push(far_blocks_.get() + queue.far_block, queue.far_capacity, header, payload);
     }
-    std::memcpy(block + queue.tail, &header, kHeaderBytes);
-    if (!payload.empty()) {
-        std::memcpy(block + queue.tail + kHeaderBytes, payload.data(), payload.size());
-    }
-    queue.tail += needed;
-    ++queue.count;
     return true;
 }
 
 bool Mailboxes::pop(std::size_t robot, FrameHeader& header, std::byte* payload) {
     Queue& queue = queues_[robot];
-    if (queue.count == 0) {
-        return false;
+    if (queue.near.count > 0) {
+        queue.near.pop(queue.near_block.data(), header, payload);
+        return true;
     }
-    std::byte const* const message = storage_.get() + queue.block + queue.head;
-    std::memcpy(&header, message, kHeaderBytes);
-    std::memcpy(payload, message + kHeaderBytes, header.payload_length);
-    queue.head += kHeaderBytes + header.payload_length;
-    --queue.count;
-    if (queue.count == 0) {
-        queue.head = queue.tail = 0;
+    if (queue.far.count > 0) {
+        queue.far.pop(far_blocks_.get() + queue.far_block, header, payload);
+        return true;
     }
-    return true;
+    return false;
 }
 
 void Mailboxes::clear(std::size_t robot) {
-    Queue& queue = queues_[robot];
-    queue.head = queue.tail = 0;
-    queue.count = 0;
+    queues_[robot].near = {};
+    queues_[robot].far = {};
 }
 
 }  // namespace pogosim

@@ -47,8 +47,9 @@ struct Air {
     }
 };
 
-/// Every robot's FIFO of received messages. Messages lie one behind the other in one block per robot, so that short
-/// messages touch little memory; pages that are never used cost nothing.
+/// Every robot's FIFO of received messages. Messages lie one behind the other in the robot's near block, a few cache
+/// lines beside its counters; what does not fit there goes to its far block, which has room for a queue of the longest
+/// messages and costs no memory before it is used.
 class Mailboxes {
 public:
     Mailboxes() = default;
@@ -59,8 +60,8 @@ public:
     /// Appends a message, or counts it as dropped and returns false when the queue is full.
     bool push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
 
-    bool empty(std::size_t robot) const { return queues_[robot].count == 0; }
-    int size(std::size_t robot) const { return queues_[robot].count; }
+    bool empty(std::size_t robot) const { return queues_[robot].near.count == 0 && queues_[robot].far.count == 0; }
+    int size(std::size_t robot) const { return static_cast<int>(queues_[robot].near.count + queues_[robot].far.count); }
 
     /// Takes the oldest message out; `payload` receives payload_length bytes. False when there is none.
     bool pop(std::size_t robot, FrameHeader& header, std::byte* payload);
@@ -71,18 +72,32 @@ public:
     std::uint64_t dropped(std::size_t robot) const { return queues_[robot].dropped; }
 
 private:
+    /// Messages in a block of bytes.
+    struct Fifo {
+        std::uint32_t head = 0;  // first byte of the oldest message
+        std::uint32_t tail = 0;  // one past the newest
+        std::uint32_t count = 0;
+
+        bool has_room(std::size_t bytes, std::size_t capacity) const { return tail - head + bytes <= capacity; }
+        void push(std::byte* block, std::size_t capacity, FrameHeader const& header,
+                  std::span<std::byte const> payload);
+        void pop(std::byte const* block, FrameHeader& header, std::byte* payload);
+    };
+
+    static constexpr std::size_t kNearBytes = 192;
+
     struct Queue {
-        std::size_t block = 0;     // offset of this robot's bytes in storage_
-        std::size_t capacity = 0;  // bytes
-        std::size_t head = 0;      // first byte of the oldest message, from block
-        std::size_t tail = 0;      // one past the newest
-        int count = 0;
-        int max_count = 0;
+        Fifo near;
+        Fifo far;
+        std::uint32_t max_count = 0;
         std::uint64_t dropped = 0;
+        std::size_t far_block = 0;     // offset in far_blocks_
+        std::size_t far_capacity = 0;  // bytes
+        std::array<std::byte, kNearBytes> near_block;
     };
 
     std::vector<Queue> queues_;
-    std::unique_ptr<std::byte[]> storage_;
+    std::unique_ptr<std::byte[]> far_blocks_;
 };
 
 }  // namespace pogosim

@@ -140,9 +140,10 @@ def pkg_config(*arguments: str) -> list[str]:
 def compile_program(
     output: Path, *sources: Path, compiler: str | None = None, flags: Sequence[str] = ("-Wall", "-Wextra", "-Werror")
 ) -> Path:
-    """Compile sources of one language to a program; a warning fails."""
+    """Compile sources of one language to a program."""
     is_cpp = sources[0].suffix == ".cpp"
-    command = [compiler or ("c++" if is_cpp else "cc"), "-std=c++20" if is_cpp else "-std=c11", "-O1", *flags]
+    standard = [] if any(flag.startswith("-std=") for flag in flags) else ["-std=c++20" if is_cpp else "-std=c11"]
+    command = [compiler or ("c++" if is_cpp else "cc"), *standard, "-O1", *flags]
     command += [str(source) for source in sources]
     command += [*pkg_config("--cflags", "--libs"), "-o", str(output)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -1,0 +1,151 @@
+"""Programs compile against the headers in every supported language, and do the same thing in each."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import Compile
+from running import PROGRAMS, ROOT, build_folder, compile_program, compiler, pkg_config, run
+
+STRICT = ["-Wall", "-Wextra", "-Werror"]
+C_STANDARDS = ["c11", "c17", "gnu11"]
+CPP_STANDARDS = ["c++17", "c++20", "gnu++20"]
+C_COMPILERS = [name for name in (compiler("gcc"), compiler("clang", "clang-14")) if name]
+CPP_COMPILERS = [name for name in (compiler("g++"), compiler("clang++", "clang++-14")) if name]
+
+CASES = [
+    (c, [f"-std={std}", *options])
+    for c in C_COMPILERS
+    for std in C_STANDARDS
+    for options in ([], ["-DNO_SEMICOLON", "-O2"])
+] + [
+    (cpp, ["-x", "c++", f"-std={std}", *options])
+    for cpp in CPP_COMPILERS
+    for std in CPP_STANDARDS
+    for options in (
+        [],
+        ["-DINSIDE_EXTERN_C", "-O2"],
+        ["-DNO_SEMICOLON", "-DPLAIN_MAIN"],
+        ["-DINSIDE_EXTERN_C", "-DNO_SEMICOLON", "-fno-exceptions", "-fno-rtti"],
+    )
+]
+
+SETTINGS = {
+    "arena_surface": 5.0e4,
+    "objects.robots.msg_success_rate": {"type": "static", "rate": 1.0},
+    "parameters": {
+        "a_bool": True,
+        "an_int8": -8,
+        "an_int16": -1600,
+        "an_int32": -320000,
+        "a_uint8": 200,
+        "a_uint16": 60000,
+        "a_uint32": 4000000000,
+        "a_float": 0.5,
+        "a_double": 1.0e100,
+        "settings": {"gain": 2.5},
+        "floats": [10, 20.5, 30, 40],
+        "doubles": [0.25, 0.75],
+        "text": "too long a text",
+    },
+}
+READ = "[ROBOT #2] [PRINTF] read 1 -8 -1600 -320000 200 60000 4000000000 0.5 1e+100 2.5 [10 20.5 30] [0.25 0.75] too lon"
+PRINTED = [
+    "sum 0",
+    "rainbow 25 0 0, light 0, temperature 42.0",
+    "directions 010 status 2 powers 512 512 0 battery 32767",
+    "rand positive repeats",
+    "std 1",
+    "puts",
+    "p",
+    "3 robots, category __system",
+    "timer after 112000 us at 112 ms, 7 ticks",
+    "heard something, last of type 16 from 2, 4 bytes: 1 2 3 2",
+    "end of a robot",
+]
+
+
+@pytest.mark.parametrize(("name", "flags"), CASES, ids=lambda part: part if isinstance(part, str) else " ".join(part))
+def test_sample_compiles_without_warnings_and_prints_the_same(name: str, flags: list[str], tmp_path: Path) -> None:
+    sample = compile_program(tmp_path / "sample", PROGRAMS / "sample.c", compiler=name, flags=[*flags, *STRICT])
+    result = run(sample, tmp_path, SETTINGS)
+    assert (result.code, result.errors) == (0, "")
+    assert result.robot_lines == [READ, *(f"[ROBOT #0] [PRINTF] {line}" for line in PRINTED)]
+
+
+
+def test_sample_compiles_as_c_with_pedantic_warnings(tmp_path: Path) -> None:
+    # ISO C wants no second semicolon after a declaration; the macros do without.
+    flags = ["-std=c11", "-DNO_SEMICOLON", "-Wpedantic", *STRICT]
+    compile_program(tmp_path / "sample", PROGRAMS / "sample.c", flags=flags)
+
+
+STANDARD_HEADERS = "".join(f"#include <{name}>\n" for name in ("algorithm", "cstdio", "iostream", "map", "random"))
+
+
+@pytest.mark.parametrize(
+    "included", ['#include "pogobase.h"\n' * 2, 'extern "C" {\n#include "pogobase.h"\n}\n'], ids=["bare", "extern C"]
+)
+@pytest.mark.parametrize("standard_first", [False, True])
+def test_header_goes_before_and_after_those_of_the_standard_library(
+    included: str, standard_first: bool, tmp_path: Path
+) -> None:
+    source = tmp_path / "main.cpp"
+    order = [STANDARD_HEADERS, included] if standard_first else [included, STANDARD_HEADERS]
+    source.write_text("".join(order) + 'int main() { std::printf("hi\\n"); std::puts("x"); return 0; }\n')
+    result = run(compile_program(tmp_path / "main", source), tmp_path, {"objects.robots.nb": 1})
+    assert result.robot_lines == ["[ROBOT #0] [PRINTF] hi", "[ROBOT #0] [PRINTF] x"]
+
+
+def test_program_of_two_files_shares_its_user_data(tmp_path: Path) -> None:
+    folder = PROGRAMS / "two_files"
+    program = compile_program(tmp_path / "two_files", folder / "main.c", folder / "count.c")
+    result = run(program, tmp_path)
+    assert result.robot_lines == [f"[ROBOT #{robot}] [PRINTF] counted to {10 * (robot + 1)}" for robot in range(3)]
+
+
+def test_program_may_be_of_c_and_cpp_files(tmp_path: Path) -> None:
+    folder = PROGRAMS / "two_files"
+    count = tmp_path / "count.o"
+    command = ["cc", "-std=c11", *STRICT, *pkg_config("--cflags"), "-c", str(folder / "count.c"), "-o", str(count)]
+    subprocess.run(command, check=True)
+    main = tmp_path / "main.cpp"
+    main.write_text((folder / "main.c").read_text())
+    program = compile_program(tmp_path / "mixed", main, count, flags=[f"-I{folder}", *STRICT])
+    assert run(program, tmp_path).robot_lines[-1] == "[ROBOT #2] [PRINTF] counted to 30"
+
+
+def test_program_needs_neither_user_data_nor_a_step(program: Compile, tmp_path: Path) -> None:
+    result = run(program("no_userdata.c"), tmp_path)
+    assert (result.code, result.errors) == (0, "")
+    assert result.robot_lines == [f"[ROBOT #{robot}] [PRINTF] robot {robot}" for robot in range(3)]
+    assert result.frame()["pogobot_ticks"].max() == 125
+
+
+def test_program_without_main_does_not_link(tmp_path: Path) -> None:
+    source = tmp_path / "main.c"
+    source.write_text('#include "pogobase.h"\n')
+    with pytest.raises(AssertionError, match="robot_main"):
+        compile_program(tmp_path / "program", source)
+
+
+def test_library_shows_users_the_interface_and_nothing_else() -> None:
+    """Everything else is hidden, so that a program's own names cannot meet ours."""
+    library = next((build_folder() / "src").glob("libpogosim.*"))
+    listing = subprocess.run(
+        ["nm", "-D", "--defined-only", str(library)], capture_output=True, text=True, check=True
+    ).stdout
+    names = {line.split()[-1] for line in listing.splitlines()}
+    headers = "".join(path.read_text() for path in (ROOT / "include").rglob("*.h"))
+    of_libc = {"main", "rand", "srand", "exit"}
+    strangers = {name for name in names - of_libc if not name.startswith("_Z") and name not in headers}
+    assert strangers == set()
+    assert {"pogobot_ticks", "pogosim_printf", "mydata", "UserdataSize"} <= names
+    assert not [name for name in names if name.startswith(("_ZN7pogosim", "_ZNK7pogosim"))]
+
+
+def test_interface_layer_is_short_enough_to_be_read() -> None:
+    lines = sum(len(path.read_text().splitlines()) for path in (ROOT / "src" / "interface").glob("*.c"))
+    assert lines < 200
