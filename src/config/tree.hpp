@@ -15,8 +15,8 @@ struct Node {
     struct Entry;
 
     Kind kind = Kind::null;
-    std::string scalar;   // text of a scalar, unquoted
-    bool quoted = false;  // the scalar stood in quotes: it is a text even if it looks like a number
+    std::string scalar;          // text of a scalar, unquoted
+    bool quoted = false;         // the scalar stood in quotes: it is a text even if it looks like a number
     std::vector<Entry> entries;  // of a map, in the order of the file
     std::vector<Node> items;     // of a sequence
     std::string source;          // file name, or "--set"

@@ -9,7 +9,6 @@ namespace pogosim {
 
 namespace {
 
-constexpr auto kPlainTag = "?";  // what the parser reports for a scalar without quotes and tag
 constexpr auto kTextTag = "tag:yaml.org,2002:str";
 constexpr auto kQuotedTag = "!";
 constexpr auto kMergeKey = "<<";

@@ -77,24 +77,26 @@ bool Simulation::is_over() const {
 }
 
 ExitCode Simulation::run() {
-    running = this;
-    std::atexit(finish_at_exit);
     std::optional<UserFailure> failure;
     std::optional<UserFailure> const crash = call_simulator_code([&] { failure = run_steps(); });
     if (crash) {
         failure = crash;
     }
     // The message first: completing the file may fail after a crash that destroyed memory.
-    ExitCode const code = failure ? report(*failure) : interrupted() ? ExitCode::interrupted : ExitCode::done;
-    if (code == ExitCode::user_program && !data_file_ && scenario_.output.enable_data_logging) {
-        make_data_file();  // without rows: the file of an earlier run must not pass for this one's
+    if (failure) {
+        report(*failure);
+        if (failure->code == ExitCode::user_program && !data_file_ && scenario_.output.enable_data_logging) {
+            make_data_file();  // without rows: the file of an earlier run must not pass for this one's
+        }
+        finish();
+        return failure->code;
     }
     finish();
-    if (code == ExitCode::interrupted) {
-        log().warn("interrupted at t = {:.4f} s; the data file is complete up to there", world_.time_s());
+    if (interrupted()) {
+        log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), data_file_note());
+        return ExitCode::interrupted;
     }
-    running = nullptr;
-    return code;
+    return ExitCode::done;
 }
 
 std::optional<UserFailure> Simulation::run_steps() {
