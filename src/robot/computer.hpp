@@ -7,15 +7,8 @@
 #include <string>
 
 #include "base/random.hpp"
-#include "pogobase.h"
+#include "interface/pogobase_inside.hpp"
 #include "world/world.hpp"
-
-// The user's headers rename these for user programs; the simulator wants the real ones.
-#undef main
-#undef printf
-#undef putchar
-#undef puts
-#undef vprintf
 
 namespace pogosim {
 

@@ -9,11 +9,9 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
-#include "pogobase.h"
 #include "record/imported_poses.hpp"
-
-#undef main
 
 namespace pogosim {
 

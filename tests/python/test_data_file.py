@@ -84,9 +84,7 @@ def test_values_at_the_ends_of_their_ranges_come_back(program: Compile, tmp_path
         assert row["f16"] == np.float16(1 / 3)
 
 
-def test_cell_that_is_not_set_is_null_and_nothing_of_other_rows_leaks_into_it(
-    program: Compile, tmp_path: Path
-) -> None:
+def test_cell_that_is_not_set_is_null_and_nothing_of_other_rows_leaks_into_it(program: Compile, tmp_path: Path) -> None:
     table = columns(program, tmp_path).table()
     names = [field.name for field in table.schema][len(BUILT_IN) :]
     for row in cells(table, 2):
@@ -222,7 +220,9 @@ def test_unknown_keys_stay_in_the_saved_configuration(tmp_path: Path) -> None:
 @pytest.mark.parametrize("arena", ["disk", "annulus", "squarewithHole", "star", "H"])
 def test_polygons_enclose_the_asked_area_in_mm_and_hold_all_robots(tmp_path: Path, arena: str) -> None:
     result = hello(tmp_path, arena_file=f"arenas/{arena}.csv", arena_surface=5.0e5, simulation_time=0.1)
-    polygons = [np.array([[p["x"], p["y"]] for p in corners]) for corners in yaml.safe_load(metadata(result)["arena_polygons"])]
+    polygons = [
+        np.array([[p["x"], p["y"]] for p in corners]) for corners in yaml.safe_load(metadata(result)["arena_polygons"])
+    ]
     outer, *holes = [abs(np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1])) / 2 for p in polygons]
     assert outer - sum(holes) == pytest.approx(5.0e5, rel=1e-3)
     frame = result.frame()

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import Run, example, run
+from running import Run, Settings, example, run
 
 Array = npt.NDArray[np.float64]
 LARGE = 1.0e9  # mm^2, in which a few robots do not meet
@@ -22,7 +22,7 @@ FLASH = {
 }
 
 
-def run_example(name: str, folder: Path, settings: dict[str, object]) -> Run:
+def run_example(name: str, folder: Path, settings: Settings) -> Run:
     result = run(example(name), folder, settings)
     assert (result.code, result.errors) == (0, "")
     return result
@@ -49,7 +49,7 @@ def test_helloworld_turns_clockwise_for_ten_seconds_then_back(hello: Run) -> Non
     time = frame["time"].unique()
     expected = 4.0 * np.interp(time, [0, 10, 20, 30, 40, 48.5], [0, 10, 0, 10, 0, 8.5])
     # The change comes with the first tick after it is due, 16 ms at most.
-    np.testing.assert_allclose(turned, np.broadcast_to(expected[:, None], turned.shape), atol=5 * 0.016 * 8)
+    np.testing.assert_allclose(turned, np.broadcast_to(expected[:, None], turned.shape), atol=4 * 0.016 * 8)
     first = turned[(time > 0) & (time <= 10)] / time[(time > 0) & (time <= 10), None]
     np.testing.assert_allclose(first, 4.0, rtol=1e-3)
 

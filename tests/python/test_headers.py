@@ -51,7 +51,9 @@ SETTINGS = {
         "text": "too long a text",
     },
 }
-READ = "[ROBOT #2] [PRINTF] read 1 -8 -1600 -320000 200 60000 4000000000 0.5 1e+100 2.5 [10 20.5 30] [0.25 0.75] too lon"
+READ = (
+    "[ROBOT #2] [PRINTF] read 1 -8 -1600 -320000 200 60000 4000000000 0.5 1e+100 2.5 [10 20.5 30] [0.25 0.75] too lon"
+)
 PRINTED = [
     "sum 0",
     "rainbow 25 0 0, light 0, temperature 42.0",
@@ -73,7 +75,6 @@ def test_sample_compiles_without_warnings_and_prints_the_same(name: str, flags: 
     result = run(sample, tmp_path, SETTINGS)
     assert (result.code, result.errors) == (0, "")
     assert result.robot_lines == [READ, *(f"[ROBOT #0] [PRINTF] {line}" for line in PRINTED)]
-
 
 
 def test_sample_compiles_as_c_with_pedantic_warnings(tmp_path: Path) -> None:

@@ -110,7 +110,11 @@ def test_failure_in_any_function_of_the_program_names_the_function(
     ("kind", "place", "what"),
     [
         ("set_unknown_column", "export_data", "no column 'nobody declared this'"),
-        ("set_wrong_type", "export_data", 'data_set_value_double("declared_as_int16"): the column was declared as int16'),
+        (
+            "set_wrong_type",
+            "export_data",
+            'data_set_value_double("declared_as_int16"): the column was declared as int16',
+        ),
         ("declare_column_twice", "create_data_schema", "already has a column of this name"),
         ("declare_column_twice", "user_step", "belongs into callback_create_data_schema"),
     ],

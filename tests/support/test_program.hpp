@@ -5,13 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "pogobase.h"
-
-#undef main
-#undef printf
-#undef putchar
-#undef puts
-#undef vprintf
+#include "interface/pogobase_inside.hpp"
 
 /// User data of the test program.
 struct TestData {

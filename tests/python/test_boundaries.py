@@ -1,0 +1,110 @@
+"""Walls hold robots; periodic boundaries let robots and messages through."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import yaml
+from running import Run, example, run
+
+SIDE = 1000.0  # mm, of the square arena of 1e6 mm^2
+RADIUS = 26.5
+
+
+def walk(folder: Path, **settings: object) -> Run:
+    fast = {"simulation_time": 60.0, "objects.robots.nb": 20, "parameters.run_duration_max": 5000}
+    result = run(example("run_and_tumble"), folder, {"arena_file": "arenas/square.csv", **fast, **settings})
+    assert (result.code, result.errors) == (0, "")
+    return result
+
+
+def polygons(result: Run) -> list[npt.NDArray[np.float64]]:
+    text = result.table().schema.metadata[b"arena_polygons"].decode()
+    return [np.array([[p["x"], p["y"]] for p in corners]) for corners in yaml.safe_load(text)]
+
+
+def inside(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Even-odd rule: how often a ray to the right crosses the polygon."""
+    (x, y), result = points.T, np.zeros(len(points), dtype=bool)
+    for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0)):
+        crosses = (ay > y) != (by > y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            result ^= crosses & (x < ax + (y - ay) / (by - ay) * (bx - ax))
+    return result
+
+
+def distance_to_walls(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    nearest = np.full(len(points), np.inf)
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
+        along = np.clip((points - a) @ (b - a) / np.dot(b - a, b - a), 0, 1)
+        nearest = np.minimum(nearest, np.hypot(*(points - a - along[:, None] * (b - a)).T))
+    return nearest
+
+
+@pytest.mark.parametrize("arena", ["square", "disk", "star", "annulus", "squarewithHole", "H", "arena8"])
+def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena: str) -> None:
+    result = walk(tmp_path, arena_file=f"arenas/{arena}.csv", arena_surface=5.0e5)
+    points = result.frame()[["x", "y"]].to_numpy(dtype=np.float64)
+    outer, *holes = polygons(result)
+    assert inside(points, outer).all()
+    for polygon in (outer, *holes):
+        # The physics lets bodies overlap by some tenths of a mm for a moment.
+        assert distance_to_walls(points, polygon).min() > RADIUS - 2.0
+    for hole in holes:
+        assert not inside(points, hole).any()
+
+
+def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(tmp_path: Path) -> None:
+    frame = walk(tmp_path, boundary_condition="periodic").frame()
+    crossings = 0
+    for column in ("x", "y"):
+        path = frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
+        assert path.min() >= 0
+        assert path.max() <= SIDE
+        step = np.diff(path, axis=0)
+        crossings += int((np.abs(step) > SIDE / 2).sum())
+        on_the_ring = np.abs((step + SIDE / 2) % SIDE - SIDE / 2)
+        # 100 mm/s in 0.1 s. Who arrives on top of another one is pushed aside: bodies do not touch across the seam.
+        assert np.quantile(on_the_ring, 0.99) < 10.1
+        assert on_the_ring.max() < 10.0 + 2 * RADIUS
+    assert crossings > 20
+
+
+def test_arena_without_polygons_is_a_periodic_square(tmp_path: Path) -> None:
+    settings = {"arena_file": "arenas/empty.csv", "simulation_time": 30.0, "objects.robots.nb": 10}
+    result = run(example("run_and_tumble"), tmp_path, settings)
+    assert result.code == 0
+    assert "periodic" in result.errors
+    frame = result.frame()
+    assert frame["x"].between(0, SIDE).all()
+    assert frame.groupby("robot_id")["x"].agg(lambda x: x.diff().abs().max()).max() > SIDE / 2
+
+
+@pytest.mark.parametrize(("boundary", "heard"), [("solid", False), ("periodic", True)])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_messages_pass_the_seam_of_a_periodic_arena_only(tmp_path: Path, boundary: str, heard: bool, axis: int) -> None:
+    # Two robots 60 mm apart across the seam, 940 mm within the arena.
+    positions = np.array([[30.0, 500.0], [970.0, 500.0]])
+    if axis == 1:
+        positions = positions[:, ::-1]
+    rows = "\n".join(f"{x},{y}" for x, y in positions)
+    (tmp_path / "poses.csv").write_text(f"x,y\n{rows}\n")
+    settings = {
+        "arena_file": "arenas/square.csv",
+        "boundary_condition": boundary,
+        "initial_formation": "imported",
+        "formation_filename": "poses.csv",
+        "objects.robots.nb": 2,
+        "objects.robots.msg_success_rate": {"type": "static", "rate": 1.0},
+        "simulation_time": 10.0,
+        "parameters.send_percent": 100,
+    }
+    result = run(example("probes"), tmp_path, settings)
+    assert result.code == 0
+    last = result.frame().query("time == 10")
+    sent, received = last["sent"].tolist(), last["received"].tolist()
+    assert sent[0] == 625
+    assert received[1] == (pytest.approx(sent[0], abs=2) if heard else 0)

@@ -1,0 +1,59 @@
+"""Dependencies between the rooms of src/ go one way, as src/CMakeLists.txt declares them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).resolve().parents[2] / "src"
+
+# Libraries that one room alone may include.
+PRIVATE_LIBRARIES = {"yaml-cpp/": "config", "box2d/": "physics", "arrow/": "record", "CLI/": "app"}
+
+
+def declared_rooms() -> dict[str, set[str]]:
+    """Rooms by name, each with the rooms it may look into."""
+    text = (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
+    rooms = {}
+    for name, body in re.findall(r"^pogosim_room\((\w+)\n(.*?)\)", text, re.MULTILINE | re.DOTALL):
+        listed = re.search(r"ROOMS ([\w\s]*?)(?=LIBRARIES|$)", body, re.DOTALL)
+        rooms[name] = set(listed.group(1).split()) if listed else set()
+    return rooms
+
+
+def includes(room: str, pattern: str) -> set[tuple[str, str]]:
+    """Pairs of file and what it includes, of all sources of a room."""
+    files = [file for file in (SOURCE / room).rglob("*") if file.suffix in {".c", ".cpp", ".hpp"}]
+    return {
+        (file.name, found)
+        for file in files
+        for found in re.findall(pattern, file.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+
+
+def test_every_folder_is_a_declared_room() -> None:
+    assert {folder.name for folder in SOURCE.iterdir() if folder.is_dir()} == set(declared_rooms())
+
+
+@pytest.mark.parametrize("room", sorted(declared_rooms()))
+def test_room_includes_only_what_it_declares(room: str) -> None:
+    allowed = declared_rooms()[room] | {room, "pogosim"}
+    for file, other in includes(room, r'^#include "(\w+)/'):
+        assert other in allowed, f"{room}/{file} looks into {other}"
+
+
+@pytest.mark.parametrize("library", sorted(PRIVATE_LIBRARIES))
+def test_library_is_included_by_its_room_alone(library: str) -> None:
+    for room in declared_rooms():
+        for file, _ in includes(room, rf"^#include <({re.escape(library)})"):
+            assert room == PRIVATE_LIBRARIES[library], f"{room}/{file} includes {library}"
+
+
+def test_declared_arrows_make_no_circle() -> None:
+    rooms = declared_rooms()
+    while rooms:
+        free = {name for name, needs in rooms.items() if not needs & set(rooms)}
+        assert free, f"rooms in a circle: {sorted(rooms)}"
+        rooms = {name: needs for name, needs in rooms.items() if name not in free}
