@@ -137,9 +137,6 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     place_robots(scenario, world, seed);
     make_mailboxes(world);
     world.light = make_light_map(world.arena, scenario.light_map_columns, scenario.light_map_rows);
-    if (world.robots.size() == 0) {
-        log().warn("the configuration has no robots: nothing will move");
-    }
     return world;
 }
 
