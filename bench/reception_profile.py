@@ -68,9 +68,9 @@ def read_measurements(path: Path = MEASUREMENTS) -> dict[Setting, float]:
     """Share of received messages on real robots, by setting."""
     with path.open(newline="") as file:
         return {
-            Setting(
-                int(row["payload_size"]), int(row["nb_neighbors"]), round(100.0 * float(row["p_send"]))
-            ): float(row["success_probability"])
+            Setting(int(row["payload_size"]), int(row["nb_neighbors"]), round(100.0 * float(row["p_send"]))): float(
+                row["success_probability"]
+            )
             for row in csv.DictReader(file)
         }
 
@@ -87,7 +87,7 @@ def equation(setting: Setting, parameters: Mapping[str, float]) -> float:
     p = setting.send_percent / 100.0
     c = setting.neighbors + 1
     a = parameters
-    collisions = a["beta"] * p ** a["gamma"] * c ** a["delta"] * math.exp(a["zeta"] * m)
+    collisions = a["beta"] * math.pow(p, a["gamma"]) * math.pow(c, a["delta"]) * math.exp(a["zeta"] * m)
     return min(1.0, 1.0 / (a["alpha"] + collisions + a["theta"] * p * c))
 
 

@@ -31,6 +31,7 @@ struct LoopGlobals {
 
 /// What the program registered for this robot.
 struct Program {
+    bool registered = false;  // a pogobot_start() named this robot's category
     void (*init)() = nullptr;
     void (*step)() = nullptr;
     void (*export_data)() = nullptr;

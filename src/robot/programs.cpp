@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/log.hpp"
 #include "robot/drive.hpp"
 #include "robot/user_guard.hpp"
 
@@ -170,6 +171,18 @@ void Programs::run_main(std::uint32_t robot) {
     program.click = callback_robot_click;
 }
 
+void Programs::warn_of_idle_categories() const {
+    std::vector<bool> warned(world_.categories.size());
+    for (std::size_t i = 0; i < computers_.size(); ++i) {
+        std::uint16_t const category = world_.robots.category[i];
+        if (!computers_[i].program.registered && !warned[category]) {
+            warned[category] = true;
+            log().warn("no pogobot_start() of the program names the category '{}': its robots do nothing",
+                       world_.categories[category].name);
+        }
+    }
+}
+
 void Programs::start() {
     auto const count = static_cast<std::uint32_t>(computers_.size());
     if (count == 0) {
@@ -179,6 +192,7 @@ void Programs::start() {
     for (std::uint32_t i = 0; i < count; ++i) {
         run_main(i);
     }
+    warn_of_idle_categories();
     call(count == 0 ? kNoRobot : count - 1, "global_setup", callback_global_setup);
     for (std::uint32_t i = 0; i < count; ++i) {
         call(i, "user_init", computers_[i].program.init);
@@ -268,6 +282,7 @@ void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* catego
     if (!current_robot_category_is(category)) {
         return;
     }
+    context.computer->program.registered = true;
     context.computer->program.init = user_init;
     context.computer->program.step = user_step;
     pogobot_ticks = 0;

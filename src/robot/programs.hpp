@@ -50,6 +50,7 @@ private:
     void enter(std::uint32_t robot, char const* phase);
     void leave();
     void run_main(std::uint32_t robot);
+    void warn_of_idle_categories() const;
     void call(std::uint32_t robot, char const* phase, void (*function)());
     void tick(std::uint32_t robot);
     Computer& computer(std::uint32_t robot);

@@ -1,0 +1,98 @@
+"""One picture of every initial formation.
+
+    .venv/bin/python docs/figures/formations.py
+
+Needs the examples (./build.sh). Runs helloworld for no time at all, once per formation, and draws docs/formations.png.
+"""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import yaml
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
+from pogosim.utils import load_dataframe
+
+ROOT = Path(__file__).resolve().parents[2]
+RADIUS_MM = 26.5
+COUNT = 60
+NAMES = (
+    "random",
+    "random_near_walls",
+    "disk",
+    "chessboard",
+    "aligned_random",
+    "aligned_random_near_walls",
+    "aligned_disk",
+    "aligned_chessboard",
+    "lloyd",
+    "power_lloyd",
+    "imported",
+)
+
+
+def spiral() -> str:
+    """Return a CSV file for `imported`: x, y and angle of robots along a spiral."""
+    turns = np.sqrt(np.linspace(0.5, 11.0, COUNT)) * 2.0 * math.pi
+    lines = [f"{460 + 17 * t * math.cos(t)},{540 + 17 * t * math.sin(t)},{t + math.pi / 2}" for t in turns]
+    return "\n".join(["x,y,angle", *lines, ""])
+
+
+def place(folder: Path, name: str, options: dict[str, object]) -> Path:
+    """Run the simulator for no time; return its data file, which holds the poses at time 0."""
+    data = folder / f"{name}.feather"
+    configuration = {
+        "arena_file": str(ROOT / "arenas/disk.csv"),
+        "initial_formation": name,
+        "formation_filename": str(folder / "spiral.csv"),
+        "seed": 1,
+        "simulation_time": 0,
+        "data_filename": str(data),
+        "objects": {"robots": {"type": "pogobot", "nb": COUNT, "geometry": "disk", "radius": RADIUS_MM}},
+        **options,
+    }
+    (folder / "run.yaml").write_text(yaml.safe_dump(configuration), encoding="utf-8")
+    program = ROOT / "examples/helloworld/helloworld"
+    subprocess.run([program, "-c", folder / "run.yaml", "-g", "-q"], check=True, timeout=60)
+    return data
+
+
+def draw_swarm(axes: Axes, data: Path) -> None:
+    """Draw walls, and robots with a line along their heading."""
+    rows, metadata = load_dataframe(data)
+    for polygon in yaml.safe_load(metadata["arena_polygons"]):
+        axes.add_patch(Polygon([(p["x"], p["y"]) for p in polygon], fill=False, edgecolor="0.3"))
+    position = rows[["x", "y"]].to_numpy(dtype=float)
+    heading = np.column_stack([np.cos(rows["angle"]), np.sin(rows["angle"])])
+    axes.add_collection(PatchCollection([Circle(p, RADIUS_MM) for p in position], facecolor="#7fb3d5", edgecolor="0.3"))
+    ticks = np.stack([position, position + RADIUS_MM * heading], axis=1)
+    axes.add_collection(LineCollection(list(ticks), colors="k", linewidths=1.0))
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.invert_yaxis()
+    axes.set_axis_off()
+
+
+def main() -> None:
+    """Draw all formations in one figure."""
+    figure = Figure(figsize=(9.0, 7.4), layout="constrained")
+    panels = list(figure.subplots(3, 4).flat)
+    spread = ("chessboard", {"formation_cluster_at_center": False})
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        (folder / "spiral.csv").write_text(spiral(), encoding="utf-8")
+        for axes, (name, options) in zip(panels, [*((name, {}) for name in NAMES), spread]):
+            draw_swarm(axes, place(folder, name, options))
+            axes.set_title("\n".join([name, *(f"{k}: {str(v).lower()}" for k, v in options.items())]), fontsize=8)
+    figure.savefig(ROOT / "docs/formations.png", dpi=85)
+
+
+if __name__ == "__main__":
+    main()

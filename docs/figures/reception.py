@@ -1,0 +1,67 @@
+"""Reception law against the measurements on real robots.
+
+    .venv/bin/python docs/figures/reception.py
+
+Draws docs/reception.png and prints the quality of the fit.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+from matplotlib.figure import Figure
+
+ROOT = Path(__file__).resolve().parents[2]
+MEASUREMENTS = ROOT / "bench" / "ir_reception_profile.csv"
+SHORT_HEADER_BYTES = 3
+COLOURS = {3: "#1b6ca8", 20: "#d98200", 100: "#a8321b"}
+
+
+def reception_probability(
+    message_bytes: npt.ArrayLike, send_probability: npt.ArrayLike, cluster_size: npt.ArrayLike
+) -> npt.NDArray[np.float64]:
+    """Return what `type: dynamic` computes with its defaults (src/comms/reception.cpp), 0 to 1. Takes arrays, too."""
+    m, p, c = (np.asarray(x, dtype=float) for x in (message_bytes, send_probability, cluster_size))
+    collisions = 0.00073859 * p**3.14782227 * c**3.52543753 * np.exp(0.05720136 * m)
+    return np.minimum(1.0 / (1.03215183 + collisions + 0.001 * p * c), 1.0)
+
+
+def predicted(rows: pd.DataFrame) -> npt.NDArray[np.float64]:
+    """Return the law at the measured points."""
+    message_bytes = SHORT_HEADER_BYTES + rows["payload_size"]
+    return reception_probability(message_bytes, rows["p_send"], 1 + rows["nb_neighbors"])
+
+
+def draw(measured: pd.DataFrame) -> Figure:
+    """One panel per number of neighbours: dots measured, lines by the law."""
+    figure = Figure(figsize=(9.0, 3.2), layout="constrained")
+    panels = figure.subplots(1, 3, sharey=True)
+    p = np.linspace(0.0, 1.0, 201)
+    for axes, (neighbours, group) in zip(panels, measured.groupby("nb_neighbors")):
+        for payload, rows in group.groupby("payload_size"):
+            colour = COLOURS[payload]
+            axes.plot(p, reception_probability(SHORT_HEADER_BYTES + payload, p, 1 + neighbours), color=colour)
+            axes.plot(rows["p_send"], rows["success_probability"], "o", color=colour, label=f"{payload} bytes")
+        axes.set_title(f"{neighbours} neighbour{'s' if neighbours > 1 else ''}", fontsize=10)
+        axes.set_xlabel("chance to send, per tick")
+        axes.set_ylim(-0.03, 1.05)
+        axes.grid(color="0.9")
+    panels[0].set_ylabel("probability of reception")
+    panels[0].legend(title="payload", fontsize=8, title_fontsize=8, loc="lower left")
+    return figure
+
+
+def main() -> None:
+    """Print R2 and mean absolute error, and draw."""
+    measured = pd.read_csv(MEASUREMENTS)
+    error = measured["success_probability"] - predicted(measured)
+    spread = measured["success_probability"] - measured["success_probability"].mean()
+    print(f"R2 = {1.0 - (error**2).sum() / (spread**2).sum():.6f}, MAE = {error.abs().mean():.6f}")
+    draw(measured).savefig(ROOT / "docs" / "reception.png", dpi=110)
+
+
+if __name__ == "__main__":
+    main()
