@@ -25,7 +25,7 @@ extern POGO_PER_ROBOT void (*callback_global_setup)(void);
 extern POGO_PER_ROBOT void (*callback_create_data_schema)(void);
 /// For each object at time 0 and at each save period: set the values of its row.
 extern POGO_PER_ROBOT void (*callback_export_data)(void);
-/// 60 times a second, before the robots, in a context of its own (category "__system", no body).
+/// At each tick of a 60 Hz loop, before the robots, in a context of its own (category "__system", no body).
 extern POGO_PER_ROBOT void (*callback_global_step)(void);
 /// For each object when the run has ended.
 extern POGO_PER_ROBOT void (*callback_robot_end)(void);

@@ -40,9 +40,10 @@ std::string with_robot_longs(std::string_view format) {
     return result;
 }
 
-void print_complete_lines(std::string& text) {
+/// Logs the lines in `text` and leaves the rest there; up to `searched` there is no line end.
+void print_complete_lines(std::string& text, std::size_t searched) {
     std::size_t start = 0;
-    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', start)) {
+    for (std::size_t end = text.find('\n', searched); end != std::string::npos; end = text.find('\n', start)) {
         pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(),
                                   std::string_view(text).substr(start, end - start));
         start = end + 1;
@@ -52,8 +53,10 @@ void print_complete_lines(std::string& text) {
 
 void print(std::string_view text) {
     pogosim::without_exceptions([&] {
-        context.computer->printed += text;
-        print_complete_lines(context.computer->printed);
+        std::string& printed = context.computer->printed;
+        std::size_t const before = printed.size();
+        printed += text;
+        print_complete_lines(printed, before);
     });
 }
 

@@ -2,7 +2,6 @@
 
 #include <dlfcn.h>
 #include <sys/time.h>
-#include <ucontext.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,7 +13,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <string_view>
+
+#include "robot/context.hpp"
 
 namespace pogosim {
 
@@ -24,7 +24,7 @@ constexpr std::size_t kSignalStackBytes = 64 * 1024;
 constexpr unsigned kRescueSeconds = 10;
 constexpr double kWatchPeriodS = 0.25;   // of processor time
 constexpr double kRetryPeriodS = 0.001;  // of processor time
-constexpr int kMaxRetries = 1000;
+constexpr int kMaxRetries = 250;
 
 struct Guard {
     sigjmp_buf return_point;
@@ -36,6 +36,9 @@ struct Guard {
     // What ended the call; plain memory, as a signal handler writes it.
     std::array<char, 512> what{};
     ExitCode code = ExitCode::user_program;
+    // The message that needs no more memory, in case the data file cannot be completed.
+    std::array<char, 1024> last_words{};
+    std::atomic<bool> crashed = false;
     // Watch over processor time.
     double timeout_s = 0.0;
     double period_s = kWatchPeriodS;
@@ -79,25 +82,38 @@ void describe_crash(int signal, siginfo_t const& info) {
     }
 }
 
+void prepare_last_words() {
+    World const& world = *context.world;
+    bool const is_robot = context.has_robot();
+    std::snprintf(guard.last_words.data(), guard.last_words.size(),
+                  "pogosim: the user program failed in %s of %s%d of category '%s', tick %u, t = %.4f s: %s. Memory is "
+                  "destroyed beyond completing the data file; build the program with -fsanitize=address to find where "
+                  "it writes to memory that is not its own.\n",
+                  context.phase, is_robot ? "robot #" : "", is_robot ? world.robots.id[context.robot] : 0,
+                  get_current_robot_category(), static_cast<unsigned>(pogobot_ticks), world.time_s(),
+                  guard.what.data());
+}
+
 /// Memory is destroyed beyond what the run needs to end well.
 void on_hopeless_rescue(int /*signal*/) {
-    constexpr std::string_view text =
-        "pogosim: crashed again while the data file was being completed; it may be unreadable. Build the program with "
-        "-fsanitize=address to find where it writes to memory that is not its own.\n";
-    [[maybe_unused]] auto const written = write(STDERR_FILENO, text.data(), text.size());
+    [[maybe_unused]] auto const written =
+        write(STDERR_FILENO, guard.last_words.data(), std::strlen(guard.last_words.data()));
     _exit(static_cast<int>(ExitCode::user_program));
 }
 
 void on_crash(int signal, siginfo_t* info, void* /*context*/) {
+    if (guard.crashed.exchange(true)) {
+        on_hopeless_rescue(signal);
+    }
     // What follows may hang on destroyed memory.
     std::signal(SIGALRM, on_hopeless_rescue);
     alarm(kRescueSeconds);
+    describe_crash(signal, *info);
+    prepare_last_words();
     if (guard.inside) {
-        describe_crash(signal, *info);
         jump_out(ExitCode::user_program);
     }
     if (guard.rescuable.exchange(false)) {
-        describe_crash(signal, *info);
         siglongjmp(guard.rescue_point, 1);
     }
     on_hopeless_rescue(signal);

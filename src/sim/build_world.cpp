@@ -1,11 +1,13 @@
 #include "sim/build_world.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -20,21 +22,38 @@ namespace {
 // Random streams of the run that belong to no robot; robots have theirs by their index.
 constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;
 
-constexpr std::array kDataFolders{POGOSIM_INSTALLED_DATA_DIR, POGOSIM_SOURCE_DATA_DIR};
+/// Folders with the arenas that come along: of the installed library, wherever it has been moved to, and of the
+/// sources.
+std::vector<std::filesystem::path> data_folders() {
+    std::vector<std::filesystem::path> folders;
+    Dl_info library = {};
+    if (dladdr(reinterpret_cast<void const*>(&build_world), &library) != 0 && library.dli_fname != nullptr) {
+        std::filesystem::path const folder = std::filesystem::path(library.dli_fname).parent_path();
+        folders.push_back(folder / POGOSIM_DATA_FROM_LIBRARY);
+    }
+    folders.emplace_back(POGOSIM_SOURCE_DATA_DIR);
+    return folders;
+}
 
-/// A file that the configuration names: below the working folder, else below the data folders.
-std::filesystem::path find_file(std::string const& name) {
+/// A file that the configuration names under `key`: below the working folder, else below the data folders.
+std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name) {
     std::filesystem::path const path(name);
     std::error_code ignored;
-    if (path.empty() || path.is_absolute() || std::filesystem::exists(path, ignored)) {
+    if (path.empty() || std::filesystem::exists(path, ignored)) {
         return path;
     }
-    for (std::filesystem::path const folder : kDataFolders) {
-        if (std::filesystem::exists(folder / path, ignored)) {
-            return folder / path;
+    if (path.is_relative()) {
+        for (std::filesystem::path const& folder : data_folders()) {
+            if (std::filesystem::exists(folder / path, ignored)) {
+                return folder / path;
+            }
         }
     }
-    return path;
+    Node const* const entry = scenario.resolved.find(key);
+    throw ConfigError(fmt::format(
+        "{}{}: there is no file '{}'; it is looked for from the working folder ({}), then in the "
+        "folder of Pogosim. Arenas that come along: arenas/disk.csv, arenas/square.csv, ...",
+        entry != nullptr ? entry->where() + ": " : "", key, name, std::filesystem::current_path(ignored).string()));
 }
 
 ArenaOutline unit_square() {
@@ -42,7 +61,7 @@ ArenaOutline unit_square() {
 }
 
 void build_arena(Scenario const& scenario, World& world) {
-    ArenaOutline outline = read_arena_file(find_file(scenario.arena_file));
+    ArenaOutline outline = read_arena_file(find_file(scenario, "arena_file", scenario.arena_file));
     world.periodic = scenario.boundary == BoundaryCondition::periodic;
     if (outline.polygons.empty()) {
         log().warn("arena file '{}' is empty: the arena is a square with a periodic boundary", scenario.arena_file);
@@ -101,7 +120,7 @@ void place_robots(Scenario const& scenario, World& world, std::uint32_t seed) {
     RandomStream random(seed, kFormationStream);
     std::vector<float> const radii = radii_to_place(scenario);
     FormationSpec formation = scenario.formation;
-    formation.filename = find_file(formation.filename).string();
+    formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
     std::vector<Placement> const placements =
         place(formation, radii, formation_domain(scenario, world), random, read_imported_feather);
     auto next = placements.begin();

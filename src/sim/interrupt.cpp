@@ -34,6 +34,8 @@ void catch_interrupts() {
     if (before.sa_handler != SIG_IGN) {
         sigaction(SIGHUP, &action, nullptr);
     }
+    // A reader of the console that has gone away is no reason to lose the data file.
+    std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool interrupted() {

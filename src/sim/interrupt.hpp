@@ -3,7 +3,8 @@
 
 namespace pogosim {
 
-/// Catches the signals from now on. The first one asks the run to end; a second one also leaves user code that hangs.
+/// Catches the signals from now on, and ignores SIGPIPE. The first one asks the run to end; a second one also leaves
+/// user code that hangs.
 void catch_interrupts();
 
 /// True once one of them has come.

@@ -43,14 +43,17 @@ void ProgressBar::show(std::int64_t done) {
 
 void ProgressBar::finish(std::int64_t done) {
     if (enabled_) {
-        draw(done);
+        if (done != last_shown_) {
+            draw(done);
+        }
         if (terminal_) {
             fmt::print(stderr, "\n");
         }
     }
 }
 
-void ProgressBar::draw(std::int64_t done) const {
+void ProgressBar::draw(std::int64_t done) {
+    last_shown_ = done;
     double const share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
     int const filled = static_cast<int>(share * kBarWidth);
     double const simulated_s = static_cast<double>(done) * time_step_s_;

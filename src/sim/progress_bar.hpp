@@ -20,12 +20,13 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    void draw(std::int64_t done) const;
+    void draw(std::int64_t done);
 
     std::int64_t total_;
     double time_step_s_;
     bool enabled_;
     bool terminal_;
+    std::int64_t last_shown_ = -1;
     std::int64_t next_tenth_ = 1;
     Clock::time_point start_ = Clock::now();
     Clock::time_point last_drawn_ = start_;

@@ -155,11 +155,15 @@ void Simulation::finish() {
 
 void Simulation::fit_time_step() {
     int const hz = programs_.highest_loop_hz();
-    if (hz > 0 && world_.time_step_s > 1.0 / hz) {
-        log().warn(
-            "time_step is lowered from {} s to {:.6f} s, so that a robot with main_loop_hz {} gets all its ticks",
-            world_.time_step_s, 1.0 / hz, hz);
-        world_.time_step_s = 1.0 / hz;
+    if (hz == 0) {
+        return;
+    }
+    // Robots sleep whole milliseconds between ticks, and tick once a step at most.
+    double const tick_s = std::floor(1000.0 / hz) / 1000.0;
+    if (world_.time_step_s > tick_s) {
+        log().warn("time_step is lowered from {} s to {} s, so that a robot with main_loop_hz {} gets all its ticks",
+                   world_.time_step_s, tick_s, hz);
+        world_.time_step_s = tick_s;
     }
 }
 
@@ -217,10 +221,15 @@ std::optional<UserFailure> Simulation::record_rows() {
 }
 
 void Simulation::report(UserFailure const& failure) const {
+    std::string const where =
+        fmt::format("{} of {}, t = {:.4f} s", context.phase, current_robot_name(), world_.time_s());
+    if (failure.code == ExitCode::usage) {
+        log().error("{} (asked for in {}){}", failure.what, where, data_file_note());
+        return;
+    }
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
-    log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {} of {}, t = {:.4f} s: {}{}",
-              failed ? "failed" : "ended", context.phase, current_robot_name(), world_.time_s(), failure.what,
-              data_file_note());
+    log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}",
+              failed ? "failed" : "ended", where, failure.what, data_file_note());
 }
 
 std::string Simulation::data_file_note() const {
