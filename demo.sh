@@ -26,4 +26,4 @@ size_of() { du -h "$1" | cut -f1; }
 echo
 echo "Made $data ($(size_of "$data")): where every robot was, ten times a second"
 echo "     $picture ($(size_of "$picture")): trajectories and final LED colours"
-echo "The same run in a window:  ./examples/hanabi/hanabi -c conf/demo.yaml"
+echo "The same run in a window (this version has none yet and runs without):  ./examples/hanabi/hanabi -c conf/demo.yaml"
