@@ -83,33 +83,39 @@ void describe_crash(int signal, siginfo_t const& info) {
 }
 
 void prepare_last_words() {
-    World const& world = *context.world;
+    if (context.world == nullptr) {
+        return;  // no user code has run yet
+    }
     bool const is_robot = context.has_robot();
     std::snprintf(guard.last_words.data(), guard.last_words.size(),
-                  "pogosim: the user program failed in %s of %s%d of category '%s', tick %u, t = %.4f s: %s. Memory is "
-                  "destroyed beyond completing the data file; build the program with -fsanitize=address to find where "
-                  "it writes to memory that is not its own.\n",
-                  context.phase, is_robot ? "robot #" : "", is_robot ? world.robots.id[context.robot] : 0,
-                  get_current_robot_category(), static_cast<unsigned>(pogobot_ticks), world.time_s(),
+                  "pogosim: the user program failed in %s of %s%d of category '%s', tick %u, t = %.4f s: %s. The data "
+                  "file could not be completed. If the program writes to memory that is not its own, building it with "
+                  "-fsanitize=address finds where.\n",
+                  context.phase, is_robot ? "robot #" : "", is_robot ? context.world->robots.id[context.robot] : 0,
+                  get_current_robot_category(), static_cast<unsigned>(pogobot_ticks), context.world->time_s(),
                   guard.what.data());
 }
 
-/// Memory is destroyed beyond what the run needs to end well.
+/// Memory is destroyed, or a lock held, beyond what the run needs to end well.
 void on_hopeless_rescue(int /*signal*/) {
     [[maybe_unused]] auto const written =
         write(STDERR_FILENO, guard.last_words.data(), std::strlen(guard.last_words.data()));
-    _exit(static_cast<int>(ExitCode::user_program));
+    _exit(static_cast<int>(guard.code));
+}
+
+/// What follows may crash or hang for ever; after a while this ends it.
+void expect_the_worst() {
+    std::signal(SIGALRM, on_hopeless_rescue);
+    alarm(kRescueSeconds);
+    prepare_last_words();
 }
 
 void on_crash(int signal, siginfo_t* info, void* /*context*/) {
     if (guard.crashed.exchange(true)) {
         on_hopeless_rescue(signal);
     }
-    // What follows may hang on destroyed memory.
-    std::signal(SIGALRM, on_hopeless_rescue);
-    alarm(kRescueSeconds);
     describe_crash(signal, *info);
-    prepare_last_words();
+    expect_the_worst();
     if (guard.inside) {
         jump_out(ExitCode::user_program);
     }
@@ -144,7 +150,7 @@ void set_watch_period(double period_s) {
     itimerval timer = {};
     timer.it_interval.tv_usec = std::max<suseconds_t>(1000, static_cast<suseconds_t>(period_s * 1e6));
     timer.it_value = timer.it_interval;
-    setitimer(ITIMER_VIRTUAL, &timer, nullptr);
+    setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
 void on_watch(int /*signal*/, siginfo_t* /*info*/, void* signal_context) {
@@ -170,6 +176,7 @@ void on_watch(int /*signal*/, siginfo_t* /*info*/, void* signal_context) {
                   "did not return within %g s of processor time (user_code_timeout); messages and sensors do not "
                   "change while user code runs, so a step must not wait for them in a loop",
                   guard.timeout_s);
+    expect_the_worst();
     jump_out(ExitCode::user_program);
 }
 
@@ -194,7 +201,7 @@ void use_signal_stack() {
 void start_watch(double timeout_s) {
     guard.timeout_s = timeout_s;
     guard.period_s = std::min(kWatchPeriodS, timeout_s / 4.0);
-    install(SIGVTALRM, SA_RESTART, on_watch);
+    install(SIGPROF, SA_RESTART, on_watch);
     set_watch_period(guard.period_s);
 }
 
@@ -248,6 +255,13 @@ void restart_watch() {
 
 bool inside_user_code() {
     return guard.inside;
+}
+
+void abandon_user_code(char const* what, ExitCode code) {
+    set_reason(what);
+    guard.code = code;
+    expect_the_worst();
+    jump_out(code);
 }
 
 void leave_user_code(char const* what, ExitCode code) {

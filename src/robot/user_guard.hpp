@@ -46,6 +46,10 @@ bool inside_user_code();
 /// Ends the running call_user_code with this failure. Does not return; outside user code it aborts.
 [[noreturn]] void leave_user_code(char const* what, ExitCode code);
 
+/// The same from a signal handler, wherever user code is: what follows has some seconds before the program is ended.
+/// Only inside user code.
+[[noreturn]] void abandon_user_code(char const* what, ExitCode code);
+
 /// Runs part of an interface function that may throw. An exception ends user code with its message and exit code 2,
 /// instead of running through C frames.
 template <class Body>

@@ -14,7 +14,7 @@ std::atomic<bool> interrupt_seen = false;
 void on_interrupt(int /*signal*/) {
     bool const again = interrupt_seen.exchange(true);
     if (again && inside_user_code()) {
-        leave_user_code("interrupted again before it returned", ExitCode::interrupted);
+        abandon_user_code("interrupted again before it returned", ExitCode::interrupted);
     }
 }
 

@@ -32,6 +32,30 @@ static void loop_for_ever(void) {
     }
 }
 
+// Most of the time is spent inside of the C library, under its locks.
+static void allocate_for_ever(void) {
+    for (;;) {
+        char* volatile blocks[20];
+        for (size_t i = 0; i < 20; i++) {
+            blocks[i] = malloc(10 + (size_t)rand() % 5000);
+        }
+        for (size_t i = 0; i < 20; i++) {
+            free(blocks[i]);
+        }
+    }
+}
+
+static void print_for_ever(void) {
+    for (;;) {
+        printf("again and ");
+    }
+}
+
+static void free_what_is_not_allocated(void) {
+    char* volatile text = kind;
+    free(text);
+}
+
 static int sum_on_the_stack(int depth) {
     volatile int frame[1024];
     frame[0] = depth;
@@ -81,6 +105,9 @@ static struct {
     {"write_to_null", write_to_null},
     {"divide_by_zero", divide_by_zero},
     {"loop_for_ever", loop_for_ever},
+    {"allocate_for_ever", allocate_for_ever},
+    {"print_for_ever", print_for_ever},
+    {"free_what_is_not_allocated", free_what_is_not_allocated},
     {"overflow_the_stack", overflow_the_stack},
     {"write_beyond_userdata", write_beyond_userdata},
     {"abort", abort},

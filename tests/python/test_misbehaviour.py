@@ -43,7 +43,10 @@ def test_program_that_behaves_ends_with_0_and_says_nothing(program: Compile, tmp
         ("abort", r"abort\(\)"),
         ("overflow_the_stack", "segmentation fault at address"),
         ("write_beyond_userdata", "segmentation fault at address"),
+        ("free_what_is_not_allocated", r"abort\(\)"),
         ("loop_for_ever", r"did not return within 0\.25 s of processor time \(user_code_timeout\)"),
+        ("allocate_for_ever", r"did not return within 0\.25 s of processor time \(user_code_timeout\)"),
+        ("print_for_ever", r"did not return within 0\.25 s of processor time \(user_code_timeout\)"),
     ],
 )
 def test_crash_in_user_code_ends_with_3_a_message_and_a_readable_file(
