@@ -151,7 +151,7 @@ def test_rows_do_not_drift_in_a_long_run(tmp_path: Path) -> None:
     np.testing.assert_array_equal(frame["time"], np.arange(1001, dtype=np.float32))
 
 
-@pytest.mark.parametrize(("step", "period"), [(0.003, 0.1), (0.016, 0.05), (1 / 60, 0.25)])
+@pytest.mark.parametrize(("step", "period"), [(0.003, 0.1), (0.016, 0.05), (0.015, 0.25)])
 def test_with_steps_that_do_not_divide_the_period_rows_follow_it_within_a_step(
     tmp_path: Path, step: float, period: float
 ) -> None:
@@ -161,6 +161,14 @@ def test_with_steps_that_do_not_divide_the_period_rows_follow_it_within_a_step(
     assert late.min() > -1e-5
     assert late.max() < step + 1e-5
     assert len(found) >= 10.0 / period
+
+
+def test_step_longer_than_a_tick_is_shortened_with_a_warning(tmp_path: Path) -> None:
+    result = run(example("helloworld"), tmp_path, {"time_step": 0.1, "simulation_time": 10.0})
+    assert result.code == 0
+    assert "time_step is lowered from 0.1 s to 0.016 s" in result.errors
+    assert result.errors.count("\n") == 1
+    assert result.frame()["pogobot_ticks"].max() == pytest.approx(625, abs=2)
 
 
 def test_robots_of_60_hz_tick_every_16_ms(tmp_path: Path) -> None:
