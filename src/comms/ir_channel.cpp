@@ -17,7 +17,7 @@ void IrChannel::deliver(World& world) {
 
 void IrChannel::deliver(World& world, Emission const& emission) {
     IrSpec const& ir = world.spec_of(emission.robot).ir;
-    auto const receivers = visibility_.receivers(world, emission.robot, emission.emitters);
+    auto const receivers = visibility_.receivers(world, emission.robot, emission.emitters, emission.range_mm);
     if (receivers.empty()) {
         return;
     }
@@ -30,7 +30,9 @@ void IrChannel::deliver(World& world, Emission const& emission) {
             continue;
         }
         ++receptions_;
-        std::uint8_t const faces = faces_that_see(world, receiver.robot, -receiver.from_emitter_mm, ir.range_mm);
+        std::uint8_t const faces =
+            receiver.faces != 0 ? receiver.faces
+                                : faces_that_see(world, receiver.robot, -receiver.from_emitter_mm, emission.range_mm);
         FrameHeader header = emission.header;
         for (unsigned face = 0; face < kFaceCount; ++face) {
             if ((faces >> face & 1U) != 0) {

@@ -26,35 +26,51 @@ float pseudo_angle(Vec2 direction) {
     return direction.y >= 0.0F ? 2.0F - side : -2.0F - side;
 }
 
+/// Distance of a robot's emitters from its centre.
+float rim_of(World const& world, std::uint32_t robot) {
+    return world.spec_of(robot).emitters == Emitters::rim ? world.bodies.radius_mm[world.robots.body[robot]] : 0.0F;
+}
+
+/// Index of the robot's outline.
+std::uint32_t outline_of(World const& world, std::uint32_t robot) {
+    auto const found = std::ranges::find(world.outlines, robot, &Outline::robot);
+    return static_cast<std::uint32_t>(found - world.outlines.begin());
+}
+
 }  // namespace
 
 void Visibility::update(World const& world) {
     Bodies const& bodies = world.bodies;
-    positions_.resize(world.robots.size());
+    positions_.clear();
+    robots_.clear();
     largest_radius_mm_ = 0.0F;
     float longest_range_mm = 0.0F;
-    for (std::size_t i = 0; i < positions_.size(); ++i) {
-        std::uint32_t const body = world.robots.body[i];
-        positions_[i] = bodies.position_mm[body];
-        largest_radius_mm_ = std::max(largest_radius_mm_, bodies.radius_mm[body]);
-    }
-    for (Category const& category : world.categories) {
-        longest_range_mm = std::max(longest_range_mm, category.spec.ir.range_mm);
+    for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
+        RobotSpec const& spec = world.spec_of(i);
+        longest_range_mm = std::max(longest_range_mm, spec.ir.longest_range_mm());
+        if (spec.emitters != Emitters::outline) {
+            std::uint32_t const body = world.robots.body[i];
+            robots_.push_back(i);
+            positions_.push_back(bodies.position_mm[body]);
+            largest_radius_mm_ = std::max(largest_radius_mm_, bodies.radius_mm[body]);
+        }
     }
     float const reach_mm = longest_range_mm + 2.0F * largest_radius_mm_;
     grid_.build(positions_, world.arena.bounds, std::max(reach_mm, 1.0F), world.periodic);
+    outlines_.update(world);
 }
 
-void Visibility::gather_candidates(World const& world, std::uint32_t robot) {
+void Visibility::gather_candidates(World const& world, std::uint32_t robot, float range_mm) {
     std::uint32_t const body = world.robots.body[robot];
     Vec2 const centre = world.bodies.position_mm[body];
     Vec2 const axis = world.bodies.axis[body];
-    float const reach_mm = world.bodies.radius_mm[body] + world.spec_of(robot).ir.range_mm;
+    float const reach_mm = rim_of(world, robot) + range_mm;
     candidates_.clear();
     float const farthest_mm = reach_mm + largest_radius_mm_;
-    grid_.for_each_near(centre, farthest_mm, [&](std::uint32_t other, Vec2 position) {
+    grid_.for_each_near(centre, farthest_mm, [&](std::uint32_t k, Vec2 position) {
         Vec2 const offset = shortest_vector(world, centre, position);
         float const distance_mm2 = squared_length(offset);
+        std::uint32_t const other = robots_[k];
         if (distance_mm2 > farthest_mm * farthest_mm || other == robot) {
             return;
         }
@@ -88,9 +104,8 @@ void Visibility::cover(Sight const& sight) {
     shadows_.push_back(joined);
 }
 
-void Visibility::look(World const& world, std::uint32_t robot, int emitter) {
-    float const rim_mm = world.bodies.radius_mm[world.robots.body[robot]];
-    float const range_mm = world.spec_of(robot).ir.range_mm;
+void Visibility::look(World const& world, std::uint32_t robot, int emitter, float range_mm) {
+    float const rim_mm = rim_of(world, robot);
     Vec2 const normal = kFaceNormals[static_cast<std::size_t>(emitter)];
 
     // Everything in range, in front of the emitter unless occlusions are ignored.
@@ -136,15 +151,73 @@ void Visibility::look(World const& world, std::uint32_t robot, int emitter) {
     }
 }
 
-std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_t robot, std::uint8_t emitters) {
+void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm) {
+    std::uint32_t const body = world.robots.body[robot];
+    float const rim_mm = rim_of(world, robot);
+    outline_reached_.assign(world.outlines.size(), false);
+    auto const pieces = outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm);
+    for (unsigned emitter = 0; emitter < kFaceCount; ++emitter) {
+        Vec2 const place = rotate(rim_mm * kFaceNormals[emitter], world.bodies.axis[body]);
+        for (OutlineIndex::Piece const& piece : pieces) {
+            bool const reached = (emitters >> emitter & 1U) != 0 && !outline_reached_[piece.outline] &&
+                                 squared_distance(piece, place) <= range_mm * range_mm;
+            if (reached) {
+                outline_reached_[piece.outline] = true;
+                receivers_.push_back({.robot = world.outlines[piece.outline].robot, .from_emitter_mm = {}, .faces = 1});
+            }
+        }
+    }
+}
+
+std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm) {
+    std::uint32_t const body = world.robots.body[robot];
+    float const rim_mm = rim_of(world, robot);
+    unsigned faces = 0;
+    for (OutlineIndex::Piece const& piece : outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm)) {
+        for (unsigned face = 0; piece.outline == outline && face < kFaceCount; ++face) {
+            Vec2 const place = rotate(rim_mm * kFaceNormals[face], world.bodies.axis[body]);
+            if (squared_distance(piece, place) <= range_mm * range_mm) {
+                faces |= 1U << face;
+            }
+        }
+    }
+    return static_cast<std::uint8_t>(faces);
+}
+
+void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm) {
+    Box const& box = outlines_.box(outline);
+    Vec2 const middle = box.centre();
+    Vec2 const half = 0.5F * box.size();
+    for (std::size_t k = 0; k < robots_.size(); ++k) {
+        // A robot hears an outline no further than it reaches it itself.
+        float const reach_mm = std::min(range_mm, world.spec_of(robots_[k]).ir.range_mm);
+        float const margin_mm = reach_mm + largest_radius_mm_;
+        Vec2 const offset = shortest_vector(world, middle, positions_[k]);
+        if (std::abs(offset.x) > half.x + margin_mm || std::abs(offset.y) > half.y + margin_mm) {
+            continue;
+        }
+        if (std::uint8_t const faces = faces_near(world, robots_[k], outline, reach_mm); faces != 0) {
+            receivers_.push_back({.robot = robots_[k], .from_emitter_mm = {}, .faces = faces});
+        }
+    }
+}
+
+std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_t robot, std::uint8_t emitters,
+                                                float range_mm) {
     receivers_.clear();
-    if (world.spec_of(robot).ir.range_mm <= 0.0F) {
+    if (range_mm <= 0.0F) {
         return receivers_;
     }
-    gather_candidates(world, robot);
+    if (world.spec_of(robot).emitters == Emitters::outline) {
+        if ((emitters & 1U) != 0) {
+            add_robots_near(world, outline_of(world, robot), range_mm);
+        }
+        return receivers_;
+    }
+    gather_candidates(world, robot, range_mm);
     for (int emitter = 0; emitter < kFaceCount; ++emitter) {
         if ((emitters >> emitter & 1) != 0) {
-            look(world, robot, emitter);
+            look(world, robot, emitter, range_mm);
         }
     }
     Vec2 const axis = world.bodies.axis[world.robots.body[robot]];
@@ -153,13 +226,16 @@ std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_
             receivers_.push_back({candidate.robot, rotate(candidate.from_emitter_mm, axis)});
         }
     }
+    if (!outlines_.empty()) {
+        add_outlines_near(world, robot, emitters, range_mm);
+    }
     std::sort(receivers_.begin(), receivers_.end(), [](auto const& a, auto const& b) { return a.robot < b.robot; });
     return receivers_;
 }
 
 std::uint8_t faces_that_see(World const& world, std::uint32_t receiver, Vec2 emitter_mm, float range_mm) {
     std::uint32_t const body = world.robots.body[receiver];
-    float const rim_mm = world.bodies.radius_mm[body];
+    float const rim_mm = rim_of(world, receiver);
     Vec2 const emitter = in_frame_of(emitter_mm, world.bodies.axis[body]);
     std::uint8_t faces = 0;
     std::size_t best = 0;

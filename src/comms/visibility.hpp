@@ -9,6 +9,9 @@
 //         \___ _ ___/
 //              v
 //            back (2)
+//
+// Walls and membranes send and receive along their whole outline instead: there are no half planes and no shadows
+// between an outline and a robot, only the distance from the outline to the robot's emitters.
 #pragma once
 
 #include <array>
@@ -17,6 +20,7 @@
 #include <vector>
 
 #include "base/grid.hpp"
+#include "comms/outline_index.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -25,6 +29,8 @@ namespace pogosim {
 struct Receiver {
     std::uint32_t robot = 0;
     Vec2 from_emitter_mm;  // from the emitter (the nearest one that sees it) to the receiver's centre
+    // Bit d: its face d receives. 0 where faces_that_see() tells: only those who get the message need to know.
+    std::uint8_t faces = 0;
 };
 
 class Visibility {
@@ -32,9 +38,10 @@ public:
     /// Sorts the robots by place. Call once per step before the queries.
     void update(World const& world);
 
-    /// The robots that the given emitters of `robot` (bit d: emitter d) reach, each once, through the nearest emitter
-    /// that sees it, in the order of their indices. Valid until the next call.
-    std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters);
+    /// The robots that the given emitters of `robot` (bit d: emitter d) reach at a range of `range_mm`, each once,
+    /// through the nearest emitter that sees it, in the order of their indices. An outline has one emitter, number 0.
+    /// Valid until the next call.
+    std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
 
 private:
     /// A robot that may be in reach, in the sender's own frame (x along its heading).
@@ -60,12 +67,18 @@ private:
         float high;
     };
 
-    void gather_candidates(World const& world, std::uint32_t robot);
-    void look(World const& world, std::uint32_t robot, int emitter);
+    void gather_candidates(World const& world, std::uint32_t robot, float range_mm);
+    void look(World const& world, std::uint32_t robot, int emitter, float range_mm);
+    void add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
+    void add_robots_near(World const& world, std::uint32_t outline, float range_mm);
+    std::uint8_t faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm);
     bool is_covered(Sight const& sight) const;
     void cover(Sight const& sight);
 
-    UniformGrid grid_;
+    OutlineIndex outlines_;
+    std::vector<bool> outline_reached_;
+    UniformGrid grid_;                   // of the robots with four emitters
+    std::vector<std::uint32_t> robots_;  // their indices
     float largest_radius_mm_ = 0.0F;
     std::vector<Vec2> positions_;
     std::vector<Candidate> candidates_;

@@ -43,12 +43,14 @@ void check_counts(Scenario const& scenario) {
 
 void check_object_count(Scenario const& scenario) {
     std::int64_t robots = 0;
+    std::int64_t all = 0;
     for (ObjectConfig const& object : scenario.objects) {
-        robots += std::holds_alternative<RobotSpec>(object.spec) ? object.nb : 0;
+        robots += object.spec.robot ? object.nb : 0;
+        all += object.spec.robot || object.spec.body ? object.nb : 0;
     }
-    if (robots > kMaxObjects) {
+    if (all > kMaxObjects) {
         fail_at(place_of(scenario, "objects"),
-                fmt::format("expected at most {} robots in all categories, found {}", kMaxObjects, robots));
+                fmt::format("expected at most {} objects in all categories, found {}", kMaxObjects, all));
     }
     if (robots == 0) {
         log().warn("{}: objects: there is no robot in this configuration; nothing will move",

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -62,7 +63,8 @@ struct Elsewhere {
 template <class T>
 using Field = std::variant<bool T::*, int T::*, std::int64_t T::*, float T::*, double T::*, std::string T::*, Vec2 T::*,
                            IntRange T::*, std::optional<float> T::*, std::optional<std::uint32_t> T::*,
-                           std::optional<std::vector<std::string>> T::*, Choice<T>, Elsewhere>;
+                           std::optional<std::array<float, 3>> T::*, std::optional<std::vector<std::string>> T::*,
+                           Choice<T>, Elsewhere>;
 
 /// One line of a table.
 template <class T>

@@ -15,19 +15,17 @@ namespace {
 
 constexpr std::array kTypes{
     ObjectType{"pogobot", "Robot with two motors and four infrared emitters.", read_pogobot},
+    ObjectType{"pogobject", "Head of a robot on a large body without motors.", read_pogobject},
+    ObjectType{"pogowall", "Wall that runs user code and sends along its whole length.", read_pogowall},
+    ObjectType{"membrane", "Soft ring of disks that runs user code and sends along its whole length.", read_membrane},
+    ObjectType{"rectmembrane", "The same of rectangular segments.", read_rectmembrane},
+    ObjectType{"active_object", "Body that can be pushed, with a program and infrared.", read_active_object},
+    ObjectType{"passive_object", "Body that can be pushed.", read_passive_object},
     ObjectType{"static_light", "Lamp that stands still.", read_static_light},
 };
 
 /// Types of the configuration format that this version cannot simulate.
-constexpr std::array kNotYet{"pogobject",
-                             "pogowall",
-                             "membrane",
-                             "rectmembrane",
-                             "active_object",
-                             "passive_object",
-                             "rotating_ray_of_light",
-                             "alternating_rays_of_light",
-                             "orbiting_static_light"};
+constexpr std::array kNotYet{"rotating_ray_of_light", "alternating_rays_of_light", "orbiting_static_light"};
 
 std::vector<std::string> type_names() {
     std::vector<std::string> names;

@@ -14,7 +14,7 @@ namespace pogosim {
 struct ObjectType {
     std::string_view name;
     std::string_view doc;
-    void (*read)(MapReader& reader, ObjectConfig& object);  // fills spec and position from the keys of the type
+    void (*read)(MapReader& reader, ObjectConfig& object);  // fills spec and position from its keys
 };
 
 std::span<ObjectType const> object_types();
@@ -27,6 +27,12 @@ std::span<Key<ObjectConfig> const> object_keys();
 
 // The types, one file each.
 void read_pogobot(MapReader& reader, ObjectConfig& object);
+void read_pogobject(MapReader& reader, ObjectConfig& object);
+void read_pogowall(MapReader& reader, ObjectConfig& object);
+void read_membrane(MapReader& reader, ObjectConfig& object);
+void read_rectmembrane(MapReader& reader, ObjectConfig& object);
+void read_active_object(MapReader& reader, ObjectConfig& object);
+void read_passive_object(MapReader& reader, ObjectConfig& object);
 void read_static_light(MapReader& reader, ObjectConfig& object);
 
 }  // namespace pogosim

@@ -43,6 +43,14 @@ Node read_parameters(Node const* parameters) {
 
 }  // namespace
 
+std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key) {
+    Node const* const objects = scenario.resolved.find("objects");
+    Node const* const entry = objects != nullptr ? objects->find(object.category) : nullptr;
+    Node const* const value = entry != nullptr ? entry->find(key) : nullptr;
+    std::string const where = value != nullptr ? value->where() : object.where;
+    return (where.empty() ? "" : where + ": ") + "objects." + object.category + "." + key;
+}
+
 Scenario load_scenario(std::string const& path, LoadOptions const& options) {
     Scenario scenario;
     scenario.resolved = resolved_tree(path, options.overrides);

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "config/tree.hpp"
@@ -22,12 +21,13 @@ inline constexpr int kMaxObjects = 65535;
 
 /// One entry of `objects`.
 struct ObjectConfig {
-    std::string category;                    // its name in the configuration
-    std::string type;                        // lower case, "pogobot"
-    int nb = 1;                              // how many
-    std::optional<Vec2> position_mm;         // both x and y given: all stand there; else the formation places them
-    std::variant<RobotSpec, LampSpec> spec;  // by type
-    std::string where;                       // file:line, for messages
+    std::string category;  // its name in the configuration
+    std::string type;      // lower case, "pogobot"
+    int nb = 1;            // how many
+    std::optional<Vec2>
+        position_mm;    // both x and y given: all stand there; else the formation places the tangible ones
+    ObjectSpec spec;    // what the type makes them of
+    std::string where;  // file:line, for messages
 };
 
 /// Window and drawing; read and kept for the window.
@@ -85,6 +85,9 @@ struct Scenario {
     Node parameters;                    // the map `parameters`, for user code
     Node resolved;                      // the whole resolved tree, unknown keys included
 };
+
+/// "file:line: objects.category.key" of a key of an entry, for messages; the line of the entry when the key is absent.
+std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key);
 
 struct LoadOptions {
     std::vector<std::string> overrides;  // --set, in order

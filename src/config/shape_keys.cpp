@@ -12,10 +12,28 @@ constexpr ChoiceRule kAnyCase{.any_case = true};
 
 }  // namespace
 
-std::span<K const> disk_geometry_keys() {
+std::span<K const> solid_geometry_keys() {
     static std::array const keys{
-        K{"geometry", one_of(&Shape::kind, {{"disk", ShapeKind::disk}}, kAnyCase), any(), "",
-          "Shape of the object; capitals do not matter.", /*required=*/true},
+        K{"geometry",
+          one_of(&Shape::kind,
+                 {{"disk", ShapeKind::disk}, {"rectangle", ShapeKind::rectangle}, {"triangle", ShapeKind::triangle}},
+                 kAnyCase),
+          any(), "", "Shape of the object; capitals do not matter.", /*required=*/true},
+    };
+    return keys;
+}
+
+std::span<K const> outline_geometry_keys() {
+    static std::array const keys{
+        K{"geometry",
+          one_of(&Shape::kind,
+                 {{"arena", ShapeKind::arena},
+                  {"disk", ShapeKind::disk},
+                  {"rectangle", ShapeKind::rectangle},
+                  {"triangle", ShapeKind::triangle}},
+                 kAnyCase),
+          any(), "", "All walls of the arena, or the outline of a shape at x and y; capitals do not matter.",
+          /*required=*/true},
     };
     return keys;
 }
@@ -36,15 +54,9 @@ std::span<K const> any_geometry_keys() {
     return keys;
 }
 
-std::span<K const> disk_size_keys() {
+std::span<K const> size_keys() {
     static std::array const keys{
         K{"radius", &Shape::radius_mm, above(0).up_to(kMaxLength), "mm", "Radius of a disk."},
-    };
-    return keys;
-}
-
-std::span<K const> other_size_keys() {
-    static std::array const keys{
         K{"body_width", &Shape::width_mm, above(0).up_to(kMaxLength), "mm", "Size of a rectangle along x."},
         K{"body_height", &Shape::height_mm, above(0).up_to(kMaxLength), "mm", "Size of a rectangle along y."},
         K{"side_length", &Shape::side_length_mm, above(0).up_to(kMaxLength), "mm",

@@ -1,8 +1,8 @@
 // Objects of type `static_light`.
 #include <array>
 
+#include "config/object_parts.hpp"
 #include "config/object_types.hpp"
-#include "config/shape_keys.hpp"
 
 namespace pogosim {
 
@@ -50,13 +50,10 @@ std::span<Key<Vec2> const> centre_keys() {
 }  // namespace
 
 void read_static_light(MapReader& reader, ObjectConfig& object) {
-    LampSpec spec;
-    reader.read(any_geometry_keys(), spec.shape);
-    reader.read(disk_size_keys(), spec.shape);
-    reader.read(other_size_keys(), spec.shape);
-    reader.read(centre_keys(), spec.centre_mm);
-    reader.read(lamp_keys(), spec);
-    object.spec = spec;
+    LampSpec& lamp = object.spec.lamp.emplace();
+    read_shape(reader, any_geometry_keys(), lamp.shape);
+    reader.read(centre_keys(), lamp.centre_mm);
+    reader.read(lamp_keys(), lamp);
 }
 
 }  // namespace pogosim

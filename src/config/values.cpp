@@ -106,16 +106,17 @@ void read_real(Place const& place, Limits const& limits, Real& value) {
     value = static_cast<Real>(*number);
 }
 
-/// Reads a list of exactly two values.
-template <class T>
-std::array<T, 2> read_pair(Place const& place, Limits const& limits, std::string const& expected) {
-    if (place.node.kind != Node::Kind::sequence || place.node.items.size() != 2) {
+/// Reads a list of exactly N values.
+template <class T, std::size_t N>
+std::array<T, N> read_tuple(Place const& place, Limits const& limits, std::string const& expected) {
+    if (place.node.kind != Node::Kind::sequence || place.node.items.size() != N) {
         fail_expected(place, expected);
     }
-    std::array<T, 2> pair{};
-    read_value({place.node.items[0], place.path + ".0"}, limits, pair[0]);
-    read_value({place.node.items[1], place.path + ".1"}, limits, pair[1]);
-    return pair;
+    std::array<T, N> values{};
+    for (std::size_t i = 0; i < N; ++i) {
+        read_value({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits, values[i]);
+    }
+    return values;
 }
 
 }  // namespace
@@ -218,16 +219,20 @@ void read_value(Place const& place, Limits const& limits, std::string& value) {
 }
 
 void read_value(Place const& place, Limits const& limits, Vec2& value) {
-    auto const [x, y] = read_pair<float>(place, limits, expected_text(limits, value));
+    auto const [x, y] = read_tuple<float, 2>(place, limits, expected_text(limits, value));
     value = {x, y};
 }
 
 void read_value(Place const& place, Limits const& limits, IntRange& value) {
-    auto const [min, max] = read_pair<int>(place, limits, expected_text(limits, value));
+    auto const [min, max] = read_tuple<int, 2>(place, limits, expected_text(limits, value));
     if (min > max) {
         fail_at(place, fmt::format("expected [smallest, largest], found [{}, {}]", min, max));
     }
     value = {min, max};
+}
+
+void read_value(Place const& place, Limits const& limits, std::array<float, 3>& value) {
+    value = read_tuple<float, 3>(place, limits, expected_text(limits, value));
 }
 
 void read_value(Place const& place, Limits const& limits, std::vector<std::string>& value) {
@@ -267,6 +272,9 @@ std::string expected_text(Limits const& limits, Vec2) {
 std::string expected_text(Limits const& limits, IntRange) {
     return with_unit("a list [smallest, largest] of two integers" + limits.range.text(), limits.unit);
 }
+std::string expected_text(Limits const& limits, std::array<float, 3> const& /*unused*/) {
+    return with_unit("a list of three numbers" + limits.range.text(), limits.unit);
+}
 std::string expected_text(Limits const& /*limits*/, std::vector<std::string> const&) {
     return "a list of names";
 }
@@ -297,6 +305,9 @@ std::string value_text(Vec2 value) {
 }
 std::string value_text(IntRange value) {
     return fmt::format("[{}, {}]", value.min, value.max);
+}
+std::string value_text(std::array<float, 3> const& value) {
+    return fmt::format("[{:g}]", fmt::join(value, ", "));
 }
 std::string value_text(std::vector<std::string> const& value) {
     return fmt::format("[{}]", fmt::join(value, ", "));

@@ -1,6 +1,7 @@
 // From one node to one value: numbers, truths, texts, pairs and lists, each checked, each error with its place.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -58,6 +59,7 @@ void read_value(Place const& place, Limits const& limits, double& value);
 void read_value(Place const& place, Limits const& limits, std::string& value);
 void read_value(Place const& place, Limits const& limits, Vec2& value);
 void read_value(Place const& place, Limits const& limits, IntRange& value);
+void read_value(Place const& place, Limits const& limits, std::array<float, 3>& value);
 void read_value(Place const& place, Limits const& limits, std::vector<std::string>& value);
 
 template <class T>
@@ -75,6 +77,7 @@ std::string expected_text(Limits const& limits, double);
 std::string expected_text(Limits const& limits, std::string const&);
 std::string expected_text(Limits const& limits, Vec2);
 std::string expected_text(Limits const& limits, IntRange);
+std::string expected_text(Limits const& limits, std::array<float, 3> const&);
 std::string expected_text(Limits const& limits, std::vector<std::string> const&);
 
 template <class T>
@@ -92,6 +95,7 @@ std::string value_text(double value);
 std::string value_text(std::string const& value);
 std::string value_text(Vec2 value);
 std::string value_text(IntRange value);
+std::string value_text(std::array<float, 3> const& value);
 std::string value_text(std::vector<std::string> const& value);
 
 template <class T>

@@ -81,6 +81,32 @@ float distance_to_outline(std::span<Vec2 const> polygon, Vec2 point) {
     return std::sqrt(nearest);
 }
 
+std::vector<Vec2> spread_along(std::span<Vec2 const> polygon, int count) {
+    std::vector<double> starts{0.0};  // of each edge, along the outline
+    for_each_edge(polygon,
+                  [&](Vec2 a, Vec2 b) { starts.push_back(starts.back() + static_cast<double>(length(b - a))); });
+    std::vector<Vec2> points;
+    std::size_t edge = 0;
+    for (int n = 0; n < count; ++n) {
+        double const along = starts.back() * n / count;
+        while (edge + 1 < polygon.size() && starts[edge + 1] <= along) {
+            ++edge;
+        }
+        auto const share = static_cast<float>((along - starts[edge]) / (starts[edge + 1] - starts[edge]));
+        points.push_back(polygon[edge] + share * (polygon[(edge + 1) % polygon.size()] - polygon[edge]));
+    }
+    return points;
+}
+
+Polygon moved(std::span<Vec2 const> polygon, Vec2 offset, float heading_rad) {
+    Vec2 const unit = direction(heading_rad);
+    Polygon result;
+    for (Vec2 const corner : polygon) {
+        result.push_back(rotate(corner, unit) + offset);
+    }
+    return result;
+}
+
 Box bounding_box(std::span<Vec2 const> polygon) {
     assert(!polygon.empty());
     Box box{polygon[0], polygon[0]};

@@ -29,6 +29,12 @@ Vec2 nearest_on_segment(Vec2 a, Vec2 b, Vec2 point);
 /// Distance from the point to the nearest edge, in the polygon's unit. The polygon needs at least one corner.
 float distance_to_outline(std::span<Vec2 const> polygon, Vec2 point);
 
+/// `count` points on the outline, evenly spaced along it, from its first corner on. The polygon has a positive length.
+std::vector<Vec2> spread_along(std::span<Vec2 const> polygon, int count);
+
+/// The polygon turned by `heading_rad` around the origin, then moved by `offset`.
+Polygon moved(std::span<Vec2 const> polygon, Vec2 offset, float heading_rad);
+
 /// Smallest axis-aligned box around all corners.
 Box bounding_box(std::span<Vec2 const> polygon);
 

@@ -34,6 +34,42 @@ float bounding_radius(Shape const& shape) {
     return 0.0F;
 }
 
+Polygon outline(Shape const& shape, int disk_corners) {
+    switch (shape.kind) {
+        case ShapeKind::disk: {
+            Polygon corners;
+            for (int i = 0; i < disk_corners; ++i) {
+                float const turn = static_cast<float>(i) / static_cast<float>(disk_corners);
+                corners.push_back(shape.radius_mm * direction(2.0F * std::numbers::pi_v<float> * turn));
+            }
+            return corners;
+        }
+        case ShapeKind::rectangle: {
+            Vec2 const half{0.5F * shape.width_mm, 0.5F * shape.height_mm};
+            return {{-half.x, -half.y}, {half.x, -half.y}, {half.x, half.y}, {-half.x, half.y}};
+        }
+        case ShapeKind::triangle: {
+            float const height = 0.5F * kSqrt3 * shape.side_length_mm;
+            return {{0.0F, -2.0F / 3.0F * height},
+                    {0.5F * shape.side_length_mm, height / 3.0F},
+                    {-0.5F * shape.side_length_mm, height / 3.0F}};
+        }
+        case ShapeKind::global:
+        case ShapeKind::arena:
+            break;
+    }
+    return {};
+}
+
+Shape inset(Shape const& shape, float inwards_mm) {
+    Shape smaller = shape;
+    smaller.radius_mm = std::max(shape.radius_mm - inwards_mm, 0.0F);
+    smaller.width_mm = std::max(shape.width_mm - 2.0F * inwards_mm, 0.0F);
+    smaller.height_mm = std::max(shape.height_mm - 2.0F * inwards_mm, 0.0F);
+    smaller.side_length_mm = std::max(shape.side_length_mm - 2.0F * kSqrt3 * inwards_mm, 0.0F);
+    return smaller;
+}
+
 bool contains(Shape const& shape, Vec2 offset_mm) {
     switch (shape.kind) {
         case ShapeKind::disk:

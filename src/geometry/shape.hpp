@@ -24,6 +24,13 @@ struct Shape {
 /// occlusion, sensors and drawing. 0 for global and arena.
 float bounding_radius(Shape const& shape);
 
+/// Corners of the shape around its origin, clockwise on the screen; a disk has `disk_corners` of them, the first at +x.
+/// Empty for global and arena.
+Polygon outline(Shape const& shape, int disk_corners = 128);
+
+/// The same shape with every side moved inwards by so much, mm (outwards when negative). Sizes do not fall below 0.
+Shape inset(Shape const& shape, float inwards_mm);
+
 /// True when the point, given relative to the shape's origin, is inside. Global holds every point; arena is the
 /// caller's to decide and counts as everywhere here.
 bool contains(Shape const& shape, Vec2 offset_mm);

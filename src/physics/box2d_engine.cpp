@@ -1,22 +1,28 @@
-// Rigid bodies with Box2D 2.4. The only file that includes it. One unit of Box2D is 100 mm.
-#include <box2d/box2d.h>
-
+// Rigid bodies with Box2D 2.4.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "base/error.hpp"
+#include "physics/box2d_units.hpp"
 #include "physics/physics_engine.hpp"
+#include "physics/ring_area.hpp"
+#include "physics/ring_filter.hpp"
 
 namespace pogosim {
 
 namespace {
 
-constexpr float kMmPerUnit = 100.0F;
-constexpr int kVelocityIterations = 6;
-constexpr int kPositionIterations = 3;
+struct Iterations {
+    int velocity;
+    int position;
+};
+constexpr Iterations kForContacts{6, 3};
+constexpr Iterations kForJoints{12, 6};  // a pull has to go round a ring
 // Box2D sees a contact once it is there, so a pair overlaps by what it has approached since. Steps are cut into
 // sub-steps in which no two robots at full speed approach by more than this, as long as that is not too many.
 constexpr float kApproachMm = 1.0F;
@@ -30,13 +36,6 @@ constexpr float kRestitutionThreshold = 0.05F;  // units/s
 constexpr float kShortestEdgeMm = 1.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
-
-b2Vec2 to_box2d(Vec2 mm) {
-    return {mm.x / kMmPerUnit, mm.y / kMmPerUnit};
-}
-Vec2 from_box2d(b2Vec2 units) {
-    return {units.x * kMmPerUnit, units.y * kMmPerUnit};
-}
 
 std::vector<b2Vec2> wall_corners(Polygon const& polygon, bool outer) {
     std::vector<b2Vec2> corners;
@@ -104,14 +103,21 @@ int substeps_for(World const& world) {
 
 class Box2dEngine final : public PhysicsEngine {
 public:
-    Box2dEngine(World const& world, WallSpec const& walls) : engine_(b2Vec2_zero) {
+    Box2dEngine(World const& world, WallSpec const& walls) : filter_(world), engine_(b2Vec2_zero) {
         engine_.SetContinuousPhysics(false);
         engine_.SetAutoClearForces(false);  // there are none
+        engine_.SetContactFilter(&filter_);
         if (!world.periodic) {
             add_walls(world.arena, walls);
         }
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
             bodies_.push_back(add_body(world.bodies, i));
+        }
+        for (Joint const& joint : world.joints) {
+            add_joint(joint);
+        }
+        for (Ring const& ring : world.rings) {
+            areas_.emplace_back(ring, bodies_);
         }
     }
 
@@ -121,12 +127,22 @@ public:
             return;  // nothing moves, as in a swarm that only talks
         }
         int const substeps = substeps_for(world);
+        Iterations const iterations = world.joints.empty() ? kForContacts : kForJoints;
+        auto const dt_s = static_cast<float>(world.time_step_s / substeps);
         for (int i = 0; i < substeps; ++i) {
-            engine_.Step(static_cast<float>(world.time_step_s / substeps), kVelocityIterations, kPositionIterations);
+            for (RingArea const& area : areas_) {
+                area.push(dt_s);
+            }
+            engine_.Step(dt_s, iterations.velocity, iterations.position);
         }
         any_awake_ = false;
-        for (std::size_t i = 0; i < bodies_.size(); ++i) {
-            read_back(world, i);
+        for (Object const& object : world.objects) {
+            if (world.periodic && object.body_count > 0) {
+                wrap(world.arena.bounds, object);
+            }
+            for (std::uint32_t k = 0; k < object.body_count; ++k) {
+                read_back(world.bodies, object.body + k);
+            }
         }
     }
 
@@ -140,6 +156,7 @@ private:
             chain.m_radius = kSkin;
             chain.CreateLoop(corners.data(), static_cast<int32>(corners.size()));
             b2FixtureDef fixture;
+            fixture.userData.pointer = kNone;
             fixture.shape = &chain;
             fixture.friction = walls.friction;
             fixture.restitution = walls.restitution;
@@ -159,6 +176,7 @@ private:
         definition.angularDamping = bodies.spec[i].angular_damping;
         b2Body* const body = engine_.CreateBody(&definition);
         b2FixtureDef fixture;
+        fixture.userData.pointer = i;
         fixture.density = bodies.spec[i].density;
         fixture.friction = bodies.spec[i].friction;
         fixture.restitution = bodies.spec[i].restitution;
@@ -192,37 +210,66 @@ private:
         }
     }
 
-    void read_back(World& world, std::size_t i) {
-        b2Body& body = *bodies_[i];
+    void add_joint(Joint const& joint) {
+        b2Body* const a = bodies_[joint.a];
+        b2Body* const b = bodies_[joint.b];
+        b2Vec2 const at_a = a->GetWorldPoint(to_box2d(joint.anchor_a_mm));
+        if (joint.length_mm == 0.0F) {
+            b2RevoluteJointDef hinge;
+            hinge.Initialize(a, b, at_a);
+            engine_.CreateJoint(&hinge);
+            return;
+        }
+        b2DistanceJointDef spring;
+        spring.Initialize(a, b, at_a, b->GetWorldPoint(to_box2d(joint.anchor_b_mm)));
+        spring.collideConnected = true;  // the filter decides
+        spring.length = joint.length_mm / kMmPerUnit;
+        spring.minLength = 0.0F;
+        spring.maxLength = joint.max_stretch > 0.0F ? (1.0F + joint.max_stretch) * spring.length : b2_maxFloat;
+        b2LinearStiffness(spring.stiffness, spring.damping, joint.stiffness_hz, joint.damping_ratio, a, b);
+        engine_.CreateJoint(&spring);
+    }
+
+    void read_back(Bodies& bodies, std::size_t i) {
+        b2Body const& body = *bodies_[i];
         if (!body.IsAwake()) {
-            world.bodies.velocity_mm_s[i] = {};
-            world.bodies.spin_rad_s[i] = 0.0F;
+            bodies.velocity_mm_s[i] = {};
+            bodies.spin_rad_s[i] = 0.0F;
             return;
         }
         any_awake_ = true;
-        if (world.periodic) {
-            wrap(world.arena.bounds, body);
-        }
         b2Transform const& pose = body.GetTransform();
-        world.bodies.position_mm[i] = from_box2d(pose.p);
-        world.bodies.axis[i] = {pose.q.c, pose.q.s};
-        world.bodies.heading_rad[i] = body.GetAngle();
-        world.bodies.velocity_mm_s[i] = from_box2d(body.GetLinearVelocity());
-        world.bodies.spin_rad_s[i] = body.GetAngularVelocity();
+        bodies.position_mm[i] = from_box2d(pose.p);
+        bodies.axis[i] = {pose.q.c, pose.q.s};
+        bodies.heading_rad[i] = body.GetAngle();
+        bodies.velocity_mm_s[i] = from_box2d(body.GetLinearVelocity());
+        bodies.spin_rad_s[i] = body.GetAngularVelocity();
     }
 
-    static void wrap(Box const& bounds, b2Body& body) {
-        Vec2 const position = from_box2d(body.GetPosition());
+    /// An object comes in on the other side as a whole, once its centre is out.
+    void wrap(Box const& bounds, Object const& object) {
+        Vec2 centre;
+        for (std::uint32_t k = 0; k < object.body_count; ++k) {
+            centre = centre + from_box2d(bodies_[object.body + k]->GetPosition());
+        }
+        centre = (1.0F / static_cast<float>(object.body_count)) * centre;
         Vec2 const size = bounds.size();
-        Vec2 const turns{std::floor((position.x - bounds.min.x) / size.x),
-                         std::floor((position.y - bounds.min.y) / size.y)};
-        if (turns != Vec2{}) {
-            body.SetTransform(to_box2d(position - Vec2{turns.x * size.x, turns.y * size.y}), body.GetAngle());
+        Vec2 const turns{std::floor((centre.x - bounds.min.x) / size.x),
+                         std::floor((centre.y - bounds.min.y) / size.y)};
+        if (turns == Vec2{}) {
+            return;
+        }
+        b2Vec2 const back = to_box2d({turns.x * size.x, turns.y * size.y});
+        for (std::uint32_t k = 0; k < object.body_count; ++k) {
+            b2Body& body = *bodies_[object.body + k];
+            body.SetTransform(body.GetPosition() - back, body.GetAngle());
         }
     }
 
+    RingFilter filter_;
     b2World engine_;
     bool any_awake_ = true;
+    std::vector<RingArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
 };
 

@@ -24,13 +24,14 @@ constexpr std::uint32_t kNotSent = 1;
 static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
 
 /// Puts one transmission on the air.
-std::uint32_t emit(std::uint8_t emitters, FrameHeader header, std::uint16_t header_bytes, std::uint8_t const* payload) {
+std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header, std::uint16_t header_bytes,
+                   std::uint8_t const* payload) {
     bool const valid =
         header.payload_length <= MAX_PAYLOAD_SIZE_BYTES && (payload != nullptr || header.payload_length == 0);
     if (!valid) {
         return kNotSent;
     }
-    if (!context.has_robot() || emitters == 0 || context.computer->ir_power == 0) {
+    if (!context.has_robot() || emitters == 0 || power == 0) {
         return kSent;
     }
     pogosim::Air& air = context.world->air;
@@ -38,6 +39,7 @@ std::uint32_t emit(std::uint8_t emitters, FrameHeader header, std::uint16_t head
                              .emitters = emitters,
                              .message_bytes = static_cast<std::uint16_t>(header_bytes + header.payload_length),
                              .send_probability = std::min<float>(percent_msgs_sent_per_ticks, 100.0F) / 100.0F,
+                             .range_mm = context.spec().ir.range_at_mm(power),
                              .header = header,
                              .payload_offset = static_cast<std::uint32_t>(air.payloads.size())});
     auto const bytes = std::as_bytes(std::span(payload, header.payload_length));
@@ -61,6 +63,15 @@ std::uint8_t power_list(std::uint8_t emitters) {
     return static_cast<std::uint8_t>(list);
 }
 
+/// The largest power of a list; emitters of different power are not told apart.
+std::uint8_t highest_power(std::uint8_t list) {
+    std::uint8_t highest = 0;
+    for (unsigned face = 0; face < kFaceCount; ++face) {
+        highest = std::max<std::uint8_t>(highest, get_infrared_emitter_dir(face, list));
+    }
+    return highest;
+}
+
 /// What receivers see of the emitters: 4 for all of them, else the first one.
 std::uint8_t sender_index(std::uint8_t emitters) {
     return emitters == kAllFaces ? static_cast<std::uint8_t>(ir_all)
@@ -74,7 +85,7 @@ std::uint32_t send_long(std::uint8_t emitters, std::uint8_t list, std::uint8_t c
                              .sender_ir_index = sender_index(emitters),
                              .receiver_ir_index = 0,
                              .payload_length = size};
-    return emit(emitters, header, kLongHeaderBytes, payload);
+    return emit(emitters, highest_power(list), header, kLongHeaderBytes, payload);
 }
 
 std::uint32_t send_short(std::uint8_t emitters, std::uint8_t const* payload, std::uint16_t size) {
@@ -85,7 +96,7 @@ std::uint32_t send_short(std::uint8_t emitters, std::uint8_t const* payload, std
                              .sender_ir_index = 0xF,
                              .receiver_ir_index = 0,
                              .payload_length = size};
-    return emit(emitters, header, kShortHeaderBytes, payload);
+    return emit(emitters, context.computer->ir_power, header, kShortHeaderBytes, payload);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ Vec2 acceleration_in_body_frame() {
 }  // namespace
 
 int16_t pogobot_photosensors_read(uint8_t sensor_number) {
-    if (sensor_number >= pogosim::kPhotosensorCount || !context.has_robot()) {
+    if (sensor_number >= pogosim::kPhotosensorCount || !context.has_body()) {
         return -1;
     }
     pogosim::World& world = *context.world;
@@ -53,7 +53,7 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
 void pogobot_imu_read(float* acc, float* gyro) {
     std::fill_n(acc, 3, 0.0F);
     std::fill_n(gyro, 3, 0.0F);
-    if (!context.has_robot()) {
+    if (!context.has_body()) {
         return;
     }
     Vec2 const acceleration = acceleration_in_body_frame();

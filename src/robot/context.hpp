@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,17 +46,17 @@ struct RunServices {
     void warn_once(char const* text);
 };
 
-inline constexpr std::uint32_t kNoRobot = std::numeric_limits<std::uint32_t>::max();
-
 struct Context {
     World* world = nullptr;
     RunServices* services = nullptr;
-    Computer* computer = nullptr;    // never null while user code runs
-    std::uint32_t robot = kNoRobot;  // index in World::robots; kNoRobot in the context of callback_global_step
-    std::int64_t step_time_us = 0;   // simulated time of this step
-    char const* phase = "";          // "user_step", for messages
+    Computer* computer = nullptr;   // never null while user code runs
+    std::uint32_t robot = kNone;    // index in World::robots; kNone in the context of callback_global_step
+    std::int64_t step_time_us = 0;  // simulated time of this step
+    char const* phase = "";         // "user_step", for messages
 
-    bool has_robot() const { return robot != kNoRobot; }
+    bool has_robot() const { return robot != kNone; }
+    /// False in the global step and in a wall, which have no place.
+    bool has_body() const { return has_robot() && body() != kNone; }
     std::uint32_t body() const { return world->robots.body[robot]; }
     RobotSpec const& spec() const { return world->spec_of(robot); }
 };

@@ -131,12 +131,12 @@ void Programs::draw_individual_differences(std::uint64_t seed) {
         }
         self.clock_drift_us = std::lround(spec.clock_drift_stddev_us * stream.normal());
     }
-    system_.random = RandomStream(seed, kRandStreams + kNoRobot);
-    system_.seeds = RandomStream(seed, kSeedStreams + kNoRobot);
+    system_.random = RandomStream(seed, kRandStreams + kNone);
+    system_.seeds = RandomStream(seed, kSeedStreams + kNone);
 }
 
 Computer& Programs::computer(std::uint32_t robot) {
-    return robot == kNoRobot ? system_ : computers_[robot];
+    return robot == kNone ? system_ : computers_[robot];
 }
 
 void Programs::enter(std::uint32_t robot, char const* phase) {
@@ -187,13 +187,13 @@ void Programs::start() {
     auto const count = static_cast<std::uint32_t>(computers_.size());
     if (count == 0) {
         // Nobody to run main(): only what the global callbacks need.
-        run_main(kNoRobot);
+        run_main(kNone);
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         run_main(i);
     }
     warn_of_idle_categories();
-    call(count == 0 ? kNoRobot : count - 1, "global_setup", callback_global_setup);
+    call(count == 0 ? kNone : count - 1, "global_setup", callback_global_setup);
     for (std::uint32_t i = 0; i < count; ++i) {
         call(i, "user_init", computers_[i].program.init);
     }
@@ -201,14 +201,14 @@ void Programs::start() {
 
 void Programs::declare_columns() {
     services_.data.declaring = true;
-    call(kNoRobot, "create_data_schema", callback_create_data_schema);
+    call(kNone, "create_data_schema", callback_create_data_schema);
     services_.data.declaring = false;
 }
 
 void Programs::run_step() {
     std::int64_t const now_us = std::llround(world_.time_s() * kMicrosecondsPerSecond);
     if (callback_global_step != nullptr && now_us >= system_.clock_us) {
-        enter(kNoRobot, "global_step");
+        enter(kNone, "global_step");
         pogo_main_loop_step(callback_global_step);
         leave();
     }
@@ -226,15 +226,16 @@ void Programs::run_step() {
 
 void Programs::tick(std::uint32_t robot) {
     Computer& self = computers_[robot];
-    std::uint32_t const body = world_.robots.body[robot];
-    measure_velocity(self.accelerometer, world_.bodies.velocity_mm_s[body], self.clock_us, self.loop.ticks == 0);
+    if (std::uint32_t const body = world_.robots.body[robot]; body != kNone) {
+        measure_velocity(self.accelerometer, world_.bodies.velocity_mm_s[body], self.clock_us, self.loop.ticks == 0);
+    }
     enter(robot, "user_step");
     pogo_main_loop_step(self.program.step);
     leave();
     // A drift may not turn the clock back.
     std::int64_t const slept_us = self.clock_us - self.loop.loop_timer.origin_us;
     self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);
-    if (self.motors.driven) {
+    if (self.motors.driven && world_.spec_of(robot).has_wheels) {
         drive(world_, robot, self.motors);
     }
 }

@@ -1,60 +1,22 @@
 #include "sim/build_world.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
-#include <optional>
+#include <limits>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
-#include "record/imported_poses.hpp"
+#include "sim/data_files.hpp"
+#include "sim/make_ring.hpp"
+#include "sim/place_objects.hpp"
 
 namespace pogosim {
 
 namespace {
-
-// Random streams of the run that belong to no robot; robots have theirs by their index.
-constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;
-
-/// Folders with the arenas that come along: of the installed library, wherever it has been moved to, and of the
-/// sources.
-std::vector<std::filesystem::path> data_folders() {
-    std::vector<std::filesystem::path> folders;
-    Dl_info library = {};
-    if (dladdr(reinterpret_cast<void const*>(&build_world), &library) != 0 && library.dli_fname != nullptr) {
-        std::filesystem::path const folder = std::filesystem::path(library.dli_fname).parent_path();
-        folders.push_back(folder / POGOSIM_DATA_FROM_LIBRARY);
-    }
-    folders.emplace_back(POGOSIM_SOURCE_DATA_DIR);
-    return folders;
-}
-
-/// A file that the configuration names under `key`: below the working folder, else below the data folders.
-std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name) {
-    std::filesystem::path const path(name);
-    std::error_code ignored;
-    if (path.empty() || std::filesystem::exists(path, ignored)) {
-        return path;
-    }
-    if (path.is_relative()) {
-        for (std::filesystem::path const& folder : data_folders()) {
-            if (std::filesystem::exists(folder / path, ignored)) {
-                return folder / path;
-            }
-        }
-    }
-    Node const* const entry = scenario.resolved.find(key);
-    throw ConfigError(fmt::format(
-        "{}{}: there is no file '{}'; it is looked for from the working folder ({}), then in the "
-        "folder of Pogosim. Arenas that come along: arenas/disk.csv, arenas/square.csv, ...",
-        entry != nullptr ? entry->where() + ": " : "", key, name, std::filesystem::current_path(ignored).string()));
-}
 
 ArenaOutline unit_square() {
     return {.polygons = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, .source = "square"};
@@ -71,68 +33,132 @@ void build_arena(Scenario const& scenario, World& world) {
     world.arena = scale_arena(outline, {.surface_mm2 = scenario.arena_surface_mm2, .stretch = scenario.arena_stretch});
 }
 
-void add_body(Bodies& bodies, RobotSpec const& spec, Placement const& placement) {
-    bodies.position_mm.push_back(placement.position_mm);
-    bodies.heading_rad.push_back(placement.heading_rad);
-    bodies.axis.push_back(direction(placement.heading_rad));
+std::uint32_t add_body(Bodies& bodies, RingBody const& body, BodySpec const& spec) {
+    auto const index = static_cast<std::uint32_t>(bodies.size());
+    bodies.position_mm.push_back(body.position_mm);
+    bodies.heading_rad.push_back(body.heading_rad);
+    bodies.axis.push_back(direction(body.heading_rad));
     bodies.velocity_mm_s.push_back({});
     bodies.spin_rad_s.push_back(0.0F);
-    bodies.radius_mm.push_back(bounding_radius(spec.shape));
-    bodies.shape.push_back(spec.shape);
-    bodies.spec.push_back(spec.body);
+    bodies.radius_mm.push_back(bounding_radius(body.shape));
+    bodies.shape.push_back(body.shape);
+    bodies.spec.push_back(spec);
+    return index;
 }
 
-void add_robot(World& world, std::uint16_t category, Placement const& placement, std::uint32_t seed) {
+void add_bodies(World& world, Object& object, ObjectSpec const& spec, Placement const& placement) {
+    if (!spec.ring) {
+        object.body = add_body(world.bodies, {placement.position_mm, placement.heading_rad, spec.shape}, *spec.body);
+        object.body_count = 1;
+        return;
+    }
+    RingParts const ring = make_ring(spec, placement);
+    object.body = static_cast<std::uint32_t>(world.bodies.size());
+    object.body_count = static_cast<std::uint32_t>(ring.bodies.size());
+    for (RingBody const& body : ring.bodies) {
+        add_body(world.bodies, body, *spec.body);
+    }
+    world.rings.push_back(
+        {.body = object.body, .body_count = object.body_count, .stiffness_hz = spec.ring->stiffness_hz});
+    for (Joint joint : ring.joints) {
+        joint.a += object.body;
+        joint.b += object.body;
+        world.joints.push_back(joint);
+    }
+}
+
+void add_robot(World& world, Object const& object, std::uint32_t seed) {
     Robots& robots = world.robots;
     std::size_t const index = robots.size();
-    robots.id.push_back(static_cast<std::uint16_t>(index));
-    robots.category.push_back(category);
-    robots.body.push_back(static_cast<std::uint32_t>(world.bodies.size()));
+    robots.id.push_back(object.id);
+    robots.category.push_back(object.category);
+    robots.body.push_back(object.body);
     robots.led.push_back({});
     robots.drive.push_back({});
     robots.stream.emplace_back(seed, index);
-    add_body(world.bodies, world.categories[category].spec, placement);
 }
 
-/// Radii of all objects that the formation places, in the order of the configuration.
-std::vector<float> radii_to_place(Scenario const& scenario) {
-    std::vector<float> radii;
-    for (ObjectConfig const& object : scenario.objects) {
-        auto const* const robot = std::get_if<RobotSpec>(&object.spec);
-        if (robot != nullptr && !object.position_mm) {
-            radii.insert(radii.end(), static_cast<std::size_t>(object.nb), bounding_radius(robot->shape));
+/// Where an object whose emitters lie along its outline sends.
+Outline outline_of(World const& world, Object const& object, ObjectSpec const& spec, Placement const& placement) {
+    Outline line{.robot = object.robot, .polygons = {}, .body = object.body, .body_count = object.body_count};
+    if (spec.shape.kind == ShapeKind::arena) {
+        line.polygons = world.arena.polygons;
+    } else if (!spec.ring) {
+        line.polygons = {moved(outline(spec.shape), placement.position_mm, placement.heading_rad)};
+    }
+    return line;
+}
+
+/// Makes objects one after the other and numbers them: those with a rigid body and a program from 0 up, all others from
+/// 65535 down.
+class ObjectMaker {
+public:
+    ObjectMaker(World& world, std::uint32_t seed) : world_(world), seed_(seed) {}
+
+    void add(std::uint16_t category, Placement const& placement) {
+        ObjectSpec const& spec = world_.categories[category].spec;
+        bool const is_robot_like = spec.robot && spec.body && !spec.ring;
+        Object object{.id = is_robot_like ? next_up_++ : next_down_--, .category = category};
+        if (spec.body) {
+            add_bodies(world_, object, spec, placement);
         }
+        if (spec.robot) {
+            object.robot = static_cast<std::uint32_t>(world_.robots.size());
+            add_robot(world_, object, seed_);
+            if (spec.robot->emitters == Emitters::outline) {
+                world_.outlines.push_back(outline_of(world_, object, spec, placement));
+            }
+        }
+        world_.objects.push_back(object);
     }
-    return radii;
+
+private:
+    World& world_;
+    std::uint32_t seed_;
+    std::uint16_t next_up_ = 0;
+    std::uint16_t next_down_ = std::numeric_limits<std::uint16_t>::max();
+};
+
+/// Walls have nothing to stand on in a world without walls.
+bool is_created(World const& world, ObjectConfig const& object) {
+    bool const is_wall = object.spec.robot && !object.spec.body;
+    if (is_wall && world.periodic && object.nb > 0) {
+        log().warn("objects.{}: a periodic arena has no walls, so there is no {}", object.category, object.type);
+        return false;
+    }
+    return object.spec.robot || object.spec.body;
 }
 
-/// What bounds the formation: the arena, or the contour of the first object of a category.
-Arena formation_domain(Scenario const& scenario, World const& world) {
-    std::string const& root = scenario.formation.root_object;
-    if (root.empty() || root == "arena" || root == "null") {
-        return world.arena;
-    }
-    throw ConfigError(
-        fmt::format("initial_formation_root_object: no object with a contour is called '{}'; use 'arena'", root));
-}
-
-void place_robots(Scenario const& scenario, World& world, std::uint32_t seed) {
-    RandomStream random(seed, kFormationStream);
-    std::vector<float> const radii = radii_to_place(scenario);
-    FormationSpec formation = scenario.formation;
-    formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
-    std::vector<Placement> const placements =
-        place(formation, radii, formation_domain(scenario, world), random, read_imported_feather);
-    auto next = placements.begin();
-    for (ObjectConfig const& object : scenario.objects) {
-        auto const* const spec = std::get_if<RobotSpec>(&object.spec);
-        if (spec == nullptr) {
+void add_objects(Scenario const& scenario, World& world, std::uint32_t seed) {
+    std::vector<std::vector<Placement>> const poses = place_objects(scenario, world, seed);
+    ObjectMaker maker(world, seed);
+    for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
+        ObjectConfig const& object = scenario.objects[i];
+        if (!is_created(world, object)) {
             continue;
         }
         auto const category = static_cast<std::uint16_t>(world.categories.size());
-        world.categories.push_back({.name = object.category, .spec = *spec});
-        for (int n = 0; n < object.nb; ++n) {
-            add_robot(world, category, object.position_mm ? Placement{*object.position_mm, 0.0F} : *next++, seed);
+        world.categories.push_back({.name = object.category, .spec = object.spec});
+        for (Placement const& placement : poses[i]) {
+            maker.add(category, placement);
+        }
+    }
+}
+
+/// A membrane holds in what is larger than the gaps between its bodies.
+void warn_of_gaps(Scenario const& scenario) {
+    for (ObjectConfig const& membrane : scenario.objects) {
+        if (!membrane.spec.ring || membrane.nb == 0) {
+            continue;
+        }
+        float const gap_mm = widest_gap_mm(make_ring(membrane.spec, {}));
+        for (ObjectConfig const& other : scenario.objects) {
+            if (other.spec.body && !other.spec.ring && 2.0F * bounding_radius(other.spec.shape) < gap_mm) {
+                log().warn(
+                    "{}: the gaps between its dots grow to {:.1f} mm, so that '{}' may slip through; use more or "
+                    "larger dots",
+                    where_in_object(scenario, membrane, "num_dots"), gap_mm, other.category);
+            }
         }
     }
 }
@@ -153,7 +179,8 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     world.ignore_occlusions = scenario.ignore_occlusions;
     world.temperature_c = static_cast<float>(scenario.arena_temperature_c);
     build_arena(scenario, world);
-    place_robots(scenario, world, seed);
+    warn_of_gaps(scenario);
+    add_objects(scenario, world, seed);
     make_mailboxes(world);
     world.light = make_light_map(world.arena, scenario.light_map_columns, scenario.light_map_rows);
     return world;
@@ -162,8 +189,8 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
 std::vector<LampSpec> lamps_of(Scenario const& scenario) {
     std::vector<LampSpec> lamps;
     for (ObjectConfig const& object : scenario.objects) {
-        if (auto const* const lamp = std::get_if<LampSpec>(&object.spec)) {
-            lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), *lamp);
+        if (object.spec.lamp) {
+            lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), *object.spec.lamp);
         }
     }
     return lamps;

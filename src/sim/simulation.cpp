@@ -38,16 +38,32 @@ std::int32_t packed_rgb(Rgb color) {
     return color.r << 16 | color.g << 8 | color.b;
 }
 
-ObjectRow row_of(World const& world, std::size_t robot, std::uint32_t ticks) {
-    std::uint32_t const body = world.robots.body[robot];
-    return {.time_s = static_cast<float>(world.time_s()),
-            .category = world.categories[world.robots.category[robot]].name,
-            .id = world.robots.id[robot],
-            .ticks = ticks,
-            .x_mm = world.bodies.position_mm[body].x,
-            .y_mm = world.bodies.position_mm[body].y,
-            .angle_rad = wrap_angle(world.bodies.heading_rad[body]),
-            .led_rgb = packed_rgb(world.robots.led[robot][0])};
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+/// A rigid body has a place and a heading, a ring the place of its first body, a wall neither.
+ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
+    ObjectRow row{.time_s = static_cast<float>(world.time_s()),
+                  .category = world.categories[object.category].name,
+                  .id = object.id,
+                  .ticks = ticks,
+                  .x_mm = kNoValue,
+                  .y_mm = kNoValue,
+                  .angle_rad = kNoValue,
+                  .led_rgb = object.robot != kNone ? packed_rgb(world.robots.led[object.robot][0]) : 0};
+    if (object.body != kNone) {
+        row.x_mm = world.bodies.position_mm[object.body].x;
+        row.y_mm = world.bodies.position_mm[object.body].y;
+    }
+    if (object.body_count == 1) {
+        row.angle_rad = wrap_angle(world.bodies.heading_rad[object.body]);
+    }
+    return row;
+}
+
+bool has_subparts(World const& world) {
+    return std::ranges::any_of(world.categories, [](Category const& category) {
+        return category.spec.ring && category.spec.ring->in_data_file;
+    });
 }
 
 }  // namespace
@@ -184,10 +200,12 @@ void Simulation::make_data_file() {
     options.path = output.data_filename;
     options.user_columns = services_.data.columns;
     options.fields = output.fields;
+    options.subpart_column = has_subparts(world_);
     options.led_column = output.led_column;
     options.flush_row_count = output.flush_row_count;
     options.metadata = run_metadata(scenario_, world_.arena, seed_);
     data_file_ = std::make_unique<DataFile>(options);
+    empty_row_.values.assign(options.user_columns.size(), CellValue());
 }
 
 std::optional<UserFailure> Simulation::record_if_due() {
@@ -206,18 +224,39 @@ std::optional<UserFailure> Simulation::record_if_due() {
 }
 
 std::optional<UserFailure> Simulation::record_rows() {
-    for (std::size_t i = 0; i < world_.robots.size(); ++i) {
-        if (!category_is_recorded_[world_.robots.category[i]]) {
+    DataRow const& row = services_.data.row;
+    for (Object const& object : world_.objects) {
+        if (!category_is_recorded_[object.category]) {
             continue;
         }
-        if (auto failure = call_user_code([this, i] { programs_.export_row(i); })) {
+        if (object.robot == kNone) {
+            data_file_->append(row_of(world_, object, std::nullopt), empty_row_.values);
+            continue;
+        }
+        if (auto failure = call_user_code([this, &object] { programs_.export_row(object.robot); })) {
             return failure;
         }
-        if (services_.data.row.exported) {
-            data_file_->append(row_of(world_, i, programs_.ticks(i)), services_.data.row.values);
+        if (row.exported) {
+            data_file_->append(row_of(world_, object, programs_.ticks(object.robot)), row.values);
+            record_subparts(object);
         }
     }
     return std::nullopt;
+}
+
+void Simulation::record_subparts(Object const& object) {
+    ObjectSpec const& spec = world_.categories[object.category].spec;
+    if (!spec.ring || !spec.ring->in_data_file) {
+        return;
+    }
+    ObjectRow row = row_of(world_, object, programs_.ticks(object.robot));
+    for (std::uint32_t part = 0; part < object.body_count; ++part) {
+        Vec2 const position_mm = world_.bodies.position_mm[object.body + part];
+        row.x_mm = position_mm.x;
+        row.y_mm = position_mm.y;
+        row.subpart = static_cast<std::int16_t>(part);
+        data_file_->append(row, empty_row_.values);
+    }
 }
 
 void Simulation::report(UserFailure const& failure) const {

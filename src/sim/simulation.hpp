@@ -54,6 +54,7 @@ private:
     void make_data_file();
     std::optional<UserFailure> record_if_due();
     std::optional<UserFailure> record_rows();
+    void record_subparts(Object const& object);
     void fit_time_step();
     bool is_over() const;
     void report(UserFailure const& failure) const;
@@ -72,6 +73,7 @@ private:
     std::unique_ptr<PhysicsEngine> physics_;
     std::unique_ptr<DataFile> data_file_;
     std::vector<bool> category_is_recorded_;
+    DataRow empty_row_;               // user columns of what runs no user code
     std::int64_t next_row_time_ = 0;  // in save periods
     StageClock stages_;
 };

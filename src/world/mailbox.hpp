@@ -29,6 +29,7 @@ struct Emission {
     std::uint8_t emitters = 0;        // bit d: emitter d radiates
     std::uint16_t message_bytes = 0;  // header and payload as the reception law counts them
     float send_probability = 0.0F;    // of the sender, per tick
+    float range_mm = 0.0F;            // from an emitter to the receiver's border
     FrameHeader header;
     std::uint32_t payload_offset = 0;  // into Air::payloads
 };

@@ -1,10 +1,12 @@
-// What is fixed for a whole run: the parameters of bodies, robots and lamps, one struct per category, as the
-// configuration gave them. Defaults stand here and nowhere else.
+// What is fixed for a whole run: what the objects of each category are made of, as the configuration gave it. Defaults
+// stand here and nowhere else.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "geometry/shape.hpp"
@@ -44,6 +46,21 @@ struct IrSpec {
     float range_mm = 80.0F;  // from an emitter to the receiver's border; 0: mute
     ReceptionSpec reception;
     int queue_size = 20;  // messages a robot's FIFO holds; the newest is dropped when it is full
+    std::optional<std::array<float, 3>> range_by_power_mm{};  // at emitter powers 1 to 3; absent: range_mm at all
+
+    float longest_range_mm() const {
+        return range_by_power_mm
+                   ? std::max({range_mm, (*range_by_power_mm)[0], (*range_by_power_mm)[1], (*range_by_power_mm)[2]})
+                   : range_mm;
+    }
+
+    /// Reach at an emitter power of 0 to 3; at 0 nothing is sent.
+    float range_at_mm(std::uint8_t power) const {
+        if (power == 0) {
+            return 0.0F;
+        }
+        return range_by_power_mm ? (*range_by_power_mm)[power - 1U] : range_mm;
+    }
 };
 
 struct IntRange {
@@ -51,11 +68,17 @@ struct IntRange {
     int max = 0;
 };
 
-/// One category of objects that run user code.
+enum class Emitters {
+    rim,      // four, on the bounding disk at the front, right, back and left
+    centre,   // four, looking the same ways from the centre
+    outline,  // one, all along the object's outline; no half planes, no shadows
+};
+
+/// The part of an object that runs user code.
 struct RobotSpec {
-    Shape shape;
-    BodySpec body;
     IrSpec ir;
+    Emitters emitters = Emitters::rim;
+    bool has_wheels = true;                 // false: motors are inert
     float max_linear_speed_mm_s = 100.0F;   // both motors at full power
     float max_angular_speed_rad_s = 1.0F;   // one motor full turns at twice this
     float linear_noise_stddev = 0.0F;       // per velocity component and control tick, in units of 100 mm/s
@@ -66,6 +89,19 @@ struct RobotSpec {
     float clock_drift_stddev_us = 0.0F;     // constant drift of a robot's clock, microseconds per tick
     bool rotate_leds_45_deg = true;         // drawing only
 };
+
+/// A soft body: bodies along the outline of the shape, joined in a ring by springs.
+struct RingSpec {
+    int body_count = 100;
+    bool segments = false;                // rectangles joined by hinges; else disks
+    float radius_mm = 10.0F;              // of a disk
+    std::optional<float> thickness_mm{};  // of the segments; absent: radius_mm
+    int cross_span = 3;                   // > 1: weaker springs from each body to the one this many places on
+    float stiffness_hz = 30.0F;           // of the springs; their damping ratio is the body's linear damping
+    bool in_data_file = false;            // a row for each body, with its subpart_id
+};
+
+enum class Colormap { rainbow, qualitative };
 
 enum class LightMode { uniform, gradient, plane };
 
@@ -82,6 +118,16 @@ struct LampSpec {
     float photo_start_at_s = -1.0F;  // >= 0: dark before, flash of photo_start_value, then normal
     float photo_start_duration_s = 1.0F;
     int photo_start_value = 32767;
+};
+
+/// What the objects of a category are made of. Parts that they do not have are absent.
+struct ObjectSpec {
+    Shape shape;
+    std::optional<BodySpec> body;    // tangible: takes part in collisions
+    std::optional<RingSpec> ring;    // the body is a soft ring along the shape's outline instead of the rigid shape
+    std::optional<RobotSpec> robot;  // runs user code
+    std::optional<LampSpec> lamp;    // gives light
+    Colormap colormap = Colormap::rainbow;  // drawing only
 };
 
 }  // namespace pogosim

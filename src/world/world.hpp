@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct Rgb {
 inline constexpr int kLedCount = 5;  // 0 head, 1 front, 2 right, 3 back, 4 left
 using Leds = std::array<Rgb, kLedCount>;
 
+/// Stands for an index that does not exist.
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
 /// Rigid bodies. Shape: one entry per body.
 struct Bodies {
     std::vector<Vec2> position_mm;
@@ -46,6 +50,25 @@ struct Bodies {
     std::size_t size() const { return position_mm.size(); }
 };
 
+/// A joint between two bodies.
+struct Joint {
+    std::uint32_t a = 0;  // indices into World::bodies
+    std::uint32_t b = 0;
+    Vec2 anchor_a_mm;  // where it is fixed, in each body's own frame
+    Vec2 anchor_b_mm;
+    float length_mm = 0.0F;      // of the spring at rest; 0: a hinge
+    float stiffness_hz = 0.0F;   // of the spring, with the masses at its ends
+    float damping_ratio = 0.0F;  // 1: critical
+    float max_stretch = 0.0F;    // a spring is never longer than 1 + this times its length; 0: no limit
+};
+
+/// Bodies in a closed row, clockwise on the screen, that keep the area they enclose.
+struct Ring {
+    std::uint32_t body = 0;  // index into World::bodies, of the first of body_count
+    std::uint32_t body_count = 0;
+    float stiffness_hz = 0.0F;  // frequency of the area as a spring
+};
+
 /// The velocity a robot's motors ask of its body.
 struct Drive {
     Vec2 velocity_mm_s;
@@ -57,7 +80,7 @@ struct Drive {
 struct Robots {
     std::vector<std::uint16_t> id;        // what pogobot_helper_getid() answers and the data file shows
     std::vector<std::uint16_t> category;  // index into World::categories
-    std::vector<std::uint32_t> body;      // index into World::bodies
+    std::vector<std::uint32_t> body;      // index into World::bodies, the first one of a ring; kNone: it has none
     std::vector<Leds> led;
     std::vector<Drive> drive;
     std::vector<RandomStream> stream;  // noise of motors and sensors, losses on the air
@@ -65,10 +88,26 @@ struct Robots {
     std::size_t size() const { return id.size(); }
 };
 
-/// One category of robots.
 struct Category {
     std::string name;
-    RobotSpec spec;
+    ObjectSpec spec;
+};
+
+/// One thing that the data file has a row for: it has a body, runs user code, or both.
+struct Object {
+    std::uint16_t id = 0;
+    std::uint16_t category = 0;    // index into World::categories
+    std::uint32_t robot = kNone;   // index into World::robots
+    std::uint32_t body = kNone;    // index into World::bodies, of the first of body_count
+    std::uint32_t body_count = 0;  // more than one: a ring, in this order
+};
+
+/// Where an object with Emitters::outline sends and receives.
+struct Outline {
+    std::uint32_t robot = 0;        // index into World::robots
+    std::vector<Polygon> polygons;  // mm, of one that stands still; empty: through the bodies of a ring
+    std::uint32_t body = kNone;     // the ring, as in Object
+    std::uint32_t body_count = 0;
 };
 
 /// Light levels on a grid over the bounding box of the outer wall. Row 0 lies along the top.
@@ -95,9 +134,13 @@ struct World {
     float temperature_c = 42.0F;
 
     // Things.
-    std::vector<Category> categories;  // of robots, in the order of the configuration
+    std::vector<Category> categories;  // of objects, in the order of the configuration
+    std::vector<Object> objects;       // in order of creation
     Bodies bodies;
+    std::vector<Joint> joints;
+    std::vector<Ring> rings;
     Robots robots;
+    std::vector<Outline> outlines;
     LightMap light;
 
     // Messages.
@@ -106,7 +149,7 @@ struct World {
 
     double time_s() const { return static_cast<double>(step) * time_step_s; }
 
-    RobotSpec const& spec_of(std::size_t robot) const { return categories[robots.category[robot]].spec; }
+    RobotSpec const& spec_of(std::size_t robot) const { return *categories[robots.category[robot]].spec.robot; }
 };
 
 /// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.

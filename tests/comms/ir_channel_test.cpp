@@ -15,9 +15,9 @@ namespace {
 using testing::add_robot;
 using testing::square_world;
 
-RobotSpec perfect_link() {
-    RobotSpec spec = testing::pogobot_spec();
-    spec.ir.reception = {.law = ReceptionLaw::constant, .rate = 1.0};
+ObjectSpec perfect_link() {
+    ObjectSpec spec = testing::pogobot_spec();
+    spec.robot->ir.reception = {.law = ReceptionLaw::constant, .rate = 1.0};
     return spec;
 }
 
@@ -27,6 +27,7 @@ void send(World& world, std::uint32_t robot, std::vector<std::uint8_t> const& pa
     emission.robot = robot;
     emission.emitters = emitters;
     emission.send_probability = 1.0F;
+    emission.range_mm = world.spec_of(robot).ir.range_mm;
     emission.header.sender_id = static_cast<std::uint16_t>(robot);
     emission.header.payload_length = static_cast<std::uint16_t>(payload.size());
     emission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);

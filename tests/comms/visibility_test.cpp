@@ -25,7 +25,7 @@ std::vector<std::uint32_t> reached(World const& world, std::uint32_t robot, std:
     Visibility visibility;
     visibility.update(world);
     std::vector<std::uint32_t> result;
-    for (Receiver const& receiver : visibility.receivers(world, robot, emitters)) {
+    for (Receiver const& receiver : visibility.receivers(world, robot, emitters, world.spec_of(robot).ir.range_mm)) {
         result.push_back(receiver.robot);
     }
     return result;
@@ -103,7 +103,7 @@ TEST(Visibility, OmnidirectionalEmissionComesFromTheNearestEmitterThatSees) {
     add_robot(world, {580, 540});
     Visibility visibility;
     visibility.update(world);
-    auto const receivers = visibility.receivers(world, 0, kAllFaces);
+    auto const receivers = visibility.receivers(world, 0, kAllFaces, world.spec_of(0).ir.range_mm);
     ASSERT_EQ(receivers.size(), 1U);
     // The front emitter at (526.5, 500) is nearer than the right one at (500, 526.5).
     EXPECT_NEAR(receivers[0].from_emitter_mm.x, 580.0F - 526.5F, 1e-3F);
@@ -122,8 +122,8 @@ TEST(Visibility, PeriodicWorldIsSeenAcrossTheSeam) {
 
 TEST(Visibility, RobotWithoutRangeIsMute) {
     World world = square_world();
-    RobotSpec mute = testing::pogobot_spec();
-    mute.ir.range_mm = 0.0F;
+    ObjectSpec mute = testing::pogobot_spec();
+    mute.robot->ir.range_mm = 0.0F;
     add_robot(world, {500, 500}, 0.0F, mute);
     add_robot(world, {553, 500}, 0.0F, mute);
     EXPECT_TRUE(reached(world, 0, kAllFaces).empty());

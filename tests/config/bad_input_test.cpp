@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.hpp"
+#include "config/object_types.hpp"
 #include "config/reference.hpp"
 #include "config/scenario.hpp"
 #include "config_file.hpp"
@@ -35,7 +36,18 @@ std::string head_for(KeyGroup const& group) {
     if (group.path == "objects.<category>.msg_success_rate") {
         return kRobots + "    msg_success_rate:\n      type: dynamic\n      ";
     }
-    return (group.type == "pogobot" ? kRobots : kLamp) + "    ";
+    std::string const geometry = group.type == "pogowall" ? "arena" : "disk";
+    return "objects:\n  robots: {type: pogobot, geometry: disk}\n  thing:\n    type: " + group.type +
+           "\n    geometry: " + geometry + "\n    ";
+}
+
+/// "one of pogobot, ...": what an unknown type is told.
+std::string type_names() {
+    std::vector<std::string> names;
+    for (ObjectType const& type : object_types()) {
+        names.emplace_back(type.name);
+    }
+    return names_text(names);
 }
 
 }  // namespace
@@ -181,39 +193,29 @@ TEST(BadInput, WrongLights) {
 
 TEST(BadInput, ObjectsNeedTypeAndGeometry) {
     EXPECT_EQ(load_error("objects:\n  a:\n    nb: 1\n"),
-              "x.yaml:2: objects.a: the key 'type' is missing; expected pogobot or static_light");
+              "x.yaml:2: objects.a: the key 'type' is missing; expected " + type_names());
     EXPECT_EQ(load_error("objects:\n  a:\n"),
-              "x.yaml:2: objects.a: the key 'type' is missing; expected pogobot or static_light");
+              "x.yaml:2: objects.a: the key 'type' is missing; expected " + type_names());
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobot}\n"),
-              "x.yaml:2: objects.a: the key 'geometry' is missing; expected disk");
+              "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, triangle");
     EXPECT_EQ(load_error("objects:\n  a: {type: static_light}\n"),
               "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of global, arena, disk, rectangle, "
               "triangle");
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: ~}\n"),
-              "x.yaml:2: objects.a: the key 'geometry' is missing; expected disk");
-    EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: rectangle}\n"),
-              "x.yaml:2: objects.a.geometry: expected disk, found 'rectangle'");
+              "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, triangle");
+    EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: global}\n"),
+              "x.yaml:2: objects.a.geometry: expected one of disk, rectangle, triangle, found 'global'");
     EXPECT_EQ(load_error("objects:\n  a: {type: [pogobot]}\n"),
-              "x.yaml:2: objects.a.type: expected pogobot or static_light, found a list");
+              "x.yaml:2: objects.a.type: expected " + type_names() + ", found a list");
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobt}\n"),
-              "x.yaml:2: objects.a.type: expected pogobot or static_light, found 'pogobt'; did you mean 'pogobot'?");
+              "x.yaml:2: objects.a.type: expected " + type_names() + ", found 'pogobt'; did you mean 'pogobot'?");
     EXPECT_EQ(load_error("objects:\n  a: 5\n"), "x.yaml:2: objects.a: expected a map of keys, found 5");
-}
-
-TEST(BadInput, TypesToComeAreNamedAsSuch) {
-    for (std::string const type :
-         {"pogobject", "pogowall", "membrane", "rectmembrane", "active_object", "passive_object",
-          "rotating_ray_of_light", "alternating_rays_of_light", "orbiting_static_light"}) {
-        EXPECT_EQ(
-            load_error("objects:\n  a: {type: " + type + ", geometry: disk}\n"),
-            "x.yaml:2: objects.a.type: type '" + type + "' is not supported yet; supported: pogobot, static_light");
-    }
 }
 
 TEST(BadInput, MoreRobotsThanIdsAreRefused) {
     std::string const half = ": {type: pogobot, geometry: disk, nb: 32768}\n";
     EXPECT_EQ(load_error("objects:\n  a" + half + "  b" + half),
-              "x.yaml:1: objects: expected at most 65535 robots in all categories, found 65536");
+              "x.yaml:1: objects: expected at most 65535 objects in all categories, found 65536");
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: disk, nb: 65535}\n"), "no error");
 }
 

@@ -46,6 +46,6 @@ TEST(Reference, SaysWhatTheLoaderChecks) {
     EXPECT_EQ(key_of(groups, "pogobot", "radius").default_text, "10");
     EXPECT_EQ(key_of(groups, "pogobot", "body_friction").default_text, "0.3");
     EXPECT_TRUE(key_of(groups, "pogobot", "geometry").required);
-    EXPECT_EQ(key_of(groups, "pogobot", "geometry").expected, "disk");
+    EXPECT_EQ(key_of(groups, "pogobot", "geometry").expected, "one of disk, rectangle, triangle");
     EXPECT_EQ(key_of(groups, "static_light", "photo_start_value").default_text, "32767");
 }

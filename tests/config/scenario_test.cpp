@@ -13,11 +13,11 @@ using namespace pogosim::config_file;
 namespace {
 
 RobotSpec robot(std::string const& keys) {
-    return std::get<RobotSpec>(load(kRobots + keys).objects.at(0).spec);
+    return *load(kRobots + keys).objects.at(0).spec.robot;
 }
 
 LampSpec lamp(std::string const& keys) {
-    return std::get<LampSpec>(load(kLamp + keys).objects.at(1).spec);
+    return *load(kLamp + keys).objects.at(1).spec.lamp;
 }
 
 ReceptionSpec reception(std::string const& map) {
@@ -86,14 +86,15 @@ TEST(Scenario, DefaultsOfRobotsAreThoseOfTheConfigurationSheet) {
     ASSERT_EQ(s.objects.size(), 1U);
     EXPECT_EQ(s.objects[0].nb, 1);
     EXPECT_EQ(s.objects[0].position_mm, std::nullopt);
-    RobotSpec const spec = std::get<RobotSpec>(s.objects[0].spec);
-    EXPECT_EQ(spec.shape, Shape{});
-    EXPECT_EQ(spec.shape.radius_mm, 10.0F);
-    EXPECT_EQ(spec.body.linear_damping, 0.0F);
-    EXPECT_EQ(spec.body.angular_damping, 0.0F);
-    EXPECT_EQ(spec.body.density, 10.0F);
-    EXPECT_EQ(spec.body.friction, 0.3F);
-    EXPECT_EQ(spec.body.restitution, 0.5F);
+    ObjectSpec const& made = s.objects[0].spec;
+    RobotSpec const& spec = *made.robot;
+    EXPECT_EQ(made.shape, Shape{});
+    EXPECT_EQ(made.shape.radius_mm, 10.0F);
+    EXPECT_EQ(made.body->linear_damping, 0.0F);
+    EXPECT_EQ(made.body->angular_damping, 0.0F);
+    EXPECT_EQ(made.body->density, 10.0F);
+    EXPECT_EQ(made.body->friction, 0.3F);
+    EXPECT_EQ(made.body->restitution, 0.5F);
     EXPECT_EQ(spec.max_linear_speed_mm_s, 100.0F);
     EXPECT_EQ(spec.max_angular_speed_rad_s, 1.0F);
     EXPECT_EQ(spec.linear_noise_stddev, 0.0F);
@@ -122,15 +123,15 @@ TEST(Scenario, TheArticlesExampleLoadsWithoutAWarning) {
     ASSERT_EQ(s.objects.size(), 2U);
     EXPECT_EQ(s.objects[0].category, "global_light");
     EXPECT_EQ(s.objects[0].type, "static_light");
-    LampSpec const lamp = std::get<LampSpec>(s.objects[0].spec);
+    LampSpec const lamp = *s.objects[0].spec.lamp;
     EXPECT_EQ(lamp.shape.kind, ShapeKind::global);
     EXPECT_EQ(lamp.value, 200);
     EXPECT_EQ(lamp.photo_start_at_s, 1.0F);
     EXPECT_EQ(s.objects[1].category, "robots");
     EXPECT_EQ(s.objects[1].nb, 100);
-    RobotSpec const robot = std::get<RobotSpec>(s.objects[1].spec);
-    EXPECT_EQ(robot.shape.radius_mm, 26.5F);
-    EXPECT_EQ(robot.body.linear_damping, 0.3F);
+    RobotSpec const robot = *s.objects[1].spec.robot;
+    EXPECT_EQ(s.objects[1].spec.shape.radius_mm, 26.5F);
+    EXPECT_EQ(s.objects[1].spec.body->linear_damping, 0.3F);
     EXPECT_EQ(robot.max_angular_speed_rad_s, 2.0F);
     EXPECT_EQ(robot.ir.reception.law, ReceptionLaw::power);
     EXPECT_EQ(robot.ir.reception.alpha, 1.0e-6);
@@ -285,13 +286,14 @@ objects:
     EXPECT_EQ(object.nb, 3);
     EXPECT_EQ(object.position_mm, (Vec2{10.0F, 20.5F}));
     EXPECT_EQ(object.where, "x.yaml:3");
-    RobotSpec const spec = std::get<RobotSpec>(object.spec);
-    EXPECT_EQ(spec.shape.radius_mm, 30.0F);
-    EXPECT_EQ(spec.body.linear_damping, 1.0F);
-    EXPECT_EQ(spec.body.angular_damping, 2.0F);
-    EXPECT_EQ(spec.body.density, 1e12F);
-    EXPECT_EQ(spec.body.friction, 0.4F);
-    EXPECT_EQ(spec.body.restitution, 0.6F);
+    ObjectSpec const& made = object.spec;
+    RobotSpec const& spec = *made.robot;
+    EXPECT_EQ(made.shape.radius_mm, 30.0F);
+    EXPECT_EQ(made.body->linear_damping, 1.0F);
+    EXPECT_EQ(made.body->angular_damping, 2.0F);
+    EXPECT_EQ(made.body->density, 1e12F);
+    EXPECT_EQ(made.body->friction, 0.4F);
+    EXPECT_EQ(made.body->restitution, 0.6F);
     EXPECT_EQ(spec.max_linear_speed_mm_s, 50.0F);
     EXPECT_EQ(spec.max_angular_speed_rad_s, 3.0F);
     EXPECT_EQ(spec.linear_noise_stddev, 0.01F);
@@ -335,7 +337,7 @@ objects:
 )",
                             {.overrides = {}, .strict = true});
     EXPECT_EQ(warnings.text(), "");
-    LampSpec const spec = std::get<LampSpec>(s.objects.at(1).spec);
+    LampSpec const spec = *s.objects.at(1).spec.lamp;
     EXPECT_EQ(spec.shape, (Shape{ShapeKind::rectangle, 5, 6, 7, 8}));
     EXPECT_EQ(spec.mode, LightMode::plane);
     EXPECT_EQ(spec.value, 100);
@@ -365,7 +367,7 @@ TEST(Scenario, EveryShapeIsAShapeOfLight) {
         Scenario const s = load(std::string("objects: {r: {type: pogobot, geometry: disk}, l: {type: static_light, "
                                             "geometry: ") +
                                 name + "}}\n");
-        EXPECT_EQ(std::get<LampSpec>(s.objects.at(1).spec).shape.kind, kind) << name;
+        EXPECT_EQ(s.objects.at(1).spec.lamp->shape.kind, kind) << name;
     }
 }
 
@@ -467,7 +469,7 @@ TEST(Scenario, BatchOptionsGiveTheirDefaultOption) {
     EXPECT_EQ(s.arena_file, "c.csv");
     EXPECT_EQ(s.time_step_s, 0.01);
     EXPECT_EQ(s.objects.at(0).nb, 50);
-    EXPECT_EQ(std::get<RobotSpec>(s.objects.at(0).spec).shape.radius_mm, 20.0F);
+    EXPECT_EQ(s.objects.at(0).spec.shape.radius_mm, 20.0F);
 }
 
 TEST(Scenario, SetWinsOverTheFileAndOverItsOptions) {
@@ -477,7 +479,7 @@ TEST(Scenario, SetWinsOverTheFileAndOverItsOptions) {
     Scenario const s = load(text, {.overrides = {"objects.robots.nb=7", "objects.robots.max_linear_speed=20", "seed=3",
                                                  "seed=4", "time_step={default_option: 0.5, batch_options: []}"}});
     EXPECT_EQ(s.objects.at(0).nb, 7);
-    EXPECT_EQ(std::get<RobotSpec>(s.objects.at(0).spec).max_linear_speed_mm_s, 20.0F);
+    EXPECT_EQ(s.objects.at(0).spec.robot->max_linear_speed_mm_s, 20.0F);
     EXPECT_EQ(s.seed, 4U);
     EXPECT_EQ(s.time_step_s, 0.5);
     EXPECT_EQ(s.resolved.find("seed")->scalar, "4");

@@ -12,13 +12,13 @@ namespace {
 using testing::add_robot;
 using testing::square_world;
 
-RobotSpec body(float restitution, float friction = 0.0F, float damping = 0.0F) {
-    RobotSpec spec = testing::pogobot_spec();
-    spec.body = {.linear_damping = damping,
-                 .angular_damping = damping,
-                 .density = 10.0F,
-                 .friction = friction,
-                 .restitution = restitution};
+ObjectSpec body(float restitution, float friction = 0.0F, float damping = 0.0F) {
+    ObjectSpec spec = testing::pogobot_spec();
+    spec.body = BodySpec{.linear_damping = damping,
+                         .angular_damping = damping,
+                         .density = 10.0F,
+                         .friction = friction,
+                         .restitution = restitution};
     return spec;
 }
 

@@ -130,8 +130,8 @@ TEST(Clock, MillisecondsCountFromTheRobotsStart) {
 }
 
 TEST(Clock, DriftMakesClocksDiffer) {
-    RobotSpec spec = testing::article_robot();
-    spec.clock_drift_stddev_us = 500.0F;
+    ObjectSpec spec = testing::article_robot();
+    spec.robot->clock_drift_stddev_us = 500.0F;
     testing::use_program(nullptr, nullptr);
     Simulation simulation(testing::square_scene({testing::robots(30, spec)}, 2000.0), {});
     ASSERT_FALSE(simulation.start());

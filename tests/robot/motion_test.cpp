@@ -18,7 +18,7 @@ void full_ahead() {
 }
 
 /// The only robot of a large arena, after so many seconds of a program.
-std::unique_ptr<Simulation> run_alone(RobotSpec const& spec, void (*init)(), void (*step)(), double seconds) {
+std::unique_ptr<Simulation> run_alone(ObjectSpec const& spec, void (*init)(), void (*step)(), double seconds) {
     testing::use_program(init, step);
     auto simulation = std::make_unique<Simulation>(
         testing::square_scene({testing::robot_at({2500, 2500}, spec)}, 5000.0), RunOptions{});
@@ -34,8 +34,8 @@ TEST(Motion, RobotAt100MmPerSecondIsOneMetreAwayAfterTenSeconds) {
 }
 
 TEST(Motion, PowerSetOnceDrivesAgainstDampingUntilItIsChanged) {
-    RobotSpec spec = testing::article_robot();
-    spec.body.linear_damping = 0.3F;
+    ObjectSpec spec = testing::article_robot();
+    spec.body->linear_damping = 0.3F;
     auto const simulation = run_alone(spec, full_ahead, nullptr, 10.0);
     // Between two control ticks, 16 ms apart, damping takes half a percent at most.
     EXPECT_NEAR(simulation->world().bodies.position_mm[0].x, 3500.0F, 5.0F);
@@ -93,15 +93,15 @@ TEST(Motion, StoppedRobotStopsAtOnce) {
 }
 
 TEST(Motion, MotorBiasTurnsARobotThatDrivesStraight) {
-    RobotSpec spec = testing::article_robot();
-    spec.motor_bias = {50, 50};
+    ObjectSpec spec = testing::article_robot();
+    spec.robot->motor_bias = {50, 50};
     auto const simulation = run_alone(spec, full_ahead, nullptr, 2.0);
     EXPECT_NEAR(simulation->world().bodies.spin_rad_s[0], 2.0F * 100.0F / 511.5F, 1e-3F);
 }
 
 TEST(Motion, AngularNoiseOfStddevSSpreadsHeadingsAsARandomWalk) {
-    RobotSpec spec = testing::article_robot();
-    spec.angular_noise_stddev = 1.0F;
+    ObjectSpec spec = testing::article_robot();
+    spec.robot->angular_noise_stddev = 1.0F;
     testing::use_program([] { pogobot_motor_set(motorL, motorStop); }, nullptr);
     Scenario scenario = testing::square_scene({testing::robots(400, spec)}, 6000.0);
     Simulation simulation(std::move(scenario), {});
@@ -119,8 +119,8 @@ TEST(Motion, AngularNoiseOfStddevSSpreadsHeadingsAsARandomWalk) {
 }
 
 TEST(Motion, LinearNoiseIsInUnitsOf100MmPerSecond) {
-    RobotSpec spec = testing::article_robot();
-    spec.linear_noise_stddev = 0.1F;
+    ObjectSpec spec = testing::article_robot();
+    spec.robot->linear_noise_stddev = 0.1F;
     testing::use_program([] { pogobot_motor_set(motorL, motorStop); }, nullptr);
     Simulation simulation(testing::square_scene({testing::robots(400, spec)}, 6000.0), {});
     ASSERT_FALSE(simulation.start());
@@ -213,9 +213,9 @@ TEST(Photosensors, SitOnTheRimAtBackFrontLeftAndFrontRight) {
 TEST(Photosensors, NoiseAndBiasHaveTheConfiguredLaw) {
     static std::vector<int> readings;
     readings.clear();
-    RobotSpec spec = testing::article_robot();
-    spec.photosensor_noise_stddev = 50.0F;
-    spec.photosensor_bias = {100, 100};
+    ObjectSpec spec = testing::article_robot();
+    spec.robot->photosensor_noise_stddev = 50.0F;
+    spec.robot->photosensor_bias = {100, 100};
     LampSpec lamp;
     lamp.shape.kind = ShapeKind::global;
     lamp.value = 1000;

@@ -10,16 +10,18 @@
 namespace pogosim::testing {
 
 /// The article's robot: 26.5 mm, 100 mm/s, 2 rad/s, no noise, messages always received.
-inline RobotSpec article_robot() {
-    RobotSpec spec;
+inline ObjectSpec article_robot() {
+    ObjectSpec spec;
     spec.shape.radius_mm = 26.5F;
-    spec.max_linear_speed_mm_s = 100.0F;
-    spec.max_angular_speed_rad_s = 2.0F;
-    spec.ir.reception = {.law = ReceptionLaw::constant, .rate = 1.0};
+    spec.body.emplace();
+    RobotSpec& robot = spec.robot.emplace();
+    robot.max_linear_speed_mm_s = 100.0F;
+    robot.max_angular_speed_rad_s = 2.0F;
+    robot.ir.reception = {.law = ReceptionLaw::constant, .rate = 1.0};
     return spec;
 }
 
-inline ObjectConfig robots(int nb, RobotSpec const& spec = article_robot(), std::string const& category = "robots") {
+inline ObjectConfig robots(int nb, ObjectSpec const& spec = article_robot(), std::string const& category = "robots") {
     ObjectConfig object;
     object.category = category;
     object.type = "pogobot";
@@ -28,7 +30,7 @@ inline ObjectConfig robots(int nb, RobotSpec const& spec = article_robot(), std:
     return object;
 }
 
-inline ObjectConfig robot_at(Vec2 position_mm, RobotSpec const& spec = article_robot(),
+inline ObjectConfig robot_at(Vec2 position_mm, ObjectSpec const& spec = article_robot(),
                              std::string const& category = "robots") {
     ObjectConfig object = robots(1, spec, category);
     object.position_mm = position_mm;
@@ -39,7 +41,7 @@ inline ObjectConfig lamp(LampSpec const& spec) {
     ObjectConfig object;
     object.category = "light";
     object.type = "static_light";
-    object.spec = spec;
+    object.spec.lamp = spec;
     return object;
 }
 

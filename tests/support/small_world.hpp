@@ -17,15 +17,17 @@ inline World square_world(float side_mm = 1000.0F) {
 }
 
 /// Radius, range and body as the article's configuration has them.
-inline RobotSpec pogobot_spec() {
-    RobotSpec spec;
+inline ObjectSpec pogobot_spec() {
+    ObjectSpec spec;
     spec.shape.radius_mm = 26.5F;
+    spec.body.emplace();
+    spec.robot.emplace();
     return spec;
 }
 
 /// Adds a robot of the world's only category (made on the first call) and returns its index.
 inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad = 0.0F,
-                               RobotSpec const& spec = pogobot_spec()) {
+                               ObjectSpec const& spec = pogobot_spec()) {
     if (world.categories.empty()) {
         world.categories.push_back({"robots", spec});
     }
@@ -43,8 +45,9 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
     world.bodies.spin_rad_s.push_back(0.0F);
     world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
     world.bodies.shape.push_back(spec.shape);
-    world.bodies.spec.push_back(spec.body);
-    std::vector<int> const sizes(world.robots.size(), spec.ir.queue_size);
+    world.bodies.spec.push_back(*spec.body);
+    world.objects.push_back({.id = static_cast<std::uint16_t>(index), .robot = index, .body = index, .body_count = 1});
+    std::vector<int> const sizes(world.robots.size(), spec.robot->ir.queue_size);
     world.mailboxes = Mailboxes(sizes, 382);
     return index;
 }

@@ -1,0 +1,79 @@
+#include "comms/outline_index.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/polygon.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr float kPieceMm = 50.0F;  // long edges are cut to about this
+
+}  // namespace
+
+float squared_distance(OutlineIndex::Piece const& piece, Vec2 point) {
+    return squared_length(point - nearest_on_segment(piece.from, piece.to, point));
+}
+
+void OutlineIndex::add(Polygon const& polygon, std::uint32_t outline) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        Vec2 const from = polygon[i];
+        Vec2 const edge = polygon[(i + 1) % polygon.size()] - from;
+        float const count = std::max(1.0F, std::ceil(length(edge) / kPieceMm));
+        for (float k = 0.0F; k < count; k += 1.0F) {
+            Piece const piece{from + (k / count) * edge, from + ((k + 1.0F) / count) * edge, outline};
+            pieces_.push_back(piece);
+            middles_.push_back(0.5F * (piece.from + piece.to));
+            longest_half_mm_ = std::max(longest_half_mm_, 0.5F * length(piece.to - piece.from));
+        }
+    }
+    Box const around = bounding_box(polygon);
+    Box& box = boxes_[outline];
+    box.min = {std::min(box.min.x, around.min.x), std::min(box.min.y, around.min.y)};
+    box.max = {std::max(box.max.x, around.max.x), std::max(box.max.y, around.max.y)};
+}
+
+void OutlineIndex::update(World const& world) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    constexpr Box nothing{{infinity, infinity}, {-infinity, -infinity}};
+    if (world.outlines.empty()) {
+        return;
+    }
+    if (boxes_.empty()) {
+        boxes_.assign(world.outlines.size(), nothing);
+        for (std::uint32_t i = 0; i < world.outlines.size(); ++i) {
+            for (Polygon const& polygon : world.outlines[i].polygons) {
+                add(polygon, i);
+            }
+        }
+        standing_ = pieces_.size();
+    }
+    pieces_.resize(standing_);
+    middles_.resize(standing_);
+    for (std::uint32_t i = 0; i < world.outlines.size(); ++i) {
+        Outline const& outline = world.outlines[i];
+        if (outline.body_count > 0) {
+            auto const first = world.bodies.position_mm.begin() + outline.body;
+            boxes_[i] = nothing;
+            add(Polygon(first, first + outline.body_count), i);
+        }
+    }
+    grid_.build(middles_, world.arena.bounds, 2.0F * kPieceMm, world.periodic);
+}
+
+std::span<OutlineIndex::Piece const> OutlineIndex::near(World const& world, Vec2 centre, float radius_mm) {
+    found_.clear();
+    float const reach_mm = radius_mm + longest_half_mm_;
+    grid_.for_each_near(centre, reach_mm, [&](std::uint32_t i, Vec2 middle) {
+        Vec2 const offset = shortest_vector(world, centre, middle);
+        if (squared_length(offset) <= reach_mm * reach_mm) {
+            Piece const& piece = pieces_[i];
+            found_.push_back({offset + (piece.from - middle), offset + (piece.to - middle), piece.outline});
+        }
+    });
+    return found_;
+}
+
+}  // namespace pogosim

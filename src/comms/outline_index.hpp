@@ -1,0 +1,49 @@
+// The outlines of walls and membranes, cut into short pieces that are sorted by place: how near a point is to which of
+// them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/grid.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+class OutlineIndex {
+public:
+    /// Takes the outlines as they are now. Call once per step before the queries.
+    void update(World const& world);
+
+    bool empty() const { return pieces_.empty(); }
+
+    /// Smallest box around an outline.
+    Box const& box(std::uint32_t outline) const { return boxes_[outline]; }
+
+    /// A piece of an outline, seen from the centre of a query.
+    struct Piece {
+        Vec2 from;
+        Vec2 to;
+        std::uint32_t outline;  // index into World::outlines
+    };
+
+    /// Pieces within `radius_mm` of the centre, and some others. Valid until the next call.
+    std::span<Piece const> near(World const& world, Vec2 centre, float radius_mm);
+
+private:
+    void add(Polygon const& polygon, std::uint32_t outline);
+
+    std::size_t standing_ = 0;      // pieces of outlines that never move, which come first
+    std::vector<Piece> pieces_;     // in world coordinates
+    std::vector<Vec2> middles_;     // of the pieces
+    std::vector<Box> boxes_;        // of the outlines
+    float longest_half_mm_ = 0.0F;  // of all pieces
+    UniformGrid grid_;
+    std::vector<Piece> found_;
+};
+
+/// Distance from a point to a piece, squared.
+float squared_distance(OutlineIndex::Piece const& piece, Vec2 point);
+
+}  // namespace pogosim

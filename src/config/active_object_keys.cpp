@@ -1,0 +1,16 @@
+// Objects of type `active_object`: a body that can be pushed, with a program and infrared, without motors.
+#include "config/object_parts.hpp"
+#include "config/object_types.hpp"
+
+namespace pogosim {
+
+void read_active_object(MapReader& reader, ObjectConfig& object) {
+    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    read_robot(reader, object);
+    object.spec.robot->has_wheels = false;
+    read_body(reader, object);
+    read_position(reader, object);
+    read_colormap(reader, object);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,61 @@
+// Objects of type `membrane` and `rectmembrane`: soft rings of disks or of segments that run user code.
+#include <array>
+
+#include "config/object_parts.hpp"
+#include "config/object_types.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr int kMostBodies = 10000;  // of one membrane
+
+std::span<Key<RingSpec> const> ring_keys() {
+    using K = Key<RingSpec>;
+    static std::array const keys{
+        K{"num_dots", &RingSpec::body_count, between(3, kMostBodies), "", "Bodies along the outline."},
+        K{"dot_radius", &RingSpec::radius_mm, above(0).up_to(kMaxLength), "mm", "Radius of a dot."},
+        K{"cross_span", &RingSpec::cross_span, between(0, kMostBodies), "dots",
+          "Above 1: weaker springs from each dot to the one this many places on, which keep the membrane from "
+          "folding."},
+        K{"stiffness", &RingSpec::stiffness_hz, above(0).up_to(1e4), "Hz",
+          "Frequency of the springs between neighbours; their damping ratio is body_linear_damping."},
+        K{"serialize_dot_pose", &RingSpec::in_data_file, any(), "",
+          "Adds a row for each dot to the data file, with its number in the column subpart_id."},
+    };
+    return keys;
+}
+
+std::span<Key<RingSpec> const> thickness_keys() {
+    using K = Key<RingSpec>;
+    static std::array const keys{
+        K{"rect_thickness", &RingSpec::thickness_mm, above(0).up_to(kMaxLength), "mm",
+          "Thickness of the segments; absent: dot_radius."},
+    };
+    return keys;
+}
+
+void read_ring_object(MapReader& reader, ObjectConfig& object) {
+    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    read_robot(reader, object);
+    object.spec.robot->has_wheels = false;
+    object.spec.robot->emitters = Emitters::outline;
+    read_body(reader, object);
+    reader.read(ring_keys(), object.spec.ring.emplace());
+    read_position(reader, object);
+    read_colormap(reader, object);
+}
+
+}  // namespace
+
+void read_membrane(MapReader& reader, ObjectConfig& object) {
+    read_ring_object(reader, object);
+}
+
+void read_rectmembrane(MapReader& reader, ObjectConfig& object) {
+    read_ring_object(reader, object);
+    reader.read(thickness_keys(), *object.spec.ring);
+    object.spec.ring->segments = true;
+}
+
+}  // namespace pogosim

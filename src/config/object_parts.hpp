@@ -1,0 +1,27 @@
+// The keys that types of objects share, one function for each part an object can have. A type is the list of its parts.
+#pragma once
+
+#include <span>
+
+#include "config/map_reader.hpp"
+#include "config/scenario.hpp"
+#include "config/shape_keys.hpp"
+
+namespace pogosim {
+
+/// `geometry`, which takes the names of the given table, and the sizes of all shapes.
+void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Shape& shape);
+
+/// `body_*`: makes the object tangible.
+void read_body(MapReader& reader, ObjectConfig& object);
+
+/// Motors, sensors, infrared: the object runs user code.
+void read_robot(MapReader& reader, ObjectConfig& object);
+
+/// `x` and `y`, both or neither.
+void read_position(MapReader& reader, ObjectConfig& object);
+
+/// `colormap`.
+void read_colormap(MapReader& reader, ObjectConfig& object);
+
+}  // namespace pogosim

@@ -1,0 +1,58 @@
+#include "physics/ring_area.hpp"
+
+#include <numbers>
+
+namespace pogosim {
+
+namespace {
+
+b2Vec2 position(std::vector<b2Body*> const& ring, std::size_t i) {
+    return ring[i % ring.size()]->GetWorldCenter();
+}
+
+/// Signed, positive when the bodies run clockwise on the screen.
+float enclosed_area(std::vector<b2Body*> const& ring) {
+    float twice = 0.0F;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        twice += b2Cross(position(ring, i), position(ring, i + 1));
+    }
+    return 0.5F * twice;
+}
+
+/// How the area grows when body i moves.
+b2Vec2 area_gradient(std::vector<b2Body*> const& ring, std::size_t i) {
+    b2Vec2 const across = position(ring, i + 1) - position(ring, i + ring.size() - 1);
+    return {0.5F * across.y, -0.5F * across.x};
+}
+
+}  // namespace
+
+RingArea::RingArea(Ring const& ring, std::vector<b2Body*> const& bodies)
+    : bodies_(bodies.begin() + ring.body, bodies.begin() + ring.body + ring.body_count),
+      area_(enclosed_area(bodies_)),
+      frequency_hz_(ring.stiffness_hz) {}
+
+void RingArea::push(float dt_s) const {
+    float inverse_mass = 0.0F;  // of the area as a coordinate
+    float growth = 0.0F;        // of the area, per second
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        b2Vec2 const gradient = area_gradient(bodies_, i);
+        inverse_mass += b2Dot(gradient, gradient) / bodies_[i]->GetMass();
+        growth += b2Dot(gradient, bodies_[i]->GetLinearVelocity());
+    }
+    if (inverse_mass <= 0.0F || !bodies_.front()->IsAwake()) {
+        return;
+    }
+    float const omega = 2.0F * std::numbers::pi_v<float> * frequency_hz_;
+    float const stiffness = omega * omega / inverse_mass;
+    float const damping = 2.0F * omega / inverse_mass;
+    float const softness = 1.0F / (dt_s * (damping + dt_s * stiffness));
+    float const bias = (enclosed_area(bodies_) - area_) * dt_s * stiffness * softness;
+    float const impulse = -(growth + bias) / (inverse_mass + softness);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        b2Vec2 const change = (impulse / bodies_[i]->GetMass()) * area_gradient(bodies_, i);
+        bodies_[i]->SetLinearVelocity(bodies_[i]->GetLinearVelocity() + change);
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,31 @@
+// Soft rings: the bodies of a membrane and the joints between them.
+#pragma once
+
+#include <vector>
+
+#include "geometry/formation.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+struct RingBody {
+    Vec2 position_mm;
+    float heading_rad = 0.0F;
+    Shape shape;
+};
+
+struct RingParts {
+    std::vector<RingBody> bodies;  // along the outline, clockwise on the screen
+    std::vector<Joint> joints;     // between them: a and b are indices into `bodies`
+};
+
+/// The ring of an object with `spec.ring` at this place. Its bodies lie within the shape's outline and touch it.
+RingParts make_ring(ObjectSpec const& spec, Placement const& placement);
+
+/// Half the thickness of a ring, mm.
+float half_thickness_mm(RingSpec const& ring);
+
+/// Widest free gap between neighbouring bodies of the ring, mm; 0 when they touch. A smaller robot may slip through.
+float widest_gap_mm(RingParts const& ring);
+
+}  // namespace pogosim

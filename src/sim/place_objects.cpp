@@ -1,0 +1,154 @@
+#include "sim/place_objects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "record/imported_poses.hpp"
+#include "sim/data_files.hpp"
+#include "sim/make_ring.hpp"
+
+namespace pogosim {
+
+namespace {
+
+// The random stream of the formation belongs to no robot; robots have theirs by their index.
+constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;
+
+constexpr std::size_t kNoEntry = std::numeric_limits<std::size_t>::max();
+
+bool is_placed_by_formation(ObjectConfig const& object) {
+    return object.spec.body && !object.position_mm;
+}
+
+char const* size_key(Shape const& shape) {
+    switch (shape.kind) {
+        case ShapeKind::rectangle:
+            return "body_width";
+        case ShapeKind::triangle:
+            return "side_length";
+        default:
+            return "radius";
+    }
+}
+
+bool stands_inside(World const& world, Vec2 point_mm) {
+    Box const& box = world.arena.bounds;
+    bool const in_box =
+        point_mm.x >= box.min.x && point_mm.x <= box.max.x && point_mm.y >= box.min.y && point_mm.y <= box.max.y;
+    return in_box && (world.periodic || world.arena.contains(point_mm));
+}
+
+std::string arena_text(World const& world) {
+    Box const& box = world.arena.bounds;
+    return fmt::format("the arena, which spans ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm", box.min.x, box.min.y,
+                       box.max.x, box.max.y);
+}
+
+/// A formation needs room for a disk around each object; say so where the object is given, not where it fails.
+void check_size(Scenario const& scenario, World const& world, ObjectConfig const& object) {
+    float const needed_mm = 2.0F * bounding_radius(object.spec.shape);
+    Vec2 const room_mm = world.arena.bounds.size();
+    if (object.nb > 0 && needed_mm > std::min(room_mm.x, room_mm.y)) {
+        throw ConfigError(fmt::format("{}: the object is {:.1f} mm across, too large for {}",
+                                      where_in_object(scenario, object, size_key(object.spec.shape)), needed_mm,
+                                      arena_text(world)));
+    }
+}
+
+void check_position(Scenario const& scenario, World const& world, ObjectConfig const& object) {
+    Vec2 const centre_mm = *object.position_mm;
+    if (!stands_inside(world, centre_mm)) {
+        throw ConfigError(fmt::format("{}: ({:g}, {:g}) is outside of {}", where_in_object(scenario, object, "x"),
+                                      centre_mm.x, centre_mm.y, arena_text(world)));
+    }
+    if (object.spec.ring && !std::ranges::all_of(moved(outline(object.spec.shape), centre_mm, 0.0F),
+                                                 [&](Vec2 corner) { return stands_inside(world, corner); })) {
+        throw ConfigError(fmt::format("{}: around ({:g}, {:g}) the object reaches beyond {}",
+                                      where_in_object(scenario, object, size_key(object.spec.shape)), centre_mm.x,
+                                      centre_mm.y, arena_text(world)));
+    }
+}
+
+/// The entry that bounds the formation; kNoEntry: the arena does.
+std::size_t root_entry(Scenario const& scenario) {
+    std::string const& root = scenario.formation.root_object;
+    auto const found = std::ranges::find(scenario.objects, root, &ObjectConfig::category);
+    bool const is_arena = root.empty() || root == "arena" || root == "null" || found == scenario.objects.end();
+    return is_arena ? kNoEntry : static_cast<std::size_t>(found - scenario.objects.begin());
+}
+
+/// The space that the first object of the root category encloses.
+Arena root_domain(World const& world, ObjectConfig const& root, std::vector<Placement> const& poses) {
+    char const* const key = "initial_formation_root_object";
+    ObjectSpec const& spec = root.spec;
+    bool const is_solid = spec.body && !spec.ring;
+    if (root.nb == 0 || is_solid) {
+        throw ConfigError(fmt::format("{}: '{}' {}; it can be the arena, a wall, a membrane or a lamp", key,
+                                      root.category, is_solid ? "is solid: nothing fits into it" : "has no object"));
+    }
+    if (spec.lamp) {
+        bool const everywhere = spec.lamp->shape.kind == ShapeKind::global || spec.lamp->shape.kind == ShapeKind::arena;
+        return everywhere ? world.arena : make_arena({moved(outline(spec.lamp->shape), spec.lamp->centre_mm, 0.0F)});
+    }
+    if (spec.shape.kind == ShapeKind::arena) {
+        return world.arena;
+    }
+    float const wall_mm = spec.ring ? 2.0F * half_thickness_mm(*spec.ring) : 0.0F;
+    Placement const& pose = poses.front();
+    return make_arena({moved(outline(inset(spec.shape, wall_mm)), pose.position_mm, pose.heading_rad)});
+}
+
+/// Lets the formation place the objects of these entries together.
+void place_entries(Scenario const& scenario, FormationSpec const& formation, Arena const& domain,
+                   std::vector<std::size_t> const& entries, RandomStream& random,
+                   std::vector<std::vector<Placement>>& poses) {
+    std::vector<float> radii;
+    for (std::size_t const i : entries) {
+        ObjectConfig const& object = scenario.objects[i];
+        radii.insert(radii.end(), static_cast<std::size_t>(object.nb), bounding_radius(object.spec.shape));
+    }
+    std::vector<Placement> const placed = place(formation, radii, domain, random, read_imported_feather);
+    auto next = placed.begin();
+    for (std::size_t const i : entries) {
+        auto const end = next + scenario.objects[i].nb;
+        poses[i].assign(next, end);
+        next = end;
+    }
+}
+
+}  // namespace
+
+std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, World const& world, std::uint32_t seed) {
+    std::vector<std::vector<Placement>> poses(scenario.objects.size());
+    std::vector<std::size_t> entries;  // for the formation
+    std::size_t const root = root_entry(scenario);
+    RandomStream random(seed, kFormationStream);
+    FormationSpec formation = scenario.formation;
+    formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
+
+    for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
+        ObjectConfig const& object = scenario.objects[i];
+        if (is_placed_by_formation(object)) {
+            check_size(scenario, world, object);
+            entries.push_back(i);
+        } else if (object.spec.body || object.spec.robot) {
+            if (object.position_mm) {
+                check_position(scenario, world, object);
+            }
+            poses[i].assign(static_cast<std::size_t>(object.nb), {object.position_mm.value_or(Vec2{}), 0.0F});
+        }
+    }
+    Arena domain = world.arena;
+    if (root != kNoEntry) {
+        if (std::erase(entries, root) > 0) {
+            place_entries(scenario, formation, world.arena, {root}, random, poses);
+        }
+        domain = root_domain(world, scenario.objects[root], poses[root]);
+    }
+    place_entries(scenario, formation, domain, entries, random, poses);
+    return poses;
+}
+
+}  // namespace pogosim
