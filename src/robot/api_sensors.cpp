@@ -42,7 +42,8 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     auto const& bodies = world.bodies;
     std::uint32_t const body = context.body();
     Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor_number], bodies.axis[body]);
-    int level = world.light.at(bodies.position_mm[body] + offset) + context.computer->photosensor_bias[sensor_number];
+    Vec2 const place_mm = wrapped(world, bodies.position_mm[body] + offset);
+    int level = world.light.at(place_mm) + context.computer->photosensor_bias[sensor_number];
     float const noise = context.spec().photosensor_noise_stddev;
     if (noise > 0.0F) {
         level += static_cast<int>(noise * world.robots.stream[context.robot].normal());

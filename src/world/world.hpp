@@ -155,4 +155,7 @@ struct World {
 /// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.
 Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b);
 
+/// The same point inside the arena's bounding box when the world is periodic; else the point itself.
+Vec2 wrapped(World const& world, Vec2 point_mm);
+
 }  // namespace pogosim

@@ -2,30 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
-#include "support/scenes.hpp"
-#include "support/test_program.hpp"
+#include "support/lone_robot.hpp"
 
 namespace pogosim {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
-void full_ahead() {
-    pogobot_motor_set(motorL, motorFull);
-    pogobot_motor_set(motorR, motorFull);
-}
-
-/// The only robot of a large arena, after so many seconds of a program.
-std::unique_ptr<Simulation> run_alone(ObjectSpec const& spec, void (*init)(), void (*step)(), double seconds) {
-    testing::use_program(init, step);
-    auto simulation = std::make_unique<Simulation>(
-        testing::square_scene({testing::robot_at({2500, 2500}, spec)}, 5000.0), RunOptions{});
-    EXPECT_FALSE(simulation->start());
-    EXPECT_FALSE(testing::run_for(*simulation, seconds));
-    return simulation;
-}
+using testing::full_ahead;
+using testing::run_alone;
 
 TEST(Motion, RobotAt100MmPerSecondIsOneMetreAwayAfterTenSeconds) {
     auto const simulation = run_alone(testing::article_robot(), full_ahead, nullptr, 10.0);
@@ -130,108 +114,6 @@ TEST(Motion, LinearNoiseIsInUnitsOf100MmPerSecond) {
         squares += static_cast<double>(squared_length(velocity)) / 800.0;
     }
     EXPECT_NEAR(squares, 100.0, 4.0 * 100.0 * std::sqrt(2.0 / 800.0));
-}
-
-TEST(Imu, GyroscopeCountsCounterClockwise) {
-    static float gyro[3];
-    auto const step = [] {
-        float acceleration[3];
-        pogobot_imu_read(acceleration, gyro);
-    };
-    auto const left_alone = run_alone(
-        testing::article_robot(), [] { pogobot_motor_set(motorL, motorFull); }, step, 1.0);
-    EXPECT_NEAR(gyro[2], -4.0F, 1e-3F);
-    EXPECT_EQ(gyro[0], 0.0F);
-}
-
-TEST(Imu, AccelerometerIsZeroAtFirstThenShowsTheCentripetalAcceleration) {
-    static float first[3];
-    static Vec2 sum;
-    sum = {};
-    auto const step = [] {
-        float acceleration[3];
-        float gyro[3];
-        pogobot_imu_read(acceleration, gyro);
-        if (pogobot_ticks == 0) {
-            std::copy_n(acceleration, 3, first);
-        } else if (pogobot_ticks > 2) {
-            sum = sum + Vec2{acceleration[0], acceleration[1]};
-        }
-    };
-    auto const simulation = run_alone(
-        testing::article_robot(), [] { pogobot_motor_set(motorL, motorFull); }, step, 5.0);
-    EXPECT_EQ(first[0], 0.0F);
-    EXPECT_EQ(first[1], 0.0F);
-    // v omega = 0.05 m/s * 4 rad/s, to the right of a robot that turns right. Along the heading, which by then has
-    // turned a bit further than the velocity, the mean is v omega times that angle.
-    float const readings = static_cast<float>(simulation->programs().ticks(0)) - 3.0F;
-    EXPECT_NEAR(sum.x / readings, 0.2F, 0.01F);
-    EXPECT_NEAR(sum.y / readings, 0.0F, 0.03F);
-}
-
-TEST(Imu, TemperatureIsTheArenasWithinTheChipsRange) {
-    static float temperature = 0.0F;
-    testing::use_program([] { temperature = pogobot_imu_readTemp(); }, nullptr);
-    for (auto const& [arena, chip] : {std::pair{25.0, 25.0F}, std::pair{200.0, 85.0F}, std::pair{-90.0, -40.0F}}) {
-        Scenario scenario = testing::square_scene({testing::robots(1)});
-        scenario.arena_temperature_c = arena;
-        Simulation simulation(std::move(scenario), {});
-        ASSERT_FALSE(simulation.start());
-        EXPECT_FLOAT_EQ(temperature, chip);
-    }
-}
-
-TEST(Photosensors, SitOnTheRimAtBackFrontLeftAndFrontRight) {
-    static std::array<int, 4> readings;
-    testing::use_program(
-        [] {
-            for (uint8_t i = 0; i < 4; ++i) {
-                readings[i] = pogobot_photosensors_read(i);
-            }
-        },
-        nullptr);
-    // Light rises down the screen by 30 counts a millimetre; the robot looks to the right.
-    LampSpec lamp;
-    lamp.shape.kind = ShapeKind::global;
-    lamp.mode = LightMode::plane;
-    lamp.value = 0;
-    lamp.edge_value = 30000;
-    lamp.centre_mm = {500, 500};
-    lamp.plane_angle_rad = kPi / 2.0F;
-    lamp.plane_half_span_mm = 500.0F;
-    Scenario scenario = testing::square_scene({testing::robot_at({500, 500}), testing::lamp(lamp)});
-    scenario.light_map_columns = scenario.light_map_rows = 1000;
-    Simulation simulation(std::move(scenario), {});
-    ASSERT_FALSE(simulation.start());
-    float const side_mm = 26.5F * std::sin(40.0F * kPi / 180.0F);
-    EXPECT_NEAR(readings[p_B], 15000, 31);
-    EXPECT_NEAR(readings[p_FL], 15000 - 30.0F * side_mm, 31);
-    EXPECT_NEAR(readings[p_FR], 15000 + 30.0F * side_mm, 31);
-    EXPECT_EQ(readings[3], -1);
-}
-
-TEST(Photosensors, NoiseAndBiasHaveTheConfiguredLaw) {
-    static std::vector<int> readings;
-    readings.clear();
-    ObjectSpec spec = testing::article_robot();
-    spec.robot->photosensor_noise_stddev = 50.0F;
-    spec.robot->photosensor_bias = {100, 100};
-    LampSpec lamp;
-    lamp.shape.kind = ShapeKind::global;
-    lamp.value = 1000;
-    testing::use_program(nullptr, [] { readings.push_back(pogobot_photosensors_read(p_B)); });
-    Simulation simulation(testing::square_scene({testing::robots(20, spec), testing::lamp(lamp)}), {});
-    ASSERT_FALSE(simulation.start());
-    ASSERT_FALSE(testing::run_for(simulation, 5.0));
-    double sum = 0.0;
-    double squares = 0.0;
-    for (int const reading : readings) {
-        sum += reading;
-        squares += std::pow(reading - 1100.0, 2);
-    }
-    double const n = static_cast<double>(readings.size());
-    EXPECT_NEAR(sum / n, 1100.0, 4.0 * 50.0 / std::sqrt(n));
-    EXPECT_NEAR(std::sqrt(squares / n), 50.0, 2.0);
 }
 
 }  // namespace
