@@ -103,6 +103,19 @@ def run(program: Path, folder: Path, settings: Settings | None = None, arguments
     return run_command(program, folder, ["-c", "scene.yaml", "-g", *arguments])
 
 
+def run_shipped(name: str, folder: Path, settings: Settings | None = None) -> Run:
+    """Run an example with conf/<name>.yaml, some keys (dotted paths) changed, in a folder, which is made."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = ROOT / "conf" / f"{name}.yaml"
+    changes = {"data_filename": str(folder / "data.feather"), "console_filename": str(folder / "console.txt")}
+    arguments = ["-c", str(path), "-g"]
+    for key, value in {**changes, **(settings or {})}.items():
+        arguments += ["--set", f"{key}={yaml.safe_dump(value, default_flow_style=True).splitlines()[0]}"]
+    result = run_command(example(name), folder, arguments)
+    assert (result.code, result.errors) == (0, ""), result.text
+    return result
+
+
 def run_command(program: Path, folder: Path, arguments: Sequence[str]) -> Run:
     """Run a program with these arguments in a folder."""
     ended = subprocess.run(
