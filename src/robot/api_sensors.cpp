@@ -60,7 +60,7 @@ void pogobot_imu_read(float* acc, float* gyro) {
     Vec2 const acceleration = acceleration_in_body_frame();
     acc[0] = std::clamp(acceleration.y, -kMaxAcceleration, kMaxAcceleration);
     acc[1] = std::clamp(acceleration.x, -kMaxAcceleration, kMaxAcceleration);
-    gyro[2] = std::clamp(-context.world->bodies.spin_rad_s[context.body()], -kMaxSpin, kMaxSpin);
+    gyro[2] = std::clamp(0.0F - context.world->bodies.spin_rad_s[context.body()], -kMaxSpin, kMaxSpin);
 }
 
 float pogobot_imu_readTemp() {

@@ -103,10 +103,10 @@ def run(program: Path, folder: Path, settings: Settings | None = None, arguments
     return run_command(program, folder, ["-c", "scene.yaml", "-g", *arguments])
 
 
-def run_shipped(name: str, folder: Path, settings: Settings | None = None) -> Run:
-    """Run an example with conf/<name>.yaml, some keys (dotted paths) changed, in a folder, which is made."""
+def run_shipped(name: str, folder: Path, settings: Settings | None = None, configuration: str | None = None) -> Run:
+    """Run an example with conf/<name>.yaml or another one, some keys (dotted paths) changed, in a folder to make."""
     folder.mkdir(parents=True, exist_ok=True)
-    path = ROOT / "conf" / f"{name}.yaml"
+    path = ROOT / "conf" / f"{configuration or name}.yaml"
     changes = {"data_filename": str(folder / "data.feather"), "console_filename": str(folder / "console.txt")}
     arguments = ["-c", str(path), "-g"]
     for key, value in {**changes, **(settings or {})}.items():

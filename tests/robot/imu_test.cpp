@@ -61,6 +61,7 @@ TEST(Imu, GyroscopeCountsCounterClockwise) {
     EXPECT_NEAR(readings_of(testing::article_robot(), left_alone, 1.0).back().gyro[2], -4.0F, 1e-3F);
     EXPECT_NEAR(readings_of(testing::article_robot(), right_alone, 1.0).back().gyro[2], 4.0F, 1e-3F);
     EXPECT_EQ(readings_of(testing::article_robot(), full_ahead, 1.0).back().gyro[2], 0.0F);
+    EXPECT_FALSE(std::signbit(readings.back().gyro[2]));  // would be printed as -0.00
     EXPECT_EQ(readings.back().gyro[0], 0.0F);
     EXPECT_EQ(readings.back().gyro[1], 0.0F);
 }
