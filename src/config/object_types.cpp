@@ -1,7 +1,6 @@
 #include "config/object_types.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -22,10 +21,17 @@ constexpr std::array kTypes{
     ObjectType{"active_object", "Body that can be pushed, with a program and infrared.", read_active_object},
     ObjectType{"passive_object", "Body that can be pushed.", read_passive_object},
     ObjectType{"static_light", "Lamp that stands still.", read_static_light},
+    ObjectType{"orbiting_static_light", "Lamp that goes round on a circle.", read_orbiting_static_light},
+    ObjectType{"rotating_ray_of_light", "Lighthouse with one beam.", read_rotating_ray_of_light},
+    ObjectType{"alternating_rays_of_light", "Two lighthouses in turn, in two corners.", read_alternating_rays_of_light},
 };
 
-/// Types of the configuration format that this version cannot simulate.
-constexpr std::array kNotYet{"rotating_ray_of_light", "alternating_rays_of_light", "orbiting_static_light"};
+/// Other names that are understood, too.
+struct OtherName {
+    std::string_view typed;
+    std::string_view meant;
+};
+constexpr std::array kOtherNames{OtherName{"orbiting_light", "orbiting_static_light"}};
 
 std::vector<std::string> type_names() {
     std::vector<std::string> names;
@@ -36,14 +42,13 @@ std::vector<std::string> type_names() {
 
 ObjectType const& type_at(Place const& place) {
     std::string const typed = lower_case(place.node.scalar);
-    auto const type = std::ranges::find(kTypes, typed, &ObjectType::name);
+    auto const other = std::ranges::find(kOtherNames, typed, &OtherName::typed);
+    std::string_view const name = other != kOtherNames.end() ? other->meant : typed;
+    auto const type = std::ranges::find(kTypes, name, &ObjectType::name);
     if (type != kTypes.end()) {
         return *type;
     }
     std::vector<std::string> const names = type_names();
-    if (std::ranges::find(kNotYet, typed) != kNotYet.end()) {
-        fail_at(place, fmt::format("type '{}' is not supported yet; supported: {}", typed, fmt::join(names, ", ")));
-    }
     std::string const nearest = nearest_name(shown(typed), names);
     fail_at(place, fmt::format("expected {}, found {}{}", names_text(names), found_text(place.node),
                                nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));

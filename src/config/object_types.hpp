@@ -34,5 +34,8 @@ void read_rectmembrane(MapReader& reader, ObjectConfig& object);
 void read_active_object(MapReader& reader, ObjectConfig& object);
 void read_passive_object(MapReader& reader, ObjectConfig& object);
 void read_static_light(MapReader& reader, ObjectConfig& object);
+void read_orbiting_static_light(MapReader& reader, ObjectConfig& object);
+void read_rotating_ray_of_light(MapReader& reader, ObjectConfig& object);
+void read_alternating_rays_of_light(MapReader& reader, ObjectConfig& object);
 
 }  // namespace pogosim

@@ -61,6 +61,27 @@ Polygon outline(Shape const& shape, int disk_corners) {
     return {};
 }
 
+Box bounding_box(Shape const& shape) {
+    switch (shape.kind) {
+        case ShapeKind::disk: {
+            Vec2 const half{shape.radius_mm, shape.radius_mm};
+            return {-half, half};
+        }
+        case ShapeKind::rectangle: {
+            Vec2 const half{0.5F * shape.width_mm, 0.5F * shape.height_mm};
+            return {-half, half};
+        }
+        case ShapeKind::triangle: {
+            float const circumradius = shape.side_length_mm / kSqrt3;
+            return {{-0.5F * shape.side_length_mm, -circumradius}, {0.5F * shape.side_length_mm, 0.5F * circumradius}};
+        }
+        case ShapeKind::global:
+        case ShapeKind::arena:
+            break;
+    }
+    return {};
+}
+
 Shape inset(Shape const& shape, float inwards_mm) {
     Shape smaller = shape;
     smaller.radius_mm = std::max(shape.radius_mm - inwards_mm, 0.0F);

@@ -31,6 +31,9 @@ Polygon outline(Shape const& shape, int disk_corners = 128);
 /// The same shape with every side moved inwards by so much, mm (outwards when negative). Sizes do not fall below 0.
 Shape inset(Shape const& shape, float inwards_mm);
 
+/// Smallest box around the shape, relative to its origin. Empty, at the origin, for global and arena.
+Box bounding_box(Shape const& shape);
+
 /// True when the point, given relative to the shape's origin, is inside. Global holds every point; arena is the
 /// caller's to decide and counts as everywhere here.
 bool contains(Shape const& shape, Vec2 offset_mm);

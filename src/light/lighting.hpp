@@ -1,30 +1,40 @@
-// Lamps and the light map they make.
+// Keeps the light map of the world up to date.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "light/lamp.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
-/// Level one lamp adds at a point, sensor counts of 0 to 32767, at `time_s`.
-int lamp_level(LampSpec const& lamp, Arena const& arena, Vec2 point_mm, double time_s);
-
 /// An empty map of the given number of cells over the arena's bounding box.
 LightMap make_light_map(Arena const& arena, int columns, int rows);
 
-/// All lamps of a run. Keeps the world's light map up to date.
+/// All lamps of a run. A step costs what changes: the cells that moving lamps light before and after it.
 class Lighting {
 public:
-    explicit Lighting(std::vector<LampSpec> lamps) : lamps_(std::move(lamps)) {}
+    /// Of the world, only the arena and the cells of the map count.
+    Lighting(std::vector<LampSpec> const& lamps, World const& world);
 
-    /// Writes world.light for the present time, if any lamp has changed since the last call. Lamps add up to 32767.
+    /// Writes world.light for the present time.
     void update(World& world);
 
 private:
-    std::vector<LampSpec> lamps_;
-    std::vector<int> shown_phases_;  // of each lamp, as the map shows them; empty before the first update
+    /// A lamp, and what of it is on the map.
+    struct Entry {
+        std::unique_ptr<Lamp> lamp;
+        LampState shown;
+    };
+
+    void sum_still_lamps(LightMap& map);
+
+    std::vector<Entry> lamps_;            // in the order in which they are put on the map
+    std::vector<std::int16_t> base_;      // levels of the lamps that stand still alone
+    std::vector<std::uint32_t> painted_;  // cells where the map may differ from that
+    bool is_first_update_ = true;
 };
 
 }  // namespace pogosim

@@ -186,14 +186,4 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     return world;
 }
 
-std::vector<LampSpec> lamps_of(Scenario const& scenario) {
-    std::vector<LampSpec> lamps;
-    for (ObjectConfig const& object : scenario.objects) {
-        if (object.spec.lamp) {
-            lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), *object.spec.lamp);
-        }
-    }
-    return lamps;
-}
-
 }  // namespace pogosim

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "config/scenario.hpp"
 #include "world/world.hpp"
@@ -12,8 +11,5 @@ namespace pogosim {
 /// Everything stands in its place, no user code has run. Throws ConfigError when the arena cannot be read or the
 /// objects do not fit. `scenario` is as loaded; an empty arena file makes the world a periodic square, with a warning.
 World build_world(Scenario const& scenario, std::uint32_t seed);
-
-/// The lamps of the configuration, in its order.
-std::vector<LampSpec> lamps_of(Scenario const& scenario);
 
 }  // namespace pogosim

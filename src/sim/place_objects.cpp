@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "record/imported_poses.hpp"
 #include "sim/data_files.hpp"
+#include "sim/lamps_of.hpp"
 #include "sim/make_ring.hpp"
 
 namespace pogosim {
@@ -89,8 +90,9 @@ Arena root_domain(World const& world, ObjectConfig const& root, std::vector<Plac
                                       root.category, is_solid ? "is solid: nothing fits into it" : "has no object"));
     }
     if (spec.lamp) {
-        bool const everywhere = spec.lamp->shape.kind == ShapeKind::global || spec.lamp->shape.kind == ShapeKind::arena;
-        return everywhere ? world.arena : make_arena({moved(outline(spec.lamp->shape), spec.lamp->centre_mm, 0.0F)});
+        auto const [shape, centre_mm] = area_at_start(*spec.lamp);
+        bool const everywhere = shape.kind == ShapeKind::global || shape.kind == ShapeKind::arena;
+        return everywhere ? world.arena : make_arena({moved(outline(shape), centre_mm, 0.0F)});
     }
     if (spec.shape.kind == ShapeKind::arena) {
         return world.arena;

@@ -11,6 +11,7 @@
 #include "pogosim/version.h"
 #include "sim/build_world.hpp"
 #include "sim/interrupt.hpp"
+#include "sim/lamps_of.hpp"
 #include "sim/progress_bar.hpp"
 #include "sim/run_metadata.hpp"
 
@@ -76,7 +77,7 @@ Simulation::Simulation(Scenario scenario, RunOptions options)
       parameters_(scenario_.parameters),
       services_{.parameters = &parameters_, .data = {}, .stop_requested = false, .warned = {}},
       programs_(world_, services_, seed_),
-      lighting_(lamps_of(scenario_)),
+      lighting_(lamps_of(scenario_, world_.arena), world_),
       physics_(make_box2d_engine(world_, {.friction = static_cast<float>(scenario_.wall_friction),
                                           .restitution = static_cast<float>(scenario_.wall_restitution)})),
       category_is_recorded_(recorded_categories(scenario_, world_)),

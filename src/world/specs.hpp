@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "geometry/shape.hpp"
 
@@ -105,10 +106,18 @@ enum class Colormap { rainbow, qualitative };
 
 enum class LightMode { uniform, gradient, plane };
 
-/// A lamp that stands still: `static_light`.
-struct LampSpec {
+/// A circle on which a lamp goes round.
+struct Orbit {
+    float radius_mm = 0.0F;            // 0: the lamp stands still in the centre
+    double angular_speed_rad_s = 0.0;  // > 0: clockwise on the screen
+    double phase_rad = 0.0;            // where on the circle at time 0, from +x
+};
+
+/// A spot of light, which adds to that of other lamps: `static_light`, `orbiting_static_light`.
+struct SpotSpec {
     Shape shape;
-    Vec2 centre_mm;
+    Vec2 centre_mm;  // where the lamp stands, or the centre of its orbit
+    Orbit orbit;
     LightMode mode = LightMode::uniform;
     int value = 10;                    // sensor counts, 0 to 32767
     int edge_value = 0;                // gradient, plane: value at the far side
@@ -119,6 +128,35 @@ struct LampSpec {
     float photo_start_duration_s = 1.0F;
     int photo_start_value = 32767;
 };
+
+/// A lighthouse whose beam goes round: `rotating_ray_of_light`. Where it shines, nothing else counts.
+struct RotatingRaySpec {
+    Shape shape;                       // what it can light
+    Vec2 centre_mm;                    // where it stands; global and arena: from the centre of the arena's bounding box
+    int value = 10;                    // of the beam, sensor counts
+    double half_width_rad = 0.1;       // above 0 to pi
+    double angular_speed_rad_s = 3.0;  // > 0: clockwise on the screen; 0: the beam stays at angle 0
+    double white_frame_duration_s = 0.03;  // flash at the start and each time the beam is back at angle 0; it waits
+    int white_frame_value = 32767;
+    double photo_start_at_s = -1.0;  // >= 0: dark until the end of the photo start, then the first flash
+    double photo_start_duration_s = 1.0;
+};
+
+/// Two lighthouses in turn, each through a right angle, a flash before each: `alternating_rays_of_light`. They stand at
+/// the corners (xmin, ymax) and (xmax, ymax) of the shape's bounding box. Where they shine, nothing else counts.
+struct AlternatingRaysSpec {
+    Shape shape;                       // what they can light
+    Vec2 centre_mm;                    // of the shape; global and arena: from the centre of the arena's bounding box
+    int value = 10;                    // of the beams, sensor counts
+    double half_width_rad = 0.1;       // above 0 to pi
+    double angular_speed_rad_s = 3.0;  // > 0: clockwise on the screen; 0: the first beam never moves
+    double long_white_frame_duration_s = 1.0;    // before the first beam
+    double short_white_frame_duration_s = 0.03;  // before the second beam
+    int white_frame_value = 32767;
+};
+
+/// A lamp. A new kind is a struct here, a file in src/light and one in src/config.
+using LampSpec = std::variant<SpotSpec, RotatingRaySpec, AlternatingRaysSpec>;
 
 /// What the objects of a category are made of. Parts that they do not have are absent.
 struct ObjectSpec {

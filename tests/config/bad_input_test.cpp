@@ -191,6 +191,45 @@ TEST(BadInput, WrongLights) {
                             "(mm), found 0"}});
 }
 
+std::string lamp_of(std::string const& type) {
+    return "objects:\n  robots: {type: pogobot, geometry: disk}\n  lamp:\n    geometry: global\n    type: " + type +
+           "\n";
+}
+
+TEST(BadInput, WrongMovingLights) {
+    for (std::string const type : {"rotating_ray_of_light", "alternating_rays_of_light"}) {
+        expect_refused(
+            lamp_of(type),
+            {{"    value: -1", "objects.lamp.value: expected an integer from 0 to 32767 (sensor counts), found -1"},
+             {"    white_frame_value: 32768",
+              "objects.lamp.white_frame_value: expected an integer from 0 to 32767 (sensor counts), found 32768"},
+             {"    ray_half_width: 0",
+              "objects.lamp.ray_half_width: expected a number above 0, at most 3.141592653589793 (rad), found 0"},
+             {"    ray_half_width: 3.2",
+              "objects.lamp.ray_half_width: expected a number above 0, at most 3.141592653589793 (rad), found 3.2"},
+             {"    angular_speed: .inf",
+              "objects.lamp.angular_speed: expected a number from -10000 to 10000 (rad/s), found .inf"}});
+        EXPECT_EQ(load_error(lamp_of(type) + "    angular_speed: -3\n    ray_half_width: 3.14\n"), "no error");
+    }
+    expect_refused(lamp_of("rotating_ray_of_light"),
+                   {{"    white_frame_duration: -1",
+                     "objects.lamp.white_frame_duration: expected a number from 0 to 1000000000 (s), found -1"},
+                    {"    photo_start_duration: -1",
+                     "objects.lamp.photo_start_duration: expected a number from 0 to 1000000000 (s), found -1"}});
+    expect_refused(lamp_of("alternating_rays_of_light"),
+                   {{"    long_white_frame_duration: -1",
+                     "objects.lamp.long_white_frame_duration: expected a number from 0 to 1000000000 (s), found -1"},
+                    {"    short_white_frame_duration: -1",
+                     "objects.lamp.short_white_frame_duration: expected a number from 0 to 1000000000 (s), found -1"}});
+    expect_refused(
+        lamp_of("orbiting_static_light"),
+        {{"    orbit_radius: -1", "objects.lamp.orbit_radius: expected a number from 0 to 1000000 (mm), found -1"},
+         {"    center_x: left",
+          "objects.lamp.center_x: expected a number from -1000000 to 1000000 (mm), found 'left'"}});
+    EXPECT_EQ(load_error(lamp_of("orbiting_static_light") + "    orbit_angular_speed: 1\n    angular_speed: 2\n"),
+              "x.yaml:7: objects.lamp.angular_speed: is another name of orbit_angular_speed; give one of them");
+}
+
 TEST(BadInput, ObjectsNeedTypeAndGeometry) {
     EXPECT_EQ(load_error("objects:\n  a:\n    nb: 1\n"),
               "x.yaml:2: objects.a: the key 'type' is missing; expected " + type_names());

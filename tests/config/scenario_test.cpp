@@ -16,8 +16,12 @@ RobotSpec robot(std::string const& keys) {
     return *load(kRobots + keys).objects.at(0).spec.robot;
 }
 
-LampSpec lamp(std::string const& keys) {
-    return *load(kLamp + keys).objects.at(1).spec.lamp;
+SpotSpec spot_of(ObjectConfig const& object) {
+    return std::get<SpotSpec>(*object.spec.lamp);
+}
+
+SpotSpec lamp(std::string const& keys) {
+    return spot_of(load(kLamp + keys).objects.at(1));
 }
 
 ReceptionSpec reception(std::string const& map) {
@@ -123,7 +127,7 @@ TEST(Scenario, TheArticlesExampleLoadsWithoutAWarning) {
     ASSERT_EQ(s.objects.size(), 2U);
     EXPECT_EQ(s.objects[0].category, "global_light");
     EXPECT_EQ(s.objects[0].type, "static_light");
-    LampSpec const lamp = *s.objects[0].spec.lamp;
+    SpotSpec const lamp = spot_of(s.objects[0]);
     EXPECT_EQ(lamp.shape.kind, ShapeKind::global);
     EXPECT_EQ(lamp.value, 200);
     EXPECT_EQ(lamp.photo_start_at_s, 1.0F);
@@ -337,7 +341,7 @@ objects:
 )",
                             {.overrides = {}, .strict = true});
     EXPECT_EQ(warnings.text(), "");
-    LampSpec const spec = *s.objects.at(1).spec.lamp;
+    SpotSpec const spec = spot_of(s.objects.at(1));
     EXPECT_EQ(spec.shape, (Shape{ShapeKind::rectangle, 5, 6, 7, 8}));
     EXPECT_EQ(spec.mode, LightMode::plane);
     EXPECT_EQ(spec.value, 100);
@@ -352,12 +356,143 @@ objects:
 }
 
 TEST(Scenario, LightsStandAtZeroAndAreUniformByDefault) {
-    LampSpec const spec = lamp("");
+    SpotSpec const spec = lamp("");
     EXPECT_EQ(spec.mode, LightMode::uniform);
     EXPECT_EQ(spec.centre_mm, Vec2{});
     EXPECT_EQ(spec.value, 10);
     EXPECT_EQ(spec.photo_start_at_s, -1.0F);
     EXPECT_EQ(lamp("    x: 5\n").centre_mm, (Vec2{5, 0}));
+}
+
+TEST(Scenario, EveryOrbitKeyReachesItsMember) {
+    Warnings const warnings;
+    SpotSpec const spec = spot_of(load(R"(
+objects:
+  r: {type: pogobot, geometry: disk}
+  l:
+    type: orbiting_static_light
+    geometry: disk
+    radius: 5
+    light_mode: gradient
+    value: 100
+    photo_start_at: 2
+    x: 11
+    y: 12
+    center_x: 13
+    center_y: 14
+    orbit_radius: 15
+    orbit_angular_speed: -1.5
+    orbit_phase: 3
+)",
+                                       {.overrides = {}, .strict = true})
+                                      .objects.at(1));
+    EXPECT_EQ(warnings.text(), "");
+    EXPECT_EQ(spec.shape.radius_mm, 5.0F);
+    EXPECT_EQ(spec.mode, LightMode::gradient);
+    EXPECT_EQ(spec.value, 100);
+    EXPECT_EQ(spec.photo_start_at_s, 2.0F);
+    EXPECT_EQ(spec.centre_mm, (Vec2{13, 14}));
+    EXPECT_EQ(spec.orbit.radius_mm, 15.0F);
+    EXPECT_EQ(spec.orbit.angular_speed_rad_s, -1.5);
+    EXPECT_EQ(spec.orbit.phase_rad, 3.0);
+}
+
+TEST(Scenario, OrbitsAreAroundXAndYAndStandStillByDefault) {
+    std::string const head =
+        "objects:\n  r: {type: pogobot, geometry: disk}\n  l: {type: orbiting_light, geometry: disk, x: 3, y: 4";
+    SpotSpec const spec = spot_of(load(head + "}\n").objects.at(1));
+    EXPECT_EQ(spec.centre_mm, (Vec2{3, 4}));
+    EXPECT_EQ(spec.orbit.radius_mm, 0.0F);
+    EXPECT_EQ(spec.orbit.angular_speed_rad_s, 0.0);
+    EXPECT_EQ(spec.orbit.phase_rad, 0.0);
+    ObjectConfig const object = load(head + ", center_y: 9, angular_speed: 2}\n").objects.at(1);
+    EXPECT_EQ(spot_of(object).centre_mm, (Vec2{3, 9}));
+    EXPECT_EQ(spot_of(object).orbit.angular_speed_rad_s, 2.0);
+    EXPECT_EQ(object.type, "orbiting_static_light");
+}
+
+TEST(Scenario, EveryKeyOfARotatingRayReachesItsMember) {
+    Warnings const warnings;
+    Scenario const s = load(R"(
+objects:
+  r: {type: pogobot, geometry: disk}
+  plain: {type: rotating_ray_of_light, geometry: global}
+  l:
+    type: Rotating_Ray_Of_Light
+    geometry: triangle
+    side_length: 8
+    x: 11
+    y: 12
+    value: 100
+    ray_half_width: 0.25
+    angular_speed: -2
+    white_frame_duration: 0.5
+    white_frame_value: 20000
+    photo_start_at: 1
+    photo_start_duration: 2
+)",
+                            {.overrides = {}, .strict = true});
+    EXPECT_EQ(warnings.text(), "");
+    auto const spec = [&](std::size_t i) { return std::get<RotatingRaySpec>(*s.objects.at(i).spec.lamp); };
+    EXPECT_EQ(spec(2).shape.kind, ShapeKind::triangle);
+    EXPECT_EQ(spec(2).shape.side_length_mm, 8.0F);
+    EXPECT_EQ(spec(2).centre_mm, (Vec2{11, 12}));
+    EXPECT_EQ(spec(2).value, 100);
+    EXPECT_EQ(spec(2).half_width_rad, 0.25);
+    EXPECT_EQ(spec(2).angular_speed_rad_s, -2.0);
+    EXPECT_EQ(spec(2).white_frame_duration_s, 0.5);
+    EXPECT_EQ(spec(2).white_frame_value, 20000);
+    EXPECT_EQ(spec(2).photo_start_at_s, 1.0);
+    EXPECT_EQ(spec(2).photo_start_duration_s, 2.0);
+    EXPECT_EQ(spec(1).centre_mm, Vec2{});
+    EXPECT_EQ(spec(1).value, 10);
+    EXPECT_EQ(spec(1).half_width_rad, 0.1);
+    EXPECT_EQ(spec(1).angular_speed_rad_s, 3.0);
+    EXPECT_EQ(spec(1).white_frame_duration_s, 0.03);
+    EXPECT_EQ(spec(1).white_frame_value, 32767);
+    EXPECT_EQ(spec(1).photo_start_at_s, -1.0);
+    EXPECT_EQ(spec(1).photo_start_duration_s, 1.0);
+}
+
+TEST(Scenario, EveryKeyOfAlternatingRaysReachesItsMember) {
+    Warnings const warnings;
+    Scenario const s = load(R"(
+objects:
+  r: {type: pogobot, geometry: disk}
+  plain: {type: alternating_rays_of_light, geometry: global}
+  l:
+    type: alternating_rays_of_light
+    geometry: rectangle
+    body_width: 6
+    body_height: 7
+    x: 11
+    y: 12
+    value: 100
+    ray_half_width: 0.25
+    angular_speed: -2
+    long_white_frame_duration: 0.5
+    short_white_frame_duration: 0.25
+    white_frame_value: 20000
+)",
+                            {.overrides = {}, .strict = true});
+    EXPECT_EQ(warnings.text(), "");
+    auto const spec = [&](std::size_t i) { return std::get<AlternatingRaysSpec>(*s.objects.at(i).spec.lamp); };
+    EXPECT_EQ(spec(2).shape.kind, ShapeKind::rectangle);
+    EXPECT_EQ(spec(2).shape.width_mm, 6.0F);
+    EXPECT_EQ(spec(2).shape.height_mm, 7.0F);
+    EXPECT_EQ(spec(2).centre_mm, (Vec2{11, 12}));
+    EXPECT_EQ(spec(2).value, 100);
+    EXPECT_EQ(spec(2).half_width_rad, 0.25);
+    EXPECT_EQ(spec(2).angular_speed_rad_s, -2.0);
+    EXPECT_EQ(spec(2).long_white_frame_duration_s, 0.5);
+    EXPECT_EQ(spec(2).short_white_frame_duration_s, 0.25);
+    EXPECT_EQ(spec(2).white_frame_value, 20000);
+    EXPECT_EQ(spec(1).value, 10);
+    EXPECT_EQ(spec(1).half_width_rad, 0.1);
+    EXPECT_EQ(spec(1).angular_speed_rad_s, 3.0);
+    EXPECT_EQ(spec(1).long_white_frame_duration_s, 1.0);
+    EXPECT_EQ(spec(1).short_white_frame_duration_s, 0.03);
+    EXPECT_EQ(spec(1).white_frame_value, 32767);
 }
 
 TEST(Scenario, EveryShapeIsAShapeOfLight) {
@@ -367,7 +502,7 @@ TEST(Scenario, EveryShapeIsAShapeOfLight) {
         Scenario const s = load(std::string("objects: {r: {type: pogobot, geometry: disk}, l: {type: static_light, "
                                             "geometry: ") +
                                 name + "}}\n");
-        EXPECT_EQ(s.objects.at(1).spec.lamp->shape.kind, kind) << name;
+        EXPECT_EQ(spot_of(s.objects.at(1)).shape.kind, kind) << name;
     }
 }
 

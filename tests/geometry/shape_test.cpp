@@ -59,6 +59,27 @@ TEST(Shape, GlobalHoldsEveryPoint) {
     EXPECT_TRUE(contains(kArena, {1.0e9F, -1.0e9F}));
 }
 
+TEST(Shape, BoundingBoxIsTheSmallestThatHoldsTheShape) {
+    for (ShapeKind const kind : {ShapeKind::disk, ShapeKind::rectangle, ShapeKind::triangle}) {
+        Shape const shape{.kind = kind, .radius_mm = 30, .width_mm = 70, .height_mm = 20, .side_length_mm = 90};
+        Box const box = bounding_box(shape);
+        // The extent of all points inside, on a grid of a quarter of a millimetre.
+        Box extent;
+        for (float x = -100.0F; x <= 100.0F; x += 0.25F) {
+            for (float y = -100.0F; y <= 100.0F; y += 0.25F) {
+                if (contains(shape, {x, y})) {
+                    extent.min = {std::min(extent.min.x, x), std::min(extent.min.y, y)};
+                    extent.max = {std::max(extent.max.x, x), std::max(extent.max.y, y)};
+                }
+            }
+        }
+        EXPECT_NEAR(box.min.x, extent.min.x, 0.5F);
+        EXPECT_NEAR(box.min.y, extent.min.y, 0.5F);
+        EXPECT_NEAR(box.max.x, extent.max.x, 0.5F);
+        EXPECT_NEAR(box.max.y, extent.max.y, 0.5F);
+    }
+}
+
 TEST(Shape, NothingOfAShapeIsBeyondItsBoundingRadius) {
     RandomStream random(4, 1);
     for (Shape const& shape : {kDisk, kRectangle, kTriangle}) {

@@ -2,109 +2,53 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 #include <numbers>
 
-#include "support/small_world.hpp"
+#include "base/random.hpp"
+#include "lit_world.hpp"
 
 namespace pogosim {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
-LampSpec disk_lamp(int value) {
-    LampSpec lamp;
-    lamp.shape.kind = ShapeKind::disk;
-    lamp.shape.radius_mm = 200.0F;
-    lamp.centre_mm = {500, 500};
-    lamp.value = value;
-    return lamp;
-}
-
-LampSpec global_lamp(int value) {
-    LampSpec lamp;
-    lamp.shape.kind = ShapeKind::global;
-    lamp.value = value;
-    return lamp;
-}
-
-World lit_world(std::vector<LampSpec> const& lamps, double time_s = 0.0) {
-    World world = testing::square_world();
-    world.light = make_light_map(world.arena, 100, 100);
-    world.step = std::lround(time_s / world.time_step_s);
-    Lighting lighting(lamps);
-    lighting.update(world);
-    return world;
-}
-
-TEST(Lighting, LampShinesInsideItsShapeOnly) {
-    World const world = lit_world({disk_lamp(1000)});
-    EXPECT_EQ(world.light.at({500, 500}), 1000);
-    EXPECT_EQ(world.light.at({690, 500}), 1000);
-    EXPECT_EQ(world.light.at({715, 500}), 0);
-    EXPECT_EQ(world.light.at({660, 660}), 0);
-}
+using testing::disk_lamp;
+using testing::global_lamp;
+using testing::lit_world;
 
 TEST(Lighting, LampsAddUpToTheSensorsMaximum) {
     World const world = lit_world({global_lamp(200), disk_lamp(1000), disk_lamp(32767)});
     EXPECT_EQ(world.light.at({100, 100}), 200);
-    EXPECT_EQ(world.light.at({500, 500}), 32767);
+    EXPECT_EQ(world.light.at({505, 505}), 32767);
 }
 
-TEST(Lighting, GradientFallsLinearlyFromTheCentre) {
-    LampSpec lamp = disk_lamp(30000);
-    lamp.mode = LightMode::gradient;
-    lamp.edge_value = 0;
-    Arena const arena = testing::square_world().arena;
-    EXPECT_EQ(lamp_level(lamp, arena, {500, 500}, 0.0), 30000);
-    EXPECT_EQ(lamp_level(lamp, arena, {600, 500}, 0.0), 15000);
-    EXPECT_EQ(lamp_level(lamp, arena, {500, 350}, 0.0), 7500);
-    lamp.gradient_radius_mm = 100.0F;
-    EXPECT_EQ(lamp_level(lamp, arena, {550, 500}, 0.0), 15000);
-    EXPECT_EQ(lamp_level(lamp, arena, {650, 500}, 0.0), 0);
+TEST(Lighting, OrbitingLampsAddToTheOthers) {
+    SpotSpec lamp = disk_lamp(1000);
+    lamp.orbit = {.radius_mm = 100.0F, .angular_speed_rad_s = 1.0, .phase_rad = 0.0};
+    World const world = lit_world({lamp, global_lamp(200), lamp});
+    EXPECT_EQ(world.light.at({705, 505}), 2200);
+    EXPECT_EQ(world.light.at({105, 505}), 200);
+    lamp.value = 32767;
+    EXPECT_EQ(lit_world({lamp, global_lamp(200)}).light.at({705, 505}), 32767);
 }
 
-TEST(Lighting, GlobalGradientReachesTheFarthestCorner) {
-    LampSpec lamp = global_lamp(10000);
-    lamp.mode = LightMode::gradient;
-    lamp.centre_mm = {0, 0};
-    Arena const arena = testing::square_world().arena;
-    EXPECT_EQ(lamp_level(lamp, arena, {1000, 1000}, 0.0), 0);
-    EXPECT_NEAR(lamp_level(lamp, arena, {500, 500}, 0.0), 5000, 1);
-}
-
-TEST(Lighting, PlaneRisesAlongItsNormal) {
-    LampSpec lamp = global_lamp(30000);
-    lamp.mode = LightMode::plane;
-    lamp.edge_value = 5000;
-    lamp.centre_mm = {500, 500};
-    lamp.plane_angle_rad = kPi / 2.0F;  // down the screen
-    lamp.plane_half_span_mm = 500.0F;
-    Arena const arena = testing::square_world().arena;
-    EXPECT_EQ(lamp_level(lamp, arena, {123, 0}, 0.0), 30000);
-    EXPECT_EQ(lamp_level(lamp, arena, {900, 500}, 0.0), 17500);
-    EXPECT_EQ(lamp_level(lamp, arena, {500, 1000}, 0.0), 5000);
-}
-
-TEST(Lighting, PhotoStartIsDarkThenFlashesThenShines) {
-    LampSpec lamp = global_lamp(200);
-    lamp.photo_start_at_s = 1.0F;
-    lamp.photo_start_duration_s = 0.5F;
-    lamp.photo_start_value = 30000;
-    EXPECT_EQ(lit_world({lamp}, 0.0).light.at({500, 500}), 0);
-    EXPECT_EQ(lit_world({lamp}, 0.99).light.at({500, 500}), 0);
-    EXPECT_EQ(lit_world({lamp}, 1.0).light.at({500, 500}), 30000);
-    EXPECT_EQ(lit_world({lamp}, 1.49).light.at({500, 500}), 30000);
-    EXPECT_EQ(lit_world({lamp}, 1.5).light.at({500, 500}), 200);
+TEST(Lighting, OfTwoRaysTheLaterOneWins) {
+    RotatingRaySpec ray;
+    ray.shape.kind = ShapeKind::global;
+    ray.half_width_rad = std::numbers::pi;
+    ray.white_frame_duration_s = 0.0;
+    RotatingRaySpec narrow = ray;
+    narrow.half_width_rad = 0.2;
+    narrow.value = 700;
+    testing::expect_beam(lit_world({ray, narrow}), {500, 500}, 0.0, 0.2, 700, 10);
+    EXPECT_EQ(testing::count_cells(lit_world({narrow, ray}), 10), 10000);
 }
 
 TEST(Lighting, MapFollowsTheTime) {
-    LampSpec lamp = global_lamp(200);
+    SpotSpec lamp = global_lamp(200);
     lamp.photo_start_at_s = 0.02F;
     lamp.photo_start_duration_s = 0.01F;
-    World world = testing::square_world();
-    world.light = make_light_map(world.arena, 10, 10);
-    Lighting lighting({lamp});
+    World world = testing::dark_world();
+    Lighting lighting({lamp}, world);
     std::vector<int> levels;
     for (world.step = 0; world.step < 5; ++world.step) {
         lighting.update(world);
@@ -113,10 +57,88 @@ TEST(Lighting, MapFollowsTheTime) {
     EXPECT_EQ(levels, (std::vector<int>{0, 0, 32767, 200, 200}));
 }
 
+TEST(Lighting, WithoutLampsItIsDark) {
+    EXPECT_EQ(testing::count_cells(lit_world({}), 0), 10000);
+}
+
 TEST(Lighting, LevelsOutsideTheMapAreThoseOfTheNearestCell) {
     World const world = lit_world({disk_lamp(1000), global_lamp(7)});
     EXPECT_EQ(world.light.at({-50, 500}), 7);
     EXPECT_EQ(world.light.at({5000, 5000}), 7);
+}
+
+// ---- a map that is kept up to date is the one that is made anew ----
+
+Shape random_shape(RandomStream& random) {
+    auto const kind = static_cast<ShapeKind>(random.below(5));
+    auto const size = [&] { return 20.0F + static_cast<float>(random.below(600)); };
+    return {.kind = kind, .radius_mm = size(), .width_mm = size(), .height_mm = size(), .side_length_mm = size()};
+}
+
+LampSpec random_lamp(RandomStream& random) {
+    Shape const shape = random_shape(random);
+    Vec2 const centre{static_cast<float>(random.below(1000)), static_cast<float>(random.below(1000))};
+    int const value = static_cast<int>(random.below(20000));
+    double const speed = 6.0 * random.uniform() - 3.0;
+    switch (random.below(3)) {
+        case 0:
+            return RotatingRaySpec{.shape = shape,
+                                   .centre_mm = centre,
+                                   .value = value,
+                                   .half_width_rad = 0.01 + 3.0 * random.uniform(),
+                                   .angular_speed_rad_s = speed,
+                                   .white_frame_duration_s = 0.1 * random.uniform(),
+                                   .photo_start_at_s = 4.0 * random.uniform() - 2.0};
+        case 1:
+            return AlternatingRaysSpec{.shape = shape,
+                                       .centre_mm = centre,
+                                       .value = value,
+                                       .half_width_rad = 0.01 + 3.0 * random.uniform(),
+                                       .angular_speed_rad_s = speed};
+        default: {
+            SpotSpec spot;
+            spot.shape = shape;
+            spot.centre_mm = centre;
+            spot.orbit = {.radius_mm = static_cast<float>(random.below(3)) * 200.0F, .angular_speed_rad_s = speed};
+            spot.mode = static_cast<LightMode>(random.below(3));
+            spot.value = value;
+            spot.photo_start_at_s = static_cast<float>(4.0 * random.uniform() - 2.0);
+            return spot;
+        }
+    }
+}
+
+TEST(Lighting, KeptUpToDateIsTheSameAsMadeAnewAtAnyTime) {
+    RandomStream random(7, 0);
+    for (int scene = 0; scene < 12; ++scene) {
+        std::vector<LampSpec> lamps;
+        for (int n = 0; n < 5; ++n) {
+            lamps.push_back(random_lamp(random));
+        }
+        World world = testing::dark_world();
+        Lighting lighting(lamps, world);
+        for (int look = 0; look < 20; ++look) {
+            // Mostly the next steps, now and then far ahead or back.
+            world.step = random.below(4) == 0 ? random.below(2000) : world.step + random.below(3);
+            lighting.update(world);
+            ASSERT_EQ(world.light.level, lit_world(lamps, world.time_s()).light.level) << scene << ' ' << world.step;
+        }
+    }
+}
+
+TEST(Lighting, MapsNeedNotBeSquare) {
+    World world = testing::square_world();
+    world.light = make_light_map(world.arena, 7, 200);
+    RotatingRaySpec ray;
+    ray.shape.kind = ShapeKind::global;
+    ray.half_width_rad = 0.3;
+    ray.white_frame_duration_s = 0.0;
+    Lighting({ray}, world).update(world);
+    for (std::size_t cell = 0; cell < world.light.level.size(); ++cell) {
+        double const x = (static_cast<double>(cell % 7) + 0.5) * 1000.0 / 7.0;
+        double const y = (static_cast<double>(cell / 7) + 0.5) * 1000.0 / 200.0;
+        ASSERT_EQ(world.light.level[cell], std::abs(std::atan2(y - 500.0, x - 500.0)) <= 0.3 ? 10 : 0) << cell;
+    }
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// Keys that several types of lamps share.
+#pragma once
+
+#include <numbers>
+#include <span>
+
+#include "config/key.hpp"
+#include "world/specs.hpp"
+
+namespace pogosim {
+
+inline constexpr Range kLightLevel = between(0, 32767);
+inline constexpr Range kSeconds = between(0, 1e9);
+inline constexpr Range kStartTime = between(-1e9, 1e9);
+inline constexpr Range kHalfWidth = above(0).up_to(std::numbers::pi);
+inline constexpr Range kAngle = between(-1e4, 1e4);
+inline constexpr Range kAngularSpeed = between(-1e4, 1e4);
+
+/// `x` and `y`.
+std::span<Key<Vec2> const> spot_centre_keys();
+std::span<Key<Vec2> const> lighthouse_centre_keys();
+
+/// How a spot shines, and its photo start.
+std::span<Key<SpotSpec> const> spot_keys();
+
+}  // namespace pogosim

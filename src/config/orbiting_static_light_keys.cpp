@@ -1,0 +1,61 @@
+// Objects of type `orbiting_static_light`: a static light that goes round.
+#include <array>
+#include <optional>
+
+#include "config/lamp_keys.hpp"
+#include "config/object_parts.hpp"
+#include "config/object_types.hpp"
+#include "config/shape_keys.hpp"
+
+namespace pogosim {
+
+namespace {
+
+struct OrbitCentre {
+    std::optional<float> x_mm;
+    std::optional<float> y_mm;
+};
+
+std::span<Key<OrbitCentre> const> orbit_centre_keys() {
+    using K = Key<OrbitCentre>;
+    static std::array const keys{
+        K{"center_x", &OrbitCentre::x_mm, between(-kMaxLength, kMaxLength), "mm",
+          "Centre of the circle; without: `x`."},
+        K{"center_y", &OrbitCentre::y_mm, between(-kMaxLength, kMaxLength), "mm",
+          "Centre of the circle; without: `y`."},
+    };
+    return keys;
+}
+
+std::span<Key<Orbit> const> orbit_keys() {
+    using K = Key<Orbit>;
+    static std::array const keys{
+        K{"orbit_radius", &Orbit::radius_mm, between(0, kMaxLength), "mm",
+          "Radius of the circle on which the lamp's centre goes round; 0: it stands still."},
+        K{"orbit_angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s",
+          "Above 0: clockwise on the screen."},
+        K{"angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s", "Another name of orbit_angular_speed."},
+        K{"orbit_phase", &Orbit::phase_rad, kAngle, "rad", "Where on the circle at time 0, clockwise from +x."},
+    };
+    return keys;
+}
+
+}  // namespace
+
+void read_orbiting_static_light(MapReader& reader, ObjectConfig& object) {
+    SpotSpec spec;
+    read_shape(reader, any_geometry_keys(), spec.shape);
+    reader.read(spot_centre_keys(), spec.centre_mm);
+    OrbitCentre centre;
+    reader.read(orbit_centre_keys(), centre);
+    spec.centre_mm = {centre.x_mm.value_or(spec.centre_mm.x), centre.y_mm.value_or(spec.centre_mm.y)};
+    reader.read(orbit_keys(), spec.orbit);
+    if (reader.find("orbit_angular_speed") != nullptr && reader.find("angular_speed") != nullptr) {
+        fail_at({*reader.find("angular_speed"), reader.path_of("angular_speed")},
+                "is another name of orbit_angular_speed; give one of them");
+    }
+    reader.read(spot_keys(), spec);
+    object.spec.lamp = spec;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,41 @@
+// Objects of type `rotating_ray_of_light`: a lighthouse with one beam.
+#include <array>
+
+#include "config/lamp_keys.hpp"
+#include "config/object_parts.hpp"
+#include "config/object_types.hpp"
+
+namespace pogosim {
+
+namespace {
+
+std::span<Key<RotatingRaySpec> const> ray_keys() {
+    using S = RotatingRaySpec;
+    using K = Key<S>;
+    static std::array const keys{
+        K{"value", &S::value, kLightLevel, "sensor counts", "Level in the beam; it replaces that of other lamps."},
+        K{"ray_half_width", &S::half_width_rad, kHalfWidth, "rad", "Lit to either side of the beam's direction."},
+        K{"angular_speed", &S::angular_speed_rad_s, kAngularSpeed, "rad/s",
+          "Above 0: clockwise on the screen. 0: the beam stays at angle 0, along +x."},
+        K{"white_frame_duration", &S::white_frame_duration_s, kSeconds, "s",
+          "Length of the flash over the whole shape, at the start and each time the beam is back at angle 0, where it "
+          "waits meanwhile."},
+        K{"white_frame_value", &S::white_frame_value, kLightLevel, "sensor counts", "Level of the flash."},
+        K{"photo_start_at", &S::photo_start_at_s, kStartTime, "s",
+          "At 0 or later: dark until then and for `photo_start_duration` more. Negative: no photo start."},
+        K{"photo_start_duration", &S::photo_start_duration_s, kSeconds, "s", "See photo_start_at."},
+    };
+    return keys;
+}
+
+}  // namespace
+
+void read_rotating_ray_of_light(MapReader& reader, ObjectConfig& object) {
+    RotatingRaySpec spec;
+    read_shape(reader, any_geometry_keys(), spec.shape);
+    reader.read(lighthouse_centre_keys(), spec.centre_mm);
+    reader.read(ray_keys(), spec);
+    object.spec.lamp = spec;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,95 @@
+// Two lighthouses in turn: alternating_rays_of_light. What one cycle looks like, with the corners the beams come from:
+//
+//     |long white|-- ray 1, bottom left --|short white|-- ray 2, bottom right --|long white| ...
+//
+// Each ray turns through a right angle, whose middle is the direction from its corner to the centre of the box.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "light/bearing_order.hpp"
+#include "light/lamp.hpp"
+#include "light/lit_area.hpp"
+
+namespace pogosim {
+
+namespace {
+
+enum Phase { long_white, ray_1, short_white, ray_2, phase_count };
+
+constexpr double kSweepRad = std::numbers::pi / 2.0;
+
+struct Lighthouse {
+    BearingOrder cells;          // as seen from its corner
+    double to_centre_rad = 0.0;  // direction of the box's centre
+
+    /// Cells in the beam when it has turned so far since the start of its sweep.
+    std::array<CellRun, 2> beam(AlternatingRaysSpec const& spec, double turned_rad) const {
+        double const start_rad = to_centre_rad - std::copysign(0.5 * kSweepRad, spec.angular_speed_rad_s);
+        return cells.beam(start_rad + turned_rad, spec.half_width_rad);
+    }
+};
+
+Lighthouse lighthouse_at(Vec2 corner_mm, Vec2 centre_mm, std::vector<std::uint32_t> cells, LightMap const& map) {
+    Vec2 const to_centre = centre_mm - corner_mm;
+    return {.cells = BearingOrder(std::move(cells), map, corner_mm),
+            .to_centre_rad = std::atan2(static_cast<double>(to_centre.y), static_cast<double>(to_centre.x))};
+}
+
+class AlternatingRaysLamp : public Lamp {
+public:
+    AlternatingRaysLamp(AlternatingRaysSpec const& spec, Arena const& arena, LightMap const& map)
+        : AlternatingRaysLamp(spec, lit_cells(spec.shape, spec.centre_mm, arena, map),
+                              lit_box(spec.shape, spec.centre_mm, arena), map) {}
+
+    Layer layer() const override { return Layer::overwriting; }
+
+    LampState state_at(double time_s) const override {
+        double since_s = std::fmod(time_s + kTimeToleranceS, cycle_s_);
+        int phase = long_white;
+        while (phase < ray_2 && since_s >= duration_s_[phase]) {
+            since_s -= duration_s_[phase];
+            ++phase;
+        }
+        bool const turns = phase == ray_1 || phase == ray_2;
+        return {.phase = phase,
+                .angle_rad = turns ? spec_.angular_speed_rad_s * std::max(since_s - kTimeToleranceS, 0.0) : 0.0};
+    }
+
+    void paint(LampState const& state, LightMap& map, std::vector<std::uint32_t>& painted) const override {
+        if (state.phase == long_white || state.phase == short_white) {
+            overwrite(first_.cells.all(), spec_.white_frame_value, map, painted);
+            return;
+        }
+        Lighthouse const& lit = state.phase == ray_1 ? first_ : second_;
+        for (CellRun const run : lit.beam(spec_, state.angle_rad)) {
+            overwrite(run, spec_.value, map, painted);
+        }
+    }
+
+private:
+    AlternatingRaysLamp(AlternatingRaysSpec const& spec, std::vector<std::uint32_t> const& cells, Box const& box,
+                        LightMap const& map)
+        : spec_(spec),
+          first_(lighthouse_at({box.min.x, box.max.y}, box.centre(), cells, map)),
+          second_(lighthouse_at(box.max, box.centre(), cells, map)) {
+        double const sweep_s = kSweepRad / std::abs(spec.angular_speed_rad_s);  // infinite when it does not turn
+        duration_s_ = {spec.long_white_frame_duration_s, sweep_s, spec.short_white_frame_duration_s, sweep_s};
+        cycle_s_ = spec.long_white_frame_duration_s + spec.short_white_frame_duration_s + 2.0 * sweep_s;
+    }
+
+    AlternatingRaysSpec spec_;
+    std::array<double, phase_count> duration_s_{};
+    double cycle_s_ = 0.0;
+    Lighthouse first_;
+    Lighthouse second_;
+};
+
+}  // namespace
+
+std::unique_ptr<Lamp> make_lamp(AlternatingRaysSpec const& spec, Arena const& arena, LightMap const& map) {
+    return std::make_unique<AlternatingRaysLamp>(spec, arena, map);
+}
+
+}  // namespace pogosim
