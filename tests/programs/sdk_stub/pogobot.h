@@ -99,6 +99,7 @@ uint8_t pogobot_motor_power_mem_get(uint16_t* powers);
 uint8_t pogobot_motor_power_mem_set(uint16_t* powers);
 
 // Sensors.
+typedef enum { p_B = 0, p_FL = 1, p_FR = 2 } photosensor_id;
 int16_t pogobot_photosensors_read(uint8_t sensor_number);
 void pogobot_imu_read(float* acc, float* gyro);
 float pogobot_imu_readTemp(void);
