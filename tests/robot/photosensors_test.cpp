@@ -20,8 +20,8 @@ constexpr double kDegree = kPi / 180.0;
 constexpr int kCells = 100;  // columns and rows of the light map
 constexpr std::size_t kSensors = 3;
 
-LampSpec plane_lamp(float angle_rad, int far_value) {
-    LampSpec lamp;
+SpotSpec plane_lamp(float angle_rad, int far_value) {
+    SpotSpec lamp;
     lamp.shape.kind = ShapeKind::global;
     lamp.mode = LightMode::plane;
     lamp.value = 0;
@@ -32,8 +32,8 @@ LampSpec plane_lamp(float angle_rad, int far_value) {
     return lamp;
 }
 
-LampSpec even_lamp(int value) {
-    LampSpec lamp;
+SpotSpec even_lamp(int value) {
+    SpotSpec lamp;
     lamp.shape.kind = ShapeKind::global;
     lamp.value = value;
     return lamp;
