@@ -51,6 +51,11 @@ def test_other_configurations_run_without_a_warning(configuration: Path, tmp_pat
     assert run_shortly("helloworld", configuration, tmp_path) == ""
 
 
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_example_runs_with_the_simplest_configuration(program: str, tmp_path: Path) -> None:
+    assert "error" not in run_shortly(program, ROOT / "conf/simple.yaml", tmp_path)
+
+
 @pytest.mark.parametrize("configuration", CONFIGURATIONS, ids=lambda path: path.name)
 def test_configuration_is_yaml_that_the_python_tools_read(configuration: Path) -> None:
     content = yaml.safe_load(configuration.read_text())
