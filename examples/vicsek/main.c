@@ -12,9 +12,9 @@
 // Neighbours must know their headings with respect to the same axis, but a Pogobot has no compass. A lamp to one side
 // replaces it: light that grows evenly across the arena (a `plane` lamp) shows each robot the same direction. The
 // difference between front and back photosensors is proportional to cos(heading), that between left and right ones to
-// sin(heading), where heading 0 is towards the light. Between readings, and where light is missing, saturated or even,
-// the heading follows the gyroscope. With no such light at all it starts from 0: then place the robots in parallel
-// (`aligned_random`).
+// sin(heading), where heading 0 is towards the light. Where the light does not tell, in the dark or across the seam of
+// the arena, the heading follows the gyroscope. With no such light at all it starts from 0: then place the robots in
+// parallel (`aligned_random`).
 //
 // There is no avoidance of walls: the arena is periodic.
 //
@@ -29,11 +29,11 @@
 #define HEADING_UNITS (32767.0f / PI)  // of the messages: pi is 32767
 #define COS_40_DEG 0.76604444f         // the front photosensors sit 40 degrees to the left and right, the other behind
 #define SIN_40_DEG 0.64278761f
-#define DARK 100            // photosensor readings not between these two ...
-#define SATURATED 32600     // ... say nothing about the direction of the light
-#define MIN_CONTRAST 50.0f  // nor does a smaller difference between sensors
-#define LIGHT_TRUST 0.2f    // share of the compass's error that is corrected at each tick
-#define TURN_GAIN 1.0f      // full turn for a course so many radians away
+#define BRIGHTEST 32767        // what a saturated photosensor reads
+#define MIN_CONTRAST 50.0f     // smaller differences between photosensors say nothing about the direction of the light
+#define MAX_CONTRAST 10000.0f  // larger ones are the edge of a shadow, or the seam of the arena
+#define LIGHT_TRUST 0.2f       // share of the compass's error that is corrected at each tick
+#define TURN_GAIN 1.0f         // full turn for a course so many radians away
 
 typedef enum { BACK, FRONT_LEFT, FRONT_RIGHT } photosensor_t;
 
@@ -78,7 +78,8 @@ static bool read_light_compass(float* heading) {
     float const right = pogobot_photosensors_read(FRONT_RIGHT);
     float const lowest = fminf(back, fminf(left, right));
     float const highest = fmaxf(back, fmaxf(left, right));
-    if (lowest < DARK || highest > SATURATED || highest - lowest < MIN_CONTRAST) {
+    float const contrast = highest - lowest;
+    if (highest >= BRIGHTEST || contrast < MIN_CONTRAST || contrast > MAX_CONTRAST) {
         return false;
     }
     // The light's gradient, seen from the robot: ahead and to the right.

@@ -124,17 +124,6 @@ def run_command(program: Path, folder: Path, arguments: Sequence[str]) -> Run:
     return Run(ended.returncode, ended.stdout, ended.stderr, folder)
 
 
-def run_as_configured(name: str, configuration: str, folder: Path, settings: Settings | None = None) -> Run:
-    """Run an example headless with a file of conf/, some keys (dotted paths) changed, quietly; it must end well."""
-    changes = {"data_filename": folder / "data.feather", "console_filename": folder / "console.txt", **(settings or {})}
-    arguments = ["-c", str(ROOT / "conf" / configuration), "-g", "-q", "--strict"]
-    for key, value in changes.items():
-        arguments += ["--set", f"{key}={value}"]
-    result = run_command(example(name), folder, arguments)
-    assert (result.code, result.errors) == (0, "")
-    return result
-
-
 def example(name: str) -> Path:
     """Return a built example program."""
     path = ROOT / "examples" / name / name

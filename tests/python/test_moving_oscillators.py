@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import ROOT, Run, example, run_as_configured, run_command
+from running import ROOT, Run, example, run_command, run_shipped
 
 Array = npt.NDArray[np.float64]
 RED, BLUE = 0x190000, 0x000019
@@ -16,7 +16,7 @@ TIME_LIMIT = 300.0
 
 
 def run(folder: Path, settings: dict[str, object]) -> Run:
-    return run_as_configured("moving_oscillators", "moving_oscillators.yaml", folder, settings)
+    return run_shipped("moving_oscillators", folder, settings)
 
 
 def phases(frame: pd.DataFrame) -> Array:

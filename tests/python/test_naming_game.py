@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from running import run_as_configured
+from running import run_shipped
 
 NB = 60
 
 
 def run(folder: Path, settings: dict[str, object]) -> pd.DataFrame:
     folder.mkdir(exist_ok=True)
-    return run_as_configured("naming_game", "naming_game.yaml", folder, settings).frame()
+    return run_shipped("naming_game", folder, settings).frame()
 
 
 @pytest.fixture(scope="module", params=[1, 2, 3])

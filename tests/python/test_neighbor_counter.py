@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from running import run_as_configured
+from running import run_shipped
 
 RADIUS = 26.5  # of a robot, mm
 RANGE = 80.0  # from an emitter to the border of the receiver, mm
@@ -18,7 +18,7 @@ FACES = [f"dir{face}_neighbors" for face in range(4)]
 def run(folder: Path, **settings: object) -> pd.DataFrame:
     folder.mkdir(exist_ok=True)
     changes = {"objects.robots.msg_success_rate": {"type": "static", "rate": 1.0}, **settings}
-    return run_as_configured("neighbor_counter", "neighbor_counter.yaml", folder, changes).frame()
+    return run_shipped("neighbor_counter", folder, changes).frame()
 
 
 def write_jittered_grid(path: Path) -> None:

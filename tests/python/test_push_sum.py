@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import run_as_configured
+from running import run_shipped
 
 Array = npt.NDArray[np.float64]
 
@@ -21,7 +21,7 @@ HALF_LOST = {"type": "static", "rate": 0.5}
 def run(folder: Path, reception: dict[str, object], **settings: object) -> pd.DataFrame:
     folder.mkdir(exist_ok=True)
     changes = {"objects.robots.msg_success_rate": reception, **settings}
-    return run_as_configured("push_sum", "push_sum.yaml", folder, changes).frame()
+    return run_shipped("push_sum", folder, changes).frame()
 
 
 def by_robot(frame: pd.DataFrame, column: str) -> Array:

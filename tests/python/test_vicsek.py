@@ -8,14 +8,14 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import run_as_configured
+from running import run_shipped
 
 Array = npt.NDArray[np.float64]
 
 
 def run(folder: Path, settings: dict[str, object]) -> pd.DataFrame:
     folder.mkdir(exist_ok=True)
-    return run_as_configured("vicsek", "vicsek.yaml", folder, settings).frame()
+    return run_shipped("vicsek", folder, settings).frame()
 
 
 def by_robot(frame: pd.DataFrame, column: str) -> Array:
@@ -50,7 +50,7 @@ def test_robots_flock_at_low_noise(quiet: pd.DataFrame) -> None:
 def test_the_light_is_a_compass(quiet: pd.DataFrame) -> None:
     error = np.abs(compass_error(quiet))
     assert np.median(error) < 0.01
-    assert np.quantile(error, 0.99) < 0.1  # collisions and the seam, where the lamp's two ends meet, disturb it
+    assert np.quantile(error, 0.99) < 0.1  # collisions disturb it
 
 
 def test_robots_drive_at_constant_speed(quiet: pd.DataFrame) -> None:

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from running import run_as_configured
+from running import run_shipped
 
 NB_OPINIONS = 4
 
 
 def run(folder: Path, settings: dict[str, object]) -> pd.DataFrame:
     folder.mkdir(exist_ok=True)
-    return run_as_configured("voter_model", "voter_model.yaml", folder, settings).frame()
+    return run_shipped("voter_model", folder, settings).frame()
 
 
 def nb_with_opinion(frame: pd.DataFrame) -> pd.DataFrame:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pandas as pd
 import pytest
 from matplotlib.path import Path as Outline
-from running import Run, run_as_configured
+from running import Run, run_shipped
 
 Array = npt.NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def distance_to_disk_wall(robots: pd.DataFrame) -> Array:
 def walls(tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("walls")
     settings = {"data_logger_led": True, "simulation_time": 120}
-    return run_as_configured("walls", "walls_and_membranes.yaml", folder, settings)
+    return run_shipped("walls", folder, settings, "walls_and_membranes")
 
 
 def test_objects_have_the_ids_of_the_article(walls: Run) -> None:
@@ -74,7 +74,7 @@ def test_robots_enclosed_by_a_membrane_hear_no_wall(tmp_path: Path) -> None:
         "objects.membranes.y": 564,
         "save_data_period": 0.25,
     }
-    run = run_as_configured("walls", "walls_and_membranes.yaml", tmp_path, settings)
+    run = run_shipped("walls", tmp_path, settings, "walls_and_membranes")
     frame = run.frame()
     robots = robots_of(frame)
     assert BLUE not in set(robots["led_rgb"])
@@ -99,16 +99,14 @@ def test_robots_keep_off_walls_that_they_hear(tmp_path: Path) -> None:
     deaf = {"objects.walls.communication_radius": 0, "objects.active_objects.communication_radius": 0}
     shares = []
     for name, settings in (("hearing", {}), ("deaf", deaf)):
-        folder = tmp_path / name
-        folder.mkdir()
-        frame = run_as_configured("avoid_walls", "active_objects.yaml", folder, settings).frame()
+        frame = run_shipped("avoid_walls", tmp_path / name, settings, "active_objects").frame()
         shares.append(share_at_square_wall(frame))
     assert shares[0] < 0.1
     assert shares[1] > 0.6
 
 
 def test_passive_objects_have_rows_without_ticks(tmp_path: Path) -> None:
-    frame = run_as_configured("avoid_walls", "active_objects.yaml", tmp_path, {"simulation_time": 5}).frame()
+    frame = run_shipped("avoid_walls", tmp_path, {"simulation_time": 5}, "active_objects").frame()
     passive = frame[frame["robot_category"] == "passive_objects"]
     assert passive["pogobot_ticks"].isna().all()
     assert len(passive) == frame["time"].nunique()
