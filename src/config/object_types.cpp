@@ -12,19 +12,9 @@ namespace pogosim {
 
 namespace {
 
-constexpr std::array kTypes{
-    ObjectType{"pogobot", "Robot with two motors and four infrared emitters.", read_pogobot},
-    ObjectType{"pogobject", "Head of a robot on a large body without motors.", read_pogobject},
-    ObjectType{"pogowall", "Wall that runs user code and sends along its whole length.", read_pogowall},
-    ObjectType{"membrane", "Soft ring of disks that runs user code and sends along its whole length.", read_membrane},
-    ObjectType{"rectmembrane", "The same of rectangular segments.", read_rectmembrane},
-    ObjectType{"active_object", "Body that can be pushed, with a program and infrared.", read_active_object},
-    ObjectType{"passive_object", "Body that can be pushed.", read_passive_object},
-    ObjectType{"static_light", "Lamp that stands still.", read_static_light},
-    ObjectType{"orbiting_static_light", "Lamp that goes round on a circle.", read_orbiting_static_light},
-    ObjectType{"rotating_ray_of_light", "Lighthouse with one beam.", read_rotating_ray_of_light},
-    ObjectType{"alternating_rays_of_light", "Two lighthouses in turn, in two corners.", read_alternating_rays_of_light},
-};
+#define POGOSIM_TYPE_ENTRY(name, doc) ObjectType{#name, doc, read_##name},
+constexpr std::array kTypes{POGOSIM_OBJECT_TYPES(POGOSIM_TYPE_ENTRY)};
+#undef POGOSIM_TYPE_ENTRY
 
 /// Other names that are understood, too.
 struct OtherName {

@@ -1,5 +1,5 @@
-// The types an entry of `objects` can have. A new type is one file with a function that reads its keys and one line of
-// the table in object_types.cpp.
+// The types an entry of `objects` can have. Each is a file in types/, with the function read_<name>() that fills an
+// object from its keys, and a line of the table here; docs/new_object_type.md adds one.
 #pragma once
 
 #include <span>
@@ -8,6 +8,19 @@
 
 #include "config/map_reader.hpp"
 #include "config/scenario.hpp"
+
+#define POGOSIM_OBJECT_TYPES(TYPE)                                                             \
+    TYPE(pogobot, "Robot with two motors and four infrared emitters.")                         \
+    TYPE(pogobject, "Head of a robot on a large body without motors.")                         \
+    TYPE(pogowall, "Wall that runs user code and sends along its whole length.")               \
+    TYPE(membrane, "Soft ring of disks that runs user code and sends along its whole length.") \
+    TYPE(rectmembrane, "The same of rectangular segments.")                                    \
+    TYPE(active_object, "Body that can be pushed, with a program and infrared.")               \
+    TYPE(passive_object, "Body that can be pushed.")                                           \
+    TYPE(static_light, "Lamp that stands still.")                                              \
+    TYPE(orbiting_static_light, "Lamp that goes round on a circle.")                           \
+    TYPE(rotating_ray_of_light, "Lighthouse with one beam.")                                   \
+    TYPE(alternating_rays_of_light, "Two lighthouses in turn, in two corners.")
 
 namespace pogosim {
 
@@ -19,23 +32,14 @@ struct ObjectType {
 
 std::span<ObjectType const> object_types();
 
+#define POGOSIM_DECLARE_TYPE(name, doc) void read_##name(MapReader& reader, ObjectConfig& object);
+POGOSIM_OBJECT_TYPES(POGOSIM_DECLARE_TYPE)
+#undef POGOSIM_DECLARE_TYPE
+
 /// One entry of `objects`, read and checked. Throws ConfigError.
 ObjectConfig read_object(std::string const& category, Node const& node, bool strict);
 
 // Keys of every type, `type` and `nb`.
 std::span<Key<ObjectConfig> const> object_keys();
-
-// The types, one file each.
-void read_pogobot(MapReader& reader, ObjectConfig& object);
-void read_pogobject(MapReader& reader, ObjectConfig& object);
-void read_pogowall(MapReader& reader, ObjectConfig& object);
-void read_membrane(MapReader& reader, ObjectConfig& object);
-void read_rectmembrane(MapReader& reader, ObjectConfig& object);
-void read_active_object(MapReader& reader, ObjectConfig& object);
-void read_passive_object(MapReader& reader, ObjectConfig& object);
-void read_static_light(MapReader& reader, ObjectConfig& object);
-void read_orbiting_static_light(MapReader& reader, ObjectConfig& object);
-void read_rotating_ray_of_light(MapReader& reader, ObjectConfig& object);
-void read_alternating_rays_of_light(MapReader& reader, ObjectConfig& object);
 
 }  // namespace pogosim

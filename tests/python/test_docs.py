@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -59,3 +60,11 @@ def test_links_lead_somewhere(page: Path) -> None:
     targets = [target for target, _ in LINK.findall(page.read_text()) if "://" not in target]
     missing = [target for target in targets if not (page.parent / target).exists()]
     assert missing == []
+
+
+def test_new_object_type_of_the_docs_compiles(tmp_path: Path) -> None:
+    page = ROOT / "docs" / "new_object_type.md"
+    (source := tmp_path / "beacon.cpp").write_text(blocks(page, "cpp")[0])
+    command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
+    command += ["-I", str(ROOT / "src"), "-I", str(ROOT / "include"), str(source)]
+    assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""
