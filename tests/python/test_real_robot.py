@@ -22,7 +22,7 @@ TOOLCHAINS = {
 }
 LIBC = {"printf", "puts", "putchar", "rand", "srand", "memcpy", "memset", "strcmp", "memcmp", "_GLOBAL_OFFSET_TABLE_"}
 # Of single precision: the processor computes in software, and double takes several times as long.
-LIBM = {"sinf", "cosf", "atan2f", "fminf", "fmaxf"}
+LIBM = {"sinf", "cosf", "atan2f", "sqrtf", "fabsf", "fminf", "fmaxf"}
 
 
 def compile_object(name: str, source: Path, output: Path, *flags: str) -> Path:

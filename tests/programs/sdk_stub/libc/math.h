@@ -5,6 +5,8 @@
 float sinf(float x);
 float cosf(float x);
 float atan2f(float y, float x);
+float sqrtf(float x);
+float fabsf(float x);
 float fminf(float x, float y);
 float fmaxf(float x, float y);
 
