@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "geometry/formations/task.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kCommonHeading = 0.5F * kPi;
+constexpr double kShareTolerance = 0.02;  // of an estimated part of the area
 
 struct Formation {
     std::string name;
@@ -87,17 +89,41 @@ std::vector<float> placement_radii(FormationSpec const& spec, std::span<float co
     return placed;
 }
 
-/// No arrangement of disks covers more than the whole domain.
+/// No arrangement of disks covers more than all that is free.
 void check_area(PlacementTask const& task) {
     double covered = 0.0;
     for (float const radius : task.radii_mm) {
         covered += std::numbers::pi * radius * radius;
     }
-    if (covered > task.domain.area_mm2) {
+    double const share = task.space.free_share();
+    bool const alone = share == 1.0;
+    double const free_mm2 = share * task.domain.area_mm2;
+    if (covered > (alone ? free_mm2 : free_mm2 + kShareTolerance * task.domain.area_mm2)) {
+        std::string const room = alone ? fmt::format("{:.3g} mm2", free_mm2)
+                                       : fmt::format("about {:.2g} mm2 beside what stands there already", free_mm2);
         throw ConfigError(
             fmt::format("formation '{}' cannot place {}: with their spacing they cover {:.3g} mm2, and the "
-                        "arena has {:.3g} mm2. Ask for fewer or enlarge arena_surface",
-                        task.spec.name, describe_objects(task), covered, task.domain.area_mm2));
+                        "arena has {}. Ask for fewer or enlarge arena_surface",
+                        task.spec.name, describe_objects(task), covered, room));
+    }
+}
+
+/// The file rules where imported objects stand; say so when one stands in something else.
+void warn_of_clashes(PlacementTask const& task, std::span<float const> radii_mm,
+                     std::span<Placement const> placements) {
+    std::size_t clashes = 0;
+    std::string first;
+    for (std::size_t i = 0; i < placements.size(); ++i) {
+        Vec2 const place = placements[i].position_mm;
+        auto const hit = std::ranges::find_if(
+            task.obstacles, [&](Obstacle const& obstacle) { return gap_mm(obstacle, place) < radii_mm[i]; });
+        if (hit != task.obstacles.end() && clashes++ == 0) {
+            first = fmt::format("object {} at ({:g}, {:g}) mm overlaps {}", i, place.x, place.y, hit->name);
+        }
+    }
+    if (clashes > 0) {
+        log().warn("{}: {}{}", task.spec.filename, first,
+                   clashes > 1 ? fmt::format(", and {} more do so with what has a fixed place", clashes - 1) : "");
     }
 }
 
@@ -117,7 +143,7 @@ std::span<std::string const> formation_names() {
     return names;
 }
 
-std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, Arena const& domain,
+std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, FormationGround const& ground,
                              RandomStream& random, PoseReader const& read_feather) {
     Formation const& formation = formation_named(spec.name);
     check_spec(spec);
@@ -125,12 +151,16 @@ std::vector<Placement> place(FormationSpec const& spec, std::span<float const> r
         return {};
     }
     std::vector<float> const radii = placement_radii(spec, radii_mm);
-    FreeSpace const space(domain);
-    PlacementTask const task{spec, radii, domain, space, random, read_feather};
-    if (formation.place != place_imported) {
+    FreeSpace const space(ground.domain, ground.obstacles);
+    PlacementTask const task{spec, radii, ground.domain, ground.obstacles, space, random, read_feather};
+    bool const by_file = formation.place == place_imported;
+    if (!by_file) {
         check_area(task);
     }
     std::vector<Placement> placements = formation.place(task);
+    if (by_file) {
+        warn_of_clashes(task, radii_mm, placements);
+    }
     for (Placement& placement : placements) {
         if (std::isnan(placement.heading_rad)) {
             placement.heading_rad = formation.aligned ? kCommonHeading : random_heading(random);

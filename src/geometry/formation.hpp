@@ -12,6 +12,7 @@
 
 #include "base/random.hpp"
 #include "geometry/arena.hpp"
+#include "geometry/obstacle.hpp"
 
 namespace pogosim {
 
@@ -36,6 +37,12 @@ struct Placement {
     float heading_rad = 0.0F;
 };
 
+/// Where a formation may place objects.
+struct FormationGround {
+    Arena const& domain;
+    std::span<Obstacle const> obstacles{};  // that stand there already
+};
+
 /// One row of a file for the formation `imported`.
 struct ImportedPose {
     double x = 0.0;  // mm, or in the unit of imported_min and imported_max
@@ -52,14 +59,15 @@ using PoseReader = std::function<std::vector<ImportedPose>(std::filesystem::path
 std::span<std::string const> formation_names();
 
 /// One pose for each object of the given radii (mm, finite, >= 0), in the same order. Placement radius of object i:
-/// r_i = 1.01 max(radius, min_space). Every object but the imported ones stands inside `domain`, at least r_i from its
-/// walls and at least r_i + r_j from object j; imported ones stand where the file says, which must be inside.
-/// `read_feather` reads the file of `imported` when its name ends in ".feather".
-/// Headings: pi/2 for aligned_*, the file's for imported, otherwise uniform in (-pi, pi].
-/// Throws ConfigError when they do not fit, after a bounded search ("formation 'disk' has places for 31 of 40 objects
-/// (largest radius 26.5 mm) in this arena. ..."); when a value of the spec makes no sense; when the imported file is
-/// unreadable or too short; or when the name is unknown. The same arguments give the same poses.
-std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, Arena const& domain,
+/// r_i = 1.01 max(radius, min_space). Every object but the imported ones stands inside the domain, at least r_i from
+/// its walls and from every obstacle, and at least r_i + r_j from object j; imported ones stand where the file says,
+/// which must be inside, and a warning names the first that is in an obstacle. Obstacles that are not in the domain
+/// change nothing. `read_feather` reads the file of `imported` when its name ends in ".feather". Headings: pi/2 for
+/// aligned_*, the file's for imported, otherwise uniform in (-pi, pi]. Throws ConfigError when they do not fit, after a
+/// bounded search ("formation 'disk' has places for 31 of 40 objects (largest radius 26.5 mm) in this arena. ...");
+/// when a value of the spec makes no sense; when the imported file is unreadable or too short; or when the name is
+/// unknown. The same arguments give the same poses.
+std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, FormationGround const& ground,
                              RandomStream& random, PoseReader const& read_feather = {});
 
 }  // namespace pogosim

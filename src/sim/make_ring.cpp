@@ -15,12 +15,6 @@ constexpr float kCrossOfSegments = 0.4F;
 // A membrane of cloth, not of rubber: neighbours are never further apart than this part more than at rest.
 constexpr float kMaxStretch = 0.05F;
 
-std::vector<Vec2> ring_corners(ObjectSpec const& spec, Placement const& placement) {
-    float const inwards_mm = std::min(half_thickness_mm(*spec.ring), kMostInset * bounding_radius(spec.shape));
-    Polygon const line = outline(inset(spec.shape, inwards_mm), spec.ring->body_count);
-    return moved(spread_along(line, spec.ring->body_count), placement.position_mm, placement.heading_rad);
-}
-
 RingBody segment_between(Vec2 from, Vec2 to, float thickness_mm) {
     Vec2 const along = to - from;
     return {.position_mm = 0.5F * (from + to),
@@ -52,9 +46,15 @@ float half_thickness_mm(RingSpec const& ring) {
     return ring.segments ? 0.5F * ring.thickness_mm.value_or(ring.radius_mm) : ring.radius_mm;
 }
 
+Polygon ring_line(ObjectSpec const& spec, Placement const& placement) {
+    float const inwards_mm = std::min(half_thickness_mm(*spec.ring), kMostInset * bounding_radius(spec.shape));
+    Polygon const line = outline(inset(spec.shape, inwards_mm), spec.ring->body_count);
+    return moved(spread_along(line, spec.ring->body_count), placement.position_mm, placement.heading_rad);
+}
+
 RingParts make_ring(ObjectSpec const& spec, Placement const& placement) {
     RingSpec const& shape = *spec.ring;
-    std::vector<Vec2> const corners = ring_corners(spec, placement);
+    Polygon const corners = ring_line(spec, placement);
     std::size_t const count = corners.size();
     RingParts ring;
     for (std::size_t i = 0; i < count; ++i) {

@@ -19,6 +19,9 @@ struct RingParts {
     std::vector<Joint> joints;     // between them: a and b are indices into `bodies`
 };
 
+/// Line through the middle of the ring's bodies: through the centres of disks, along segments from hinge to hinge.
+Polygon ring_line(ObjectSpec const& spec, Placement const& placement);
+
 /// The ring of an object with `spec.ring` at this place. Its bodies lie within the shape's outline and touch it.
 RingParts make_ring(ObjectSpec const& spec, Placement const& placement);
 

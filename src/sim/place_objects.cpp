@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "record/imported_poses.hpp"
 #include "sim/data_files.hpp"
+#include "sim/fixed_objects.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/make_ring.hpp"
 
@@ -103,7 +104,7 @@ Arena root_domain(World const& world, ObjectConfig const& root, std::vector<Plac
 }
 
 /// Lets the formation place the objects of these entries together.
-void place_entries(Scenario const& scenario, FormationSpec const& formation, Arena const& domain,
+void place_entries(Scenario const& scenario, FormationSpec const& formation, FormationGround const& ground,
                    std::vector<std::size_t> const& entries, RandomStream& random,
                    std::vector<std::vector<Placement>>& poses) {
     std::vector<float> radii;
@@ -111,7 +112,7 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, Are
         ObjectConfig const& object = scenario.objects[i];
         radii.insert(radii.end(), static_cast<std::size_t>(object.nb), bounding_radius(object.spec.shape));
     }
-    std::vector<Placement> const placed = place(formation, radii, domain, random, read_imported_feather);
+    std::vector<Placement> const placed = place(formation, radii, ground, random, read_imported_feather);
     auto next = placed.begin();
     for (std::size_t const i : entries) {
         auto const end = next + scenario.objects[i].nb;
@@ -125,11 +126,15 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, Are
 std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, World const& world, std::uint32_t seed) {
     std::vector<std::vector<Placement>> poses(scenario.objects.size());
     std::vector<std::size_t> entries;  // for the formation
+    std::vector<Obstacle> obstacles;   // that it keeps off
     std::size_t const root = root_entry(scenario);
     RandomStream random(seed, kFormationStream);
     FormationSpec formation = scenario.formation;
     formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
 
+    auto const add_obstacles = [&](std::size_t i) {
+        std::ranges::move(obstacles_of(scenario.objects[i], poses[i]), std::back_inserter(obstacles));
+    };
     for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
         ObjectConfig const& object = scenario.objects[i];
         if (is_placed_by_formation(object)) {
@@ -140,16 +145,21 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
                 check_position(scenario, world, object);
             }
             poses[i].assign(static_cast<std::size_t>(object.nb), {object.position_mm.value_or(Vec2{}), 0.0F});
+            if (object.spec.body) {
+                add_obstacles(i);
+            }
         }
     }
+    warn_of_overlaps(scenario, world);
     Arena domain = world.arena;
     if (root != kNoEntry) {
         if (std::erase(entries, root) > 0) {
-            place_entries(scenario, formation, world.arena, {root}, random, poses);
+            place_entries(scenario, formation, {world.arena, obstacles}, {root}, random, poses);
+            add_obstacles(root);
         }
         domain = root_domain(world, scenario.objects[root], poses[root]);
     }
-    place_entries(scenario, formation, domain, entries, random, poses);
+    place_entries(scenario, formation, {domain, obstacles}, entries, random, poses);
     return poses;
 }
 

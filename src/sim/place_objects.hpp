@@ -11,9 +11,9 @@ namespace pogosim {
 
 /// Poses of the objects of every entry of `scenario.objects`, in its order; none for lamps. Entries with x and y stand
 /// there with heading 0; the formation places the other bodies, largest freedom first: the category that bounds the
-/// formation (initial_formation_root_object), then all others together. `world` has its arena and no objects.
-/// Throws ConfigError, naming the object and the key, for what lies outside of the arena, does not fit into it, or
-/// cannot bound a formation.
+/// formation (initial_formation_root_object), then all others together; it keeps off what stands already. `world` has
+/// its arena and no objects. Throws ConfigError, naming the object and the key, for what lies outside of the arena,
+/// does not fit into it, or cannot bound a formation.
 std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, World const& world, std::uint32_t seed);
 
 }  // namespace pogosim

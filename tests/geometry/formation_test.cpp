@@ -49,7 +49,7 @@ std::vector<float> robots(std::size_t count) {
 std::vector<Placement> place_seeded(FormationSpec const& spec, std::span<float const> radii, Arena const& arena,
                                     std::uint64_t seed) {
     RandomStream random(seed, 5);
-    return place(spec, radii, arena, random);
+    return place(spec, radii, {arena}, random);
 }
 
 FormationSpec named(std::string const& name) {

@@ -34,7 +34,7 @@ protected:
 
     std::vector<Placement> place_now(std::size_t count) {
         RandomStream random(1, 1);
-        return place(spec_, std::vector<float>(count, 26.5F), kRoom, random, reader_);
+        return place(spec_, std::vector<float>(count, 26.5F), {kRoom}, random, reader_);
     }
 
     /// The message, with the file's folder cut off.

@@ -1,28 +1,44 @@
 #include "geometry/formations/free_space.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 namespace pogosim {
 
 namespace {
 
-constexpr std::size_t kMostBands = 128;
 constexpr int kMostPushes = 20;
-constexpr float kPushMargin = 1.0005F;  // so that rounding does not leave a point short of its clearance
+constexpr double kAreaPoints = 2.0e4;      // in the arena, to estimate what part of it is free
+constexpr double kMostAreaPoints = 1.0e6;  // in its bounding box
+constexpr float kPushMargin = 1.0005F;     // so that rounding does not leave a point short of its clearance
+
+std::size_t count_edges(Arena const& arena) {
+    std::size_t count = 0;
+    for (Polygon const& polygon : arena.polygons) {
+        count += polygon.size();
+    }
+    return count;
+}
+
+double area_of(Box box) {
+    return static_cast<double>(box.size().x) * static_cast<double>(box.size().y);
+}
 
 }  // namespace
 
-FreeSpace::FreeSpace(Arena const& arena) : bounds_(arena.bounds) {
+FreeSpace::FreeSpace(Arena const& arena, std::span<Obstacle const> obstacles)
+    : bounds_(arena.bounds),
+      arena_share_(arena.area_mm2 / area_of(arena.bounds)),
+      bands_(arena.bounds, count_edges(arena)),
+      obstacles_(obstacles, arena.bounds) {
     for (std::size_t p = 0; p < arena.polygons.size(); ++p) {
         add_walls(arena.polygons[p], p > 0);
     }
-    bands_.resize(std::min(walls_.size(), kMostBands));
     for (std::uint32_t w = 0; w < walls_.size(); ++w) {
         auto const [top, bottom] = std::minmax(walls_[w].from.y, walls_[w].to.y);
-        for (std::size_t band = band_of(top); band <= band_of(bottom); ++band) {
-            bands_[band].push_back(w);
-        }
+        bands_.add(w, top, bottom);
     }
 }
 
@@ -41,18 +57,12 @@ void FreeSpace::add_walls(Polygon const& polygon, bool is_hole) {
     }
 }
 
-std::size_t FreeSpace::band_of(float y) const {
-    float const fraction = (y - bounds_.min.y) / bounds_.size().y;
-    float const band = fraction * static_cast<float>(bands_.size());
-    return static_cast<std::size_t>(std::clamp(band, 0.0F, static_cast<float>(bands_.size() - 1)));
-}
-
 bool FreeSpace::contains(Vec2 point) const {
     if (point.y < bounds_.min.y || point.y > bounds_.max.y) {
         return false;
     }
     bool inside = false;
-    for (std::uint32_t const w : bands_[band_of(point.y)]) {
+    for (std::uint32_t const w : bands_.at(point.y)) {
         inside ^= ray_crosses(walls_[w].from, walls_[w].to, point);
     }
     return inside;
@@ -61,21 +71,42 @@ bool FreeSpace::contains(Vec2 point) const {
 FreeSpace::Wall const* FreeSpace::nearest_wall_within(Vec2 point, float reach) const {
     Wall const* nearest = nullptr;
     float nearest_squared = reach * reach;
-    for (std::size_t band = band_of(point.y - reach); band <= band_of(point.y + reach); ++band) {
-        for (std::uint32_t const w : bands_[band]) {
-            Wall const& wall = walls_[w];
-            float const squared = squared_length(point - nearest_on_segment(wall.from, wall.to, point));
-            if (squared < nearest_squared) {
-                nearest_squared = squared;
-                nearest = &wall;
-            }
+    bands_.for_each_between(point.y - reach, point.y + reach, [&](std::uint32_t w) {
+        Wall const& wall = walls_[w];
+        float const squared = squared_length(point - nearest_on_segment(wall.from, wall.to, point));
+        if (squared < nearest_squared) {
+            nearest_squared = squared;
+            nearest = &wall;
         }
-    }
+    });
     return nearest;
 }
 
 bool FreeSpace::holds(Vec2 point_mm, float clearance_mm) const {
-    return contains(point_mm) && nearest_wall_within(point_mm, clearance_mm) == nullptr;
+    return contains(point_mm) && nearest_wall_within(point_mm, clearance_mm) == nullptr &&
+           obstacles_.is_clear(point_mm, clearance_mm);
+}
+
+double FreeSpace::free_share() const {
+    if (obstacles_.empty()) {
+        return 1.0;
+    }
+    // On a grid of square cells.
+    double const points = std::min(kAreaPoints / arena_share_, kMostAreaPoints);
+    Vec2 const size = bounds_.size();
+    auto const pitch_mm = static_cast<float>(std::sqrt(area_of(bounds_) / points));
+    std::size_t inside = 0;
+    std::size_t free = 0;
+    for (float y = 0.5F * pitch_mm; y < size.y; y += pitch_mm) {
+        for (float x = 0.5F * pitch_mm; x < size.x; x += pitch_mm) {
+            Vec2 const point = bounds_.min + Vec2{x, y};
+            if (contains(point)) {
+                ++inside;
+                free += obstacles_.is_clear(point, 0.0F) ? 1 : 0;
+            }
+        }
+    }
+    return inside == 0 ? 1.0 : static_cast<double>(free) / static_cast<double>(inside);
 }
 
 Vec2 FreeSpace::pushed_inside(Vec2 point_mm, float clearance_mm) const {
@@ -84,7 +115,12 @@ Vec2 FreeSpace::pushed_inside(Vec2 point_mm, float clearance_mm) const {
         float const reach = inside ? clearance_mm : 2.0F * length(bounds_.size()) + length(point_mm - bounds_.centre());
         Wall const* const wall = nearest_wall_within(point_mm, reach);
         if (wall == nullptr) {
-            break;
+            std::optional<Vec2> const place = obstacles_.pushed_off(point_mm, clearance_mm);
+            if (!place) {
+                break;
+            }
+            point_mm = *place;
+            continue;
         }
         Vec2 const foot = nearest_on_segment(wall->from, wall->to, point_mm);
         Vec2 const away = inside ? point_mm - foot : foot - point_mm;

@@ -2,23 +2,29 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/random.hpp"
 #include "geometry/arena.hpp"
+#include "geometry/formations/band_index.hpp"
+#include "geometry/formations/obstacle_field.hpp"
 
 namespace pogosim {
 
-/// The arena's edges sorted into horizontal bands, so that a question looks at the edges near its point only.
+/// The inside of an arena, less what stands in it already.
 class FreeSpace {
 public:
-    explicit FreeSpace(Arena const& arena);
+    FreeSpace(Arena const& arena, std::span<Obstacle const> obstacles);
 
-    /// True when the point is inside the arena and at least `clearance_mm` from every wall.
+    /// True when the point is inside the arena and at least `clearance_mm` from every wall and obstacle.
     bool holds(Vec2 point_mm, float clearance_mm) const;
 
-    /// Moves a point that lacks clearance away from its nearest wall, again and again. The result holds the clearance
-    /// unless the place is too narrow for it.
+    /// The part of the arena's area that no obstacle covers, 0 to 1, give or take one in a hundred.
+    double free_share() const;
+
+    /// Moves a point that lacks clearance away from its nearest wall or obstacle, again and again. The result holds the
+    /// clearance unless the place is too narrow for it.
     Vec2 pushed_inside(Vec2 point_mm, float clearance_mm) const;
 
     /// Uniform in the bounding box.
@@ -36,13 +42,14 @@ private:
 
     void add_walls(Polygon const& polygon, bool is_hole);
     bool contains(Vec2 point) const;
-    std::size_t band_of(float y) const;
     Wall const* nearest_wall_within(Vec2 point, float reach) const;
 
     Box bounds_;
+    double arena_share_;  // of the bounding box
     std::vector<Wall> walls_;
-    std::vector<double> length_up_to_;               // of the walls, added up
-    std::vector<std::vector<std::uint32_t>> bands_;  // walls that meet each band, from the top
+    std::vector<double> length_up_to_;  // of the walls, added up
+    BandIndex bands_;                   // of walls
+    ObstacleField obstacles_;
 };
 
 }  // namespace pogosim

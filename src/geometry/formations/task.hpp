@@ -24,7 +24,8 @@ struct PlacementTask {
     FormationSpec const& spec;
     std::span<float const> radii_mm;  // placement radii
     Arena const& domain;
-    FreeSpace const& space;
+    std::span<Obstacle const> obstacles;
+    FreeSpace const& space;  // the domain less the obstacles
     RandomStream& random;
     PoseReader const& read_feather;
 };

@@ -1,0 +1,42 @@
+// What stands in an arena already: quick answers for many points.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/formations/band_index.hpp"
+#include "geometry/obstacle.hpp"
+
+namespace pogosim {
+
+class ObstacleField {
+public:
+    ObstacleField(std::span<Obstacle const> obstacles, Box bounds_mm);
+
+    bool empty() const { return edges_.empty(); }
+
+    /// True when a disk of this radius here overlaps none.
+    bool is_clear(Vec2 centre_mm, float radius_mm) const;
+
+    /// Where the disk stands next to the obstacle that it is nearest to or in; nothing when it is clear of all.
+    std::optional<Vec2> pushed_off(Vec2 centre_mm, float radius_mm) const;
+
+private:
+    struct Edge {
+        Vec2 from;
+        Vec2 to;
+        float half_thickness_mm;
+        bool solid;
+    };
+
+    void add_edges(Obstacle const& obstacle);
+    bool is_enclosed(Vec2 point) const;
+    Vec2 beside(Edge const& edge, Vec2 point, float radius_mm, bool across) const;
+    std::optional<Vec2> pushed_out(Vec2 centre, float radius_mm) const;
+
+    std::vector<Edge> edges_;  // around solid ones clockwise on the screen
+    BandIndex bands_;          // with their thickness
+};
+
+}  // namespace pogosim

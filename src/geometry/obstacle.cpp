@@ -1,0 +1,62 @@
+#include "geometry/obstacle.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace pogosim {
+
+namespace {
+
+constexpr int kPointsOnLine = 256;  // besides its corners
+
+std::vector<Vec2> points_on_line(Polygon const& line) {
+    std::vector<Vec2> points = line;
+    if (line.size() > 1) {
+        std::ranges::copy(spread_along(line, kPointsOnLine), std::back_inserter(points));
+    }
+    return points;
+}
+
+/// How deep the line of `a`, with its thickness, reaches into `b`; negative when they are apart.
+float reach_into(Obstacle const& a, Obstacle const& b) {
+    float least_gap = std::numeric_limits<float>::infinity();
+    for (Vec2 const point : points_on_line(a.line)) {
+        least_gap = std::min(least_gap, gap_mm(b, point));
+    }
+    return a.half_thickness_mm - least_gap;
+}
+
+}  // namespace
+
+Obstacle solid_obstacle(std::string name, Shape const& shape, Vec2 position_mm, float heading_rad) {
+    if (shape.kind == ShapeKind::disk) {
+        return {.name = std::move(name), .line = {position_mm}, .half_thickness_mm = shape.radius_mm};
+    }
+    return {.name = std::move(name), .line = moved(outline(shape), position_mm, heading_rad)};
+}
+
+float gap_mm(Obstacle const& obstacle, Vec2 point_mm) {
+    float const to_line_mm = distance_to_outline(obstacle.line, point_mm);
+    bool const enclosed = obstacle.solid && contains(obstacle.line, point_mm);
+    return (enclosed ? -to_line_mm : to_line_mm) - obstacle.half_thickness_mm;
+}
+
+float overlap_mm(Obstacle const& a, Obstacle const& b) {
+    return std::max({reach_into(a, b), reach_into(b, a), 0.0F});
+}
+
+float overlap_mm(Obstacle const& obstacle, Arena const& arena) {
+    float deepest = 0.0F;
+    for (Vec2 const point : points_on_line(obstacle.line)) {
+        float const to_walls_mm = arena.distance_to_walls(point);
+        float const beyond_mm = arena.contains(point) ? -to_walls_mm : to_walls_mm;
+        deepest = std::max(deepest, beyond_mm + obstacle.half_thickness_mm);
+    }
+    // A hole may lie within the obstacle.
+    for (std::size_t hole = 1; hole < arena.polygons.size(); ++hole) {
+        deepest = std::max(deepest, reach_into({.name = {}, .line = arena.polygons[hole]}, obstacle));
+    }
+    return deepest;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,32 @@
+// What stands at a fixed place before a formation comes: rigid bodies, and rings that objects may stand inside of.
+#pragma once
+
+#include <string>
+
+#include "geometry/arena.hpp"
+#include "geometry/shape.hpp"
+
+namespace pogosim {
+
+/// All points within `half_thickness_mm` of a closed line; a solid one also has what the line encloses. It may stick
+/// out of the arena.
+struct Obstacle {
+    std::string name;                // for messages
+    Polygon line;                    // mm; without crossings; one corner is a point
+    float half_thickness_mm = 0.0F;  // >= 0
+    bool solid = true;
+};
+
+/// A rigid body. The shape is a disk, a rectangle or a triangle.
+Obstacle solid_obstacle(std::string name, Shape const& shape, Vec2 position_mm, float heading_rad);
+
+/// Distance from the point to the obstacle, mm; negative inside of it.
+float gap_mm(Obstacle const& obstacle, Vec2 point_mm);
+
+/// How deep two obstacles reach into each other, mm, by points spread along their lines; 0 when they are apart.
+float overlap_mm(Obstacle const& a, Obstacle const& b);
+
+/// How deep the obstacle reaches into the walls of the arena or beyond, mm; 0 when it stands inside.
+float overlap_mm(Obstacle const& obstacle, Arena const& arena);
+
+}  // namespace pogosim

@@ -1,0 +1,157 @@
+"""Formations place objects around what has a fixed place: whole runs of a built example, looked at at time 0."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+import pytest
+from running import Run, example, run
+
+Floats = npt.NDArray[np.float64]
+
+RADIUS_MM = 26.5
+DOT_RADIUS_MM = 10.0
+FORMATIONS = [
+    "random",
+    "aligned_random",
+    "random_near_walls",
+    "aligned_random_near_walls",
+    "disk",
+    "aligned_disk",
+    "lloyd",
+    "power_lloyd",
+    "chessboard",
+    "aligned_chessboard",
+]
+
+MEMBRANE: dict[str, Any] = {
+    "type": "membrane",
+    "nb": 1,
+    "geometry": "disk",
+    "radius": 250,
+    "num_dots": 80,
+    "dot_radius": DOT_RADIUS_MM,
+    "serialize_dot_pose": True,
+    "x": 400,
+    "y": 420,
+}
+BOX: dict[str, Any] = {
+    "type": "passive_object",
+    "nb": 1,
+    "geometry": "rectangle",
+    "body_width": 240,
+    "body_height": 140,
+    "body_density": 1000,
+    "x": 900,
+    "y": 800,
+}
+SCENE: dict[str, Any] = {
+    "arena_file": "arenas/square.csv",
+    "arena_surface": 1.44e6,
+    "simulation_time": 0.02,
+    "chessboard_distance_between_neighbors": 60,
+    "objects.robots.nb": 100,
+    "objects.membranes": MEMBRANE,
+    "objects.box": BOX,
+}
+
+
+def simulate(folder: Path, **changes: object) -> Run:
+    done = run(example("walls"), folder, {**SCENE, **changes})
+    assert done.code == 0, done.text
+    return done
+
+
+def positions(rows: pd.DataFrame) -> Floats:
+    return rows[["x", "y"]].to_numpy(dtype=float)
+
+
+def at_start(done: Run) -> tuple[Floats, Floats, pd.DataFrame]:
+    """Robots and the membrane's dots at time 0, shape (n, 2), and all rows of that time."""
+    rows = done.frame()
+    rows = rows[rows["time"] == 0.0]
+    dots = rows[rows["subpart_id"] >= 0].sort_values("subpart_id")
+    return positions(rows[rows["robot_category"] == "robots"]), positions(dots), rows
+
+
+def distance_to_line(points: Floats, corners: Floats) -> Floats:
+    """Distance of each point to a closed line."""
+    along = np.roll(corners, -1, axis=0) - corners
+    offset = points[:, None, :] - corners
+    share = np.clip((offset * along).sum(axis=-1) / (along**2).sum(axis=-1), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(offset - share[..., None] * along, axis=-1).min(axis=1))
+
+
+def distance_to_box(points: Floats, box: dict[str, Any]) -> Floats:
+    beyond = np.abs(points - [box["x"], box["y"]]) - np.array([box["body_width"], box["body_height"]]) / 2
+    return np.asarray(np.linalg.norm(np.maximum(beyond, 0.0), axis=1))
+
+
+def warnings(done: Run) -> list[str]:
+    return [line for line in done.text.splitlines() if "warning" in line.lower()]
+
+
+@pytest.mark.parametrize("formation", FORMATIONS)
+def test_no_robot_starts_in_a_membrane_s_band_or_in_a_box(tmp_path: Path, formation: str) -> None:
+    done = simulate(tmp_path, initial_formation=formation)
+    robots, dots, _ = at_start(done)
+    assert len(robots) == 100
+    assert len(dots) == 80
+    assert distance_to_line(robots, dots).min() >= RADIUS_MM + DOT_RADIUS_MM
+    assert distance_to_box(robots, BOX).min() >= RADIUS_MM
+    assert warnings(done) == []
+
+
+@pytest.mark.parametrize("formation", FORMATIONS)
+def test_robots_inside_a_membrane_keep_off_what_else_stands_there(tmp_path: Path, formation: str) -> None:
+    box = {**BOX, "x": 420, "y": 450, "body_height": 80}
+    changes = {"initial_formation": formation, "initial_formation_root_object": "membranes"}
+    robots, dots, _ = at_start(simulate(tmp_path, **changes, **{"objects.robots.nb": 25, "objects.box": box}))
+    assert len(robots) == 25
+    assert np.linalg.norm(robots - [400, 420], axis=1).max() < 250
+    assert distance_to_line(robots, dots).min() >= RADIUS_MM + DOT_RADIUS_MM
+    assert distance_to_box(robots, box).min() >= RADIUS_MM
+
+
+def test_nothing_that_the_formation_places_starts_in_a_robot_with_a_place(tmp_path: Path) -> None:
+    changes = {
+        f"objects.leader_{i}": {"type": "pogobot", "geometry": "disk", "radius": RADIUS_MM, "x": x, "y": 900}
+        for i, x in enumerate((100, 154, 208, 700))
+    }
+    _, _, rows = at_start(simulate(tmp_path, **changes))
+    points = positions(rows[rows["robot_category"].str.startswith(("robots", "leader"))])
+    assert len(points) == 104
+    apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    assert apart[np.triu_indices(104, k=1)].min() >= 2 * RADIUS_MM
+
+
+def test_file_of_poses_rules_and_clashes_are_one_warning(tmp_path: Path) -> None:
+    (tmp_path / "poses.csv").write_text("1100,100\n900,800\n655,420\n1100,300\n")
+    done = simulate(tmp_path, initial_formation="imported", formation_filename="poses.csv", **{"objects.robots.nb": 4})
+    robots, _, _ = at_start(done)
+    np.testing.assert_allclose(robots, [[1100, 100], [900, 800], [655, 420], [1100, 300]])
+    (warning,) = warnings(done)
+    assert "poses.csv: object 1 at (900, 800) mm overlaps 'box', and 1 more" in warning
+
+
+def test_fixed_objects_deep_in_each_other_or_in_a_wall_are_named(tmp_path: Path) -> None:
+    sunk = {**BOX, "x": 1180, "y": 200}  # 100 mm of it are beyond the wall
+    across = {**BOX, "x": 650, "y": 420}  # on the membrane
+    twins = {**BOX, "nb": 2, "x": 200, "y": 1000}
+    changes = {"objects.sunk": sunk, "objects.across": across, "objects.twins": twins, "objects.robots.nb": 5}
+    sunk_line, *others = sorted(warnings(simulate(tmp_path, **changes)), key=lambda line: "sunk" not in line)
+    assert "objects.sunk.x: at (1180, 200) 'sunk' reaches 100.0 mm deep into a wall of the arena" in sunk_line
+    across_line, twins_line = sorted(others, key=lambda line: "twins" in line)
+    assert "objects.across.x: at (650, 420) 'across' reaches" in across_line
+    assert "deep into 'membranes'" in across_line
+    assert "objects.twins.x: at (200, 1000) all 2 objects of 'twins' stand inside each other" in twins_line
+
+
+def test_fixed_objects_that_touch_are_no_mistake(tmp_path: Path) -> None:
+    beside = {**BOX, "x": 1080 + 0.5, "y": 200}  # into the wall by half a millimetre
+    below = {**BOX, "y": 800 + 139.5}  # and into the other box
+    assert warnings(simulate(tmp_path, **{"objects.beside": beside, "objects.below": below})) == []
