@@ -2,7 +2,9 @@
 
     python -m pogosim.swarm_picture results/demo/data.feather results/demo/swarm.png
 
-Trails take the colour that the robot's head LED had at the time, and fade into the past.
+Trails take the colour that the robot's head LED had at the time, and fade into the past. Objects have the shapes, and
+the floor the light, that the configuration in the file's metadata says; membranes lie where their dots do
+(serialize_dot_pose: true).
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+import textwrap
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,17 +22,27 @@ import numpy.typing as npt
 import pandas as pd
 import yaml
 from matplotlib.axes import Axes
-from matplotlib.collections import CircleCollection, LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
+from pogosim.scene import (
+    MEMBRANES,
+    Category,
+    Floats,
+    Lamp,
+    Shape,
+    bounds,
+    light_levels,
+    ray_names,
+    read_categories,
+    read_lamps,
+)
 from pogosim.utils import PathLike, load_dataframe
 
-Floats = npt.NDArray[np.float64]
-
-# Robots of the real swarm, where a file does not say (mm).
-DEFAULT_RADIUS_MM = 26.5
+# Robots of the real swarm, where a file does not say.
+UNKNOWN = Category("robots", "pogobot", Shape(radius_mm=26.5))
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500
@@ -39,17 +52,31 @@ FLOOR = "#12151c"
 WALL = "#3a4150"
 EDGE = "#05070a"
 INK = "#2b303a"
+RGB = ["rgb_0", "rgb_1", "rgb_2"]  # columns of colours
 DARK_LED = 0.42  # grey of a robot whose LED is off
+NO_LED = (0.36, 0.41, 0.50)  # of what has none
+DARK_WALL = (0.66, 0.74, 0.86)  # of a wall with a program whose LED is off
+LAMPLIGHT = (1.0, 0.87, 0.62)
+MAX_LAMPLIGHT = 0.28  # opacity over the floor where it is brightest
+LIGHT_CELLS = 240  # along either side of the arena
 
 
 @dataclass
 class Swarm:
     """One run, ready to be drawn. Lengths in mm, y downwards; times in s."""
 
-    rows: pd.DataFrame  # finite poses, ordered by time; columns object, rgb_0 to rgb_2 (0 to 1) added
+    rows: pd.DataFrame  # finite poses of objects, ordered by time; columns object, rgb_0 to rgb_2 (0 to 1) added
+    dots: pd.DataFrame  # the same of the parts of membranes, at the end; columns subpart_id, too
+    wall_colours: dict[str, Floats]  # of pogowalls at the end, by category
     polygons: list[Floats]  # each of shape (vertices, 2), at least one; the outer wall first
-    radius_mm: dict[str, float]  # by category
+    categories: dict[str, Category]
+    lamps: list[Lamp]
+    rays: list[str]  # categories of lighthouses
     end_s: float
+
+    def category(self, name: str) -> Category:
+        """Look up how the objects of a category look."""
+        return self.categories.get(name, UNKNOWN)
 
 
 class PictureError(Exception):
@@ -92,33 +119,6 @@ def read_polygons(text: str) -> list[Floats]:
         raise PictureError(f"its metadata 'arena_polygons' is not a list of polygons: {error}") from error
 
 
-def number(value: Any, default: float) -> float:
-    """Return a configuration's value as a number; `default` if it is none."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return default
-
-
-def radii(configuration: dict[str, Any]) -> dict[str, float]:
-    """Radius of each category of objects (mm): that of the disk, or of the disk around its shape."""
-    objects = configuration.get("objects")
-    result = {}
-    for category, settings in (objects if isinstance(objects, dict) else {}).items():
-        if not isinstance(settings, dict):
-            continue
-        shape = str(settings.get("geometry", "disk")).lower()
-        if shape == "rectangle":
-            sides = (number(settings.get(f"body_{side}"), 10.0) for side in ("width", "height"))
-            radius = math.hypot(*sides) / 2.0
-        elif shape == "triangle":
-            radius = number(settings.get("side_length"), 10.0) / math.sqrt(3.0)
-        else:
-            radius = number(settings.get("radius"), DEFAULT_RADIUS_MM)
-        result[str(category)] = radius
-    return result
-
-
 def read_swarm(path: PathLike) -> Swarm:
     """Read the file of a run (of several runs: the first).
 
@@ -132,35 +132,52 @@ def read_swarm(path: PathLike) -> Swarm:
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
     if "run" in rows:
         rows = rows[rows["run"] == rows["run"].min()]
-    if "subpart_id" in rows:
-        rows = rows[rows["subpart_id"] < 0]
-    rows = rows[np.isfinite(rows["x"]) & np.isfinite(rows["y"])]
-    if rows.empty:
+    categories = read_categories(metadata["configuration"])
+    rows = coloured(completed(rows), categories)
+
+    has_pose = np.isfinite(rows["x"]) & np.isfinite(rows["y"])
+    is_part = rows["subpart_id"] >= 0
+    objects = rows[has_pose & ~is_part].reset_index(drop=True)
+    if objects.empty:
         raise PictureError("it holds no object with a position")
-
-    rows = rows.sort_values("time", kind="stable").reset_index(drop=True)
-    rows = rows.assign(
-        **{
-            name: default
-            for name, default in (("robot_category", "robots"), ("robot_id", 0), ("angle", np.nan))
-            if name not in rows
-        }
-    )
-    rows["object"] = rows.groupby(["robot_category", "robot_id"], sort=True).ngroup()
-    colours = led_colours(rows["led_rgb"].to_numpy()) if "led_rgb" in rows else category_colours(rows["robot_category"])
-    rows[["rgb_0", "rgb_1", "rgb_2"]] = colours
-    radius_mm = radii(metadata["configuration"])
+    end_s = float(objects["time"].iloc[-1])
+    walls = rows[~has_pose].groupby("robot_category").tail(1)
     return Swarm(
-        rows=rows,
-        polygons=read_polygons(metadata.get("arena_polygons", "")) or [box_around(rows, radius_mm)],
-        radius_mm=radius_mm,
-        end_s=float(rows["time"].iloc[-1]),
+        rows=objects,
+        dots=rows[has_pose & is_part & (rows["time"] == end_s)],
+        wall_colours={str(name): own[RGB].to_numpy()[0] for name, own in walls.groupby("robot_category")},
+        polygons=read_polygons(metadata.get("arena_polygons", "")) or [box_around(rows[has_pose], categories)],
+        categories=categories,
+        lamps=read_lamps(metadata["configuration"]),
+        rays=ray_names(metadata["configuration"]),
+        end_s=end_s,
     )
 
 
-def box_around(rows: pd.DataFrame, radius_mm: dict[str, float]) -> Floats:
+def completed(rows: pd.DataFrame) -> pd.DataFrame:
+    """Order rows by time, add columns that are not there, and number the objects."""
+    rows = rows.sort_values("time", kind="stable").reset_index(drop=True)
+    defaults: tuple[tuple[str, Any], ...]
+    defaults = (("robot_category", "robots"), ("robot_id", 0), ("angle", np.nan), ("subpart_id", -1))
+    rows = rows.assign(**{name: default for name, default in defaults if name not in rows})
+    return rows.assign(object=rows.groupby(["robot_category", "robot_id"], sort=True).ngroup())
+
+
+def coloured(rows: pd.DataFrame, categories: dict[str, Category]) -> pd.DataFrame:
+    """Add the colours of LEDs, or of categories if the file does not have those."""
+    if "led_rgb" in rows:
+        colours = led_colours(rows["led_rgb"].to_numpy())
+        passive = [name for name, own in categories.items() if own.type == "passive_object"]
+        colours[rows["robot_category"].isin(passive).to_numpy()] = NO_LED
+    else:
+        colours = category_colours(rows["robot_category"])
+    return rows.assign(**dict(zip(RGB, colours.T)))
+
+
+def box_around(rows: pd.DataFrame, categories: dict[str, Category]) -> Floats:
     """Return the box in which all objects ever were, as a polygon of shape (4, 2)."""
-    margin = max(radius_mm.values(), default=DEFAULT_RADIUS_MM)
+    names = rows["robot_category"].unique()
+    margin = max(categories.get(str(name), UNKNOWN).shape.bounding_radius_mm for name in names)
     left, top = rows[["x", "y"]].to_numpy(dtype=float).min(axis=0) - margin
     right, bottom = rows[["x", "y"]].to_numpy(dtype=float).max(axis=0) + margin
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
@@ -173,12 +190,6 @@ def thinned(rows: pd.DataFrame, max_snapshots: int = MAX_SNAPSHOTS) -> pd.DataFr
         return rows
     chosen = times[np.linspace(0, len(times) - 1, max_snapshots).round().astype(int)]
     return rows[rows["time"].isin(chosen)]
-
-
-def bounds(polygons: list[Floats]) -> tuple[Floats, Floats]:
-    """Corners (x, y) of the smallest box around the arena: least and greatest (mm)."""
-    vertices = np.concatenate(polygons)
-    return vertices.min(axis=0), vertices.max(axis=0)
 
 
 def trail_segments(rows: pd.DataFrame, extent_mm: Floats) -> tuple[Floats, pd.DataFrame]:
@@ -222,12 +233,13 @@ def draw_arena(axes: Axes, polygons: list[Floats]) -> PathPatch:
 def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float) -> None:
     """Draw the last `tail_s` seconds of all trajectories, fading into the past."""
     start_s = swarm.end_s - tail_s
-    recent = swarm.rows[swarm.rows["time"] >= start_s]
+    rows = swarm.rows[~is_membrane(swarm)]  # the pose of those is their first dot's
+    recent = rows[rows["time"] >= start_s]
     segments, ends = trail_segments(thinned(recent), extent_mm)
     # Oldest first, so that the present lies above the past.
     order = np.argsort(ends["time"].to_numpy(), kind="stable")
     freshness = np.clip((ends["time"].to_numpy(dtype=float) - start_s) / tail_s, 0.0, 1.0)
-    colours = np.column_stack([ends[["rgb_0", "rgb_1", "rgb_2"]].to_numpy(), 0.04 + 0.7 * freshness**3])
+    colours = np.column_stack([ends[RGB].to_numpy(), 0.04 + 0.7 * freshness**3])
     axes.add_collection(
         LineCollection(
             list(segments[order]),
@@ -239,35 +251,128 @@ def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float) -> N
     )
 
 
-def draw_robots(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
-    """Draw every object at its last pose: a disk of its radius, and a tick where it heads."""
-    last = swarm.rows.groupby("object").tail(1)
-    position = last[["x", "y"]].to_numpy(dtype=float)
-    angle = last["angle"].to_numpy(dtype=float)
-    colours = last[["rgb_0", "rgb_1", "rgb_2"]].to_numpy()
-    radius = np.array([swarm.radius_mm.get(str(c), DEFAULT_RADIUS_MM) for c in last["robot_category"]])
+def is_membrane(swarm: Swarm) -> pd.Series[bool]:
+    """Tell which rows are those of membranes."""
+    names = [name for name, own in swarm.categories.items() if own.type in MEMBRANES]
+    return swarm.rows["robot_category"].isin(names)
 
-    def disks(scale: float, **style: Any) -> CircleCollection:
-        collection = CircleCollection(
-            list(math.pi * (radius * scale * points_per_mm(axes)) ** 2),
-            offsets=position,
-            offset_transform=axes.transData,
-            **style,
+
+def placed(outline: Floats, position: Floats, angle: Floats) -> Floats:
+    """Put an outline at n poses. Shape (corners, 2), (n, 2) and (n,) to (n, corners, 2)."""
+    turn = np.nan_to_num(angle)[:, None]
+    x, y = outline.T
+    turned_outline = np.stack([x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)], axis=-1)
+    return np.asarray(turned_outline + position[:, None, :])
+
+
+def draw_light(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Brighten the floor where lamps shine more than where they shine least. An even light shows nothing."""
+    low, high = bounds(swarm.polygons)
+    share = (np.arange(LIGHT_CELLS) + 0.5) / LIGHT_CELLS
+    x, y = np.meshgrid(*(low[:, None] + (high - low)[:, None] * share))
+    points = np.column_stack([x.ravel(), y.ravel()])
+    levels = light_levels(swarm.lamps, swarm.polygons, points, swarm.end_s)
+    inside = floor.get_path().contains_points(points)
+    darkest = levels[inside].min() if inside.any() else levels.min()
+    brightest = levels.max()
+    if brightest <= darkest:
+        return
+    opacity = MAX_LAMPLIGHT * np.clip((levels - darkest) / brightest, 0.0, 1.0)
+    image = np.concatenate([np.full((len(points), 3), LAMPLIGHT), opacity[:, None]], axis=1)
+    light = axes.imshow(
+        image.reshape(LIGHT_CELLS, LIGHT_CELLS, 4),
+        extent=(low[0], high[0], high[1], low[1]),
+        interpolation="bilinear",
+        zorder=1.2,
+    )
+    light.set_clip_path(floor)
+
+
+def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Draw walls that run programs as lines that glow in the colour of their LED."""
+    for wall in swarm.categories.values():
+        if wall.type != "pogowall":
+            continue
+        lines = swarm.polygons
+        if wall.shape.kind != "arena":
+            lines = [wall.shape.outline() + np.array(wall.position_mm or (0.0, 0.0))]
+        colour = swarm.wall_colours.get(wall.name, np.full(3, DARK_LED))
+        colour = np.array(DARK_WALL) if (colour == DARK_LED).all() else colour
+        closed = [np.vstack([line, line[:1]]) for line in lines]
+        for width, alpha in ((16.0, 0.10), (11.0, 0.16), (6.0, 0.28), (1.8, 1.0)):
+            glow = LineCollection(closed, colors=[(*colour, alpha)], linewidths=width, joinstyle="round", zorder=1.5)
+            axes.add_collection(glow)
+            if alpha < 1.0:
+                glow.set_clip_path(floor)
+
+
+def draw_membranes(axes: Axes, swarm: Swarm) -> None:
+    """Draw the lines and dots of membranes; those without dots in the file as a mark at their first."""
+    for (name, _), dots in swarm.dots.sort_values("subpart_id").groupby(["robot_category", "robot_id"]):
+        half_thickness = swarm.category(str(name)).half_thickness_mm
+        centres = dots[["x", "y"]].to_numpy(dtype=float)
+        colour = dots[RGB].to_numpy()[0]
+        line = [np.vstack([centres, centres[:1]])]
+        width = 2.0 * half_thickness * points_per_mm(axes)
+        segments = swarm.category(str(name)).type == "rectmembrane"
+        style = {"joinstyle": "round", "capstyle": "round"}
+        axes.add_collection(
+            LineCollection(
+                line, colors=[(*colour, 0.45)], linewidths=width if segments else width / 3, zorder=4, **style
+            )
         )
+        dot = Shape(radius_mm=half_thickness * (0.35 if segments else 1.0)).outline()
+        axes.add_collection(
+            PolyCollection(
+                list(placed(dot, centres, np.zeros(len(centres)))),
+                facecolors=[tuple(colour)],
+                edgecolors=EDGE,
+                linewidths=0.5,
+                zorder=4.1,
+            )
+        )
+    marks = marked_membranes(swarm)
+    axes.scatter(
+        marks["x"], marks["y"], s=60.0, marker="D", facecolors="none", edgecolors=list(marks[RGB].to_numpy()), zorder=4
+    )
+
+
+def marked_membranes(swarm: Swarm) -> pd.DataFrame:
+    """Last rows of the membranes whose dots the file does not have."""
+    last = swarm.rows[is_membrane(swarm)].groupby("object").tail(1)
+    return last[~last["object"].isin(swarm.dots["object"])]
+
+
+def draw_bodies(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Draw every rigid object at its last pose: its shape, and a tick where it heads."""
+    last = swarm.rows[~is_membrane(swarm)].groupby("object").tail(1)
+    for name, rows in last.groupby("robot_category"):
+        draw_category(axes, swarm.category(str(name)), rows, floor)
+
+
+def draw_category(axes: Axes, category: Category, rows: pd.DataFrame, floor: PathPatch) -> None:
+    """Draw the objects of one category."""
+    shape = category.shape
+    position = rows[["x", "y"]].to_numpy(dtype=float)
+    angle = rows["angle"].to_numpy(dtype=float)
+    colours = rows[RGB].to_numpy()
+
+    def bodies(scale: float, **style: Any) -> PolyCollection:
+        collection = PolyCollection(list(placed(scale * shape.outline(), position, angle)), **style)
         axes.add_collection(collection)
         return collection
 
     # A lit LED lights up the floor around.
-    lit = (colours != DARK_LED).any(axis=1)
+    lit = (colours != DARK_LED).any(axis=1) & (category.type != "passive_object")
     for scale, alpha in ((1.75, 0.05), (1.5, 0.08), (1.25, 0.13)):
-        glow = disks(scale, facecolors=np.column_stack([colours, alpha * lit]), zorder=3)
+        glow = bodies(scale, facecolors=np.column_stack([colours, alpha * lit]), zorder=3)
         glow.set_clip_path(floor)
 
     # Bodies, with ticks that stand out from them.
-    disks(1.0, facecolors=colours, edgecolors=EDGE, linewidths=0.8, zorder=4)
+    bodies(1.0, facecolors=colours, edgecolors=EDGE, linewidths=0.8, zorder=4)
     brightness = colours @ [0.299, 0.587, 0.114]
     heading = np.column_stack([np.cos(angle), np.sin(angle)])
-    ticks = np.stack([position + heading * radius[:, None] * f for f in (0.25, 0.95)], axis=1)
+    ticks = np.stack([position + heading * shape.reach_mm * f for f in (0.25, 0.95)], axis=1)
     known = np.isfinite(angle)
     axes.add_collection(
         LineCollection(
@@ -318,10 +423,26 @@ def draw_scale_bar(axes: Axes, low: Floats, high: Floats) -> None:
     )
 
 
-def title(swarm: Swarm) -> str:
-    """Return what the picture shows: objects by category, and the time."""
+def notes(swarm: Swarm) -> str:
+    """Return what the picture does not show, though it was there."""
+    unseen = [f"beams of {name}" for name in swarm.rays]
+    unseen += [
+        f"the shape of {name} (serialize_dot_pose)" for name in marked_membranes(swarm)["robot_category"].unique()
+    ]
+    return f"not drawn: {', '.join(unseen)}" if unseen else ""
+
+
+def draw_notes(axes: Axes, text: str, low: Floats, high: Floats) -> None:
+    """Write the notes under the lower right corner of the arena."""
+    y = high[1] + 0.03 * (high[1] - low[1])
+    axes.text(high[0], y, text, color=INK, ha="right", va="top", fontsize=9)
+
+
+def title(swarm: Swarm, width_inches: float) -> str:
+    """Return what the picture shows, in lines that fit into it: objects by category, and the time."""
     counts = swarm.rows.groupby("robot_category")["object"].nunique()
-    return ", ".join(f"{count} {category}" for category, count in counts.items()) + f" after {swarm.end_s:g} s"
+    text = ", ".join(f"{count}\u00a0{category}" for category, count in counts.items()) + f" after {swarm.end_s:g} s"
+    return textwrap.fill(text, width=max(int(8.5 * width_inches), 20), break_long_words=False)
 
 
 def draw(swarm: Swarm, tail_s: float | None = None) -> Figure:
@@ -337,8 +458,12 @@ def draw(swarm: Swarm, tail_s: float | None = None) -> Figure:
     margin = 0.02 * extent.max()
     size = 8.0 * extent / extent.max()
 
-    figure = Figure(figsize=(size[0] + 0.3, size[1] + 0.9), facecolor=PAPER)
-    axes = figure.add_axes((0.0, 0.07, 1.0, 0.86))
+    heading = title(swarm, size[0])
+    height = size[1] + 0.9  # with one line of heading
+    more_lines = 0.22 * heading.count("\n")
+    part = height / (height + more_lines)
+    figure = Figure(figsize=(size[0] + 0.3, height + more_lines), facecolor=PAPER)
+    axes = figure.add_axes((0.0, 0.07 * part, 1.0, 0.86 * part))
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set_xlim(low[0] - margin, high[0] + margin)
@@ -346,10 +471,14 @@ def draw(swarm: Swarm, tail_s: float | None = None) -> Figure:
     axes.apply_aspect()
 
     floor = draw_arena(axes, swarm.polygons)
+    draw_light(axes, swarm, floor)
+    draw_walls(axes, swarm, floor)
     draw_trails(axes, swarm, extent, tail_s or max(swarm.end_s - first_s, 1e-9))
-    draw_robots(axes, swarm, floor)
+    draw_membranes(axes, swarm)
+    draw_bodies(axes, swarm, floor)
     draw_scale_bar(axes, low, high)
-    axes.set_title(title(swarm), color=INK, fontsize=13, pad=8)
+    draw_notes(axes, notes(swarm), low, high)
+    axes.set_title(heading, color=INK, fontsize=13, pad=8)
     return figure
 
 

@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 import yaml
 from pogosim import swarm_picture
-from pogosim.swarm_picture import led_brightness, led_colours, main, radii, read_swarm, round_length, thinned
+from pogosim.swarm_picture import led_brightness, led_colours, main, read_swarm, round_length, thinned
 from pyarrow import feather
 
 SQUARE = [{"x": 0, "y": 0}, {"x": 400, "y": 0}, {"x": 400, "y": 400}, {"x": 0, "y": 400}]
@@ -79,21 +79,6 @@ def test_robot_with_its_led_off_is_grey_not_black() -> None:
 
 
 # ---- reading ---------------------------------------------------------------------------------------------------------
-
-
-def test_radius_is_that_of_the_disk_around_the_shape() -> None:
-    objects = {
-        "robots": {"radius": "2.65e1"},
-        "box": {"geometry": "Rectangle", "body_width": 30, "body_height": 40},
-        "tri": {"geometry": "triangle", "side_length": 30},
-        "plain": {},
-        "odd": {"radius": "large"},
-        "text": "not a map",
-    }
-    assert radii({"objects": objects}) == pytest.approx(
-        {"robots": 26.5, "box": 25.0, "tri": 30 / math.sqrt(3), "plain": 26.5, "odd": 26.5}
-    )
-    assert radii({}) == radii({"objects": [1]}) == {}
 
 
 def test_walls_without_a_pose_and_parts_of_membranes_are_left_out(tmp_path: Path) -> None:
@@ -166,6 +151,137 @@ def test_disks_have_the_true_radius(tmp_path: Path) -> None:
     columns = np.flatnonzero(mask.any(axis=0))
     width_mm = (columns[-1] - columns[0]) / pixels_per_mm
     assert width_mm == pytest.approx(53.0, rel=0.05)
+
+
+class Map:
+    """A picture whose pixels are asked for in mm, by a red robot at (100, 50) and a blue one at (300, 350)."""
+
+    def __init__(self, image: npt.NDArray[np.float64]) -> None:
+        self.image = image
+        red, blue = centre_of_mass(image, 0), centre_of_mass(image, 2)
+        self.pixels_per_mm = (blue[1] - red[1]) / 200
+        self.origin = (red[0] - 50 * self.pixels_per_mm, red[1] - 100 * self.pixels_per_mm)
+
+    def at(self, x: float, y: float) -> npt.NDArray[np.float64]:
+        row, column = (round(start + self.pixels_per_mm * mm) for start, mm in zip(self.origin, (y, x)))
+        return np.asarray(self.image[row, column])
+
+    def brightness(self, x: float, y: float) -> float:
+        return float(self.at(x, y).mean())
+
+
+def scene(folder: Path, objects: dict[str, Any], extra: pd.DataFrame | None = None) -> Map:
+    """Two robots and other objects."""
+    robots = {"robots": {"type": "pogobot", "geometry": "disk", "radius": 26.5}}
+    frame = pd.concat([rows(subpart_id=np.int16([-1] * 4)), *([] if extra is None else [extra])])
+    configuration = yaml.safe_dump({"objects": {**robots, **objects}})
+    return Map(picture(folder, write(folder, frame, configuration=configuration), "--tail", "0.001"))
+
+
+def others(category: str, x: list[float], y: list[float], angle: float = 0.0, led: int = 0x001900) -> pd.DataFrame:
+    """Rows of one object at the end; more than one place makes them its parts, after a first row for all of it."""
+    xs, ys = (x[:1] + x, y[:1] + y) if len(x) > 1 else (x, y)
+    return rows(
+        time=np.float32([1] * len(xs)),
+        robot_category=[category] * len(xs),
+        robot_id=np.int32([65535] * len(xs)),
+        x=np.float32(xs),
+        y=np.float32(ys),
+        angle=np.float32([angle] * len(xs)),
+        led_rgb=np.int32([led] * len(xs)),
+        subpart_id=np.int16([-1, *range(len(xs) - 1)]),
+    )
+
+
+def is_green(colour: npt.NDArray[np.float64]) -> bool:
+    return bool(colour[1] > 0.7 and colour[0] < 0.2 and colour[2] < 0.2)
+
+
+def is_floor(colour: npt.NDArray[np.float64]) -> bool:
+    return bool(colour.max() < 0.15)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_rectangles_are_drawn_as_they_are_and_turned(tmp_path: Path, turned: bool) -> None:
+    box = {"type": "active_object", "geometry": "rectangle", "body_width": 120, "body_height": 40}
+    angle = math.pi / 2 if turned else 0.0
+    picture_mm = scene(tmp_path, {"box": box}, others("box", [200], [200], angle))
+    # Beside the tick, which is on the axis.
+    along, across = ((190, 255), (255, 210)) if turned else ((255, 210), (190, 255))
+    assert is_green(picture_mm.at(*along))
+    assert not is_green(picture_mm.at(*across))
+    assert is_green(picture_mm.at(185, 185))
+
+
+def test_triangle_at_heading_0_has_a_corner_up(tmp_path: Path) -> None:
+    wedge = {"type": "active_object", "geometry": "triangle", "side_length": 120}
+    picture_mm = scene(tmp_path, {"wedge": wedge}, others("wedge", [200], [200]))
+    assert is_green(picture_mm.at(200, 200 - 60))  # the corner is 69 mm up, the side below 35 mm down
+    assert is_green(picture_mm.at(155, 228))
+    assert not is_green(picture_mm.at(155, 165))
+    assert not is_green(picture_mm.at(200, 245))
+
+
+def test_passive_object_has_no_led_that_glows(tmp_path: Path) -> None:
+    ball = {"type": "passive_object", "geometry": "disk", "radius": 40}
+    picture_mm = scene(tmp_path, {"ball": ball}, others("ball", [200], [200], led=0))
+    assert 0.3 < picture_mm.brightness(200, 185) < 0.5
+    assert is_floor(picture_mm.at(200, 250))
+
+
+def test_membrane_lies_where_its_dots_do(tmp_path: Path) -> None:
+    turn = 2 * np.pi * np.arange(60) / 60
+    x, y = (200 + 80 * np.cos(turn)).tolist(), (200 + 80 * np.sin(turn)).tolist()
+    ring = {"type": "membrane", "geometry": "disk", "radius": 300, "dot_radius": 6}
+    picture_mm = scene(tmp_path, {"ring": ring}, others("ring", x, y))
+    for place in range(0, 60, 7):
+        assert is_green(picture_mm.at(x[place], y[place]))
+    assert is_floor(picture_mm.at(200, 200))
+    assert is_floor(picture_mm.at(280 + 12, 200))
+
+
+def test_membrane_without_dots_in_the_file_is_a_mark_and_a_note(tmp_path: Path) -> None:
+    ring = {"type": "membrane", "geometry": "disk", "radius": 100, "dot_radius": 6}
+    picture_mm = scene(tmp_path, {"ring": ring}, others("ring", [200], [200]))
+    assert is_floor(picture_mm.at(200, 200))
+    assert is_floor(picture_mm.at(240, 200))
+    swarm = read_swarm(tmp_path / "data.feather")
+    assert swarm_picture.notes(swarm) == "not drawn: the shape of ring (serialize_dot_pose)"
+
+
+def test_lamp_brightens_the_floor_and_an_even_light_does_not(tmp_path: Path) -> None:
+    even = {"type": "static_light", "geometry": "global", "value": 20000}
+    spot = {"type": "static_light", "geometry": "disk", "x": 200, "y": 300, "radius": 40, "value": 300}
+    dark = scene(tmp_path, {}).image
+    np.testing.assert_array_equal(scene(tmp_path, {"even": even}).image, dark)
+    lit = scene(tmp_path, {"spot": spot})
+    assert lit.brightness(200, 330) > lit.brightness(200, 350) + 0.1
+    assert is_floor(lit.at(200, 350))
+
+
+def test_lighthouse_is_a_note(tmp_path: Path) -> None:
+    scene(tmp_path, {"tower": {"type": "rotating_ray_of_light", "geometry": "global"}})
+    assert swarm_picture.notes(read_swarm(tmp_path / "data.feather")) == "not drawn: beams of tower"
+
+
+def test_wall_with_a_program_glows_in_the_colour_of_its_led(tmp_path: Path) -> None:
+    wall = others("walls", [math.nan], [math.nan], math.nan)
+    picture_mm = scene(tmp_path, {"walls": {"type": "pogowall", "geometry": "arena"}}, wall)
+    assert is_floor(scene(tmp_path, {}).at(4, 200))
+    red, green, blue = picture_mm.at(4, 200)
+    assert green > max(red, blue) + 0.1
+    island = {"type": "pogowall", "geometry": "disk", "radius": 50, "x": 200, "y": 200}
+    picture_mm = scene(tmp_path, {"walls": island}, wall)
+    assert is_green(picture_mm.at(250, 200))
+    assert is_floor(picture_mm.at(200, 200))
+    assert is_floor(picture_mm.at(4, 200))
+
+
+def test_long_title_has_several_lines(tmp_path: Path) -> None:
+    frame = pd.concat([others(f"category_{i}", [200], [200]) for i in range(12)])
+    lines = swarm_picture.title(read_swarm(write(tmp_path, frame)), 8.0).splitlines()
+    assert len(lines) > 1
+    assert max(len(line) for line in lines) <= 68
 
 
 @pytest.mark.parametrize("turned", [False, True])

@@ -1,0 +1,251 @@
+"""What a configuration says of the objects of a run, as far as pictures need it: their shapes, and the light."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.path import Path as Outline
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+
+MEMBRANES = ("membrane", "rectmembrane")
+RAYS = ("rotating_ray_of_light", "alternating_rays_of_light")
+SPOTS = ("static_light", "orbiting_static_light", "orbiting_light")
+
+# Levels of light are sensor counts, and sums of them stop here.
+BRIGHTEST = 32767
+
+
+def number(value: Any, default: float) -> float:
+    """Return a configuration's value as a number; `default` if it is none."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return default
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Shape of an object around its origin, heading along +x. Only the sizes of its own kind count."""
+
+    kind: str = "disk"  # disk, rectangle or triangle; of lamps and walls also global and arena
+    radius_mm: float = 10.0
+    width_mm: float = 10.0  # along x
+    height_mm: float = 10.0  # along y
+    side_length_mm: float = 10.0  # of an equilateral triangle, one corner towards -y
+
+    @property
+    def bounding_radius_mm(self) -> float:
+        """Radius of the smallest disk around the origin that holds the shape."""
+        if self.kind == "rectangle":
+            return math.hypot(self.width_mm, self.height_mm) / 2.0
+        return self.side_length_mm / math.sqrt(3.0) if self.kind == "triangle" else self.radius_mm
+
+    @property
+    def reach_mm(self) -> float:
+        """Distance from the origin to the border along the heading."""
+        if self.kind == "rectangle":
+            return self.width_mm / 2.0
+        return self.side_length_mm / 3.0 if self.kind == "triangle" else self.radius_mm
+
+    def outline(self) -> Floats:
+        """Corners, shape (n, 2), in mm; a disk has 72."""
+        if self.kind == "rectangle":
+            return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * [self.width_mm / 2.0, self.height_mm / 2.0]
+        corners = 3 if self.kind == "triangle" else 72
+        angle = -math.pi / 2.0 + 2.0 * math.pi * np.arange(corners) / corners
+        return self.bounding_radius_mm * np.column_stack([np.cos(angle), np.sin(angle)])
+
+    def holds(self, offset_mm: Floats) -> Bools:
+        """Tell which points, relative to the origin, are inside. Shape (n, 2) to (n,)."""
+        if self.kind == "global":
+            return np.ones(len(offset_mm), dtype=bool)
+        if self.kind == "disk":
+            return np.asarray(np.hypot(*offset_mm.T) <= self.radius_mm)
+        return Outline(self.outline()).contains_points(offset_mm)
+
+
+@dataclass(frozen=True)
+class Category:
+    """Objects of one entry of `objects`, as they look."""
+
+    name: str
+    type: str  # lower case, "pogobot"
+    shape: Shape
+    half_thickness_mm: float = 0.0  # of a membrane
+    position_mm: tuple[float, float] | None = None  # x and y, where both are given
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A spot of light: static_light or orbiting_static_light."""
+
+    shape: Shape
+    centre_mm: tuple[float, float]
+    mode: str = "static"  # or gradient, plane
+    value: float = 10.0
+    edge_value: float = 0.0
+    gradient_radius_mm: float = -1.0  # 0 or less: the largest distance in the shape
+    plane_angle_rad: float = 0.0
+    plane_half_span_mm: float = 1000.0
+    photo_start_at_s: float = -1.0
+    photo_start_duration_s: float = 1.0
+    photo_start_value: float = float(BRIGHTEST)
+    orbit_radius_mm: float = 0.0
+    orbit_speed_rad_s: float = 0.0
+    orbit_phase_rad: float = 0.0
+
+    def centre_at(self, time_s: float) -> Floats:
+        """Where the lamp is, (x, y) in mm."""
+        angle = self.orbit_phase_rad + self.orbit_speed_rad_s * time_s
+        return np.array(self.centre_mm) + self.orbit_radius_mm * np.array([math.cos(angle), math.sin(angle)])
+
+    def levels(self, points_mm: Floats, polygons: list[Floats], time_s: float) -> Floats:
+        """Light that it gives at points of the arena at a time. Shape (n, 2) to (n,); sensor counts."""
+        offset = points_mm - self.centre_at(time_s)
+        if self.shape.kind == "arena":  # the insides of holes, too
+            lit = np.any([Outline(polygon).contains_points(points_mm) for polygon in polygons], axis=0)
+        else:
+            lit = self.shape.holds(offset)
+        return np.where(lit, self.levels_around(offset, self.gradient_reach_mm(polygons, time_s), time_s), 0.0)
+
+    def levels_around(self, offset: Floats, gradient_reach_mm: float, time_s: float) -> Floats:
+        """Level at points relative to the centre, wherever the shape ends."""
+        since_s = time_s - self.photo_start_at_s
+        if self.photo_start_at_s >= 0.0 and since_s < self.photo_start_duration_s:
+            return np.full(len(offset), self.photo_start_value if since_s >= 0.0 else 0.0)
+        share = np.zeros(len(offset))
+        if self.mode == "gradient":
+            share = np.hypot(*offset.T) / gradient_reach_mm
+        elif self.mode == "plane":
+            normal = np.array([math.cos(self.plane_angle_rad), math.sin(self.plane_angle_rad)])
+            share = 0.5 + offset @ normal / (2.0 * self.plane_half_span_mm)
+        return self.value + (self.edge_value - self.value) * np.clip(share, 0.0, 1.0)
+
+    def gradient_reach_mm(self, polygons: list[Floats], time_s: float) -> float:
+        """Distance from the centre at which a gradient has its edge value."""
+        if self.gradient_radius_mm > 0.0:
+            return self.gradient_radius_mm
+        if self.shape.kind not in ("global", "arena"):
+            return self.shape.bounding_radius_mm
+        low, high = bounds(polygons)
+        centre = self.centre_at(time_s)
+        return float(np.hypot(*np.maximum(centre - low, high - centre)))
+
+
+def bounds(polygons: list[Floats]) -> tuple[Floats, Floats]:
+    """Corners (x, y) of the smallest box around all polygons: least and greatest."""
+    vertices = np.concatenate(polygons)
+    return vertices.min(axis=0), vertices.max(axis=0)
+
+
+def entries(configuration: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Entries of `objects` that are maps, by their names."""
+    objects = configuration.get("objects")
+    pairs = objects.items() if isinstance(objects, dict) else []
+    return {str(name): settings for name, settings in pairs if isinstance(settings, dict)}
+
+
+def type_of(settings: dict[str, Any]) -> str:
+    """Type of an entry in lower case."""
+    return str(settings.get("type", "pogobot")).lower()
+
+
+def shape_of(settings: dict[str, Any]) -> Shape:
+    """Shape that an entry's `geometry` and sizes say. What cannot be read has the simulator's default."""
+    plain = Shape()
+    return Shape(
+        kind=str(settings.get("geometry", plain.kind)).lower(),
+        radius_mm=number(settings.get("radius"), plain.radius_mm),
+        width_mm=number(settings.get("body_width"), plain.width_mm),
+        height_mm=number(settings.get("body_height"), plain.height_mm),
+        side_length_mm=number(settings.get("side_length"), plain.side_length_mm),
+    )
+
+
+def half_thickness_of(settings: dict[str, Any]) -> float:
+    """Half the thickness of a membrane, mm; 0 for what is none."""
+    dot_radius = number(settings.get("dot_radius"), 10.0)
+    if type_of(settings) == "rectmembrane":
+        return number(settings.get("rect_thickness"), dot_radius) / 2.0
+    return dot_radius if type_of(settings) == "membrane" else 0.0
+
+
+def position_of(settings: dict[str, Any]) -> tuple[float, float] | None:
+    """`x` and `y` of an entry, mm; None unless it has both."""
+    x, y = (number(settings.get(axis), math.nan) for axis in ("x", "y"))
+    return (x, y) if math.isfinite(x) and math.isfinite(y) else None
+
+
+def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
+    """All objects but lamps, by their category."""
+    return {
+        name: Category(name, type_of(settings), shape_of(settings), half_thickness_of(settings), position_of(settings))
+        for name, settings in entries(configuration).items()
+        if type_of(settings) not in SPOTS + RAYS
+    }
+
+
+def read_lamps(configuration: dict[str, Any]) -> list[Lamp]:
+    """All spots of light; `nb` of an entry shine at the same place."""
+    lamps = []
+    for settings in entries(configuration).values():
+        if type_of(settings) in SPOTS:
+            lamps += [read_lamp(settings)] * int(number(settings.get("nb"), 1.0))
+    return lamps
+
+
+def read_lamp(settings: dict[str, Any]) -> Lamp:
+    """Read one spot of light."""
+
+    def value(key: str, default: float) -> float:
+        return number(settings.get(key), default)
+
+    orbits = type_of(settings) != "static_light"
+    centre = [value(axis, 0.0) for axis in ("x", "y")]
+    if orbits:
+        centre = [value(f"center_{axis}", own) for axis, own in zip(("x", "y"), centre)]
+    return Lamp(
+        shape=shape_of(settings),
+        centre_mm=(centre[0], centre[1]),
+        mode=str(settings.get("light_mode", Lamp.mode)),
+        value=value("value", Lamp.value),
+        edge_value=value("edge_value", Lamp.edge_value),
+        gradient_radius_mm=value("gradient_radius", Lamp.gradient_radius_mm),
+        plane_angle_rad=value("plane_angle", Lamp.plane_angle_rad),
+        plane_half_span_mm=value("plane_half_span", Lamp.plane_half_span_mm),
+        photo_start_at_s=value("photo_start_at", Lamp.photo_start_at_s),
+        photo_start_duration_s=value("photo_start_duration", Lamp.photo_start_duration_s),
+        photo_start_value=value("photo_start_value", Lamp.photo_start_value),
+        orbit_radius_mm=value("orbit_radius", Lamp.orbit_radius_mm) if orbits else 0.0,
+        orbit_speed_rad_s=value("orbit_angular_speed", value("angular_speed", Lamp.orbit_speed_rad_s)),
+        orbit_phase_rad=value("orbit_phase", Lamp.orbit_phase_rad),
+    )
+
+
+def ray_names(configuration: dict[str, Any]) -> list[str]:
+    """Categories of lighthouses."""
+    return [name for name, settings in entries(configuration).items() if type_of(settings) in RAYS]
+
+
+def light_levels(lamps: list[Lamp], polygons: list[Floats], points_mm: Floats, time_s: float) -> Floats:
+    """Light of all lamps at points of the arena at a time.
+
+    Args:
+        lamps: Spots of light; their levels add up, to 32767 at most.
+        polygons: Outlines of the arena, each of shape (vertices, 2), in mm.
+        points_mm: Shape (n, 2).
+        time_s: Since the start of the run.
+
+    Returns:
+        Shape (n,), sensor counts.
+    """
+    total = np.zeros(len(points_mm))
+    for lamp in lamps:
+        total += lamp.levels(points_mm, polygons, time_s)
+    return np.minimum(total, BRIGHTEST)

@@ -1,0 +1,137 @@
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from pogosim.scene import Lamp, Shape, light_levels, ray_names, read_categories, read_lamps, shape_of
+
+SQUARE = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])
+HOLE = np.array([[400.0, 400.0], [600.0, 400.0], [600.0, 600.0], [400.0, 600.0]])
+
+
+def level(settings: dict[str, Any], x: float, y: float, time_s: float = 10.0) -> float:
+    """Light of one static_light at a point of a square with a hole."""
+    lamps = read_lamps({"objects": {"lamp": {"type": "static_light", "value": 1000, **settings}}})
+    return float(light_levels(lamps, [SQUARE, HOLE], np.array([[x, y]]), time_s)[0])
+
+
+# ---- shapes ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "radius"),
+    [
+        ({"radius": "2.65e1"}, 26.5),
+        ({"geometry": "Rectangle", "body_width": 30, "body_height": 40}, 25.0),
+        ({"geometry": "triangle", "side_length": 30}, 30 / math.sqrt(3)),
+        ({}, 10.0),
+        ({"radius": "large"}, 10.0),
+    ],
+)
+def test_radius_is_that_of_the_disk_around_the_shape(settings: dict[str, Any], radius: float) -> None:
+    assert shape_of(settings).bounding_radius_mm == pytest.approx(radius)
+    corners = shape_of(settings).outline()
+    assert np.hypot(*corners.T).max() == pytest.approx(radius)
+
+
+def test_one_corner_of_a_triangle_is_up_and_its_sides_are_equal() -> None:
+    corners = Shape(kind="triangle", side_length_mm=30.0).outline()
+    assert corners[0] == pytest.approx([0.0, -30.0 / math.sqrt(3.0)])
+    assert np.hypot(*(corners - np.roll(corners, 1, axis=0)).T) == pytest.approx([30.0] * 3)
+
+
+def test_reach_ends_on_the_border_along_the_heading() -> None:
+    for shape in (Shape(), Shape("rectangle", width_mm=40.0), Shape("triangle", side_length_mm=30.0)):
+        inside, outside = shape.holds(np.array([[0.99, 0.0], [1.01, 0.0]]) * shape.reach_mm)
+        assert inside
+        assert not outside
+
+
+def test_only_maps_are_objects_and_lamps_are_none() -> None:
+    objects = {
+        "robots": {"type": "Pogobot", "x": 3, "y": "4e0"},
+        "half": {"type": "pogobot", "x": 3},
+        "lamp": {"type": "static_light"},
+        "ray": {"type": "rotating_ray_of_light"},
+        "text": "not a map",
+    }
+    found = read_categories({"objects": objects})
+    assert list(found) == ["robots", "half"]
+    assert found["robots"].type == "pogobot"
+    assert found["robots"].position_mm == (3.0, 4.0)
+    assert found["half"].position_mm is None
+    assert ray_names({"objects": objects}) == ["ray"]
+    assert read_categories({}) == read_categories({"objects": [1]}) == {}
+
+
+def test_membrane_is_as_thick_as_its_dots_or_its_segments() -> None:
+    objects = {
+        "dots": {"type": "membrane", "dot_radius": 7},
+        "segments": {"type": "rectmembrane", "dot_radius": 7},
+        "thick": {"type": "rectmembrane", "rect_thickness": 12},
+        "robots": {"type": "pogobot"},
+    }
+    found = read_categories({"objects": objects})
+    assert [own.half_thickness_mm for own in found.values()] == [7.0, 3.5, 6.0, 0.0]
+
+
+# ---- light -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "inside", "outside"),
+    [
+        ({"geometry": "disk", "radius": 100, "x": 300, "y": 300}, (300, 399), (371, 371)),
+        ({"geometry": "rectangle", "body_width": 50, "body_height": 200, "x": 300, "y": 300}, (320, 390), (330, 300)),
+        ({"geometry": "triangle", "side_length": 100, "x": 300, "y": 300}, (300, 245), (300, 330)),
+    ],
+)
+def test_lamp_lights_its_shape(
+    settings: dict[str, Any], inside: tuple[float, float], outside: tuple[float, float]
+) -> None:
+    assert level(settings, *inside) == 1000
+    assert level(settings, *outside) == 0
+
+
+def test_global_light_is_everywhere_and_that_of_the_arena_in_its_polygons() -> None:
+    assert level({"geometry": "global"}, -500, 500) == 1000
+    assert level({"geometry": "arena"}, -500, 500) == 0
+    assert level({"geometry": "arena"}, 500, 500) == 1000  # in the hole, too
+
+
+def test_gradient_falls_to_the_edge_value_at_its_radius_and_stays() -> None:
+    settings = {"geometry": "global", "light_mode": "gradient", "edge_value": 200, "gradient_radius": 400}
+    levels = [level(settings, x, 0) for x in (0, 100, 400, 800)]
+    assert levels == pytest.approx([1000, 800, 200, 200])
+    # Without a radius: at the farthest corner of the arena, or at the border of the shape.
+    del settings["gradient_radius"]
+    assert level(settings, 500, 500) == pytest.approx(600)
+    assert level({**settings, "geometry": "disk", "radius": 100}, 50, 0) == pytest.approx(600)
+
+
+def test_plane_goes_from_the_value_to_the_edge_value_along_its_normal() -> None:
+    settings = {"geometry": "global", "light_mode": "plane", "x": 500, "y": 500, "plane_half_span": 200}
+    assert [level(settings, x, 9) for x in (0, 300, 400, 500, 700, 999)] == pytest.approx([1000, 1000, 750, 500, 0, 0])
+    down = {**settings, "plane_angle": math.pi / 2}
+    assert level(down, 500, 600) == pytest.approx(250)
+
+
+def test_photo_start_is_dark_then_a_flash_then_the_normal_light() -> None:
+    settings = {"geometry": "global", "photo_start_at": 1.0, "photo_start_duration": 2.0, "photo_start_value": 5000}
+    assert [level(settings, 0, 0, t) for t in (0.5, 1.5, 3.5)] == [0, 5000, 1000]
+
+
+def test_lamps_add_up_to_the_brightest_a_sensor_tells() -> None:
+    assert level({"geometry": "global", "nb": 3}, 0, 0) == 3000
+    assert level({"geometry": "global", "nb": 50}, 0, 0) == 32767
+
+
+def test_orbiting_lamp_is_where_it_is_by_then() -> None:
+    settings = {"type": "orbiting_static_light", "geometry": "disk", "radius": 50, "center_x": 500, "y": 400}
+    orbit = {"orbit_radius": 300, "orbit_angular_speed": math.pi, "orbit_phase": math.pi / 2}
+    (lamp,) = read_lamps({"objects": {"lamp": {**settings, **orbit}}})
+    assert lamp.centre_at(0.0) == pytest.approx([500, 700])
+    assert lamp.centre_at(0.5) == pytest.approx([200, 400])  # clockwise on the screen
+    assert Lamp(Shape(), (1.0, 2.0)).centre_at(7.0).tolist() == [1.0, 2.0]
