@@ -1,5 +1,6 @@
-# What `cmake --install` copies: the public headers, the library, the arenas, pogosim.pc and a CMake package. The build
-# folder gets a pogosim.pc of its own, so that programs can be built against a tree that is not installed:
+# What `cmake --install` copies: the public headers, the library, the arenas, what projects for robots need (the interface
+# layer's C files, the tool that finds shared state, the project template), pogosim.pc and a CMake package. The build folder
+# gets a pogosim.pc of its own, so that programs can be built against a tree that is not installed:
 #
 #   cc -std=c11 main.c -o prog $(PKG_CONFIG_PATH=build/release pkg-config --cflags --libs pogosim)
 include(GNUInstallDirs)
@@ -21,6 +22,14 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/" DESTINATION "${CMAKE_INSTALL_
     FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/arenas" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
     FILES_MATCHING PATTERN "*.csv")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/interface" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
+    FILES_MATCHING PATTERN "*.c")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/template_prj" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
+    FILES_MATCHING PATTERN "Makefile" PATTERN "*.mk" PATTERN "*.c" PATTERN "*.yaml" PATTERN "*.md" PATTERN ".gitignore"
+    PATTERN "build" EXCLUDE PATTERN "frames" EXCLUDE)
+if(TARGET pogosim_shared_state)
+    install(TARGETS pogosim_shared_state RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+endif()
 
 # find_package(pogosim) gives pogosim::pogosim.
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pogosim")
@@ -36,20 +45,29 @@ install(FILES
 
 # pogosim.pc, once for each of the two places. The installed one is relative to itself: the tree may be moved, and
 # `cmake --install --prefix` may choose the place late. Blanks in paths are escaped as pkg-config wants it.
-function(pogosim_pkg_config output includedir libdir)
-    string(REPLACE " " "\\ " includedir "${includedir}")
-    string(REPLACE " " "\\ " libdir "${libdir}")
+function(pogosim_pkg_config output)
+    foreach(place includedir libdir interfacedir shared_state template)
+        string(REPLACE " " "\\ " ${place} "${${place}}")
+    endforeach()
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${output}" @ONLY)
 endfunction()
 
 file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
-pogosim_pkg_config("${PROJECT_BINARY_DIR}/cmake/pogosim.pc"
-    "\${pcfiledir}/${to_prefix}${CMAKE_INSTALL_INCLUDEDIR}"
-    "\${pcfiledir}/${to_prefix}${CMAKE_INSTALL_LIBDIR}")
+set(prefix "\${pcfiledir}/${to_prefix}")
+set(includedir "${prefix}${CMAKE_INSTALL_INCLUDEDIR}")
+set(libdir "${prefix}${CMAKE_INSTALL_LIBDIR}")
+set(interfacedir "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/interface")
+set(shared_state "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-shared-state")
+set(template "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/template_prj")
+pogosim_pkg_config("${PROJECT_BINARY_DIR}/cmake/pogosim.pc")
 install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
-get_target_property(library_dir pogosim LIBRARY_OUTPUT_DIRECTORY)
-if(NOT library_dir)
-    get_target_property(library_dir pogosim BINARY_DIR)
+set(includedir "${PROJECT_SOURCE_DIR}/include")
+get_target_property(libdir pogosim LIBRARY_OUTPUT_DIRECTORY)
+if(NOT libdir)
+    get_target_property(libdir pogosim BINARY_DIR)
 endif()
-pogosim_pkg_config("${PROJECT_BINARY_DIR}/pogosim.pc" "${PROJECT_SOURCE_DIR}/include" "${library_dir}")
+set(interfacedir "${PROJECT_SOURCE_DIR}/src/interface")
+set(shared_state "${PROJECT_BINARY_DIR}/tools/pogosim-shared-state")
+set(template "${PROJECT_SOURCE_DIR}/template_prj")
+pogosim_pkg_config("${PROJECT_BINARY_DIR}/pogosim.pc")

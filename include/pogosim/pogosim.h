@@ -11,7 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __cplusplus
+extern "C" {
 #include "pogobot.h"
+}
+#else
+#include "pogobot.h"
+#endif
 #define POGO_PER_ROBOT
 #define POGO_BEGIN_API
 #define POGO_END_API
@@ -20,6 +26,7 @@
 #endif
 
 #include "pogosim/colormaps.h"
+#include "pogosim/shared_state.h"
 #include "pogosim/userdata.h"
 
 #define STRINGIFY_RAW(x) #x

@@ -125,30 +125,62 @@ inline void pogosim_init_array(char* a, char const* name, size_t n) {
 }
 }
 /// Sets a variable from `parameters.<its name>`; its present value is the default.
-#define init_from_configuration(variable) pogosim_init_variable((variable), #variable)
+#define init_from_configuration(variable) \
+    (POGO_NOTE_CONFIGURED(variable, ), pogosim_init_variable((variable), #variable))
 /// The same for arrays of float or double, and for texts (arrays of char).
-#define init_array_from_configuration(array) pogosim_init_array((array), #array, sizeof(array) / sizeof((array)[0]))
+#define init_array_from_configuration(array) \
+    (POGO_NOTE_CONFIGURED(array, ), pogosim_init_array((array), #array, sizeof(array) / sizeof((array)[0])))
 #else
 // clang-format off
 /// Sets a variable from `parameters.<its name>`; its present value is the default. Types: bool, float, double and
 /// integers of up to 32 bits.
-#define init_from_configuration(variable)              \
-    _Generic((variable),                           \
-        bool: init_bool_from_configuration,        \
-        float: init_float_from_configuration,      \
-        double: init_double_from_configuration,    \
-        int32_t: init_int32_from_configuration,    \
-        uint32_t: init_uint32_from_configuration,  \
-        int16_t: init_int16_from_configuration,    \
-        uint16_t: init_uint16_from_configuration,  \
-        int8_t: init_int8_from_configuration,      \
-        uint8_t: init_uint8_from_configuration)(&(variable), #variable, (variable))
+#define init_from_configuration(variable)               \
+    (POGO_NOTE_CONFIGURED(variable, ), _Generic((variable), \
+        bool: init_bool_from_configuration,             \
+        float: init_float_from_configuration,           \
+        double: init_double_from_configuration,         \
+        int32_t: init_int32_from_configuration,         \
+        uint32_t: init_uint32_from_configuration,       \
+        int16_t: init_int16_from_configuration,         \
+        uint16_t: init_uint16_from_configuration,       \
+        int8_t: init_int8_from_configuration,           \
+        uint8_t: init_uint8_from_configuration)(&(variable), #variable, (variable)))
 /// The same for arrays of float or double, and for texts (arrays of char).
-#define init_array_from_configuration(array) \
-    _Generic(&(array)[0],                              \
-        float *: init_float_array_from_configuration,  \
+#define init_array_from_configuration(array)            \
+    (POGO_NOTE_CONFIGURED(array, ), _Generic(&(array)[0], \
+        float *: init_float_array_from_configuration,   \
         double *: init_double_array_from_configuration, \
-        char *: init_string_from_configuration)((array), #array, sizeof(array) / sizeof((array)[0]))
+        char *: init_string_from_configuration)((array), #array, sizeof(array) / sizeof((array)[0])))
+// clang-format on
+#endif
+
+// A call of one of the functions notes the same. (A macro's own name inside of it is the function's.)
+#ifndef POGOSIM_INSIDE
+// clang-format off
+#define init_bool_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_bool_from_configuration(__VA_ARGS__))
+#define init_float_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_float_from_configuration(__VA_ARGS__))
+#define init_double_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_double_from_configuration(__VA_ARGS__))
+#define init_int32_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_int32_from_configuration(__VA_ARGS__))
+#define init_uint32_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_uint32_from_configuration(__VA_ARGS__))
+#define init_int16_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_int16_from_configuration(__VA_ARGS__))
+#define init_uint16_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_uint16_from_configuration(__VA_ARGS__))
+#define init_int8_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_int8_from_configuration(__VA_ARGS__))
+#define init_uint8_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_uint8_from_configuration(__VA_ARGS__))
+#define init_float_array_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_float_array_from_configuration(__VA_ARGS__))
+#define init_double_array_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_double_array_from_configuration(__VA_ARGS__))
+#define init_string_from_configuration(...) \
+    (POGO_NOTE_CONFIGURED(__VA_ARGS__), init_string_from_configuration(__VA_ARGS__))
 // clang-format on
 #endif
 

@@ -18,8 +18,8 @@
 #else
 
 #define DECLARE_USERDATA(T) extern POGO_PER_ROBOT T* mydata;
-#define REGISTER_USERDATA(T)         \
-    size_t UserdataSize = sizeof(T); \
+#define REGISTER_USERDATA(T)                     \
+    POGO_SHARED size_t UserdataSize = sizeof(T); \
     POGO_PER_ROBOT T* mydata = 0;
 
 #endif

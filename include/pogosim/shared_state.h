@@ -1,0 +1,31 @@
+// Variables outside of USERDATA: one for all simulated robots, but one for each real robot. `make sim` (and the tool
+// pogosim-shared-state) warns of each that the program could change, but for those
+//
+//   - set from the configuration, with init_from_configuration(variable) and the like: the same on all robots anyway;
+//   - marked with POGO_SHARED: the program means to share them.
+#ifndef POGOSIM_SHARED_STATE_H
+#define POGOSIM_SHARED_STATE_H
+
+/// Marks a variable that simulated robots share on purpose, such as a count over the whole swarm for the data file:
+///
+///     POGO_SHARED uint32_t messages_of_all_robots;
+///     POGO_SHARED static float table[256];   // filled alike by every robot
+///
+/// On real robots it says nothing. (g++ forgets it for static variables inside of templates.)
+#ifdef REAL_ROBOT
+#define POGO_SHARED
+#elif defined(__APPLE__)
+#define POGO_SHARED __attribute__((section("__DATA,pogo_shared")))
+#else
+// A section for each variable: constants, inline variables and others cannot be in one.
+#define POGO_SHARED __attribute__((section("pogo_shared." POGO_TEXT_OF(__COUNTER__))))
+#define POGO_TEXT_OF(x) POGO_TEXT_OF_RAW(x)
+#define POGO_TEXT_OF_RAW(x) #x
+#endif
+
+/// Notes in the program which variable a call reads from the configuration, for pogosim-shared-state: a constant with
+/// the text of the call's first argument, in the scope in which that text has its meaning.
+#define POGO_NOTE_CONFIGURED(variable, ...) \
+    __extension__({ static char const pogosim_configured[] __attribute__((used, unused)) = #variable; })
+
+#endif

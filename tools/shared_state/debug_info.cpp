@@ -1,0 +1,253 @@
+#include "debug_info.hpp"
+
+#include <dwarf.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+namespace shared_state {
+
+namespace {
+
+// The array that POGO_NOTE_CONFIGURED makes.
+constexpr char const* note_name = "pogosim_configured";
+
+std::string text_of(char const* text) {
+    return text ? text : "";
+}
+
+// The entry that says what this one stands for: the declaration of a definition, the function of an inlined copy.
+Dwarf_Die origin_of(Dwarf_Die entry) {
+    for (unsigned const reference : {DW_AT_abstract_origin, DW_AT_specification, DW_AT_abstract_origin}) {
+        Dwarf_Attribute attribute;
+        Dwarf_Die origin;
+        if (dwarf_attr(&entry, reference, &attribute) && dwarf_formref_die(&attribute, &origin)) {
+            entry = origin;
+        }
+    }
+    return entry;
+}
+
+bool flag(Dwarf_Die* entry, unsigned name) {
+    Dwarf_Attribute attribute;
+    bool set = false;
+    return dwarf_attr_integrate(entry, name, &attribute) && dwarf_formflag(&attribute, &set) == 0 && set;
+}
+
+// Address of a variable that has one for the whole run; not that of an automatic or a thread-local one.
+std::optional<uint64_t> address_of(Dwarf_Die* variable) {
+    Dwarf_Attribute location;
+    Dwarf_Op* operations = nullptr;
+    std::size_t count = 0;
+    if (!dwarf_attr_integrate(variable, DW_AT_location, &location) ||
+        dwarf_getlocation(&location, &operations, &count) != 0) {
+        return std::nullopt;
+    }
+    std::optional<uint64_t> address;
+    bool is_value = false;
+    bool is_read = false;
+    for (std::size_t i = 0; i < count; i++) {
+        Dwarf_Op const& operation = operations[i];
+        if (operation.atom == DW_OP_form_tls_address || operation.atom == DW_OP_GNU_push_tls_address) {
+            return std::nullopt;
+        }
+        is_value = is_value || operation.atom == DW_OP_stack_value;
+        is_read = is_read || operation.atom == DW_OP_deref || operation.atom == DW_OP_deref_size;
+        if (address) {
+            continue;  // a variable in pieces is where its first piece is
+        }
+        if (operation.atom == DW_OP_addr) {
+            address = operation.number;
+        } else if (operation.atom == DW_OP_addrx || operation.atom == DW_OP_GNU_addr_index) {
+            Dwarf_Attribute entry;
+            Dwarf_Addr found = 0;
+            if (dwarf_getlocation_attr(&location, &operation, &entry) == 0 && dwarf_formaddr(&entry, &found) == 0) {
+                address = found;
+            }
+        }
+    }
+    // An automatic variable may be the address of another one; compilers keep variables with two values as a flag.
+    return is_value && !is_read ? std::nullopt : address;
+}
+
+void read_type(Dwarf_Die* variable, Object& object) {
+    Dwarf_Attribute attribute;
+    Dwarf_Die type;
+    if (!dwarf_attr_integrate(variable, DW_AT_type, &attribute) || !dwarf_formref_die(&attribute, &type)) {
+        return;
+    }
+    Dwarf_Word bytes = 0;
+    if (dwarf_aggregate_size(&type, &bytes) == 0) {
+        object.bytes = bytes;
+    }
+    for (;;) {
+        switch (dwarf_tag(&type)) {
+            case DW_TAG_const_type:
+                object.constant = true;
+                break;
+            case DW_TAG_typedef:
+            case DW_TAG_volatile_type:
+            case DW_TAG_restrict_type:
+            case DW_TAG_atomic_type:
+            case DW_TAG_array_type:
+                break;  // an array is as constant as its elements
+            case DW_TAG_reference_type:
+            case DW_TAG_rvalue_reference_type:
+                object.constant = true;
+                return;
+            case DW_TAG_pointer_type:
+                object.pointer = true;
+                return;
+            default:
+                return;
+        }
+        if (!dwarf_attr_integrate(&type, DW_AT_type, &attribute) || !dwarf_formref_die(&attribute, &type)) {
+            return;
+        }
+    }
+}
+
+// "outer::inner::" for what is declared in there. An unnamed namespace is none.
+std::string qualifier_of(Dwarf_Die entry) {
+    Dwarf_Die origin = origin_of(entry);
+    Dwarf_Die* scopes = nullptr;
+    int const count = dwarf_getscopes_die(&origin, &scopes);
+    std::string qualifier;
+    for (int i = 1; i < count; i++) {  // from the entry itself outwards
+        switch (dwarf_tag(&scopes[i])) {
+            case DW_TAG_namespace:
+            case DW_TAG_class_type:
+            case DW_TAG_structure_type:
+            case DW_TAG_union_type:
+                if (char const* name = dwarf_diename(&scopes[i])) {
+                    qualifier.insert(0, std::string(name) + "::");
+                }
+                break;
+            default:
+                break;
+        }
+    }
+    std::free(scopes);
+    return qualifier;
+}
+
+// The compiled file in which something was written. After link-time optimisation, that is where its origin is.
+Scope unit_of(Dwarf_Die entry) {
+    Dwarf_Die origin = origin_of(entry);
+    Dwarf_Die unit;
+    return dwarf_diecu(&origin, &unit, nullptr, nullptr) ? dwarf_dieoffset(&unit) : 0;
+}
+
+// Where it is declared, as a path. Tables of files begin with the compiled file, which libdw does not count as one.
+std::string file_of(Dwarf_Die* variable) {
+    Dwarf_Die unit;
+    Dwarf_Attribute folder;
+    std::string file = text_of(dwarf_decl_file(variable));
+    if (!dwarf_diecu(variable, &unit, nullptr, nullptr)) {
+        return file;
+    }
+    if (file.empty()) {
+        file = text_of(dwarf_diename(&unit));
+    }
+    std::filesystem::path const compiled_in =
+        dwarf_attr(&unit, DW_AT_comp_dir, &folder) ? text_of(dwarf_formstring(&folder)) : "";
+    return (compiled_in / file).lexically_normal().string();
+}
+
+class Reader {
+public:
+    explicit Reader(ProgramFile const& program) : program_(program) {}
+
+    DebugInfo read() {
+        Dwarf_CU* unit = nullptr;
+        Dwarf_CU* next = nullptr;
+        Dwarf_Die entry;
+        while (dwarf_get_units(program_.debug_info(), unit, &next, nullptr, nullptr, &entry, nullptr) == 0) {
+            read_children(entry, {});
+            unit = next;
+        }
+        for (auto& [address, object] : objects_) {
+            info_.objects.push_back(std::move(object));
+        }
+        return std::move(info_);
+    }
+
+private:
+    struct Function {
+        std::string name;
+        std::string qualifier;
+        Scope scope = 0;
+    };
+
+    void read_children(Dwarf_Die parent, Function const& function) {
+        Dwarf_Die entry;
+        if (dwarf_child(&parent, &entry) != 0) {
+            return;
+        }
+        do {
+            read_entry(entry, function);
+        } while (dwarf_siblingof(&entry, &entry) == 0);
+    }
+
+    void read_entry(Dwarf_Die& entry, Function const& function) {
+        switch (dwarf_tag(&entry)) {
+            case DW_TAG_variable:
+            case DW_TAG_formal_parameter:
+                read_variable(entry, function);
+                break;
+            case DW_TAG_subprogram:
+            case DW_TAG_inlined_subroutine: {
+                Dwarf_Die origin = origin_of(entry);
+                read_children(entry, {text_of(dwarf_diename(&origin)), qualifier_of(origin), dwarf_dieoffset(&origin)});
+                break;
+            }
+            default:
+                read_children(entry, function);
+        }
+    }
+
+    void read_variable(Dwarf_Die& entry, Function const& function) {
+        std::string const name = text_of(dwarf_diename(&entry));
+        auto const address = address_of(&entry);
+        if (!address) {
+            // Without an address: automatic, or a declaration of what is elsewhere, or never needed by the program.
+            if (function.scope && !flag(&entry, DW_AT_external)) {
+                info_.local_to_a_call[function.scope].insert(name);
+            }
+            return;
+        }
+        if (name == note_name) {
+            info_.notes.push_back({program_.text_at(*address), function.qualifier, function.scope, unit_of(entry)});
+            return;
+        }
+        if (flag(&entry, DW_AT_artificial) || objects_.contains(*address)) {
+            return;
+        }
+        Object object;
+        object.name = name;
+        object.qualifier = qualifier_of(entry);
+        object.function = function.name;
+        object.function_scope = function.scope;
+        object.unit = unit_of(entry);
+        object.external = flag(&entry, DW_AT_external);
+        object.file = file_of(&entry);
+        dwarf_decl_line(&entry, &object.line);
+        dwarf_decl_column(&entry, &object.column);
+        object.address = *address;
+        read_type(&entry, object);
+        objects_.emplace(*address, std::move(object));
+    }
+
+    ProgramFile const& program_;
+    DebugInfo info_;
+    std::map<uint64_t, Object> objects_;
+};
+
+}  // namespace
+
+DebugInfo read_debug_info(ProgramFile const& program) {
+    return Reader(program).read();
+}
+
+}  // namespace shared_state

@@ -1,0 +1,117 @@
+#include "program_file.hpp"
+
+#include <fcntl.h>
+#include <gelf.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <functional>
+
+namespace shared_state {
+
+namespace {
+
+void for_each_section(Elf* elf, std::function<void(Elf_Scn*, GElf_Shdr const&)> const& look) {
+    for (Elf_Scn* section = elf_nextscn(elf, nullptr); section; section = elf_nextscn(elf, section)) {
+        GElf_Shdr header;
+        if (gelf_getshdr(section, &header)) {
+            look(section, header);
+        }
+    }
+}
+
+bool holds(GElf_Shdr const& header, uint64_t address) {
+    // Thread-local sections have addresses that others have, too.
+    return (header.sh_flags & SHF_ALLOC) && !(header.sh_flags & SHF_TLS) && address >= header.sh_addr &&
+           address - header.sh_addr < header.sh_size;
+}
+
+}  // namespace
+
+ProgramFile::ProgramFile(std::string const& path) : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) {
+        throw ProgramError(path + ": " + std::strerror(errno));
+    }
+    dwarf_ = dwarf_begin(descriptor_, DWARF_C_READ);
+    if (!dwarf_) {
+        close(descriptor_);
+        throw ProgramError(path + ": no debug information here, compile and link with -g (" + dwarf_errmsg(-1) + ")");
+    }
+    elf_ = dwarf_getelf(dwarf_);
+    GElf_Ehdr header;
+    if (!gelf_getehdr(elf_, &header) || header.e_type == ET_REL) {
+        dwarf_end(dwarf_);
+        close(descriptor_);
+        throw ProgramError(path + ": this is not linked yet; give the program");
+    }
+    read_symbols();
+}
+
+ProgramFile::~ProgramFile() {
+    dwarf_end(dwarf_);
+    close(descriptor_);
+}
+
+ProgramFile::Section ProgramFile::section_at(uint64_t address) const {
+    Section found;
+    std::size_t names = 0;
+    elf_getshdrstrndx(elf_, &names);
+    for_each_section(elf_, [&](Elf_Scn*, GElf_Shdr const& header) {
+        if (holds(header, address)) {
+            char const* name = elf_strptr(elf_, names, header.sh_name);
+            found.name = name ? name : "";
+            found.writable = (header.sh_flags & SHF_WRITE) && !found.name.starts_with(".data.rel.ro");
+        }
+    });
+    return found;
+}
+
+std::string ProgramFile::text_at(uint64_t address) const {
+    std::string text;
+    for_each_section(elf_, [&](Elf_Scn* section, GElf_Shdr const& header) {
+        if (!holds(header, address) || header.sh_type == SHT_NOBITS) {
+            return;
+        }
+        Elf_Data const* data = elf_rawdata(section, nullptr);
+        uint64_t const start = address - header.sh_addr;
+        if (data && data->d_buf && start < data->d_size) {
+            auto const* bytes = static_cast<char const*>(data->d_buf) + start;
+            text.assign(bytes, strnlen(bytes, data->d_size - start));
+        }
+    });
+    return text;
+}
+
+std::string ProgramFile::symbol_at(uint64_t address) const {
+    auto const found = symbols_.find(address);
+    return found == symbols_.end() ? "" : found->second;
+}
+
+bool ProgramFile::has_guard(std::string const& symbol) const {
+    // _ZZ6chancevE1x is x in chance(), _ZGVZ6chancevE1x its guard (Itanium C++ ABI, 5.1.5.1).
+    return symbol.starts_with("_Z") && guards_.contains("_ZGV" + symbol.substr(2));
+}
+
+void ProgramFile::read_symbols() {
+    for_each_section(elf_, [&](Elf_Scn* section, GElf_Shdr const& header) {
+        if (header.sh_type != SHT_SYMTAB || header.sh_entsize == 0) {
+            return;
+        }
+        Elf_Data* data = elf_getdata(section, nullptr);
+        for (std::size_t index = 0; data && index < header.sh_size / header.sh_entsize; index++) {
+            GElf_Sym symbol;
+            if (!gelf_getsym(data, static_cast<int>(index), &symbol) || GELF_ST_TYPE(symbol.st_info) != STT_OBJECT) {
+                continue;
+            }
+            char const* name = elf_strptr(elf_, header.sh_link, symbol.st_name);
+            if (name && std::string(name).starts_with("_ZGV")) {
+                guards_.emplace(name, symbol.st_value);
+            } else if (name) {
+                symbols_.emplace(symbol.st_value, name);
+            }
+        }
+    });
+}
+
+}  // namespace shared_state

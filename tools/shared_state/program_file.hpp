@@ -1,0 +1,55 @@
+// A linked program as a file (ELF): its sections, its symbols, and where its debug information begins.
+#pragma once
+
+#include <elfutils/libdw.h>
+
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+namespace shared_state {
+
+/// What is wrong with the file, for the user.
+struct ProgramError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+class ProgramFile {
+public:
+    /// Throws ProgramError if the file is not a linked program with debug information.
+    explicit ProgramFile(std::string const& path);
+    ~ProgramFile();
+    ProgramFile(ProgramFile const&) = delete;
+    ProgramFile& operator=(ProgramFile const&) = delete;
+
+    Dwarf* debug_info() const { return dwarf_; }
+
+    struct Section {
+        std::string name;
+        bool writable = false;  ///< while the program runs: not after the loader has filled in addresses (.data.rel.ro)
+    };
+    /// The section that holds this address; an unnamed one if none does.
+    Section section_at(uint64_t address) const;
+
+    /// The text that ends with a zero byte at this address; empty if there is none in the file.
+    std::string text_at(uint64_t address) const;
+
+    /// Name of the object at this address, as the linker knows it; empty if there is none.
+    std::string symbol_at(uint64_t address) const;
+
+    /// Whether a guard makes sure that the C++ object with this symbol is initialised at most once: it is initialised
+    /// when the first robot gets there.
+    bool has_guard(std::string const& symbol) const;
+
+private:
+    void read_symbols();
+
+    int descriptor_ = -1;
+    Dwarf* dwarf_ = nullptr;
+    Elf* elf_ = nullptr;
+    std::multimap<uint64_t, std::string> symbols_;
+    std::map<std::string, uint64_t> guards_;
+};
+
+}  // namespace shared_state
