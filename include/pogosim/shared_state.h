@@ -11,7 +11,8 @@
 ///     POGO_SHARED uint32_t messages_of_all_robots;
 ///     POGO_SHARED static float table[256];   // filled alike by every robot
 ///
-/// On real robots it says nothing. (g++ forgets it for static variables inside of templates.)
+/// On real robots it says nothing. (g++ forgets it for static variables in templates and, with -flto, in inline
+/// functions.)
 #ifdef REAL_ROBOT
 #define POGO_SHARED
 #elif defined(__APPLE__)
