@@ -61,14 +61,13 @@ Objects outside_functions(std::function<bool(std::string const&)> const& is_mean
 
 Objects meant_by(std::string const& name, Note const& note, DebugInfo const& info) {
     auto const locals = info.local_to_a_call.find(note.function_scope);
-    auto const own = in_function(name, note, info);
+    auto own = in_function(name, note, info);
     if (!own.empty() || (locals != info.local_to_a_call.end() && locals->second.contains(name))) {
         return own;
     }
     // From the function's own namespaces and class outwards.
     for (std::string qualifier = note.qualifier;;) {
-        auto const found =
-            outside_functions([&](std::string const& full) { return full == qualifier + name; }, note, info);
+        auto found = outside_functions([&](std::string const& full) { return full == qualifier + name; }, note, info);
         if (!found.empty()) {
             return found;
         }

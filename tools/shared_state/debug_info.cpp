@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 namespace shared_state {
@@ -113,6 +114,7 @@ std::string qualifier_of(Dwarf_Die entry) {
     Dwarf_Die origin = origin_of(entry);
     Dwarf_Die* scopes = nullptr;
     int const count = dwarf_getscopes_die(&origin, &scopes);
+    std::unique_ptr<Dwarf_Die, decltype(&std::free)> const owner(scopes, &std::free);
     std::string qualifier;
     for (int i = 1; i < count; i++) {  // from the entry itself outwards
         switch (dwarf_tag(&scopes[i])) {
@@ -128,7 +130,6 @@ std::string qualifier_of(Dwarf_Die entry) {
                 break;
         }
     }
-    std::free(scopes);
     return qualifier;
 }
 

@@ -52,6 +52,16 @@ typedef enum ir_type_message { ir_t_cmd = 1, ir_t_flash = 2, ir_t_short = 3, ir_
 #define pogobot_infrared_emitter_power_twoThird 2
 #define pogobot_infrared_emitter_power_oneThird 1
 #define pogobot_infrared_emitter_power_null 0
+#define pogobot_infrared_emitter_width_bits 2
+#define pogobot_infrared_emitting_power_list(front, right, back, left) \
+    ((front) | ((right) << 2) | ((back) << 4) | ((left) << 6))
+enum {
+    pogobot_infrared_emitting_power_list_front_full = 3,
+    pogobot_infrared_emitting_power_list_right_full = 12,
+    pogobot_infrared_emitting_power_list_back_full = 48,
+    pogobot_infrared_emitting_power_list_left_full = 192,
+    pogobot_infrared_emitting_power_list_all_full = 255
+};
 
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* message, uint16_t message_size);
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* message, uint16_t message_size);
