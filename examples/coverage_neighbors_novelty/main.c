@@ -77,7 +77,7 @@ bool use_adaptive_surprise_min = true;
 float d_surprise_up = 0.3f;     // rise of the threshold at an escape
 float d_surprise_down = 0.02f;  // fall per second
 
-run_law_t law = RUN_LEVY;  // run_law, understood
+POGO_SHARED run_law_t law = RUN_LEVY;  // run_law, understood
 
 // ---- Feelings ----
 

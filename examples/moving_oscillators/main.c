@@ -176,8 +176,8 @@ static void show_state(void) {
 
 #ifdef SIMULATOR
 // On purpose shared by all robots: what an observer of the whole swarm sees.
-static int nb_in_upper_half;
-static double sum_cos, sum_sin;
+POGO_SHARED static int nb_in_upper_half;
+POGO_SHARED static double sum_cos, sum_sin;
 
 // Counts this robot as `sign` robots.
 static void count(int sign) {
