@@ -128,13 +128,15 @@ clang_tidy() {
 }
 
 style_checks() {
-    local ruff="$python -m ruff"
+    local ruff="$python -m ruff" sources="python tests/python scripts bench docs/figures"
     check "C++ formatting (clang-format 14)" clang_format || true
-    # shellcheck disable=SC2086 # a command with arguments
-    check "Python style (ruff)" $ruff check --config python/pyproject.toml python tests/python scripts || true
+    # shellcheck disable=SC2086 # a command with arguments, a list of words
+    check "Python style (ruff)" $ruff check --config python/pyproject.toml $sources || true
     # shellcheck disable=SC2086
-    check "Python formatting (ruff)" $ruff format --check --config python/pyproject.toml python tests/python scripts || true
-    check "Python types (mypy --strict)" "$python" -m mypy --config-file python/pyproject.toml python/pogosim || true
+    check "Python formatting (ruff)" $ruff format --check --config python/pyproject.toml $sources || true
+    # shellcheck disable=SC2086
+    check "Python types (mypy --strict)" env MYPYPATH=python:tests/python \
+        "$python" -m mypy --config-file python/pyproject.toml $sources || true
 }
 
 release_tests

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import subprocess
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +46,7 @@ def spiral() -> str:
     return "\n".join(["x,y,angle", *lines, ""])
 
 
-def place(folder: Path, name: str, options: dict[str, object]) -> Path:
+def place(folder: Path, name: str, options: Mapping[str, object]) -> Path:
     """Run the simulator for no time; return its data file, which holds the poses at time 0."""
     data = folder / f"{name}.feather"
     configuration = {
@@ -71,7 +72,8 @@ def draw_swarm(axes: Axes, data: Path) -> None:
         axes.add_patch(Polygon([(p["x"], p["y"]) for p in polygon], fill=False, edgecolor="0.3"))
     position = rows[["x", "y"]].to_numpy(dtype=float)
     heading = np.column_stack([np.cos(rows["angle"]), np.sin(rows["angle"])])
-    axes.add_collection(PatchCollection([Circle(p, RADIUS_MM) for p in position], facecolor="#7fb3d5", edgecolor="0.3"))
+    bodies = [Circle((x, y), RADIUS_MM) for x, y in position]
+    axes.add_collection(PatchCollection(bodies, facecolor="#7fb3d5", edgecolor="0.3"))
     ticks = np.stack([position, position + RADIUS_MM * heading], axis=1)
     axes.add_collection(LineCollection(list(ticks), colors="k", linewidths=1.0))
     axes.set_aspect("equal")

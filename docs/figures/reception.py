@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 ROOT = Path(__file__).resolve().parents[2]
 MEASUREMENTS = ROOT / "bench" / "ir_reception_profile.csv"
 SHORT_HEADER_BYTES = 3
-COLOURS = {3: "#1b6ca8", 20: "#d98200", 100: "#a8321b"}
+NEIGHBOURS = (1, 2, 6)
+COLOURS = {3: "#1b6ca8", 20: "#d98200", 100: "#a8321b"}  # by bytes of payload
 
 
 def reception_probability(
@@ -26,7 +27,8 @@ def reception_probability(
     """Return what `type: dynamic` computes with its defaults (src/comms/reception.cpp), 0 to 1. Takes arrays, too."""
     m, p, c = (np.asarray(x, dtype=float) for x in (message_bytes, send_probability, cluster_size))
     collisions = 0.00073859 * p**3.14782227 * c**3.52543753 * np.exp(0.05720136 * m)
-    return np.minimum(1.0 / (1.03215183 + collisions + 0.001 * p * c), 1.0)
+    probability: npt.NDArray[np.float64] = np.minimum(1.0 / (1.03215183 + collisions + 0.001 * p * c), 1.0)
+    return probability
 
 
 def predicted(rows: pd.DataFrame) -> npt.NDArray[np.float64]:
@@ -38,11 +40,11 @@ def predicted(rows: pd.DataFrame) -> npt.NDArray[np.float64]:
 def draw(measured: pd.DataFrame) -> Figure:
     """One panel per number of neighbours: dots measured, lines by the law."""
     figure = Figure(figsize=(9.0, 3.2), layout="constrained")
-    panels = figure.subplots(1, 3, sharey=True)
+    panels = figure.subplots(1, len(NEIGHBOURS), sharey=True)
     p = np.linspace(0.0, 1.0, 201)
-    for axes, (neighbours, group) in zip(panels, measured.groupby("nb_neighbors")):
-        for payload, rows in group.groupby("payload_size"):
-            colour = COLOURS[payload]
+    for axes, neighbours in zip(panels, NEIGHBOURS):
+        for payload, colour in COLOURS.items():
+            rows = measured[(measured["nb_neighbors"] == neighbours) & (measured["payload_size"] == payload)]
             axes.plot(p, reception_probability(SHORT_HEADER_BYTES + payload, p, 1 + neighbours), color=colour)
             axes.plot(rows["p_send"], rows["success_probability"], "o", color=colour, label=f"{payload} bytes")
         axes.set_title(f"{neighbours} neighbour{'s' if neighbours > 1 else ''}", fontsize=10)

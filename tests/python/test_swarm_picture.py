@@ -22,13 +22,13 @@ HOLE = [{"x": 150, "y": 150}, {"x": 250, "y": 150}, {"x": 250, "y": 250}, {"x": 
 def rows(**columns: Any) -> pd.DataFrame:
     """Two robots at two times, standing still; columns may be replaced."""
     frame = {
-        "time": np.float32([0, 0, 1, 1]),
+        "time": np.array([0, 0, 1, 1], np.float32),
         "robot_category": ["robots"] * 4,
-        "robot_id": np.int32([0, 1, 0, 1]),
-        "x": np.float32([100, 300, 100, 300]),
-        "y": np.float32([50, 350, 50, 350]),
-        "angle": np.float32([0, 0, 0, 0]),
-        "led_rgb": np.int32([0x190000, 0x000019] * 2),
+        "robot_id": np.array([0, 1, 0, 1], np.int32),
+        "x": np.array([100, 300, 100, 300], np.float32),
+        "y": np.array([50, 350, 50, 350], np.float32),
+        "angle": np.array([0, 0, 0, 0], np.float32),
+        "led_rgb": np.array([0x190000, 0x000019] * 2, np.int32),
     }
     return pd.DataFrame({**frame, **columns})
 
@@ -82,7 +82,7 @@ def test_robot_with_its_led_off_is_grey_not_black() -> None:
 
 
 def test_walls_without_a_pose_and_parts_of_membranes_are_left_out(tmp_path: Path) -> None:
-    frame = rows(x=np.float32([100, np.nan, 100, np.nan]), subpart_id=np.int16([-1, -1, 5, -1]))
+    frame = rows(x=np.array([100, np.nan, 100, np.nan], np.float32), subpart_id=np.array([-1, -1, 5, -1], np.int16))
     assert len(read_swarm(write(tmp_path, frame)).rows) == 1
 
 
@@ -92,7 +92,7 @@ def test_only_the_first_of_several_runs_is_drawn(tmp_path: Path) -> None:
 
 
 def test_same_id_in_two_categories_means_two_objects(tmp_path: Path) -> None:
-    frame = rows(robot_id=np.int32([0, 0, 0, 0]), robot_category=["a", "b", "a", "b"])
+    frame = rows(robot_id=np.array([0, 0, 0, 0], np.int32), robot_category=["a", "b", "a", "b"])
     assert read_swarm(write(tmp_path, frame)).rows["object"].tolist() == [0, 1, 0, 1]
 
 
@@ -134,7 +134,7 @@ def test_scale_bar_is_round_and_at_most_a_quarter(width: float, length: float) -
 
 
 def test_robots_stand_in_their_led_colours_where_they_ended_with_y_downwards(tmp_path: Path) -> None:
-    frame = rows(x=np.float32([300, 300, 100, 300]), y=np.float32([350, 50, 50, 350]))
+    frame = rows(x=np.array([300, 300, 100, 300], np.float32), y=np.array([350, 50, 50, 350], np.float32))
     image = picture(tmp_path, write(tmp_path, frame), "--tail", "0.001")
     red, blue = centre_of_mass(image, 0), centre_of_mass(image, 2)
     assert red[0] < blue[0]  # red ended at y = 50: above
@@ -304,10 +304,10 @@ def test_dpi_scales_the_picture(tmp_path: Path) -> None:
     [
         rows().drop(columns="led_rgb"),
         rows().drop(columns=["robot_category", "robot_id", "angle", "led_rgb"]),
-        rows(angle=np.float32([np.nan] * 4)),
+        rows(angle=np.array([np.nan] * 4, np.float32)),
         rows().iloc[:1],
-        rows(x=np.float32([100, np.nan, np.nan, 300])),
-        rows(led_rgb=np.int32([0] * 4)),
+        rows(x=np.array([100, np.nan, np.nan, 300], np.float32)),
+        rows(led_rgb=np.array([0] * 4, np.int32)),
     ],
     ids=["no leds", "places only", "no angles", "one row", "gaps", "dark"],
 )
@@ -323,7 +323,7 @@ def test_what_is_missing_in_a_file_does_not_stop_the_picture(tmp_path: Path, fra
     [
         (rows().drop(columns=["x", "time"]), None, "it has no column time, x"),
         (rows().iloc[:0], None, "no object with a position"),
-        (rows(x=np.float32([np.nan] * 4)), None, "no object with a position"),
+        (rows(x=np.array([np.nan] * 4, np.float32)), None, "no object with a position"),
         (rows(), "[1, 2]", "'arena_polygons'"),
         (rows(), "[[{x: 1}]]", "'arena_polygons'"),
         (rows(), "[[", "'arena_polygons'"),
