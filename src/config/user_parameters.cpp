@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -12,6 +14,15 @@ constexpr Limits kAnyNumber{.range = any().or_infinity().or_nan()};
 
 std::string path_of(std::string_view name) {
     return fmt::format("parameters.{}", name);
+}
+
+double read_number(Place const& place, double largest) {
+    double value = 0.0;
+    read_value(place, kAnyNumber, value);
+    if (std::isfinite(value) && std::abs(value) > largest) {
+        fail_expected(place, fmt::format("a number from {0} to {1}", number_text(-largest), number_text(largest)));
+    }
+    return value;
 }
 
 template <class T>
@@ -30,8 +41,12 @@ std::optional<bool> bool_parameter(Node const& parameters, std::string_view name
     return read_parameter<bool>(parameters, name, {});
 }
 
-std::optional<double> number_parameter(Node const& parameters, std::string_view name) {
-    return read_parameter<double>(parameters, name, kAnyNumber);
+std::optional<double> number_parameter(Node const& parameters, std::string_view name, double largest) {
+    Node const* node = find_path(parameters, name);
+    if (node == nullptr || node->kind == Node::Kind::null) {
+        return std::nullopt;
+    }
+    return read_number({*node, path_of(name)}, largest);
 }
 
 std::optional<std::int64_t> integer_parameter(Node const& parameters, std::string_view name, std::int64_t min,
@@ -44,7 +59,8 @@ std::optional<std::string> text_parameter(Node const& parameters, std::string_vi
     return read_parameter<std::string>(parameters, name, {});
 }
 
-std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std::string_view name, std::size_t size) {
+std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std::string_view name, std::size_t size,
+                                                     double largest) {
     Node const* node = find_path(parameters, name);
     if (node == nullptr || node->kind == Node::Kind::null ||
         (node->kind == Node::Kind::sequence && node->items.empty())) {
@@ -59,7 +75,7 @@ std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std
     }
     std::vector<double> numbers(size);
     for (std::size_t i = 0; i < size; ++i) {
-        read_value({node->items[i], fmt::format("{}.{}", path_of(name), i)}, kAnyNumber, numbers[i]);
+        numbers[i] = read_number({node->items[i], fmt::format("{}.{}", path_of(name), i)}, largest);
     }
     return numbers;
 }

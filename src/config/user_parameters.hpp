@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,8 +17,10 @@ namespace pogosim {
 
 std::optional<bool> bool_parameter(Node const& parameters, std::string_view name);
 
-/// Any number, .inf and .nan included.
-std::optional<double> number_parameter(Node const& parameters, std::string_view name);
+constexpr double kLargestNumber = std::numeric_limits<double>::max();
+
+/// A number from -largest to largest, or .inf, -.inf or .nan.
+std::optional<double> number_parameter(Node const& parameters, std::string_view name, double largest = kLargestNumber);
 
 /// An integer from `min` to `max`; the fraction of a number is dropped. Exact up to 2^53.
 std::optional<std::int64_t> integer_parameter(Node const& parameters, std::string_view name, std::int64_t min,
@@ -25,7 +28,9 @@ std::optional<std::int64_t> integer_parameter(Node const& parameters, std::strin
 
 std::optional<std::string> text_parameter(Node const& parameters, std::string_view name);
 
-/// The first `size` numbers of a list; nothing for an empty list. A list with fewer is a ConfigError.
-std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std::string_view name, std::size_t size);
+/// The first `size` numbers of a list, each as in number_parameter; nothing for an empty list. A list with fewer is a
+/// ConfigError.
+std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std::string_view name, std::size_t size,
+                                                     double largest = kLargestNumber);
 
 }  // namespace pogosim

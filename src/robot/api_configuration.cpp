@@ -24,7 +24,7 @@ void read_integer(T* variable, char const* name, T default_value) {
 template <std::floating_point T>
 void read_number(T* variable, char const* name, T default_value) {
     without_exceptions([&] {
-        auto const found = context.services->parameters->number(name);
+        auto const found = context.services->parameters->number(name, std::numeric_limits<T>::max());
         *variable = found ? static_cast<T>(*found) : default_value;
     });
 }
@@ -32,7 +32,7 @@ void read_number(T* variable, char const* name, T default_value) {
 template <std::floating_point T>
 void read_numbers(T* array, char const* name, std::size_t size) {
     without_exceptions([&] {
-        if (auto const found = context.services->parameters->numbers(name, size)) {
+        if (auto const found = context.services->parameters->numbers(name, size, std::numeric_limits<T>::max())) {
             std::transform(found->begin(), found->end(), array, [](double value) { return static_cast<T>(value); });
         }
     });

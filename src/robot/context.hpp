@@ -18,12 +18,14 @@ class ParameterSource {
 public:
     virtual ~ParameterSource() = default;
     virtual std::optional<bool> boolean(std::string const& name) const = 0;
-    virtual std::optional<double> number(std::string const& name) const = 0;
+    /// From -largest to largest, or .inf, -.inf or .nan.
+    virtual std::optional<double> number(std::string const& name, double largest) const = 0;
     /// Text of a fraction is truncated.
     virtual std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) const = 0;
     virtual std::optional<std::string> text(std::string const& name) const = 0;
     /// The first `size` numbers of a list; nothing for an absent or empty list.
-    virtual std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size) const = 0;
+    virtual std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size,
+                                                       double largest) const = 0;
 };
 
 /// The user's columns and the row being filled.

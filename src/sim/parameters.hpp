@@ -12,15 +12,18 @@ public:
     explicit UserParameters(Node const& parameters) : parameters_(parameters) {}
 
     std::optional<bool> boolean(std::string const& name) const override { return bool_parameter(parameters_, name); }
-    std::optional<double> number(std::string const& name) const override { return number_parameter(parameters_, name); }
+    std::optional<double> number(std::string const& name, double largest) const override {
+        return number_parameter(parameters_, name, largest);
+    }
     std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) const override {
         return integer_parameter(parameters_, name, min, max);
     }
     std::optional<std::string> text(std::string const& name) const override {
         return text_parameter(parameters_, name);
     }
-    std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size) const override {
-        return numbers_parameter(parameters_, name, size);
+    std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size,
+                                               double largest) const override {
+        return numbers_parameter(parameters_, name, size, largest);
     }
 
 private:

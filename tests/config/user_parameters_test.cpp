@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "config/yaml_text.hpp"
 #include "config_file.hpp"
 
@@ -12,7 +14,8 @@ namespace {
 
 Node const kParameters = parse_yaml(
     "run_duration_min: 1000\nratio: 0.25\nback: yes\nname: Ada\nvect: [1, 2.5, 3]\nfloat_text: '12.9'\nword: fast\n"
-    "empty: []\nnothing:\np: {k: 7, list: [4, 5]}\na.b: 8\nbig: 1e40\nmap: {x: 1}\nmixed: [1, two]\n",
+    "empty: []\nnothing:\np: {k: 7, list: [4, 5]}\na.b: 8\nbig: 1e40\nmap: {x: 1}\nmixed: [1, two]\n"
+    "infinite: -.inf\nfar: [1, -1e39]\n",
     "x.yaml");
 
 }  // namespace
@@ -52,6 +55,18 @@ TEST(UserParameters, WrongTypesAreErrorsWithTheirLine) {
               "x.yaml:2: parameters.ratio: expected true or false, found 0.25");
     EXPECT_EQ(error_of([] { text_parameter(kParameters, "map"); }),
               "x.yaml:13: parameters.map: expected a text, found a map");
+}
+
+TEST(UserParameters, NumbersThatDoNotFitAFloatAreErrorsInAFloat) {
+    constexpr double kLargestFloat = std::numeric_limits<float>::max();
+    EXPECT_EQ(number_parameter(kParameters, "ratio", kLargestFloat), 0.25);
+    EXPECT_EQ(number_parameter(kParameters, "infinite", kLargestFloat), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(error_of([] { number_parameter(kParameters, "big", kLargestFloat); }),
+              "x.yaml:12: parameters.big: expected a number from -3.4028234663852886e+38 to 3.4028234663852886e+38, "
+              "found 1e40");
+    EXPECT_EQ(error_of([] { numbers_parameter(kParameters, "far", 2, kLargestFloat); }),
+              "x.yaml:16: parameters.far.1: expected a number from -3.4028234663852886e+38 to 3.4028234663852886e+38, "
+              "found -1e39");
 }
 
 TEST(UserParameters, ListsGiveTheirFirstNumbers) {
