@@ -25,10 +25,23 @@ namespace {
     throw OutputError("cannot write the data file '" + path + "' (data_filename): " + reason);
 }
 
+constexpr auto kNotAFile =
+    "it is a device, a pipe or a socket, not a file; for a run without data: enable_data_logging: false";
+
+bool has_type(std::string const& path, std::filesystem::file_type type) {
+    std::error_code error;
+    return std::filesystem::status(path, error).type() == type;
+}
+
 void check(Status const& status, std::string const& path) {
-    if (!status.ok()) {
-        fail(path, status.detail() ? status.detail()->ToString() : status.message());
+    if (status.ok()) {
+        return;
     }
+    if (status.detail()) {  // what the system says
+        fail(path, status.detail()->ToString());
+    }
+    // A device such as /dev/null knows no position in itself, which Arrow's own checks stumble over.
+    fail(path, has_type(path, std::filesystem::file_type::character) ? kNotAFile : status.message());
 }
 
 template <class Value>
@@ -42,6 +55,14 @@ void make_parent_folder(std::string const& path) {
     std::error_code error;
     if (!parent.empty() && !std::filesystem::create_directories(parent, error) && error) {
         fail(path, "cannot make the folder '" + parent.string() + "': " + error.message());
+    }
+}
+
+/// Throws OutputError for what would take data for ever or destroy a disk. Opening a pipe would wait for its reader.
+void check_kind_of_file(std::string const& path) {
+    using std::filesystem::file_type;
+    if (has_type(path, file_type::fifo) || has_type(path, file_type::socket) || has_type(path, file_type::block)) {
+        fail(path, kNotAFile);
     }
 }
 
@@ -90,6 +111,7 @@ struct DataFile::Impl {
         : path(options.path), flush_row_count(options.flush_row_count), columns(options) {
         assert(flush_row_count > 0);
         make_parent_folder(path);
+        check_kind_of_file(path);
         schema = arrow::schema(columns.fields(), make_metadata(options));
         stream = checked(arrow::io::FileOutputStream::Open(path), path);
         writer = checked(arrow::ipc::MakeFileWriter(stream, schema, write_options(path)), path);

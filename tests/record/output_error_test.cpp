@@ -1,4 +1,6 @@
 // What goes wrong between the simulator and the disk is said, with the path and the system's reason.
+#include <sys/stat.h>
+
 #include <functional>
 
 #include "base/error.hpp"
@@ -43,6 +45,17 @@ TEST_F(OutputFailure, PathBelowAFileIsRefusedAtOnce) {
 
 TEST_F(OutputFailure, EmptyPathIsRefusedAtOnce) {
     expect_says(open_error(""), {"cannot write the data file ''", "No such file"});
+}
+
+TEST_F(OutputFailure, PipeIsRefusedAtOnceInsteadOfWaitingForItsReader) {
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    expect_says(open_error(path("pipe")), {path("pipe"), "a pipe", "not a file", "enable_data_logging: false"});
+}
+
+TEST_F(OutputFailure, DeviceThatTakesEverythingIsAnErrorOnClosing) {
+    DataFile file({.path = "/dev/null"});
+    file.append({.category = "robots"}, {});
+    expect_says(output_error([&file] { file.close(); }), {"/dev/null", "a device", "not a file"});
 }
 
 TEST_F(OutputFailure, FullDiskIsAnErrorOnClosing) {
