@@ -15,6 +15,7 @@ using pogosim::context;
 namespace {
 
 constexpr std::size_t kShortText = 512;
+constexpr std::size_t kLongestLine = 65536;  // a longer one is cut, so that memory does not fill with it
 
 /// A format in which a single `l` before an integer conversion is gone: `long` has 32 bits on the robot, and programs
 /// print uint32_t with %lu.
@@ -40,15 +41,22 @@ std::string with_robot_longs(std::string_view format) {
     return result;
 }
 
+void print_line(std::string_view line) {
+    pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(), line);
+}
+
 /// Logs the lines in `text` and leaves the rest there; up to `searched` there is no line end.
 void print_complete_lines(std::string& text, std::size_t searched) {
     std::size_t start = 0;
     for (std::size_t end = text.find('\n', searched); end != std::string::npos; end = text.find('\n', start)) {
-        pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(),
-                                  std::string_view(text).substr(start, end - start));
+        print_line(std::string_view(text).substr(start, end - start));
         start = end + 1;
     }
     text.erase(0, start);
+    if (text.size() >= kLongestLine) {
+        print_line(text);
+        text.clear();
+    }
 }
 
 void print(std::string_view text) {

@@ -256,6 +256,18 @@ void Programs::end() {
     }
 }
 
+void Programs::print_unfinished_lines() {
+    auto const print_rest = [this](std::uint32_t robot) {
+        if (!computer(robot).printed.empty()) {
+            call(robot, "the end", [] { pogosim_puts(""); });
+        }
+    };
+    for (std::uint32_t i = 0; i < computers_.size(); ++i) {
+        print_rest(i);
+    }
+    print_rest(kNone);
+}
+
 int Programs::highest_loop_hz() const {
     int highest = 0;
     for (Computer const& self : computers_) {

@@ -35,6 +35,9 @@ public:
     /// callback_robot_end of every robot.
     void end();
 
+    /// Logs what robots have printed and not ended with a newline. Called after the last call of user code.
+    void print_unfinished_lines();
+
     /// Ticks this robot has executed.
     std::uint32_t ticks(std::size_t robot) const { return computers_[robot].loop.ticks; }
 

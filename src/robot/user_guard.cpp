@@ -36,6 +36,7 @@ struct Guard {
     // What ended the call; plain memory, as a signal handler writes it.
     std::array<char, 512> what{};
     ExitCode code = ExitCode::user_program;
+    bool refused = false;
     // The message that needs no more memory, in case the data file cannot be completed.
     std::array<char, 1024> last_words{};
     std::atomic<bool> crashed = false;
@@ -219,9 +220,10 @@ void install_user_guard(double timeout_s) {
 
 std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
     if (sigsetjmp(guard.return_point, 0) != 0) {
-        return UserFailure{guard.what.data(), guard.code};
+        return UserFailure{guard.what.data(), guard.code, guard.refused};
     }
     guard.inside = true;
+    guard.refused = false;
     restart_watch();
     try {
         body();
@@ -271,6 +273,11 @@ void leave_user_code(char const* what, ExitCode code) {
     }
     set_reason(what);
     jump_out(code);
+}
+
+void refuse_user_code(char const* what) {
+    guard.refused = true;
+    leave_user_code(what, ExitCode::usage);
 }
 
 }  // namespace pogosim

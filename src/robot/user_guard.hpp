@@ -24,6 +24,7 @@ enum class ExitCode : int { done = 0, usage = 2, user_program = 3, interrupted =
 struct UserFailure {
     std::string what;  // "segmentation fault at address 0x10"
     ExitCode code = ExitCode::user_program;
+    bool refused = false;  // a function of the interface said no: a wrong parameter, a column that is not there
 };
 
 /// Installs handlers for crashes and the watch over processor time. `timeout_s` is the processor time one call of user
@@ -46,6 +47,9 @@ bool inside_user_code();
 /// Ends the running call_user_code with this failure. Does not return; outside user code it aborts.
 [[noreturn]] void leave_user_code(char const* what, ExitCode code);
 
+/// The same for a call that the interface refuses: exit code 2.
+[[noreturn]] void refuse_user_code(char const* what);
+
 /// The same from a signal handler, wherever user code is: what follows has some seconds before the program is ended.
 /// Only inside user code.
 [[noreturn]] void abandon_user_code(char const* what, ExitCode code);
@@ -61,7 +65,7 @@ void without_exceptions(Body const& body) {
     } catch (std::exception const& error) {
         std::snprintf(what, sizeof(what), "%s", error.what());
     }
-    leave_user_code(what, ExitCode::usage);
+    refuse_user_code(what);
 }
 
 }  // namespace pogosim

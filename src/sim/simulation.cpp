@@ -102,10 +102,11 @@ ExitCode Simulation::run() {
     // The message first: completing the file may fail after a crash that destroyed memory.
     if (failure) {
         report(*failure);
-        if (failure->code == ExitCode::user_program && !data_file_ && scenario_.output.enable_data_logging) {
+        if (!failure->refused && !data_file_ && scenario_.output.enable_data_logging) {
             make_data_file();  // without rows: the file of an earlier run must not pass for this one's
         }
         finish();
+        call_user_code([this] { programs_.print_unfinished_lines(); });
         return failure->code;
     }
     finish();
@@ -125,7 +126,10 @@ std::optional<UserFailure> Simulation::run_steps() {
     }
     progress.finish(world_.step);
     if (!failure) {
-        failure = call_user_code([this] { programs_.end(); });
+        failure = call_user_code([this] {
+            programs_.end();
+            programs_.print_unfinished_lines();
+        });
     }
     return failure;
 }
@@ -263,7 +267,7 @@ void Simulation::record_subparts(Object const& object) {
 void Simulation::report(UserFailure const& failure) const {
     std::string const where =
         fmt::format("{} of {}, t = {:.4f} s", context.phase, current_robot_name(), world_.time_s());
-    if (failure.code == ExitCode::usage) {
+    if (failure.refused) {
         log().error("{} (asked for in {}){}", failure.what, where, data_file_note());
         return;
     }

@@ -49,6 +49,10 @@ static void print_long_line(void) {
     printf("%s%lu\n", text, (uint32_t)1);
 }
 
+static void print_without_end(void) {
+    printf("the last words, without end of line");
+}
+
 void user_init(void) {
     mydata->large = 4000000000u;
     mydata->negative = -5;
@@ -60,6 +64,7 @@ void user_step(void) {
         print_numbers();
         print_long_line();
         pogobot_helper_print_version();
+        print_without_end();
     }
 }
 

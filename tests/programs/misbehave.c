@@ -19,6 +19,7 @@ int* volatile nowhere = NULL;
 volatile unsigned long spins = 0;
 
 static void write_to_null(void) {
+    printf("going to write to null");  // without end of line
     *nowhere = 1;
 }
 
@@ -78,6 +79,10 @@ static void exit_with_7(void) {
     exit(7);
 }
 
+static void exit_with_2(void) {
+    exit(2);
+}
+
 static void exit_with_0(void) {
     exit(0);
 }
@@ -112,6 +117,7 @@ static struct {
     {"write_beyond_userdata", write_beyond_userdata},
     {"abort", abort},
     {"exit_with_7", exit_with_7},
+    {"exit_with_2", exit_with_2},
     {"exit_with_0", exit_with_0},
     {"set_unknown_column", set_unknown_column},
     {"set_wrong_type", set_wrong_type},

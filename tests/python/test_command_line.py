@@ -249,4 +249,5 @@ def test_printf_writes_numbers_as_on_the_robot_where_long_has_32_bits(program: C
         "    -1|2   |3.1",
         "x" * 1999 + "1",
         " Pogolib Version : v2.6",
+        "the last words, without end of line",
     ]

@@ -60,6 +60,18 @@ def test_crash_in_user_code_ends_with_3_a_message_and_a_readable_file(
     assert saved_times(result) == SAVED_TIMES
 
 
+def test_text_without_end_of_line_is_printed_after_a_crash(program: Compile, tmp_path: Path) -> None:
+    result = misbehave(program, tmp_path, "write_to_null")
+    assert result.robot_lines[-1] == "[ROBOT #1] [PRINTF] going to write to null"
+
+
+def test_text_that_never_ends_is_printed_in_long_lines(program: Compile, tmp_path: Path) -> None:
+    result = misbehave(program, tmp_path, "print_for_ever")
+    lines = [line for line in result.robot_lines if line.startswith("[ROBOT #1] [PRINTF] again and again")]
+    assert len(lines) > 1
+    assert {len(line) for line in lines[:-1]} == {len("[ROBOT #1] [PRINTF] ") + 10 * 6554}
+
+
 @pytest.mark.parametrize(("kind", "code", "verb"), [("exit_with_7", 7, "failed"), ("exit_with_0", 0, "ended")])
 def test_exit_in_user_code_keeps_its_code_and_the_data(
     program: Compile, tmp_path: Path, kind: str, code: int, verb: str
@@ -104,6 +116,20 @@ def test_failure_in_any_function_of_the_program_names_the_function(
     assert f"the user program failed in {place} of {who}: " in result.errors
     # A run that fails before its first row leaves a file without rows, so that an older one does not pass for its own.
     assert (len(result.frame()) > 0) == (place in ("export_data", "global_step", "robot_end"))
+
+
+@pytest.mark.parametrize(("kind", "code"), [("exit_with_0", 0), ("exit_with_2", 2), ("exit_with_7", 7)])
+def test_exit_before_the_first_row_leaves_no_older_data(program: Compile, tmp_path: Path, kind: str, code: int) -> None:
+    assert len(misbehave(program, tmp_path, "nothing").frame()) > 0
+    result = misbehave(program, tmp_path, kind, "user_init")
+    assert result.code == code
+    assert len(result.frame()) == 0
+
+
+def test_parameter_that_is_refused_leaves_the_older_data(program: Compile, tmp_path: Path) -> None:
+    rows = len(misbehave(program, tmp_path, "nothing").frame())
+    assert misbehave(program, tmp_path, "read_number", "user_init", number="many").code == 2
+    assert len(Run(0, "", "", tmp_path).frame()) == rows
 
 
 @pytest.mark.parametrize(
