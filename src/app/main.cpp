@@ -54,9 +54,11 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
     ExitCode code = ExitCode::usage;
     try {
         code = simulate(parsed.options);
+        check_logs();
     } catch (std::exception const& error) {
         flush_logs();
         std::fprintf(stderr, "Error: %s\n", error.what());
+        code = code == ExitCode::done ? ExitCode::usage : code;
     }
     flush_logs();
     if (code == ExitCode::user_program) {

@@ -45,10 +45,23 @@ struct Loggers {
     std::shared_ptr<spdlog::logger> robots;
 };
 
+/// What first kept a line from the console file; empty: nothing.
+std::string& first_failure() {
+    static std::string text;
+    return text;
+}
+
+void keep_first_failure(std::string const& text) {
+    if (first_failure().empty()) {
+        first_failure() = text;
+    }
+}
+
 std::shared_ptr<spdlog::logger> make_logger(char const* name, std::vector<spdlog::sink_ptr> const& sinks) {
     auto logger = std::make_shared<spdlog::logger>(name, sinks.begin(), sinks.end());
     logger->set_level(spdlog::level::debug);
     logger->flush_on(spdlog::level::warn);
+    logger->set_error_handler(keep_first_failure);
     return logger;
 }
 
@@ -97,6 +110,7 @@ Loggers& loggers() {
 }  // namespace
 
 void start_logging(LogOptions const& options) {
+    first_failure().clear();
     loggers() = make_loggers(options);
 }
 
@@ -110,6 +124,13 @@ spdlog::logger& robot_log() {
 void flush_logs() {
     loggers().simulator->flush();
     loggers().robots->flush();
+}
+
+void check_logs() {
+    flush_logs();
+    if (!first_failure().empty()) {
+        throw OutputError("cannot write the console file (console_filename): " + first_failure());
+    }
 }
 
 }  // namespace pogosim

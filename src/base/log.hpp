@@ -26,4 +26,7 @@ spdlog::logger& robot_log();
 /// Writes out what is buffered.
 void flush_logs();
 
+/// Writes out what is buffered. Throws OutputError if anything since start_logging did not reach the console file.
+void check_logs();
+
 }  // namespace pogosim

@@ -36,6 +36,8 @@ void catch_interrupts() {
     }
     // A reader of the console that has gone away is no reason to lose the data file.
     std::signal(SIGPIPE, SIG_IGN);
+    // A file that may not grow further (ulimit -f) is an error of writing it.
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() {

@@ -210,6 +210,15 @@ def test_console_file_that_cannot_be_written_is_an_error_that_names_it(tmp_path:
         assert f"cannot open the console file '{path}' (console_filename)" in result.errors
 
 
+def test_console_file_on_a_full_disk_is_an_error_and_the_data_file_complete(tmp_path: Path) -> None:
+    result = hello(tmp_path, "-q", enable_console_logging=True, console_filename="/dev/full")
+    assert result.code == 2
+    assert result.errors.startswith("Error: cannot write the console file (console_filename): ")
+    assert "/dev/full: No space left on device" in result.errors
+    assert result.errors.count("\n") == 1
+    assert result.frame()["time"].max() == 2
+
+
 def test_only_verbose_shows_debug_messages_and_quiet_wins(tmp_path: Path) -> None:
     for flags, expected in (([], False), (["-v"], True), (["-v", "-q"], False)):
         result = hello(tmp_path, *flags)

@@ -248,6 +248,15 @@ def test_output_that_cannot_be_written_ends_with_2_and_names_the_path(tmp_path: 
     assert f"cannot write the data file '{path}' (data_filename)" in result.errors
 
 
+def test_limit_on_the_size_of_files_is_an_error_that_names_it(tmp_path: Path) -> None:
+    program = tmp_path / "limited"
+    program.write_text(f"#!/bin/sh\nulimit -f 8\nexec '{example('helloworld')}' \"$@\"\n")
+    program.chmod(0o755)
+    result = run(program, tmp_path, {"simulation_time": 50.0, "save_data_period": 0.02, "objects.robots.nb": 20})
+    assert result.code == 2
+    assert "cannot write the data file 'data.feather' (data_filename): [errno 27] File too large" in result.errors
+
+
 def test_disk_that_fills_up_during_the_run_ends_it_with_2(tmp_path: Path) -> None:
     # The first batches go out long before the end.
     settings = {"data_filename": "/dev/full", "data_logger_flush_row_count": 5, "simulation_time": 50.0}
