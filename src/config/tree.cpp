@@ -8,13 +8,35 @@
 
 namespace pogosim {
 
-Node const* Node::find(std::string_view key) const {
-    auto const found = std::ranges::find(entries, key, [](auto const& entry) { return std::string_view(entry.key); });
-    return found == entries.end() ? nullptr : &found->value;
+namespace {
+
+// Node const* of a Node const, Node* of a Node.
+
+template <class AnyNode>
+auto* find_in(AnyNode& map, std::string_view key) {
+    auto const found =
+        std::ranges::find(map.entries, key, [](auto const& entry) { return std::string_view(entry.key); });
+    return found == map.entries.end() ? nullptr : &found->value;
 }
 
+template <class AnyNode>
+AnyNode* child_of(AnyNode& parent, std::string_view key) {
+    if (parent.kind != Node::Kind::sequence) {
+        return parent.find(key);
+    }
+    std::size_t index = 0;
+    auto const [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+    bool const is_index = error == std::errc() && end == key.data() + key.size() && index < parent.items.size();
+    return is_index ? &parent.items[index] : nullptr;
+}
+
+}  // namespace
+
+Node const* Node::find(std::string_view key) const {
+    return find_in(*this, key);
+}
 Node* Node::find(std::string_view key) {
-    return const_cast<Node*>(std::as_const(*this).find(key));
+    return find_in(*this, key);
 }
 
 std::string Node::where() const {
@@ -38,17 +60,10 @@ SplitPath split_path(std::string_view dotted_path) {
 }
 
 Node const* child_at(Node const& parent, std::string_view key) {
-    if (parent.kind != Node::Kind::sequence) {
-        return parent.find(key);
-    }
-    std::size_t index = 0;
-    auto const [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
-    bool const is_index = error == std::errc() && end == key.data() + key.size() && index < parent.items.size();
-    return is_index ? &parent.items[index] : nullptr;
+    return child_of(parent, key);
 }
-
 Node* child_at(Node& parent, std::string_view key) {
-    return const_cast<Node*>(child_at(std::as_const(parent), key));
+    return child_of(parent, key);
 }
 
 Node const* find_path(Node const& root, std::string_view dotted_path) {

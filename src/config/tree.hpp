@@ -50,7 +50,7 @@ void apply_override(Node& root, std::string const& assignment);
 
 /// The tree a single run sees: `default_option` in place of batch options and optimisation domains (null where there is
 /// none), hierarchical alternatives replaced by their `default`. See the configuration reference, "Value resolution".
-Node resolve_options(Node const& root);
+Node resolve_options(Node const& node);
 
 /// YAML text of the tree; reading it again gives the same tree.
 std::string to_yaml(Node const& root);

@@ -127,7 +127,8 @@ void write(std::string& out, Node const& node, std::size_t indent) {
             }
             for (auto const& [key, value] : node.entries) {
                 std::string const text = key_text(key);
-                out += text.size() > kMaxSimpleKey ? margin + "? " + text + '\n' + margin + ':' : margin + text + ':';
+                out += text.size() > kMaxSimpleKey ? fmt::format("{0}? {1}\n{0}:", margin, text)
+                                                   : fmt::format("{}{}:", margin, text);
                 write_value(out, value, indent + 2);
             }
             return;

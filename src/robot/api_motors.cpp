@@ -6,7 +6,6 @@
 
 using pogosim::context;
 using pogosim::kMotorCount;
-using pogosim::Motors;
 
 namespace {
 

@@ -20,7 +20,7 @@ namespace pogosim {
 
 namespace {
 
-constexpr std::size_t kSignalStackBytes = 64 * 1024;
+constexpr std::size_t kSignalStackBytes = 65536;
 constexpr unsigned kRescueSeconds = 10;
 constexpr double kWatchPeriodS = 0.25;   // of processor time
 constexpr double kRetryPeriodS = 0.001;  // of processor time
@@ -129,6 +129,7 @@ void on_crash(int signal, siginfo_t* info, void* /*context*/) {
 /// Where the processor was when the signal came; null on a machine that is not known here.
 void* program_counter([[maybe_unused]] void const* signal_context) {
 #if defined(__linux__) && defined(__x86_64__)
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
     return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RIP]);
 #elif defined(__linux__) && defined(__aarch64__)
     return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.pc);

@@ -33,6 +33,9 @@ public:
     Simulation(Scenario scenario, RunOptions options);
     ~Simulation();
 
+    Simulation(Simulation const&) = delete;
+    Simulation& operator=(Simulation const&) = delete;
+
     /// From the first main() to the last callback: runs until the simulated time is over, the program or the user ends
     /// it, or user code fails. Errors of user code are logged and give the exit code; OutputError is thrown.
     ExitCode run();
