@@ -9,15 +9,15 @@
 
 namespace pogosim {
 
-BearingOrder::BearingOrder(std::vector<std::uint32_t> cells, LightMap const& map, Vec2 apex_mm) {
+BearingOrder::BearingOrder(std::vector<std::uint32_t> cells, LightMap const& map, Vec2 apex_mm)
+    : cells_(std::move(cells)) {
     std::vector<std::pair<float, std::uint32_t>> seen;
-    seen.reserve(cells.size());
-    for (std::uint32_t const cell : cells) {
+    seen.reserve(cells_.size());
+    for (std::uint32_t const cell : cells_) {
         Vec2 const offset = cell_centre_mm(map, cell) - apex_mm;
         seen.emplace_back(std::atan2(offset.y, offset.x), cell);
     }
     std::ranges::sort(seen);
-    cells_ = std::move(cells);
     bearing_rad_.reserve(seen.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
         bearing_rad_.push_back(seen[i].first);

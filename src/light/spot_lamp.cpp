@@ -46,12 +46,16 @@ float farthest_mm(Shape const& shape, Vec2 centre_mm, Box const& bounds) {
     return farthest;
 }
 
-/// Linear from `from` to `to` as the share goes from 0 to 1, clamped outside.
-struct Blend {
-    float from;
-    float to;
+/// Levels from one to another as the share goes from 0 to 1, clamped outside.
+class Blend {
+public:
+    Blend(int from, int to) : start_(static_cast<float>(from) + 0.5F), rise_(static_cast<float>(to - from)) {}
 
-    int at(float share) const { return static_cast<int>(from + (to - from) * std::clamp(share, 0.0F, 1.0F) + 0.5F); }
+    int at(float share) const { return static_cast<int>(start_ + rise_ * std::clamp(share, 0.0F, 1.0F)); }
+
+private:
+    float start_;  // half a count more, so that cutting the fraction rounds: levels are not negative
+    float rise_;
 };
 
 class SpotLamp : public Lamp {
@@ -89,7 +93,7 @@ void SpotLamp::paint(LampState const& state, LightMap& map, std::vector<std::uin
         return;
     }
     Vec2 const centre = spec_.centre_mm + spec_.orbit.radius_mm * direction(static_cast<float>(state.angle_rad));
-    Blend const blend{static_cast<float>(spec_.value), static_cast<float>(spec_.edge_value)};
+    Blend const blend(spec_.value, spec_.edge_value);
     if (state.phase == flash) {
         add(
             centre, [&](Vec2) { return spec_.photo_start_value; }, map, painted);
