@@ -9,7 +9,6 @@ float sqrtf(float x);
 float fabsf(float x);
 float fminf(float x, float y);
 float fmaxf(float x, float y);
-float fabsf(float x);
 float logf(float x);
 float powf(float x, float y);
 
