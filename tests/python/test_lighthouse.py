@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pandas as pd
 import pytest
 from light_field import configuration, outline_mm
-from running import Settings, run_as_configured
+from running import Settings, run_shipped
 
 Array = npt.NDArray[np.float64]
 
@@ -19,7 +19,7 @@ FIRST_CYCLE_S = 0.5 + 0.1 + np.pi / 3.0  # two white frames and two right angles
 
 def located(folder: Path, settings: Settings | None = None) -> pd.DataFrame:
     """All rows of a run, with the errors of x and y (mm) of the positions that robots think they have."""
-    rows = run_as_configured("lighthouse_localization", "lighthouse.yaml", folder, settings).frame()
+    rows = run_shipped("lighthouse_localization", folder, settings, "lighthouse").frame()
     width, height = outline_mm(configuration("lighthouse")).max(axis=0)
     rows["error_x"] = width / 2 * (1 + rows["pred_x"] / CORNER) - rows["x"]
     rows["error_y"] = height / 2 * (1 + rows["pred_y"] / CORNER) - rows["y"]
@@ -83,5 +83,5 @@ def test_thin_beams_are_missed_now_and_then_but_not_for_long(tmp_path: Path) -> 
 
 def test_ambient_light_does_not_disturb(rows: pd.DataFrame, tmp_path: Path) -> None:
     ambient = {"type": "static_light", "geometry": "global", "value": 200}
-    lit = located(tmp_path, {"objects.ambient": str(ambient)})
+    lit = located(tmp_path, {"objects.ambient": ambient})
     pd.testing.assert_frame_equal(lit, rows)
