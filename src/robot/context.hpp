@@ -40,6 +40,7 @@ struct DataExport {
 /// What user code can reach beside its own robot.
 struct RunServices {
     ParameterSource const* parameters = nullptr;
+    std::uint32_t seed = 0;  // of the run
     DataExport data;
     bool stop_requested = false;
     std::vector<char const*> warned;  // texts of warn_once

@@ -38,7 +38,7 @@ struct Guard {
     ExitCode code = ExitCode::user_program;
     bool refused = false;
     // The message that needs no more memory, in case the data file cannot be completed.
-    std::array<char, 1024> last_words{};
+    std::array<char, 2048> last_words{};
     std::atomic<bool> crashed = false;
     // Watch over processor time.
     double timeout_s = 0.0;
@@ -83,18 +83,40 @@ void describe_crash(int signal, siginfo_t const& info) {
     }
 }
 
+void set_last_words(char const* where, char const* advice) {
+    std::array<char, std::tuple_size_v<decltype(guard.last_words)>> words{};
+    std::snprintf(words.data(), words.size(),
+                  "pogosim: the user program failed%s: %s. The data file could not be completed. If the program writes "
+                  "to memory that is not its own, building it with -fsanitize=address finds where.%s\n",
+                  where, guard.what.data(), advice);
+    guard.last_words = words;
+}
+
+/// Says more and more: each look at what user code may have destroyed can be the last.
 void prepare_last_words() {
+    set_last_words("", "");
     if (context.world == nullptr) {
         return;  // no user code has run yet
     }
+    World const& world = *context.world;
+    std::array<char, 512> where{};
+    std::array<char, 256> advice{};
+    auto const ticks = static_cast<unsigned>(pogobot_ticks);
+    std::snprintf(where.data(), where.size(), " in %s, tick %u, t = %.4f s", context.phase, ticks, world.time_s());
+    set_last_words(where.data(), "");
+
+    // Runs are repeatable: the same one, ended after the step before this.
+    double const time_before_s = std::max(0.0, static_cast<double>(world.step) - 0.5) * world.time_step_s;
+    std::snprintf(advice.data(), advice.size(),
+                  " To have the data up to there, run it again with -s %u --set simulation_time=%.6f",
+                  static_cast<unsigned>(context.services->seed), time_before_s);
+    set_last_words(where.data(), advice.data());
+
     bool const is_robot = context.has_robot();
-    std::snprintf(guard.last_words.data(), guard.last_words.size(),
-                  "pogosim: the user program failed in %s of %s%d of category '%s', tick %u, t = %.4f s: %s. The data "
-                  "file could not be completed. If the program writes to memory that is not its own, building it with "
-                  "-fsanitize=address finds where.\n",
-                  context.phase, is_robot ? "robot #" : "", is_robot ? context.world->robots.id[context.robot] : 0,
-                  get_current_robot_category(), static_cast<unsigned>(pogobot_ticks), context.world->time_s(),
-                  guard.what.data());
+    std::snprintf(where.data(), where.size(), " in %s of %s%d of category '%s', tick %u, t = %.4f s", context.phase,
+                  is_robot ? "robot #" : "", is_robot ? world.robots.id[context.robot] : 0,
+                  get_current_robot_category(), ticks, world.time_s());
+    set_last_words(where.data(), advice.data());
 }
 
 /// Memory is destroyed, or a lock held, beyond what the run needs to end well.

@@ -75,7 +75,7 @@ Simulation::Simulation(Scenario scenario, RunOptions options)
       seed_(seed_of(scenario_)),
       world_(build_world(scenario_, seed_)),
       parameters_(scenario_.parameters),
-      services_{.parameters = &parameters_, .data = {}, .stop_requested = false, .warned = {}},
+      services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       programs_(world_, services_, seed_),
       lighting_(lamps_of(scenario_, world_.arena), world_),
       physics_(make_box2d_engine(world_, {.friction = static_cast<float>(scenario_.wall_friction),

@@ -57,6 +57,21 @@ static void free_what_is_not_allocated(void) {
     free(text);
 }
 
+static void free_twice(void) {
+    char* volatile block = malloc(2000);
+    char* volatile next = malloc(20);
+    free(block);
+    free(block);
+    free(next);
+}
+
+// Destroys memory of the simulator's own, up to its end.
+static void write_over_the_heap(void) {
+    for (char volatile* byte = (char*)malloc(20);; byte++) {
+        *byte = 'A';
+    }
+}
+
 static int sum_on_the_stack(int depth) {
     volatile int frame[1024];
     frame[0] = depth;
@@ -113,6 +128,8 @@ static struct {
     {"allocate_for_ever", allocate_for_ever},
     {"print_for_ever", print_for_ever},
     {"free_what_is_not_allocated", free_what_is_not_allocated},
+    {"free_twice", free_twice},
+    {"write_over_the_heap", write_over_the_heap},
     {"overflow_the_stack", overflow_the_stack},
     {"write_beyond_userdata", write_beyond_userdata},
     {"abort", abort},

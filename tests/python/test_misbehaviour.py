@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Compile
-from running import Run, run, start
+from running import Run, run, run_command, start
 
 # Robot 1 misbehaves in tick 10, which begins at 0.16 s: ticks last 16 ms.
 WHERE = "in user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s"
@@ -58,6 +58,23 @@ def test_crash_in_user_code_ends_with_3_a_message_and_a_readable_file(
     assert re.search(what, result.errors)
     assert "The data file 'data.feather' is complete up to there" in result.errors
     assert saved_times(result) == SAVED_TIMES
+
+
+def test_data_lost_with_the_heap_can_be_had_by_the_run_that_the_message_names(program: Compile, tmp_path: Path) -> None:
+    result = misbehave(program, tmp_path, "free_twice")
+    assert result.code == 3
+    assert f"the user program failed {WHERE}: abort()" in result.errors
+    if lost := re.search(r"could not be completed.*run it again with (.*)$", result.errors, re.MULTILINE):
+        again = run_command(program("misbehave.c"), tmp_path, ["-c", "scene.yaml", "-g", *lost.group(1).split()])
+        assert (again.code, again.errors) == (0, "")
+    assert saved_times(result) == SAVED_TIMES
+
+
+def test_destroyed_heap_is_said_whatever_is_left_of_it(program: Compile, tmp_path: Path) -> None:
+    result = misbehave(program, tmp_path, "write_over_the_heap")
+    assert result.code == 3
+    assert "the user program failed in user_step" in result.errors
+    assert "tick 10, t = 0.1600 s: " in result.errors
 
 
 def test_text_without_end_of_line_is_printed_after_a_crash(program: Compile, tmp_path: Path) -> None:
