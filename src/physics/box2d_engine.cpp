@@ -34,6 +34,12 @@ constexpr float kSkin = b2_linearSlop / 2.0F;
 constexpr float kRestitutionThreshold = 0.05F;  // units/s
 // Corners of a wall that lie closer together than this are joined; Box2D's tolerance is 0.5 mm.
 constexpr float kShortestEdgeMm = 1.0F;
+// A spring that swings more often than this per step cannot be followed and would shake; it is taken for one that
+// swings just so often.
+constexpr float kMostSwingsPerStep = 0.5F;
+// The solver cannot hold back a heavy body by a chain of light ones. A robot with wheels weighs so many times as much
+// as a body of a ring at most; lighter ones get more mass.
+constexpr float kMostMassRatio = 30.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
 
@@ -113,8 +119,9 @@ public:
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
             bodies_.push_back(add_body(world.bodies, i));
         }
+        add_mass_to_rings(world);
         for (Joint const& joint : world.joints) {
-            add_joint(joint);
+            add_joint(joint, kMostSwingsPerStep / static_cast<float>(world.time_step_s));
         }
         for (Ring const& ring : world.rings) {
             areas_.emplace_back(ring, bodies_);
@@ -185,6 +192,27 @@ private:
         return body;
     }
 
+    /// Mass scaling: see kMostMassRatio.
+    void add_mass_to_rings(World const& world) {
+        float heaviest = 0.0F;
+        for (std::size_t i = 0; i < world.robots.size(); ++i) {
+            if (world.spec_of(i).has_wheels) {
+                heaviest = std::max(heaviest, bodies_[world.robots.body[i]]->GetMass());
+            }
+        }
+        for (Ring const& ring : world.rings) {
+            for (std::uint32_t k = 0; k < ring.body_count; ++k) {
+                b2Body& body = *bodies_[ring.body + k];
+                float const factor = heaviest / (kMostMassRatio * body.GetMass());
+                if (factor > 1.0F) {
+                    b2MassData const mass{
+                        .mass = factor * body.GetMass(), .center = b2Vec2_zero, .I = factor * body.GetInertia()};
+                    body.SetMassData(&mass);
+                }
+            }
+        }
+    }
+
     void impose_drives(World& world) {
         Robots& robots = world.robots;
         for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -210,7 +238,7 @@ private:
         }
     }
 
-    void add_joint(Joint const& joint) {
+    void add_joint(Joint const& joint, float stiffest_hz) {
         b2Body* const a = bodies_[joint.a];
         b2Body* const b = bodies_[joint.b];
         b2Vec2 const at_a = a->GetWorldPoint(to_box2d(joint.anchor_a_mm));
@@ -226,7 +254,8 @@ private:
         spring.length = joint.length_mm / kMmPerUnit;
         spring.minLength = 0.0F;
         spring.maxLength = joint.max_stretch > 0.0F ? (1.0F + joint.max_stretch) * spring.length : b2_maxFloat;
-        b2LinearStiffness(spring.stiffness, spring.damping, joint.stiffness_hz, joint.damping_ratio, a, b);
+        float const frequency_hz = std::min(joint.stiffness_hz, stiffest_hz);
+        b2LinearStiffness(spring.stiffness, spring.damping, frequency_hz, joint.damping_ratio, a, b);
         engine_.CreateJoint(&spring);
     }
 

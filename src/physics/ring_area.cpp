@@ -6,6 +6,9 @@ namespace pogosim {
 
 namespace {
 
+// As stiff as the time step allows: a lost area is back within a few steps.
+constexpr float kSwingsPerStep = 0.25F;
+
 b2Vec2 position(std::vector<b2Body*> const& ring, std::size_t i) {
     return ring[i % ring.size()]->GetWorldCenter();
 }
@@ -29,8 +32,7 @@ b2Vec2 area_gradient(std::vector<b2Body*> const& ring, std::size_t i) {
 
 RingArea::RingArea(Ring const& ring, std::vector<b2Body*> const& bodies)
     : bodies_(bodies.begin() + ring.body, bodies.begin() + ring.body + ring.body_count),
-      area_(enclosed_area(bodies_)),
-      frequency_hz_(ring.stiffness_hz) {}
+      area_(enclosed_area(bodies_)) {}
 
 void RingArea::push(float dt_s) const {
     float inverse_mass = 0.0F;  // of the area as a coordinate
@@ -43,7 +45,7 @@ void RingArea::push(float dt_s) const {
     if (inverse_mass <= 0.0F || !bodies_.front()->IsAwake()) {
         return;
     }
-    float const omega = 2.0F * std::numbers::pi_v<float> * frequency_hz_;
+    float const omega = 2.0F * std::numbers::pi_v<float> * kSwingsPerStep / dt_s;
     float const stiffness = omega * omega / inverse_mass;
     float const damping = 2.0F * omega / inverse_mass;
     float const softness = 1.0F / (dt_s * (damping + dt_s * stiffness));

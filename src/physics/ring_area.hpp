@@ -1,4 +1,4 @@
-// What a soft ring encloses: it resists changes of its area like a cushion of air.
+// What a soft ring encloses: it resists changes of its area like a cushion of water.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace pogosim {
 
-/// A spring between the present and the initial area of a ring, with the ring's own mass and frequency, critically
-/// damped. Solved as one soft constraint per step, which is stable at every stiffness: E. Catto, "Soft Constraints",
-/// Game Developers Conference, 2011.
+/// A spring between the present and the initial area of a ring, with the ring's own mass, critically damped. Solved as
+/// one soft constraint per step, which is stable at every stiffness: E. Catto, "Soft Constraints", Game Developers
+/// Conference, 2011.
 class RingArea {
 public:
     /// `bodies` are all of the world; the ring's are at rest.
@@ -22,7 +22,6 @@ public:
 private:
     std::vector<b2Body*> bodies_;
     float area_;  // at rest, units^2
-    float frequency_hz_;
 };
 
 }  // namespace pogosim

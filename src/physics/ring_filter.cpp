@@ -7,7 +7,7 @@ namespace pogosim {
 
 namespace {
 
-/// Bodies further on than this do not touch when the ring is at rest.
+/// Along a straight line, bodies further on than this do not touch when the ring is at rest.
 std::uint32_t touching_neighbours(Bodies const& bodies, Ring const& ring) {
     float shortest_step_mm = std::numeric_limits<float>::infinity();
     float largest_mm = 0.0F;
@@ -27,7 +27,13 @@ RingFilter::RingFilter(World const& world) : places_(world.bodies.size()) {
         Ring const& ring = world.rings[r];
         std::uint32_t const neighbours = touching_neighbours(world.bodies, ring);
         for (std::uint32_t k = 0; k < ring.body_count; ++k) {
-            places_[ring.body + k] = {.ring = r, .number = k, .count = ring.body_count, .neighbours = neighbours};
+            std::uint32_t const body = ring.body + k;
+            places_[body] = {.ring = r,
+                             .number = k,
+                             .count = ring.body_count,
+                             .neighbours = neighbours,
+                             .at_rest_mm = world.bodies.position_mm[body],
+                             .radius_mm = world.bodies.radius_mm[body]};
         }
     }
 }
@@ -44,7 +50,8 @@ bool RingFilter::ShouldCollide(b2Fixture* a, b2Fixture* b) {
         return true;
     }
     std::uint32_t const steps = one.number > other.number ? one.number - other.number : other.number - one.number;
-    return std::min(steps, one.count - steps) > one.neighbours;
+    bool const are_neighbours = std::min(steps, one.count - steps) <= one.neighbours;
+    return !are_neighbours && length(other.at_rest_mm - one.at_rest_mm) >= one.radius_mm + other.radius_mm;
 }
 
 }  // namespace pogosim

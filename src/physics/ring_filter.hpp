@@ -9,8 +9,9 @@
 
 namespace pogosim {
 
-/// Bodies that overlap at rest, as close neighbours in a ring do, must not push each other away; the others of a ring
-/// collide, so that it does not cross itself. A fixture's user data is the index of its body, kNone for walls.
+/// Bodies that overlap at rest, as close neighbours in a ring and those around a sharp corner do, must not push each
+/// other away; the others of a ring collide, so that it does not cross itself. A fixture's user data is the index of
+/// its body, kNone for walls.
 class RingFilter final : public b2ContactFilter {
 public:
     explicit RingFilter(World const& world);
@@ -23,6 +24,8 @@ private:
         std::uint32_t number = 0;
         std::uint32_t count = 0;
         std::uint32_t neighbours = 0;  // those up to so many places on do not collide
+        Vec2 at_rest_mm;
+        float radius_mm = 0.0F;
     };
     std::vector<PlaceInRing> places_;  // of each body
 };

@@ -58,8 +58,7 @@ void add_bodies(World& world, Object& object, ObjectSpec const& spec, Placement 
     for (RingBody const& body : ring.bodies) {
         add_body(world.bodies, body, *spec.body);
     }
-    world.rings.push_back(
-        {.body = object.body, .body_count = object.body_count, .stiffness_hz = spec.ring->stiffness_hz});
+    world.rings.push_back({.body = object.body, .body_count = object.body_count});
     for (Joint joint : ring.joints) {
         joint.a += object.body;
         joint.b += object.body;

@@ -66,7 +66,6 @@ struct Joint {
 struct Ring {
     std::uint32_t body = 0;  // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;
-    float stiffness_hz = 0.0F;  // frequency of the area as a spring
 };
 
 /// The velocity a robot's motors ask of its body.
