@@ -1,6 +1,5 @@
 // Rigid bodies with Box2D 2.4.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -65,32 +64,44 @@ std::vector<b2Vec2> wall_corners(Polygon const& polygon, bool outer) {
     return corners;
 }
 
+/// Corners clockwise on the screen around the centroid, convex. By hand, since b2PolygonShape::Set() joins corners that
+/// lie close together.
+void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef& fixture) {
+    b2PolygonShape polygon;
+    polygon.m_centroid = b2Vec2_zero;
+    polygon.m_count = static_cast<int32>(corners_mm.size());
+    for (std::size_t i = 0; i < corners_mm.size(); ++i) {
+        Vec2 const edge = corners_mm[(i + 1) % corners_mm.size()] - corners_mm[i];
+        polygon.m_vertices[i] = to_box2d(corners_mm[i]);
+        polygon.m_normals[i] = {edge.y / length(edge), -edge.x / length(edge)};
+    }
+    polygon.m_radius = kSkin;
+    fixture.shape = &polygon;
+    body.CreateFixture(&fixture);
+}
+
+/// All shapes have their centre of mass at their origin.
+void set_mass(b2Body& body, float mass, float inertia) {
+    b2MassData const data{.mass = mass, .center = b2Vec2_zero, .I = inertia};
+    body.SetMassData(&data);
+}
+
+void add_disk(b2Body& body, float radius_mm, b2FixtureDef& fixture) {
+    float const radius = radius_mm / kMmPerUnit;
+    b2CircleShape disk;
+    disk.m_radius = radius + kSkin;
+    fixture.shape = &disk;
+    body.CreateFixture(&fixture);
+    // The skin weighs nothing.
+    float const mass = fixture.density * std::numbers::pi_v<float> * radius * radius;
+    set_mass(body, mass, 0.5F * mass * radius * radius);
+}
+
 void add_shape(b2Body& body, Shape const& shape, b2FixtureDef& fixture) {
-    switch (shape.kind) {
-        case ShapeKind::rectangle: {
-            b2PolygonShape box;
-            box.SetAsBox(shape.width_mm / 2.0F / kMmPerUnit, shape.height_mm / 2.0F / kMmPerUnit);
-            fixture.shape = &box;
-            body.CreateFixture(&fixture);
-            return;
-        }
-        case ShapeKind::triangle: {
-            float const height = shape.side_length_mm * std::numbers::sqrt3_v<float> / 2.0F;
-            std::array<b2Vec2, 3> const corners{to_box2d({0.0F, -height * 2.0F / 3.0F}),
-                                                to_box2d({shape.side_length_mm / 2.0F, height / 3.0F}),
-                                                to_box2d({-shape.side_length_mm / 2.0F, height / 3.0F})};
-            b2PolygonShape triangle;
-            triangle.Set(corners.data(), static_cast<int32>(corners.size()));
-            fixture.shape = &triangle;
-            body.CreateFixture(&fixture);
-            return;
-        }
-        default: {
-            b2CircleShape disk;
-            disk.m_radius = bounding_radius(shape) / kMmPerUnit + kSkin;
-            fixture.shape = &disk;
-            body.CreateFixture(&fixture);
-        }
+    if (shape.kind == ShapeKind::rectangle || shape.kind == ShapeKind::triangle) {
+        add_polygon(body, outline(shape), fixture);
+    } else {
+        add_disk(body, bounding_radius(shape), fixture);
     }
 }
 
@@ -205,9 +216,7 @@ private:
                 b2Body& body = *bodies_[ring.body + k];
                 float const factor = heaviest / (kMostMassRatio * body.GetMass());
                 if (factor > 1.0F) {
-                    b2MassData const mass{
-                        .mass = factor * body.GetMass(), .center = b2Vec2_zero, .I = factor * body.GetInertia()};
-                    body.SetMassData(&mass);
+                    set_mass(body, factor * body.GetMass(), factor * body.GetInertia());
                 }
             }
         }
