@@ -90,7 +90,8 @@ release_tests() {
 
 python_tests() {
     suite "Python tests" "$reports/python.xml" \
-        "$python" -m pytest -q -c python/pyproject.toml --rootdir . tests/python --junitxml "$reports/python.xml"
+        "$python" -m pytest -q -c python/pyproject.toml --rootdir . --numprocesses "$(processors)" --dist loadfile \
+        tests/python --junitxml "$reports/python.xml"
 }
 
 # Whether leaks can be looked for: that needs ptrace, which many containers forbid.
