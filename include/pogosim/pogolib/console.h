@@ -1,5 +1,5 @@
-// What a robot prints. Text is kept until a line is complete (or the run ends, or 64 KiB are waiting); the line then goes
-// to the log of the run as "[ROBOT #<id>] [PRINTF] <line>".
+// What a robot prints. Text is kept until a line is complete (or the run ends, or 64 KiB are waiting); the line then
+// goes to the log of the run as "[ROBOT #<id>] [PRINTF] <line>".
 #ifndef POGOSIM_POGOLIB_CONSOLE_H
 #define POGOSIM_POGOLIB_CONSOLE_H
 
