@@ -131,8 +131,9 @@ def levels(program: Path, folder: Path, lamps: dict[str, dict[str, object]], end
     (folder / "run.yaml").write_text(yaml.safe_dump(configuration, sort_keys=False), encoding="utf-8")
     subprocess.run([str(program), "-c", str(folder / "run.yaml"), "-g", "-q"], check=True, timeout=120)
     rows, _ = load_dataframe(folder / "light.feather")
-    by_time = rows.sort_values("robot_id").groupby("time")["light"]
-    return {round(float(time), 1): level.to_numpy().reshape(CELLS, CELLS) for time, level in by_time}
+    levels = rows.pivot(index="time", columns="robot_id", values="light")
+    times = levels.index.to_numpy(dtype=float)
+    return {round(time, 1): level.reshape(CELLS, CELLS) for time, level in zip(times, levels.to_numpy())}
 
 
 def main() -> None:

@@ -33,9 +33,9 @@ def covers(lamp: dict[str, Any], dx: Array, dy: Array) -> npt.NDArray[np.bool_]:
     if lamp["geometry"] == "global":
         return np.full(dx.shape, True)
     if lamp["geometry"] == "disk":
-        return np.hypot(dx, dy) <= lamp["radius"]
+        return np.asarray(np.hypot(dx, dy) <= lamp["radius"])
     assert lamp["geometry"] == "rectangle"
-    return (np.abs(dx) <= lamp["body_width"] / 2) & (np.abs(dy) <= lamp["body_height"] / 2)
+    return np.asarray((np.abs(dx) <= lamp["body_width"] / 2) & (np.abs(dy) <= lamp["body_height"] / 2))
 
 
 def level_of(lamp: dict[str, Any], dx: Array, dy: Array) -> Array:

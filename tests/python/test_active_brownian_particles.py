@@ -121,7 +121,8 @@ def test_robots_that_say_they_are_stuck_were_slow(dish: pd.DataFrame) -> None:
 
 def test_stuck_particles_reverse_then_spin_then_swim_on(dish: pd.DataFrame) -> None:
     phase = by_robot(dish, "phase")
-    changes = {(a, b) for a, b in zip(phase[:-1].ravel(), phase[1:].ravel(), strict=True) if a != b}
+    pairs = zip(phase[:-1].ravel(), phase[1:].ravel(), strict=True)
+    changes = {(int(a), int(b)) for a, b in pairs if a != b}
     # A spin of 0.1 s may begin and end between two rows.
     assert {(SWIMS, REVERSES), (REVERSES, SPINS), (SPINS, SWIMS)} <= changes
     assert (SWIMS, SPINS) not in changes

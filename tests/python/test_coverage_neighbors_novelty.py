@@ -44,7 +44,7 @@ def unevenness_and_coverage(rows: pd.DataFrame) -> tuple[float, float]:
 
 
 def mean_at(frame: pd.DataFrame, times: list[float]) -> Array:
-    return np.mean([unevenness_and_coverage(frame[frame["time"] == time]) for time in times], axis=0)
+    return np.asarray(np.mean([unevenness_and_coverage(frame[frame["time"] == time]) for time in times], axis=0))
 
 
 @pytest.fixture(scope="module")
@@ -115,8 +115,8 @@ def test_coverage_robots_get_bored_when_they_have_known_all_neighbours_for_tau(t
     assert (frame[frame["time"] > 1]["total_neighbors"] == 3).all()
     assert (frame[frame["time"] <= TAU_S]["nov_cnt"] == 0).all()
 
-    def bored_since(start_s: float) -> pd.Series:
-        return TAU_S * (1 - np.exp(-np.maximum(0, frame["time"] - start_s) / TAU_S))
+    def bored_since(start_s: float) -> Array:
+        return np.asarray(TAU_S * (1 - np.exp(-np.maximum(0, frame["time"] - start_s) / TAU_S)))
 
     before_escapes = frame["surprise"] < 2
     assert (frame["nov_cnt"] <= bored_since(TAU_S) + 0.03).all()

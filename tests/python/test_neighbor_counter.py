@@ -65,7 +65,7 @@ def still(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
 def test_counts_are_those_of_geometry(still: pd.DataFrame) -> None:
     end = still[still["time"] == 10].sort_values("robot_id").reset_index()
     one_way = 0
-    for robot, row in end.iterrows():
+    for robot, (_, row) in enumerate(end.iterrows()):
         heard = {other: faces_that_hear(end, robot, other) for other in range(49) if other != robot}
         neighbors = {other for other, faces in heard.items() if faces}
         one_way += sum(not faces_that_hear(end, other, robot) for other in neighbors)
@@ -79,10 +79,10 @@ def test_counts_are_those_of_geometry(still: pd.DataFrame) -> None:
 
 
 def test_neighbours_stand_within_the_range_and_two_radii(tmp_path: Path) -> None:
-    end = run(tmp_path).query("time == 10").set_index("robot_id")
+    end = run(tmp_path).query("time == 10").sort_values("robot_id").reset_index()
     place = end["x"] + 1j * end["y"]
     farthest = RANGE + 2 * RADIUS
-    for robot, row in end.iterrows():
+    for robot, (_, row) in enumerate(end.iterrows()):
         distance = np.abs(place - place[robot]).drop(robot)
         listed = [int(text) for text in row["neighbors_list"].split(",") if text]
         assert (distance[listed] <= farthest).all()

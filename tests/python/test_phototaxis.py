@@ -24,7 +24,7 @@ def rows(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
 
 def stopped(rows: pd.DataFrame) -> npt.NDArray[np.bool_]:
     """Which robots stay; shape (times, robots)."""
-    return rows.pivot(index="time", columns="robot_id", values="led_rgb").to_numpy() == BLUE
+    return np.asarray(rows.pivot(index="time", columns="robot_id", values="led_rgb").to_numpy() == BLUE)
 
 
 def bright_share() -> float:

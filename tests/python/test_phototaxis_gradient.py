@@ -26,7 +26,7 @@ def rows(tmp_path_factory: pytest.TempPathFactory) -> pd.DataFrame:
 def mean_light(rows: pd.DataFrame) -> Array:
     """Light at the robots' centres as the configuration says it, mean over the swarm, one per time."""
     level = light_at(CONFIG, rows["x"], rows["y"])
-    return pd.Series(level).groupby(rows["time"].to_numpy()).mean().to_numpy()
+    return np.asarray(pd.Series(level).groupby(rows["time"].to_numpy()).mean())
 
 
 def brightest_mean() -> float:

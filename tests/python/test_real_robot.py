@@ -29,7 +29,7 @@ LIBC = {
 
 
 def compile_object(name: str, source: Path, output: Path) -> Path:
-    options = ["-DREAL_ROBOT", *TOOLCHAINS[name], *WARNINGS, "-I", ROOT / "include", "-I", STUB]
+    options: list[str | Path] = ["-DREAL_ROBOT", *TOOLCHAINS[name], *WARNINGS, "-I", ROOT / "include", "-I", STUB]
     if source.suffix == ".cpp":
         name = name.replace("gcc", "g++").replace("clang", "clang++")
         options += ["-std=gnu++20", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics"]

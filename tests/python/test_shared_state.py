@@ -40,7 +40,7 @@ def found_by_tool(report: str) -> Found:
 
 def marked_in_source(files: list[str]) -> Found:
     return {
-        (file, number, *(lambda name, size: (name, int(size)))(*mark.groups()))
+        (file, number, mark[1], int(mark[2]))
         for file in files
         for number, line in enumerate((CASES / file).read_text().splitlines(), start=1)
         if (mark := re.search(r"// found: (\S+) (\d+)$", line))

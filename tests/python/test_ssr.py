@@ -31,7 +31,7 @@ def links(position: Array) -> Array:
     emitter = RADIUS_MM * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
     step = position[None, :] - position[:, None]
     distance = np.linalg.norm(step[:, :, None] - emitter, axis=3).min(axis=2)
-    adjacency = (distance <= REACH_MM + RADIUS_MM).astype(float)
+    adjacency: Array = (distance <= REACH_MM + RADIUS_MM).astype(float)
     np.fill_diagonal(adjacency, 0)
     return adjacency
 

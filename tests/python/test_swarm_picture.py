@@ -173,7 +173,9 @@ class Map:
 def scene(folder: Path, objects: dict[str, Any], extra: pd.DataFrame | None = None) -> Map:
     """Two robots and other objects."""
     robots = {"robots": {"type": "pogobot", "geometry": "disk", "radius": 26.5}}
-    frame = pd.concat([rows(subpart_id=np.int16([-1] * 4)), *([] if extra is None else [extra])])
+    frame = rows(subpart_id=np.array([-1] * 4, np.int16))
+    if extra is not None:
+        frame = pd.concat([frame, extra])
     configuration = yaml.safe_dump({"objects": {**robots, **objects}})
     return Map(picture(folder, write(folder, frame, configuration=configuration), "--tail", "0.001"))
 
@@ -182,14 +184,14 @@ def others(category: str, x: list[float], y: list[float], angle: float = 0.0, le
     """Rows of one object at the end; more than one place makes them its parts, after a first row for all of it."""
     xs, ys = (x[:1] + x, y[:1] + y) if len(x) > 1 else (x, y)
     return rows(
-        time=np.float32([1] * len(xs)),
+        time=np.array([1] * len(xs), np.float32),
         robot_category=[category] * len(xs),
-        robot_id=np.int32([65535] * len(xs)),
-        x=np.float32(xs),
-        y=np.float32(ys),
-        angle=np.float32([angle] * len(xs)),
-        led_rgb=np.int32([led] * len(xs)),
-        subpart_id=np.int16([-1, *range(len(xs) - 1)]),
+        robot_id=np.array([65535] * len(xs), np.int32),
+        x=np.array(xs, np.float32),
+        y=np.array(ys, np.float32),
+        angle=np.array([angle] * len(xs), np.float32),
+        led_rgb=np.array([led] * len(xs), np.int32),
+        subpart_id=np.array([-1, *range(len(xs) - 1)], np.int16),
     )
 
 

@@ -38,7 +38,8 @@ def test_one_opinion_wins_and_stays(swarm: pd.DataFrame) -> None:
     agreed = counts.max(axis=1) == 60
     assert agreed.iloc[-1]
     # For an instant messages of the last max_age may still bring up another one.
-    assert agreed[agreed.idxmax() + 5.0 :].all()
+    first_time = float(agreed.index[agreed].min())
+    assert agreed[first_time + 5.0 :].all()
 
 
 def test_extinct_opinions_do_not_come_back(swarm: pd.DataFrame) -> None:
