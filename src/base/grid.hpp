@@ -13,8 +13,8 @@ namespace pogosim {
 
 class UniformGrid {
 public:
-    /// Sorts the points (mm). `cell_mm` is about the radius of the queries to come; `periodic` wraps at `bounds`.
-    /// Points outside the bounds count as in the outermost cell.
+    /// Sorts the points (mm). `cell_mm` is about the radius of the queries to come; `periodic` wraps at `bounds`, else
+    /// points outside of them count as in the outermost cell.
     void build(std::span<Vec2 const> points, Box bounds, float cell_mm, bool periodic);
 
     /// Calls visit(index, point) for every point of the cells that touch the square of half width `radius_mm` around
@@ -34,10 +34,20 @@ private:
         int last;
     };
 
-    int column_of(float x) const { return clamp_cell((x - origin_.x) * columns_per_mm_, columns_); }
-    int row_of(float y) const { return clamp_cell((y - origin_.y) * rows_per_mm_, rows_); }
+    int column_of(float x) const { return cell_at((x - origin_.x) * columns_per_mm_, columns_); }
+    int row_of(float y) const { return cell_at((y - origin_.y) * rows_per_mm_, rows_); }
+    int cell_at(float position, int count) const {
+        auto const whole = static_cast<float>(count);
+        return clamp_cell(periodic_ ? position - whole * std::floor(position / whole) : position, count);
+    }
     static int clamp_cell(float position, int count) {
         return static_cast<int>(std::clamp(position, 0.0F, static_cast<float>(count - 1)));
+    }
+
+    /// Of cells that may lie beyond the bounds on either side.
+    static int remainder(int cell, int count) {
+        int const rest = cell % count;
+        return rest < 0 ? rest + count : rest;
     }
 
     /// Cells along one axis that a query touches. May lie outside [0, count) when periodic, and is never longer than
@@ -62,9 +72,9 @@ void UniformGrid::for_each_near(Vec2 centre, float radius_mm, Visit const& visit
     Span const columns = cells(low.x * columns_per_mm_, high.x * columns_per_mm_, columns_, periodic_);
     Span const rows = cells(low.y * rows_per_mm_, high.y * rows_per_mm_, rows_, periodic_);
     for (int r = rows.first; r <= rows.last; ++r) {
-        int const row = (r + rows_) % rows_;
+        int const row = remainder(r, rows_);
         for (int c = columns.first; c <= columns.last; ++c) {
-            int const column = (c + columns_) % columns_;
+            int const column = remainder(c, columns_);
             auto const cell =
                 static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
             for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) {

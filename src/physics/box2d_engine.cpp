@@ -11,6 +11,7 @@
 #include "physics/physics_engine.hpp"
 #include "physics/ring_area.hpp"
 #include "physics/ring_filter.hpp"
+#include "physics/wrap_objects.hpp"
 
 namespace pogosim {
 
@@ -153,11 +154,11 @@ public:
             }
             engine_.Step(dt_s, iterations.velocity, iterations.position);
         }
+        if (world.periodic) {
+            wrap_objects(world, bodies_);
+        }
         any_awake_ = false;
         for (Object const& object : world.objects) {
-            if (world.periodic && object.body_count > 0) {
-                wrap(world.arena.bounds, object);
-            }
             for (std::uint32_t k = 0; k < object.body_count; ++k) {
                 read_back(world.bodies, object.body + k);
             }
@@ -282,26 +283,6 @@ private:
         bodies.heading_rad[i] = body.GetAngle();
         bodies.velocity_mm_s[i] = from_box2d(body.GetLinearVelocity());
         bodies.spin_rad_s[i] = body.GetAngularVelocity();
-    }
-
-    /// An object comes in on the other side as a whole, once its centre is out.
-    void wrap(Box const& bounds, Object const& object) {
-        Vec2 centre;
-        for (std::uint32_t k = 0; k < object.body_count; ++k) {
-            centre = centre + from_box2d(bodies_[object.body + k]->GetPosition());
-        }
-        centre = (1.0F / static_cast<float>(object.body_count)) * centre;
-        Vec2 const size = bounds.size();
-        Vec2 const turns{std::floor((centre.x - bounds.min.x) / size.x),
-                         std::floor((centre.y - bounds.min.y) / size.y)};
-        if (turns == Vec2{}) {
-            return;
-        }
-        b2Vec2 const back = to_box2d({turns.x * size.x, turns.y * size.y});
-        for (std::uint32_t k = 0; k < object.body_count; ++k) {
-            b2Body& body = *bodies_[object.body + k];
-            body.SetTransform(body.GetPosition() - back, body.GetAngle());
-        }
     }
 
     RingFilter filter_;

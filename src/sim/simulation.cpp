@@ -52,8 +52,9 @@ ObjectRow row_of(World const& world, Object const& object, std::optional<std::in
                   .angle_rad = kNoValue,
                   .led_rgb = object.robot != kNone ? packed_rgb(world.robots.led[object.robot][0]) : 0};
     if (object.body != kNone) {
-        row.x_mm = world.bodies.position_mm[object.body].x;
-        row.y_mm = world.bodies.position_mm[object.body].y;
+        Vec2 const place_mm = wrapped(world, world.bodies.position_mm[object.body]);
+        row.x_mm = place_mm.x;
+        row.y_mm = place_mm.y;
     }
     if (object.body_count == 1) {
         row.angle_rad = wrap_angle(world.bodies.heading_rad[object.body]);
@@ -256,7 +257,7 @@ void Simulation::record_subparts(Object const& object) {
     }
     ObjectRow row = row_of(world_, object, programs_.ticks(object.robot));
     for (std::uint32_t part = 0; part < object.body_count; ++part) {
-        Vec2 const position_mm = world_.bodies.position_mm[object.body + part];
+        Vec2 const position_mm = wrapped(world_, world_.bodies.position_mm[object.body + part]);
         row.x_mm = position_mm.x;
         row.y_mm = position_mm.y;
         row.subpart = static_cast<std::int16_t>(part);

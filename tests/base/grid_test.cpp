@@ -61,5 +61,16 @@ TEST(UniformGrid, PointsOutsideTheBoundsAreFound) {
     EXPECT_EQ(visits, 2);
 }
 
+TEST(UniformGrid, PeriodicOneWrapsPointsAndQueriesOutsideTheBounds) {
+    std::vector<Vec2> const points{{-50, 500}, {2950, 1500}, {950, -500}, {950, 500}};  // all the same place
+    UniformGrid grid;
+    grid.build(points, {{0, 0}, {1000, 1000}}, 100.0F, true);
+    for (Vec2 const centre : {Vec2{950, 500}, Vec2{-50, 500}, Vec2{-2050, 2500}, Vec2{1950, -1500}}) {
+        int visits = 0;
+        grid.for_each_near(centre, 20.0F, [&](std::uint32_t /*index*/, Vec2 /*point*/) { ++visits; });
+        EXPECT_EQ(visits, 4);
+    }
+}
+
 }  // namespace
 }  // namespace pogosim
