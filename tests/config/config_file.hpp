@@ -22,7 +22,7 @@ namespace pogosim::config_file {
 class Folder {
 public:
     Folder() : before_(std::filesystem::current_path()) {
-        std::string const test = testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::string const test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
         path_ = std::filesystem::temp_directory_path() / ("pogosim_config_" + std::to_string(getpid()) + "_" + test);
         std::filesystem::create_directories(path_);
         std::filesystem::current_path(path_);

@@ -3,25 +3,15 @@
 
 #include <cmath>
 
-#include "support/scenes.hpp"
+#include "support/objects.hpp"
 #include "support/test_program.hpp"
 
 namespace pogosim {
 namespace {
 
-/// A membrane of the default make, a disk of 200 mm in the middle of a square of 1 m.
+/// In the middle of a square of 1 m.
 ObjectConfig membrane(bool segments) {
-    ObjectConfig object;
-    object.category = "membranes";
-    object.type = segments ? "rectmembrane" : "membrane";
-    object.position_mm = Vec2{500, 500};
-    object.spec.shape.radius_mm = 200.0F;
-    object.spec.body.emplace();
-    RobotSpec& robot = object.spec.robot.emplace();
-    robot.has_wheels = false;
-    robot.emitters = Emitters::outline;
-    object.spec.ring.emplace().segments = segments;
-    return object;
+    return testing::at(testing::membrane(segments), {500, 500});
 }
 
 /// Around a place, far enough from each other.
