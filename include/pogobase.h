@@ -1,5 +1,6 @@
-// The one header of a Pogobot program. The same source compiles for the simulator and, with -DREAL_ROBOT and the
-// Pogobot SDK, for the robots. C11, C17, C++17 and C++20; inside or outside an extern "C" block.
+/// @file
+/// The one header of a Pogobot program. The same source compiles for the simulator and, with -DREAL_ROBOT and the
+/// Pogobot SDK, for the robots. C11, C17, C++17 and C++20; inside or outside an extern "C" block.
 #ifndef POGOBASE_H
 #define POGOBASE_H
 

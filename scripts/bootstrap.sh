@@ -11,9 +11,10 @@
 apt_packages="build-essential cmake ninja-build ccache pkg-config
     libbox2d-dev libyaml-cpp-dev libspdlog-dev libfmt-dev libcli11-dev libgtest-dev libbenchmark-dev libdw-dev
     python3 python3-venv ca-certificates"
-apt_test_packages="gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf"
+apt_test_packages="doxygen gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf"
 apt_tidy_packages="clang-tidy"
 brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark python3"
+brew_test_packages="doxygen"
 brew_tidy_packages="llvm"
 
 # A caller's own Python settings must not leak into the project's environment.
@@ -80,6 +81,7 @@ install_packages() {
     local apt=$apt_packages brew=$brew_packages
     if [ "$1" != build ]; then
         apt="$apt $apt_test_packages"
+        brew="$brew $brew_test_packages"
     fi
     if [ "$1" = tidy ]; then
         apt="$apt $apt_tidy_packages"

@@ -1,9 +1,10 @@
-// Pogolib for simulated robots: the functions of the Pogobot SDK, one header per part of the robot.
+/// @file
+/// Pogolib for simulated robots: the functions of the Pogobot SDK, one header per part of the robot.
 #ifndef POGOSIM_POGOLIB_H
 #define POGOSIM_POGOLIB_H
 
-// A program may test SIMULATOR to add what only the simulator has.
 #ifndef SIMULATOR
+/// Defined in the simulator only: what only the simulator has stands between `#ifdef SIMULATOR` and `#endif`.
 #define SIMULATOR
 #endif
 
@@ -26,6 +27,7 @@ extern "C++" {
 #include <string.h>
 #include <time.h>
 
+/// Version of the SDK whose functions these are.
 #define POGOLIB_RELEASE_VERSION "v2.6"
 
 // A variable that each robot has for itself: the simulator puts in the running robot's value. Thread-local, so that

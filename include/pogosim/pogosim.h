@@ -1,5 +1,6 @@
-// The interface layer: user data, the loop of a program and its globals. It is compiled for simulated and real robots
-// alike; main_loop.c is its code. On a real robot it stands on the SDK (pogobot.h), here on pogosim/pogolib.h.
+/// @file
+/// The interface layer: user data, the loop of a program and its globals. It is compiled for simulated and real robots
+/// alike; main_loop.c is its code. On a real robot it stands on the SDK (pogobot.h), here on pogosim/pogolib.h.
 #ifndef POGOSIM_POGOSIM_H
 #define POGOSIM_POGOSIM_H
 
@@ -29,8 +30,11 @@ extern "C" {
 #include "pogosim/shared_state.h"
 #include "pogosim/userdata.h"
 
+/// The text of `x`.
 #define STRINGIFY_RAW(x) #x
+/// The text of what `x` stands for.
 #define STRINGIFY(x) STRINGIFY_RAW(x)
+/// strcmp() that the compiler computes if both texts are constants.
 #define STATIC_STRCMP(a, b) __builtin_strcmp((a), (b))
 
 #ifdef __cplusplus
@@ -42,20 +46,23 @@ POGO_BEGIN_API
 
 /// Ticks executed so far; one more at the end of each tick.
 extern POGO_PER_ROBOT uint32_t pogobot_ticks;
-/// Ticks per second asked for. The sleep between ticks is cut to whole milliseconds, so 60 gives 62.5. 0: no sleep.
+/// Ticks per second asked for, 60 at the start. The sleep between ticks is cut to whole milliseconds, so 60 gives 62.5.
+/// 0: no sleep, which is one tick per `time_step` in the simulator.
 extern POGO_PER_ROBOT uint8_t main_loop_hz;
-/// Messages handed to msg_rx_fn in one tick, at most; the others waiting then are dropped.
+/// Messages handed to msg_rx_fn in one tick, at most, 3 at the start; the others waiting then are dropped.
 extern POGO_PER_ROBOT uint8_t max_nb_processed_msg_per_tick;
-/// Chance (%) that msg_tx_fn is called in a tick.
+/// Chance (0 to 100 %) that msg_tx_fn is called in a tick, 20 at the start. Reception depends on it, too.
 extern POGO_PER_ROBOT uint8_t percent_msgs_sent_per_ticks;
-/// Called with each received message; NULL: messages stay in the queue.
+/// Called with each received message, after the step; NULL, as at the start: messages stay in the queue.
 extern POGO_PER_ROBOT void (*msg_rx_fn)(message_t*);
-/// Called to send a message; returns true when it sent one.
+/// Called by chance after the step to send a message; returns true when it sent one. NULL, as at the start: none.
 extern POGO_PER_ROBOT bool (*msg_tx_fn)(void);
+///@{
 /// Messages sent (msg_tx_fn said true) and received (msg_rx_fn called) so far.
 extern POGO_PER_ROBOT uint32_t nb_msgs_sent;
 extern POGO_PER_ROBOT uint32_t nb_msgs_recv;
-/// LED that shows error codes; negative: none.
+///@}
+/// LED that shows error codes, 0 to 4, 3 at the start; negative: none.
 extern POGO_PER_ROBOT int8_t error_codes_led_idx;
 
 // Stopwatches and times of the library itself.
@@ -64,25 +71,27 @@ extern POGO_PER_ROBOT time_reference_t timer_main_loop;
 extern POGO_PER_ROBOT uint32_t _current_time_milliseconds;
 extern POGO_PER_ROBOT uint32_t _error_code_initial_time;
 
-/// Milliseconds since this robot started.
+/// Milliseconds since this robot started, by its own clock.
 uint32_t current_time_milliseconds(void);
 
+/// What a robot can show on its error LED.
 typedef enum error_code_t {
     ERROR_TIME_OVERFLOW = 0,  ///< a tick took longer than 1 / main_loop_hz
-    error_code_t_last_entry
+    error_code_t_last_entry   ///< number of codes
 } error_code_t;
 
 /// Shows an error code on the LED error_codes_led_idx, in the colour qualitative_colormap(code), for a second.
 void display_led_error_code(error_code_t code);
 
-/// One tick of the main loop: user step, send, receive, sleep.
+/// One tick of the main loop: user step (NULL: none), send, receive, sleep. Programs need not call it.
 void pogo_main_loop_step(void (*user_step)(void));
 
 // ---- Entry point ----
 
-/// pogobot_start(user_init, user_step) or pogobot_start(user_init, user_step, "category"): called by main() once per
-/// category of objects the program controls (default "robots"). On a real robot the call whose category is
-/// ROBOT_CATEGORY never returns; in the simulator all return. user_step may be NULL.
+/// `pogobot_start(user_init, user_step)` or `pogobot_start(user_init, user_step, "category")`: called by main() once
+/// per category of objects the program controls (default "robots"). user_init runs once, user_step in each tick; it may
+/// be NULL. On a real robot the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in the
+/// simulator all return, and what is in the configuration but named by no call does nothing, with a warning.
 #define pogobot_start(...) POGO_START_PICK(__VA_ARGS__, pogobot_start_3, pogobot_start_2, )(__VA_ARGS__)
 #define POGO_START_PICK(init, step, category, chosen, ...) chosen
 #define pogobot_start_2(init, step) pogobot_start_3(init, step, "robots")
@@ -112,18 +121,21 @@ void clear_IR_buffers(void);
 
 #define pogobot_start_3(init, step, category) _pogobot_start((init), (step), (category))
 void _pogobot_start(void (*user_init)(void), void (*user_step)(void), char const* category);
-/// Category of the object that runs this code, as in the configuration.
+/// Category of the object that runs this code, as in the configuration; "__system" in callback_global_step.
 char const* get_current_robot_category(void);
+/// Whether that is its category. On a real robot a constant for the compiler, as get_current_robot_category().
 bool current_robot_category_is(char const* category);
 
 #endif
 
 // ---- Default controller of active walls ----
 
-/// pogobot_start(default_walls_user_init, default_walls_user_step, "walls"): sends the five bytes "wall\0" as a long
+///@{
+/// `pogobot_start(default_walls_user_init, default_walls_user_step, "walls")`: sends the five bytes "wall\0" as a long
 /// message in all directions, 7.5 times a second.
 void default_walls_user_init(void);
 void default_walls_user_step(void);
+///@}
 
 POGO_END_API
 #ifdef __cplusplus

@@ -1,8 +1,9 @@
-// Variables outside of USERDATA: one for all simulated robots, but one for each real robot. `make sim` (and the tool
-// pogosim-shared-state) warns of each that the program could change, but for those
-//
-//   - set from the configuration, with init_from_configuration(variable) and the like: the same on all robots anyway;
-//   - marked with POGO_SHARED: the program means to share them.
+/// @file
+/// Variables outside of USERDATA: one for all simulated robots, but one for each real robot. `make sim` (and the tool
+/// pogosim-shared-state) warns of each that the program could change, but for those
+///
+///   - set from the configuration, with `init_from_configuration(variable)` and the like: the same on all robots;
+///   - marked with #POGO_SHARED: the program means to share them.
 #ifndef POGOSIM_SHARED_STATE_H
 #define POGOSIM_SHARED_STATE_H
 
@@ -24,8 +25,8 @@
 #define POGO_TEXT_OF_RAW(x) #x
 #endif
 
-/// Notes in the program which variable a call reads from the configuration, for pogosim-shared-state: a constant with
-/// the text of the call's first argument, in the scope in which that text has its meaning.
+// Notes in the program which variable a call reads from the configuration, for pogosim-shared-state: a constant with
+// the text of the call's first argument, in the scope in which that text has its meaning.
 #define POGO_NOTE_CONFIGURED(variable, ...) \
     __extension__({ static char const pogosim_configured[] __attribute__((used, unused)) = #variable; })
 

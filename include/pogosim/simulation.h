@@ -1,5 +1,7 @@
-// What only the simulator has: configuration values for a program's globals, columns in the data file, callbacks.
-// Programs keep its use inside #ifdef SIMULATOR.
+/// @file
+/// What only the simulator has: configuration values for a program's globals, columns in the data file, callbacks.
+/// Real robots have nothing of this but an empty SET_CALLBACK(): programs keep its use inside of `#ifdef SIMULATOR`.
+/// Errors end the run with a message and exit code 2.
 #ifndef POGOSIM_SIMULATION_H
 #define POGOSIM_SIMULATION_H
 
@@ -10,18 +12,19 @@ POGO_BEGIN_API
 
 // ---- The run ----
 
-/// Number of objects that run code, walls and membranes included.
+/// Number of objects that run code: robots, pogobjects, active objects, walls and membranes.
 uint32_t get_nb_robots(void);
-/// Ends the run after the current time step.
+/// Ends the run after the current time step. The data file is complete, the exit code 0.
 void stop_simulation(void);
 
 // ---- Callbacks: SET_CALLBACK(callback_name, function), in main() after pogobot_start() ----
 
+/// Sets a callback; in main(), after pogobot_start(). On real robots it is empty, and the function need not exist.
 #define SET_CALLBACK(callback_name, fn) ((callback_name) = (fn))
 
 /// Once, before any user_init: read the configuration here.
 extern POGO_PER_ROBOT void (*callback_global_setup)(void);
-/// Once, after every user_init, when data is logged: declare columns here.
+/// Once, after every user_init, when there is a data file: declare columns here.
 extern POGO_PER_ROBOT void (*callback_create_data_schema)(void);
 /// For each object at time 0 and at each save period: set the values of its row.
 extern POGO_PER_ROBOT void (*callback_export_data)(void);
@@ -34,8 +37,9 @@ extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 
 // ---- Configuration: values under `parameters:` ----
 
-// Each sets the variable to the value under `parameters.<name>` (dots walk into maps and lists), or to the default when
-// it is absent. A value of the wrong type or out of range ends the run with a message.
+///@{
+/// Sets the variable to the value under `parameters.NAME` (dots walk into maps and lists), or to the default when it is
+/// absent. A value of the wrong type or out of the range of the variable's type is an error; integers cut fractions.
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
 void init_float_from_configuration(float* variable, char const* name, float const default_value);
 void init_double_from_configuration(double* variable, char const* name, double const default_value);
@@ -45,17 +49,22 @@ void init_int16_from_configuration(int16_t* variable, char const* name, int16_t 
 void init_uint16_from_configuration(uint16_t* variable, char const* name, uint16_t const default_value);
 void init_int8_from_configuration(int8_t* variable, char const* name, int8_t const default_value);
 void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t const default_value);
+///@}
 
-/// Arrays take their first `size` values from a list; an absent or empty list changes nothing, a shorter one is an
-/// error.
+///@{
+/// Sets an array to the first `size` numbers of the list under `parameters.NAME`. An absent or empty list changes
+/// nothing, a shorter one is an error.
 void init_float_array_from_configuration(float* array, char const* name, size_t const size);
 void init_double_array_from_configuration(double* array, char const* name, size_t const size);
-/// Texts are cut to `size` - 1 characters; an absent one changes nothing.
+///@}
+/// Sets a text (an array of `size` characters) to the one under `parameters.NAME`, cut to `size` - 1 characters; an
+/// absent one changes nothing.
 void init_string_from_configuration(char* text, char const* name, size_t const size);
 
 // ---- Data file ----
 
-/// Adds a column; only in callback_create_data_schema. Two columns of one name end the run with a message.
+///@{
+/// Adds a column to the data file; only in callback_create_data_schema. A second column of the same name is an error.
 void data_add_column_int8(char const* name);
 void data_add_column_int16(char const* name);
 void data_add_column_int32(char const* name);
@@ -64,9 +73,12 @@ void data_add_column_double(char const* name);
 void data_add_column_string(char const* name);
 void data_add_column_bool(char const* name);
 void data_add_column_float16(char const* name);
+///@}
 
-/// Value of a column in this object's row; only in callback_export_data. A column not set is null. An unknown column or
-/// another type ends the run with a message; a column left out by `data_logger_fields` is ignored.
+///@{
+/// Sets the value of a column in this object's row; only in callback_export_data, elsewhere it does nothing, with a
+/// warning. A column that is not set is null, as is a text that is NULL. An unknown column or another type than
+/// declared is an error; a column left out by `data_logger_fields` is ignored. float16 holds 11 bits and at most 65504.
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
 void data_set_value_int32(char const* name, int32_t value);
@@ -75,10 +87,13 @@ void data_set_value_double(char const* name, double value);
 void data_set_value_string(char const* name, char const* value);
 void data_set_value_bool(char const* name, bool value);
 void data_set_value_float16(char const* name, float value);
+///@}
 
-/// Whether this object's row is written this time. Enabled again before each callback.
+///@{
+/// Says in callback_export_data whether this object's row is written this time. Enabled again before each call.
 void enable_data_export(void);
 void disable_data_export(void);
+///@}
 
 POGO_END_API
 #ifdef __cplusplus
@@ -124,7 +139,8 @@ inline void pogosim_init_array(char* a, char const* name, size_t n) {
     init_string_from_configuration(a, name, n);
 }
 }
-/// Sets a variable from `parameters.<its name>`; its present value is the default.
+/// Sets a variable from `parameters` by its own name, as in `init_from_configuration(walk.speed)` for
+/// `parameters.walk.speed`; its present value is the default.
 #define init_from_configuration(variable) \
     (POGO_NOTE_CONFIGURED(variable, ), pogosim_init_variable((variable), #variable))
 /// The same for arrays of float or double, and for texts (arrays of char).
@@ -132,8 +148,8 @@ inline void pogosim_init_array(char* a, char const* name, size_t n) {
     (POGO_NOTE_CONFIGURED(array, ), pogosim_init_array((array), #array, sizeof(array) / sizeof((array)[0])))
 #else
 // clang-format off
-/// Sets a variable from `parameters.<its name>`; its present value is the default. Types: bool, float, double and
-/// integers of up to 32 bits.
+/// Sets a variable from `parameters` by its own name, as in `init_from_configuration(walk.speed)` for
+/// `parameters.walk.speed`; its present value is the default. Types: bool, float, double and integers of up to 32 bits.
 #define init_from_configuration(variable)               \
     (POGO_NOTE_CONFIGURED(variable, ), _Generic((variable), \
         bool: init_bool_from_configuration,             \

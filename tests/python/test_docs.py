@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 import subprocess
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from running import ROOT, compile_program, run, run_command
+from running import LIBRARY, ROOT, build_folder, compile_program, run, run_command
 
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)]*)?\)")
@@ -68,3 +69,32 @@ def test_new_object_type_of_the_docs_compiles(tmp_path: Path) -> None:
     command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
     command += ["-I", str(ROOT / "src"), "-I", str(ROOT / "include"), str(source)]
     assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""
+
+
+def test_api_reference_has_all_functions_and_variables_of_the_library(tmp_path: Path) -> None:
+    settings = f"@INCLUDE = docs/Doxyfile\nOUTPUT_DIRECTORY = {tmp_path}\nGENERATE_HTML = NO\n"
+    made = subprocess.run(["doxygen", "-"], cwd=ROOT, input=settings, capture_output=True, text=True, check=False)
+    assert (made.returncode, made.stderr) == (0, "")
+    members = [member for page in tmp_path.glob("xml/*.xml") for member in ElementTree.parse(page).iter("memberdef")]
+    documented = {member.findtext("name") for member in members}
+
+    command = ["nm", "-D", "--defined-only", str(build_folder() / "src" / LIBRARY)]
+    listing = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    exported = {line.split()[-1] for line in listing.splitlines()}
+    of_libc = {"main", "rand", "srand", "exit"}
+    behind_macros = {name for name in exported if name.startswith("pogosim_")} | {
+        "_pogobot_start",
+        "UserdataSize",
+        "mydata",
+    }
+    of_the_loop = {"_global_timer", "timer_main_loop", "_current_time_milliseconds", "_error_code_initial_time"}
+    assert exported - documented == of_libc | behind_macros | of_the_loop
+    macros = {
+        "pogobot_start",
+        "SET_CALLBACK",
+        "init_from_configuration",
+        "DECLARE_USERDATA",
+        "REGISTER_USERDATA",
+        "printf",
+    }
+    assert macros <= documented

@@ -1,5 +1,6 @@
-// What a robot prints. Text is kept until a line is complete (or the run ends, or 64 KiB are waiting); the line then
-// goes to the log of the run as "[ROBOT #<id>] [PRINTF] <line>".
+/// @file
+/// What a robot prints. Text is kept until a line is complete (or the run ends, or 64 KiB are waiting); the line then
+/// goes to the log of the run as "[ROBOT #id] [PRINTF] line".
 #ifndef POGOSIM_POGOLIB_CONSOLE_H
 #define POGOSIM_POGOLIB_CONSOLE_H
 
@@ -8,14 +9,13 @@ extern "C" {
 #endif
 POGO_BEGIN_API
 
-/// As printf of the robot's own libc: `long` has 32 bits there, so %ld and %lu print an int32_t or uint32_t.
-/// Returns the number of characters, or a negative value for a bad format.
+// What the macros below call.
 int pogosim_printf(char const* format, ...);
 int pogosim_vprintf(char const* format, va_list arguments);
 int pogosim_putchar(int character);
 int pogosim_puts(char const* text);
 
-/// The program's main(), renamed by pogosim/pogolib.h.
+// The program's main(), renamed by pogosim/pogolib.h.
 int robot_main(void);
 
 POGO_END_API
@@ -35,9 +35,15 @@ using ::pogosim_vprintf;
 #undef putchar
 #undef puts
 #undef vprintf
+
+/// Prints as the robot's own C library does: `long` has 32 bits there, so `%ld` and `%lu` print an int32_t or uint32_t.
+/// Returns the number of characters, or a negative value for a bad format.
 #define printf(...) pogosim_printf(__VA_ARGS__)
+/// Prints one character and returns it.
 #define putchar(character) pogosim_putchar(character)
+/// Prints a text and a line end. Returns 0.
 #define puts(text) pogosim_puts(text)
+/// As printf(), with the arguments in a va_list.
 #define vprintf(format, arguments) pogosim_vprintf(format, arguments)
 
 #endif

@@ -1,4 +1,5 @@
-// Start-up, identity and battery.
+/// @file
+/// Start-up, identity and battery.
 #ifndef POGOSIM_POGOLIB_HELPER_H
 #define POGOSIM_POGOLIB_HELPER_H
 
@@ -10,14 +11,15 @@ POGO_BEGIN_API
 /// Prepares the hardware of a real robot; nothing to do here.
 void pogobot_init(void);
 
-/// Identifier of this robot: 0, 1, 2, ... for robots, 65535 downwards for walls and membranes.
+/// Identifier of this robot: 0, 1, 2, ... in the order of the configuration; 65535, 65534, ... for walls and membranes;
+/// 0 in callback_global_step. A real robot has the number in its memory.
 uint16_t pogobot_helper_getid(void);
 
-/// A seed for srand(). The first one a robot asks for is different on every robot of a run and depends on nothing but
-/// the seed of the run and the robot.
+/// A seed for srand(), any int16_t. The first one a robot asks for is different on every robot of a run and depends on
+/// nothing but the seed of the run and the robot. rand() without srand() differs between simulated robots, too.
 int16_t pogobot_helper_getRandSeed(void);
 
-/// Prints the version of the SDK.
+/// Prints the version of the SDK, #POGOLIB_RELEASE_VERSION.
 void pogobot_helper_print_version(void);
 
 /// Battery voltage, mV. A simulated battery is always full: 32767.

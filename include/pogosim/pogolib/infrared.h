@@ -1,72 +1,91 @@
-// Infrared messages. Four emitters and four receiving faces: front, right, back, left.
+/// @file
+/// Infrared messages. Four emitters and four receiving faces: front, right, back, left. docs/communication.md says who
+/// hears whom, and how often. A message is delivered at the end of the simulator's step in which it was sent.
 #ifndef POGOSIM_POGOLIB_INFRARED_H
 #define POGOSIM_POGOLIB_INFRARED_H
 
-/// Longest payload of a message.
 #ifndef MAX_PAYLOAD_SIZE_BYTES
+/// Longest payload of a message, bytes. A program may define a smaller one before the include: it makes message_t
+/// smaller, and longer payloads are cut when they are received.
 #define MAX_PAYLOAD_SIZE_BYTES 382
 #endif
 #ifndef MAX_NUMBER_OF_WORD
+/// For programs that name it; the simulator does not use it.
 #define MAX_NUMBER_OF_WORD 20
 #endif
 
-/// Number of receivers, and of messages a robot's queue holds.
+/// Number of receivers.
 #define IR_RX_COUNT 4
+/// Messages a real robot's queue holds; in the simulator `message_queue_size` says how many, by default as many.
 #define NUMEL 20
 
+/// Faces of a robot; `ir_all`: all four.
 typedef enum ir_direction { ir_front = 0, ir_right = 1, ir_back = 2, ir_left = 3, ir_all = 4 } ir_direction;
 
+/// Kinds of packets; programs send and receive ir_t_short and ir_t_user.
 typedef enum ir_type_message { ir_t_cmd = 1, ir_t_flash = 2, ir_t_short = 3, ir_t_user = 16 } ir_type_message;
 
+/// What stands in front of a long message.
 typedef struct message_header_t {
     uint8_t _packet_type;          ///< ir_type_message
     uint8_t _emitting_power_list;  ///< two bits per emitter, front lowest; 0 in a short message
     uint16_t _sender_id;           ///< 0xFF in a short message
-    uint8_t _sender_ir_index;      ///< emitter, 4 for all; 0xF in a short message
+    uint8_t _sender_ir_index;      ///< emitter, 4 for all; of two or three, the first; 0xF in a short message
     uint8_t _receiver_ir_index;    ///< face that received it
     uint16_t payload_length;       ///< bytes
 } message_header_t;
 
+/// A long message, and what a receiver gets of both kinds.
 typedef struct message_t {
-    message_header_t header;
-    uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];
+    message_header_t header;                  ///< set by the sending and receiving functions
+    uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];  ///< payload_length bytes of it count
 } message_t;
 
+/// What stands in front of a short message.
 typedef struct message_short_header_t {
-    uint8_t _packet_type;
+    uint8_t _packet_type;     ///< ir_type_message
     uint16_t payload_length;  ///< bytes
 } message_short_header_t;
 
+/// A short message.
 typedef struct short_message_t {
-    message_short_header_t header;
-    uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];
+    message_short_header_t header;            ///< set by the sending functions
+    uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];  ///< payload_length bytes of it count
 } short_message_t;
 
+/// What went wrong at one receiver of a real robot. All zero in the simulator, which loses whole messages.
 typedef struct {
-    uint32_t overflow_counter;
-    uint32_t unknown_escaped_byte_counter;
-    uint32_t crc_mismatch_counter;
+    uint32_t overflow_counter;              ///< messages longer than the buffer
+    uint32_t unknown_escaped_byte_counter;  ///< wrong bytes behind an escape
+    uint32_t crc_mismatch_counter;          ///< wrong check sums
 } slip_error_counter_s;
 
+/// Power of each emitter, 0 to 3, a byte each.
 typedef union emitting_power_list_t {
-    uint32_t number;
+    uint32_t number;  ///< all four
     struct {
         uint8_t front, left, back, right;
-    } fields;
-    uint8_t array[4];
+    } fields;          ///< by name
+    uint8_t array[4];  ///< in the order of the fields
 } emitting_power_list_t;
 
-// Emitter powers, and lists of them.
+///@{
+/// A power for pogobot_infrared_set_power() and pogobot_infrared_emitting_power_list().
 #define pogobot_infrared_emitter_power_max 3
 #define pogobot_infrared_emitter_power_twoThird 2
 #define pogobot_infrared_emitter_power_oneThird 1
 #define pogobot_infrared_emitter_power_null 0
+///@}
+
+/// Bits that a power has in a list.
 #define pogobot_infrared_emitter_width_bits 2
 
+/// List of four powers, 0 to 3, for `_emitting_power_list` of a raw long message.
 #define pogobot_infrared_emitting_power_list(front, right, back, left)                                                 \
     (((front) << (0 * pogobot_infrared_emitter_width_bits)) | ((right) << (1 * pogobot_infrared_emitter_width_bits)) | \
      ((back) << (2 * pogobot_infrared_emitter_width_bits)) | ((left) << (3 * pogobot_infrared_emitter_width_bits)))
 
+/// Lists with one emitter, or all, at full power.
 enum {
     pogobot_infrared_emitting_power_list_front_full = 3,
     pogobot_infrared_emitting_power_list_right_full = 12,
@@ -75,54 +94,66 @@ enum {
     pogobot_infrared_emitting_power_list_all_full = 255
 };
 
-/// Power of one emitter in a list.
+/// Power of emitter `dir` (0 to 3) in a list.
 #define get_infrared_emitter_dir(dir, list) \
     (((list) >> ((dir)*pogobot_infrared_emitter_width_bits)) & pogobot_infrared_emitter_power_max)
 
+///@{
+/// The lowest bit of byte `index` of a word, or of the byte of an emitter, in the order of ir_direction.
 #define pogobot_infrared_emitter_mask_byindex(index) (1 << (8 * (index)))
 #define pogobot_infrared_emitter_front_mask pogobot_infrared_emitter_mask_byindex(0)
 #define pogobot_infrared_emitter_right_mask pogobot_infrared_emitter_mask_byindex(1)
 #define pogobot_infrared_emitter_back_mask pogobot_infrared_emitter_mask_byindex(2)
 #define pogobot_infrared_emitter_left_mask pogobot_infrared_emitter_mask_byindex(3)
+///@}
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 POGO_BEGIN_API
 
-// Sending. All return 0, or 1 when the payload is longer than MAX_PAYLOAD_SIZE_BYTES or NULL and nothing was sent.
+// Sending. 0 means sent, while msg_tx_fn returns true when it sent one.
 
-/// Long message (8 bytes of header) through all emitters at once; receivers see _sender_ir_index 4.
+/// Sends a long message (8 bytes of header and `message_size` of payload) through all emitters at once; receivers see
+/// `_sender_ir_index` 4. Returns 0, or 1 when the payload is longer than 382 bytes or NULL and nothing was sent.
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size);
-/// Long message through each emitter in turn, so that receivers see which one.
+/// Sends four long messages, one through each emitter, so that receivers see which one. Returns 0, or the number of
+/// those that were not sent.
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size);
-/// Long message through one emitter (ir_all: as omniGen).
+/// Sends a long message through one emitter; with `ir_all` as pogobot_infrared_sendLongMessage_omniGen(). Returns 0, or
+/// 1 as that.
 uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* const message, uint16_t const message_size);
-/// Short message (no sender in the header, 3 bytes) through all emitters at once.
+/// Sends a short message (3 bytes of header: no sender, no emitter) through all emitters at once. Returns 0, or 1 when
+/// the payload is longer than 382 bytes or NULL and nothing was sent.
 uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size);
-/// Short message through one emitter.
+/// Sends a short message through one emitter, or with `ir_all` through all at once. Returns 0, or 1 as for all.
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size);
-/// Long message as it is, through the emitters whose power in _emitting_power_list is not 0. Sets type and sender.
+/// Sends a long message as it is, through the emitters whose power in `_emitting_power_list` is not 0 (none: nothing is
+/// sent, with a warning), and as far as the largest of these powers reaches. Sets type and sender. Returns 0, or 1 when
+/// the message is NULL or `payload_length` above 382 and nothing was sent.
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message);
-/// Short message as it is. Sets the type.
+/// Sends a short message as it is, through one emitter or, with `ir_all`, all. Sets the type. Returns 0, or 1 as for
+/// long ones.
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message);
 
-/// Power of the emitters, 0 to 3 (more counts as 3). 0 sends nothing; the others reach equally far here.
+/// Power of the emitters for the functions above but raw long messages: 0 to 3, more counts as 3; 1 at the start. 0
+/// sends nothing. In the simulator 1 to 3 reach as far as `communication_radius_by_power` says, equally far without it.
 void pogobot_infrared_set_power(uint8_t power);
 
-// Receiving. The queue holds NUMEL messages; when it is full, new ones are lost.
+// Receiving, without msg_rx_fn. When the queue is full, new messages are lost.
 
 /// Decodes what has arrived on a real robot; nothing to do here.
 void pogobot_infrared_update(void);
-/// Non-zero when a message waits.
+/// Non-zero when a message waits. It does not change within a simulated tick: do not wait for it in a loop.
 int pogobot_infrared_message_available(void);
 /// Drops all waiting messages.
 void pogobot_infrared_clear_message_queue(void);
-/// See pogobot_infrared_recover_next_message.
+// See pogobot_infrared_recover_next_message.
 void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes);
 
-/// Error counters of receiver 0 to 3: always zero here.
+/// Error counters of receiver `ir_index`, 0 to 3: always zero in the simulator. NULL does nothing.
 void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t ir_index);
+/// Sets the error counters of a real robot to zero; nothing to do here.
 void pogobot_infrared_reset_receiver_error_counter(void);
 
 /// Prepares the hardware of a real robot; nothing to do here.

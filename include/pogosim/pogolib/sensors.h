@@ -1,7 +1,9 @@
-// Photosensors and inertial measurement unit.
+/// @file
+/// Photosensors and inertial measurement unit.
 #ifndef POGOSIM_POGOLIB_SENSORS_H
 #define POGOSIM_POGOLIB_SENSORS_H
 
+/// Photosensors: back, front left, front right.
 typedef enum { p_B = 0, p_FL = 1, p_FR = 2 } photosensor_id;
 
 #ifdef __cplusplus
@@ -9,16 +11,17 @@ extern "C" {
 #endif
 POGO_BEGIN_API
 
-/// Light level at photosensor 0 (back), 1 (front left) or 2 (front right), 0 to 32767 before noise and bias. -1 for
-/// other numbers.
+/// Light level at photosensor 0 (back), 1 (front left) or 2 (front right), sensor counts: 0 to 32767, with noise and
+/// bias -32768 to 32767. -1 for other numbers. Sensors sit on the rim, at 180, -40 and +40 degrees from the heading.
 int16_t pogobot_photosensors_read(uint8_t sensor_number);
 
-/// Acceleration (m/s2: [0] to the right, [1] forward, [2] up; the mean between the last two ticks) and angular velocity
-/// (rad/s; [2] counter-clockwise seen from above), three floats each. Clamped to +-156.9 m/s2 and +-34.9 rad/s as the
-/// real chip.
+/// Acceleration (m/s2: [0] to the right, [1] forward, [2] up; the mean between the last two ticks, 0 at the first) and
+/// angular velocity (rad/s; [2] counter-clockwise seen from above), three floats each, not NULL. Clamped to +-156.9
+/// m/s2 and
+/// +-34.9 rad/s as the real chip. The simulator has neither gravity nor tilt: acc[2], gyro[0] and gyro[1] are 0.
 void pogobot_imu_read(float* acc, float* gyro);
 
-/// Temperature of the chip, degrees Celsius, -40 to 85.
+/// Temperature of the chip, degrees Celsius, -40 to 85; `arena_temperature` in the simulator.
 float pogobot_imu_readTemp(void);
 
 POGO_END_API

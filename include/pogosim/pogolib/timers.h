@@ -1,13 +1,15 @@
-// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stands still while user code
-// runs and goes on when the robot sleeps; but a loop that waits for it ends, as each look at the clock beyond the
-// thousandth of a tick takes a microsecond. Differences beyond the range of int32_t (35 minutes) stay at its ends.
+/// @file
+/// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stands still while user code
+/// runs and goes on when the robot sleeps; but a loop that waits for it ends, as each look at the clock beyond the
+/// thousandth of a tick takes a microsecond. Differences beyond the range of int32_t (35 minutes) stay at its ends; on
+/// a real robot they wrap round after about 107 s.
 #ifndef POGOSIM_POGOLIB_TIMERS_H
 #define POGOSIM_POGOLIB_TIMERS_H
 
 /// A point in time. Declare, embed, copy and pass it by address; its fields are the library's.
 typedef struct time_reference_t {
-    uint32_t hardware_value_at_time_origin;
-    int64_t origin_us;
+    uint32_t hardware_value_at_time_origin;  ///< counter of the robot's clock
+    int64_t origin_us;                       ///< us since the robot's start; in the simulator only
 } time_reference_t;
 
 #ifdef __cplusplus
@@ -15,27 +17,28 @@ extern "C" {
 #endif
 POGO_BEGIN_API
 
-/// Origin = now.
+/// Starts a stopwatch: origin = now.
 void pogobot_stopwatch_reset(time_reference_t* stopwatch);
-/// Now - origin.
+/// Time since the origin, us.
 int32_t pogobot_stopwatch_get_elapsed_microseconds(time_reference_t* stopwatch);
-/// Now - origin, then origin = now.
+/// Time since the origin, us; then starts anew.
 int32_t pogobot_stopwatch_lap(time_reference_t* stopwatch);
-/// Origin += offset: a positive offset makes the elapsed time smaller.
+/// Moves the origin: a positive offset makes the elapsed time smaller.
 void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, int32_t microseconds_offset);
 
-/// The timer expires in so many microseconds.
+/// Starts a timer that expires in so many microseconds.
 void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go);
-/// Time left; negative once it has expired.
+/// Time left, us; negative once it has expired.
 int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer);
 /// True when the time left is negative.
 bool pogobot_timer_has_expired(time_reference_t* timer);
-/// Sleeps for the time left.
+/// Sleeps for the time left, if any.
 void pogobot_timer_wait_for_expiry(time_reference_t* timer);
 /// Moves the expiry by the offset: arms a periodic timer again without drift.
 void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset);
 
-/// Sleeps: the robot's next tick comes so much later. Zero and less do nothing.
+/// Sleeps: the robot's next tick comes so much later, but the rest of this one still runs in the same step of the
+/// simulator, with sensors and messages as they are. Zero and less do nothing.
 void msleep(int milliseconds);
 
 /// Prepares the clock of a real robot; nothing to do here.
