@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import re
 import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+from pogosim.utils import load_dataframe
+from project import CLEAN
+from robot_sdk import make_sdk
 from running import LIBRARY, ROOT, build_folder, compile_program, run, run_command
 
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -98,3 +102,26 @@ def test_api_reference_has_all_functions_and_variables_of_the_library(tmp_path: 
         "printf",
     }
     assert macros <= documented
+
+
+def test_tutorial_does_what_it_says(tmp_path: Path) -> None:
+    """From its first command to firmware, with the program, configuration and plot that stand in it."""
+    page = ROOT / "docs" / "first_program.md"
+    *parts, program = blocks(page, "c")
+    snippets = [part for part in parts if "int main(void)" not in part]
+    assert len(snippets) == 6
+    assert [part for part in snippets if " ".join(part.split()) not in " ".join(program.split())] == []
+
+    script = ROOT / "docs" / "figures" / "first_program.py"
+    environment = CLEAN | {"POGO_SDK": str(make_sdk(tmp_path / "pogobot-sdk"))}
+    done = subprocess.run(
+        [sys.executable, script, tmp_path], env=environment, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    project = tmp_path / "crowds"
+    assert (project / "build" / "bin" / "firmware.bin").stat().st_size > 0
+    assert (project / "results" / "neighbours.png").stat().st_size > 10_000
+    for seed in range(1, 6):
+        rows = load_dataframe(project / "results" / f"{seed}.feather")[0]
+        mean = rows.groupby("time").neighbours.mean()
+        assert mean.loc[2.0:10.0].mean() < 2.5 < 3.5 < mean.loc[110.0:].mean()
