@@ -15,6 +15,11 @@ constexpr float kCrossOfSegments = 0.4F;
 // A membrane of cloth, not of rubber: neighbours are never further apart than this part more than at rest.
 constexpr float kMaxStretch = 0.05F;
 
+/// The shape on whose outline the bodies' centres lie.
+Shape line_of_centres(ObjectSpec const& spec) {
+    return inset(spec.shape, std::min(half_thickness_mm(*spec.ring), kMostInset * bounding_radius(spec.shape)));
+}
+
 RingBody segment_between(Vec2 from, Vec2 to, float thickness_mm) {
     Vec2 const along = to - from;
     return {.position_mm = 0.5F * (from + to),
@@ -42,13 +47,18 @@ Joint hinge(RingParts const& ring, std::size_t a, std::size_t b) {
 
 }  // namespace
 
+float outer_radius_mm(ObjectSpec const& spec) {
+    float const radius_mm = bounding_radius(spec.shape);
+    return spec.ring ? std::max(radius_mm, bounding_radius(line_of_centres(spec)) + half_thickness_mm(*spec.ring))
+                     : radius_mm;
+}
+
 float half_thickness_mm(RingSpec const& ring) {
     return ring.segments ? 0.5F * ring.thickness_mm.value_or(ring.radius_mm) : ring.radius_mm;
 }
 
 Polygon ring_line(ObjectSpec const& spec, Placement const& placement) {
-    float const inwards_mm = std::min(half_thickness_mm(*spec.ring), kMostInset * bounding_radius(spec.shape));
-    Polygon const line = outline(inset(spec.shape, inwards_mm), spec.ring->body_count);
+    Polygon const line = outline(line_of_centres(spec), spec.ring->body_count);
     return moved(spread_along(line, spec.ring->body_count), placement.position_mm, placement.heading_rad);
 }
 

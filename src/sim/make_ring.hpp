@@ -25,6 +25,10 @@ Polygon ring_line(ObjectSpec const& spec, Placement const& placement);
 /// The ring of an object with `spec.ring` at this place. Its bodies lie within the shape's outline and touch it.
 RingParts make_ring(ObjectSpec const& spec, Placement const& placement);
 
+/// Radius of the disk around the centre that holds the object, mm: that of its shape, and more when a ring's bodies are
+/// too thick to lie within it.
+float outer_radius_mm(ObjectSpec const& spec);
+
 /// Half the thickness of a ring, mm.
 float half_thickness_mm(RingSpec const& ring);
 

@@ -18,6 +18,9 @@ namespace {
 // The random stream of the formation belongs to no robot; robots have theirs by their index.
 constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;
 
+// Bodies of a ring closer together than this are below the tolerance of physics.
+constexpr float kSmallestStepMm = 0.1F;
+
 constexpr std::size_t kNoEntry = std::numeric_limits<std::size_t>::max();
 
 bool is_placed_by_formation(ObjectConfig const& object) {
@@ -48,14 +51,36 @@ std::string arena_text(World const& world) {
                        box.max.x, box.max.y);
 }
 
+[[noreturn]] void fail_too_large(Scenario const& scenario, World const& world, ObjectConfig const& object,
+                                 float size_mm) {
+    throw ConfigError(fmt::format("{}: the object is {:.1f} mm across, too large for {}",
+                                  where_in_object(scenario, object, size_key(object.spec.shape)), size_mm,
+                                  arena_text(world)));
+}
+
 /// A formation needs room for a disk around each object; say so where the object is given, not where it fails.
 void check_size(Scenario const& scenario, World const& world, ObjectConfig const& object) {
-    float const needed_mm = 2.0F * bounding_radius(object.spec.shape);
+    float const needed_mm = 2.0F * outer_radius_mm(object.spec);
     Vec2 const room_mm = world.arena.bounds.size();
     if (object.nb > 0 && needed_mm > std::min(room_mm.x, room_mm.y)) {
-        throw ConfigError(fmt::format("{}: the object is {:.1f} mm across, too large for {}",
-                                      where_in_object(scenario, object, size_key(object.spec.shape)), needed_mm,
-                                      arena_text(world)));
+        fail_too_large(scenario, world, object, needed_mm);
+    }
+}
+
+/// Bodies of a ring have a line to lie on and some distance from each other.
+void check_ring(Scenario const& scenario, ObjectConfig const& object) {
+    RingSpec const& ring = *object.spec.ring;
+    float const radius_mm = bounding_radius(object.spec.shape);
+    if (half_thickness_mm(ring) > radius_mm) {
+        char const* const key = ring.segments && ring.thickness_mm ? "rect_thickness" : "dot_radius";
+        throw ConfigError(fmt::format("{}: a ring so thick does not fit into a shape of radius {:g} mm",
+                                      where_in_object(scenario, object, key), radius_mm));
+    }
+    Polygon const line = ring_line(object.spec, {});
+    float const step_mm = length(line[1] - line[0]);
+    if (step_mm < kSmallestStepMm) {
+        throw ConfigError(fmt::format("{}: so many would lie {:.2g} mm from each other; the least is {} mm",
+                                      where_in_object(scenario, object, "num_dots"), step_mm, kSmallestStepMm));
     }
 }
 
@@ -64,6 +89,13 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
     if (!stands_inside(world, centre_mm)) {
         throw ConfigError(fmt::format("{}: ({:g}, {:g}) is outside of {}", where_in_object(scenario, object, "x"),
                                       centre_mm.x, centre_mm.y, arena_text(world)));
+    }
+    if (Polygon const corners = outline(object.spec.shape); !corners.empty()) {
+        Vec2 const size_mm = bounding_box(corners).size();
+        Vec2 const room_mm = world.arena.bounds.size();
+        if (size_mm.x > room_mm.x || size_mm.y > room_mm.y) {
+            fail_too_large(scenario, world, object, std::max(size_mm.x, size_mm.y));
+        }
     }
     if (object.spec.ring && !std::ranges::all_of(moved(outline(object.spec.shape), centre_mm, 0.0F),
                                                  [&](Vec2 corner) { return stands_inside(world, corner); })) {
@@ -81,14 +113,22 @@ std::size_t root_entry(Scenario const& scenario) {
     return is_arena ? kNoEntry : static_cast<std::size_t>(found - scenario.objects.begin());
 }
 
+constexpr char const* kRootKey = "initial_formation_root_object";
+
+std::string where_root(Scenario const& scenario) {
+    Node const* const value = scenario.resolved.find(kRootKey);
+    return (value != nullptr ? value->where() + ": " : "") + kRootKey;
+}
+
 /// The space that the first object of the root category encloses.
-Arena root_domain(World const& world, ObjectConfig const& root, std::vector<Placement> const& poses) {
-    char const* const key = "initial_formation_root_object";
+Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig const& root,
+                  std::vector<Placement> const& poses) {
     ObjectSpec const& spec = root.spec;
     bool const is_solid = spec.body && !spec.ring;
     if (root.nb == 0 || is_solid) {
-        throw ConfigError(fmt::format("{}: '{}' {}; it can be the arena, a wall, a membrane or a lamp", key,
-                                      root.category, is_solid ? "is solid: nothing fits into it" : "has no object"));
+        throw ConfigError(fmt::format("{}: '{}' {}; it can be the arena, a wall, a membrane or a lamp",
+                                      where_root(scenario), root.category,
+                                      is_solid ? "is solid: nothing fits into it" : "has no object"));
     }
     if (spec.lamp) {
         auto const [shape, centre_mm] = area_at_start(*spec.lamp);
@@ -98,9 +138,14 @@ Arena root_domain(World const& world, ObjectConfig const& root, std::vector<Plac
     if (spec.shape.kind == ShapeKind::arena) {
         return world.arena;
     }
-    float const wall_mm = spec.ring ? 2.0F * half_thickness_mm(*spec.ring) : 0.0F;
+    Polygon space = outline(inset(spec.shape, spec.ring ? 2.0F * half_thickness_mm(*spec.ring) : 0.0F));
+    if (signed_area(space) < 1.0) {
+        throw ConfigError(fmt::format("{}: the ring of '{}' is so thick that there is no space in it; enlarge {}",
+                                      where_root(scenario), root.category,
+                                      where_in_object(scenario, root, size_key(spec.shape))));
+    }
     Placement const& pose = poses.front();
-    return make_arena({moved(outline(inset(spec.shape, wall_mm)), pose.position_mm, pose.heading_rad)});
+    return make_arena({moved(space, pose.position_mm, pose.heading_rad)});
 }
 
 /// Lets the formation place the objects of these entries together.
@@ -110,7 +155,7 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, For
     std::vector<float> radii;
     for (std::size_t const i : entries) {
         ObjectConfig const& object = scenario.objects[i];
-        radii.insert(radii.end(), static_cast<std::size_t>(object.nb), bounding_radius(object.spec.shape));
+        radii.insert(radii.end(), static_cast<std::size_t>(object.nb), outer_radius_mm(object.spec));
     }
     std::vector<Placement> const placed = place(formation, radii, ground, random, read_imported_feather);
     auto next = placed.begin();
@@ -137,6 +182,9 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     };
     for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
         ObjectConfig const& object = scenario.objects[i];
+        if (object.spec.ring && object.nb > 0) {
+            check_ring(scenario, object);
+        }
         if (is_placed_by_formation(object)) {
             check_size(scenario, world, object);
             entries.push_back(i);
@@ -157,9 +205,17 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
             place_entries(scenario, formation, {world.arena, obstacles}, {root}, random, poses);
             add_obstacles(root);
         }
-        domain = root_domain(world, scenario.objects[root], poses[root]);
+        domain = root_domain(scenario, world, scenario.objects[root], poses[root]);
     }
-    place_entries(scenario, formation, {domain, obstacles}, entries, random, poses);
+    try {
+        place_entries(scenario, formation, {domain, obstacles}, entries, random, poses);
+    } catch (ConfigError const& error) {
+        if (root == kNoEntry) {
+            throw;
+        }
+        throw ConfigError(
+            fmt::format("{}: inside of '{}': {}", where_root(scenario), scenario.objects[root].category, error.what()));
+    }
     return poses;
 }
 

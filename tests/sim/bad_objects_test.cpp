@@ -1,0 +1,145 @@
+// Objects that cannot be made or do not fit: one message that names file, line, object and key.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "config/config_file.hpp"
+#include "sim/build_world.hpp"
+
+namespace pogosim {
+namespace {
+
+using config_file::error_of;
+using config_file::Folder;
+using config_file::Warnings;
+
+/// A square of 1 m with a robot, lines 1 to 7, and then objects of the test.
+std::string const kScene =
+    "arena_file: square.csv\n"
+    "arena_surface: 1e6\n"
+    "initial_formation: random\n"
+    "ROOT\n"
+    "objects:\n"
+    "  robots: {type: pogobot, geometry: disk, radius: 26.5}\n";
+
+/// The message for a configuration with these objects, "no error" when it can be simulated.
+std::string error_with(std::string const& objects, std::string const& root = "") {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
+    std::string text = kScene;
+    text.replace(text.find("ROOT"), 4, root.empty() ? "" : "initial_formation_root_object: " + root);
+    Folder::write("x.yaml", text + objects);
+    return error_of([] { build_world(load_scenario("x.yaml", {}), 1); });
+}
+
+struct Case {
+    char const* keys;
+    char const* message;  // behind "x.yaml:7: objects.it."
+};
+
+void expect_refused(std::string const& type, std::vector<Case> const& cases) {
+    for (Case const& one : cases) {
+        EXPECT_EQ(error_with("  it: {type: " + type + ", " + one.keys + "}\n"),
+                  std::string("x.yaml:7: objects.it") + one.message)
+            << type;
+    }
+}
+
+TEST(BadObjects, NegativeAndZeroSizesAndMasses) {
+    for (char const* const type :
+         {"pogobot", "pogobject", "membrane", "rectmembrane", "active_object", "passive_object"}) {
+        expect_refused(
+            type, {{"geometry: disk, radius: 0", ".radius: expected a number above 0, at most 1000000 (mm), found 0"},
+                   {"geometry: disk, radius: -5", ".radius: expected a number above 0, at most 1000000 (mm), found -5"},
+                   {"geometry: disk, body_density: -1",
+                    ".body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found -1"},
+                   {"geometry: disk, body_density: 0",
+                    ".body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found 0"},
+                   {"geometry: blob", ".geometry: expected one of disk, rectangle, triangle, found 'blob'"},
+                   {"geometry: arena", ".geometry: expected one of disk, rectangle, triangle, found 'arena'"},
+                   {"radius: 20", ": the key 'geometry' is missing; expected one of disk, rectangle, triangle"},
+                   {"geometry: disk, x: 4", ".x: stands alone; give both x and y, or neither"}});
+    }
+}
+
+TEST(BadObjects, MembranesWithoutDots) {
+    for (char const* const type : {"membrane", "rectmembrane"}) {
+        expect_refused(
+            type,
+            {{"geometry: disk, num_dots: 0", ".num_dots: expected an integer from 3 to 10000, found 0"},
+             {"geometry: disk, num_dots: -3", ".num_dots: expected an integer from 3 to 10000, found -3"},
+             {"geometry: disk, dot_radius: 0", ".dot_radius: expected a number above 0, at most 1000000 (mm), found 0"},
+             {"geometry: disk, stiffness: 0", ".stiffness: expected a number above 0, at most 10000 (Hz), found 0"},
+             {"geometry: disk, cross_span: -1", ".cross_span: expected an integer from 0 to 10000 (dots), found -1"},
+             {"geometry: disk, colormap: blue", ".colormap: expected rainbow or qualitative, found 'blue'"}});
+    }
+}
+
+TEST(BadObjects, RingsThatCannotBe) {
+    expect_refused("membrane", {{"geometry: disk, radius: 100, dot_radius: 150",
+                                 ".dot_radius: a ring so thick does not fit into a shape of radius 100 mm"},
+                                {"geometry: disk, radius: 100, num_dots: 9000",
+                                 ".num_dots: so many would lie 0.063 mm from each other; the least is 0.1 mm"}});
+    expect_refused("rectmembrane", {{"geometry: disk, radius: 100, rect_thickness: 201",
+                                     ".rect_thickness: a ring so thick does not fit into a shape of radius 100 mm"},
+                                    {"geometry: disk, rect_thickness: 0",
+                                     ".rect_thickness: expected a number above 0, at most 1000000 (mm), found 0"}});
+    EXPECT_EQ(error_with("  it: {type: membrane, geometry: disk}\n"), "no error");  // all defaults
+}
+
+std::string const kArena = "the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm";
+
+TEST(BadObjects, LargerThanTheArena) {
+    for (char const* const type : {"membrane", "rectmembrane", "passive_object", "active_object", "pogobject"}) {
+        for (char const* const place : {"", ", x: 500, y: 500"}) {
+            std::string const before = std::string("  it: {type: ") + type + place;
+            EXPECT_EQ(error_with(before + ", geometry: disk, radius: 600}\n"),
+                      "x.yaml:7: objects.it.radius: the object is 1200.0 mm across, too large for " + kArena);
+        }
+    }
+    EXPECT_EQ(error_with("  it: {type: membrane, geometry: rectangle, body_width: 1200, body_height: 50}\n"),
+              "x.yaml:7: objects.it.body_width: the object is 1201.0 mm across, too large for " + kArena);
+    EXPECT_EQ(error_with("  it: {type: membrane, geometry: triangle, side_length: 1000}\n"),
+              "x.yaml:7: objects.it.side_length: the object is 1154.7 mm across, too large for " + kArena);
+    EXPECT_EQ(error_with("  it: {type: membrane, geometry: disk, radius: 200, x: 900, y: 500}\n"),
+              "x.yaml:7: objects.it.radius: around (900, 500) the object reaches beyond " + kArena);
+}
+
+TEST(BadObjects, OutsideOfTheArena) {
+    for (char const* const type :
+         {"pogobot", "pogobject", "pogowall", "membrane", "rectmembrane", "active_object", "passive_object"}) {
+        EXPECT_EQ(error_with(std::string("  it: {type: ") + type + ", geometry: disk, x: 1300, y: -2}\n"),
+                  "x.yaml:7: objects.it.x: (1300, -2) is outside of " + kArena);
+    }
+}
+
+TEST(BadObjects, WallsOfAShapeNeedAPlace) {
+    for (char const* const shape : {"disk", "rectangle", "triangle"}) {
+        EXPECT_EQ(error_with(std::string("  it: {type: pogowall, geometry: ") + shape + "}\n"),
+                  "x.yaml:7: objects.it: needs x and y: no formation places a wall of this geometry");
+    }
+    expect_refused("pogowall", {{"geometry: global",
+                                 ".geometry: expected one of arena, disk, rectangle, triangle, found 'global'"}});
+    EXPECT_EQ(error_with("  it: {type: pogowall, geometry: arena}\n"), "no error");
+    EXPECT_EQ(error_with("  it: {type: pogowall, geometry: arena, x: 3, y: 4000}\n"), "no error");  // stays where it is
+}
+
+TEST(BadObjects, FormationsInsideOfSomethingThatIsNoSpace) {
+    std::string const ring = "  it: {type: membrane, geometry: disk, radius: 150";
+    std::string const key = "x.yaml:4: initial_formation_root_object: ";
+    EXPECT_EQ(error_with(ring + "}\n", "it"), "no error");
+    EXPECT_EQ(error_with(ring + "}\n", "nobody"), key + "expected 'arena' or a category of 'objects', found 'nobody'");
+    EXPECT_EQ(error_with(ring + ", nb: 0}\n", "it"),
+              key + "'it' has no object; it can be the arena, a wall, a membrane or a lamp");
+    EXPECT_EQ(error_with("  it: {type: passive_object, geometry: disk, radius: 150}\n", "it"),
+              key + "'it' is solid: nothing fits into it; it can be the arena, a wall, a membrane or a lamp");
+    EXPECT_EQ(error_with(ring + ", dot_radius: 90}\n", "it"),
+              key + "the ring of 'it' is so thick that there is no space in it; enlarge x.yaml:7: objects.it.radius");
+    std::string const narrow = error_with(ring + ", dot_radius: 65}\n", "it");
+    EXPECT_EQ(narrow.find(key + "inside of 'it': formation 'random' cannot place 1 object"), 0U) << narrow;
+}
+
+}  // namespace
+}  // namespace pogosim
