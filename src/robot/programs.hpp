@@ -51,7 +51,7 @@ private:
     void allocate_user_data();
     void draw_individual_differences(std::uint64_t seed);
     void enter(std::uint32_t robot, char const* phase);
-    void leave();
+    static void leave();
     void run_main(std::uint32_t robot);
     void warn_of_idle_categories() const;
     void call(std::uint32_t robot, char const* phase, void (*function)());

@@ -27,7 +27,7 @@ std::vector<std::filesystem::path> data_folders() {
 }  // namespace
 
 std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name) {
-    std::filesystem::path const path(name);
+    std::filesystem::path path(name);
     std::error_code ignored;
     if (path.empty() || std::filesystem::exists(path, ignored)) {
         return path;

@@ -69,7 +69,7 @@ bool ObstacleField::is_clear(Vec2 centre_mm, float radius_mm) const {
 }
 
 /// The place just clear of the edge, on the side of the point or across.
-Vec2 ObstacleField::beside(Edge const& edge, Vec2 point, float radius_mm, bool across) const {
+Vec2 ObstacleField::beside(Edge const& edge, Vec2 point, float radius_mm, bool across) {
     Vec2 const foot = nearest_on_segment(edge.from, edge.to, point);
     Vec2 const away = across ? foot - point : point - foot;
     float const distance_mm = length(away);

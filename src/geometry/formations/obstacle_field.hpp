@@ -32,7 +32,7 @@ private:
 
     void add_edges(Obstacle const& obstacle);
     bool is_enclosed(Vec2 point) const;
-    Vec2 beside(Edge const& edge, Vec2 point, float radius_mm, bool across) const;
+    static Vec2 beside(Edge const& edge, Vec2 point, float radius_mm, bool across);
     std::optional<Vec2> pushed_out(Vec2 centre, float radius_mm) const;
 
     std::vector<Edge> edges_;  // around solid ones clockwise on the screen
