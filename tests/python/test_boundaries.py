@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import yaml
+from matplotlib.path import Path as Outline
 from running import Run, example, run
 
 SIDE = 1000.0  # mm, of the square arena of 1e6 mm^2
@@ -26,16 +27,6 @@ def polygons(result: Run) -> list[npt.NDArray[np.float64]]:
     return [np.array([[p["x"], p["y"]] for p in corners]) for corners in yaml.safe_load(text)]
 
 
-def inside(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Even-odd rule: how often a ray to the right crosses the polygon."""
-    (x, y), result = points.T, np.zeros(len(points), dtype=bool)
-    for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0)):
-        crosses = (ay > y) != (by > y)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            result ^= crosses & (x < ax + (y - ay) / (by - ay) * (bx - ax))
-    return result
-
-
 def distance_to_walls(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     nearest = np.full(len(points), np.inf)
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
@@ -49,12 +40,12 @@ def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena:
     result = walk(tmp_path, arena_file=f"arenas/{arena}.csv", arena_surface=5.0e5)
     points = result.frame()[["x", "y"]].to_numpy(dtype=np.float64)
     outer, *holes = polygons(result)
-    assert inside(points, outer).all()
+    assert Outline(outer).contains_points(points).all()
     for polygon in (outer, *holes):
         # The physics lets bodies overlap by some tenths of a mm for a moment.
         assert distance_to_walls(points, polygon).min() > RADIUS - 2.0
     for hole in holes:
-        assert not inside(points, hole).any()
+        assert not Outline(hole).contains_points(points).any()
 
 
 def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(tmp_path: Path) -> None:
