@@ -1,5 +1,6 @@
 #include "physics/ring_area.hpp"
 
+#include <cmath>
 #include <numbers>
 
 namespace pogosim {
@@ -8,6 +9,8 @@ namespace {
 
 // As stiff as the time step allows: a lost area is back within a few steps.
 constexpr float kSwingsPerStep = 0.25F;
+// A ring whose area is and stays as right as this is left alone: a push, even of nothing, would keep it from sleep.
+constexpr float kTolerance = 1e-4F;  // of the area
 
 b2Vec2 position(std::vector<b2Body*> const& ring, std::size_t i) {
     return ring[i % ring.size()]->GetWorldCenter();
@@ -42,14 +45,15 @@ void RingArea::push(float dt_s) const {
         inverse_mass += b2Dot(gradient, gradient) / bodies_[i]->GetMass();
         growth += b2Dot(gradient, bodies_[i]->GetLinearVelocity());
     }
-    if (inverse_mass <= 0.0F || !bodies_.front()->IsAwake()) {
+    float const excess = enclosed_area(bodies_) - area_;
+    if (inverse_mass <= 0.0F || std::abs(excess) + std::abs(growth) * dt_s < kTolerance * std::abs(area_)) {
         return;
     }
     float const omega = 2.0F * std::numbers::pi_v<float> * kSwingsPerStep / dt_s;
     float const stiffness = omega * omega / inverse_mass;
     float const damping = 2.0F * omega / inverse_mass;
     float const softness = 1.0F / (dt_s * (damping + dt_s * stiffness));
-    float const bias = (enclosed_area(bodies_) - area_) * dt_s * stiffness * softness;
+    float const bias = excess * dt_s * stiffness * softness;
     float const impulse = -(growth + bias) / (inverse_mass + softness);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         b2Vec2 const change = (impulse / bodies_[i]->GetMass()) * area_gradient(bodies_, i);

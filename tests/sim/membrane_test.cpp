@@ -245,7 +245,7 @@ TEST(Membrane, FreeOneStaysAtRest) {
             Watch watch(scene({object}, {testing::robot_at({60, 60})}));
             std::vector<Vec2> const before = watch.world().bodies.position_mm;
             watch.run_for(3.0);
-            EXPECT_LT(watch.fastest_mm_s(), 0.05F);
+            EXPECT_EQ(watch.fastest_mm_s(), 0.0F);  // asleep, so that it costs nothing
             for (std::size_t i = 0; i < before.size(); ++i) {
                 EXPECT_LT(length(watch.world().bodies.position_mm[i] - before[i]), 0.1F);
             }
