@@ -2,70 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "base/log.hpp"
-#include "pogosim/version.h"
 #include "sim/build_world.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/progress_bar.hpp"
-#include "sim/run_metadata.hpp"
 
 namespace pogosim {
 
 namespace {
 
-// A time that should be a whole number of periods or steps may differ from it in the last bits.
+// A time that should be a whole number of steps may differ from it in the last bits.
 constexpr double kWholeTolerance = 1e-6;
 
 std::uint32_t seed_of(Scenario const& scenario) {
     return scenario.seed ? *scenario.seed : static_cast<std::uint32_t>(std::random_device{}());
-}
-
-std::vector<bool> recorded_categories(Scenario const& scenario, World const& world) {
-    std::vector<bool> recorded;
-    for (Category const& category : world.categories) {
-        auto const& allowed = scenario.output.categories;
-        recorded.push_back(!allowed || std::find(allowed->begin(), allowed->end(), category.name) != allowed->end());
-    }
-    return recorded;
-}
-
-std::int32_t packed_rgb(Rgb color) {
-    return color.r << 16 | color.g << 8 | color.b;
-}
-
-constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
-
-/// A rigid body has a place and a heading, a ring the place of its first body, a wall neither.
-ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
-    ObjectRow row{.time_s = static_cast<float>(world.time_s()),
-                  .category = world.categories[object.category].name,
-                  .id = object.id,
-                  .ticks = ticks,
-                  .x_mm = kNoValue,
-                  .y_mm = kNoValue,
-                  .angle_rad = kNoValue,
-                  .led_rgb = object.robot != kNone ? packed_rgb(world.robots.led[object.robot][0]) : 0};
-    if (object.body != kNone) {
-        Vec2 const place_mm = wrapped(world, world.bodies.position_mm[object.body]);
-        row.x_mm = place_mm.x;
-        row.y_mm = place_mm.y;
-    }
-    if (object.body_count == 1) {
-        row.angle_rad = wrap_angle(world.bodies.heading_rad[object.body]);
-    }
-    return row;
-}
-
-bool has_subparts(World const& world) {
-    return std::ranges::any_of(world.categories, [](Category const& category) {
-        return category.spec.ring && category.spec.ring->in_data_file;
-    });
 }
 
 }  // namespace
@@ -81,7 +35,7 @@ Simulation::Simulation(Scenario scenario, RunOptions options)
       lighting_(lamps_of(scenario_, world_.arena), world_),
       physics_(make_box2d_engine(world_, {.friction = static_cast<float>(scenario_.wall_friction),
                                           .restitution = static_cast<float>(scenario_.wall_restitution)})),
-      category_is_recorded_(recorded_categories(scenario_, world_)),
+      recorder_(scenario_, world_, programs_, services_.data, seed_),
       stages_(options.measure_stages) {}
 
 Simulation::~Simulation() = default;
@@ -103,8 +57,8 @@ ExitCode Simulation::run() {
     // The message first: completing the file may fail after a crash that destroyed memory.
     if (failure) {
         report(*failure);
-        if (!failure->refused && !data_file_ && scenario_.output.enable_data_logging) {
-            make_data_file();  // without rows: the file of an earlier run must not pass for this one's
+        if (!failure->refused) {
+            recorder_.open_without_rows();  // the file of an earlier run must not pass for this one's
         }
         finish();
         call_user_code([this] { programs_.print_unfinished_lines(); });
@@ -112,7 +66,7 @@ ExitCode Simulation::run() {
     }
     finish();
     if (interrupted()) {
-        log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), data_file_note());
+        log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), recorder_.note());
         return ExitCode::interrupted;
     }
     return ExitCode::done;
@@ -144,10 +98,10 @@ std::optional<UserFailure> Simulation::start() {
         return failure;
     }
     fit_time_step();
-    if (auto failure = open_data_file()) {
+    if (auto failure = recorder_.open()) {
         return failure;
     }
-    return record_if_due();
+    return recorder_.record_if_due();
 }
 
 std::optional<UserFailure> Simulation::step() {
@@ -163,15 +117,13 @@ std::optional<UserFailure> Simulation::step() {
     physics_->advance(world_);
     stages_.end(Stage::physics);
     ++world_.step;
-    auto failure = record_if_due();
+    auto failure = recorder_.record_if_due();
     stages_.end(Stage::record);
     return failure;
 }
 
 void Simulation::finish() {
-    if (data_file_) {
-        data_file_->close();
-    }
+    recorder_.close();
     report_losses();
 }
 
@@ -189,97 +141,16 @@ void Simulation::fit_time_step() {
     }
 }
 
-std::optional<UserFailure> Simulation::open_data_file() {
-    if (!scenario_.output.enable_data_logging) {
-        return std::nullopt;
-    }
-    if (auto failure = call_user_code([this] { programs_.declare_columns(); })) {
-        return failure;
-    }
-    make_data_file();
-    return std::nullopt;
-}
-
-void Simulation::make_data_file() {
-    OutputConfig const& output = scenario_.output;
-    DataFileOptions options;
-    options.path = output.data_filename;
-    options.user_columns = services_.data.columns;
-    options.fields = output.fields;
-    options.subpart_column = has_subparts(world_);
-    options.led_column = output.led_column;
-    options.flush_row_count = output.flush_row_count;
-    options.metadata = run_metadata(scenario_, world_.arena, seed_);
-    data_file_ = std::make_unique<DataFile>(options);
-    empty_row_.values.assign(options.user_columns.size(), CellValue());
-}
-
-std::optional<UserFailure> Simulation::record_if_due() {
-    double const period_s = scenario_.output.save_data_period_s;
-    bool const at_start = world_.step == 0;
-    if (!data_file_ || (period_s <= 0.0 && !at_start)) {
-        return std::nullopt;
-    }
-    // Rows belong to the first step at or after each multiple of the period.
-    double const periods = at_start ? 0.0 : world_.time_s() / period_s + kWholeTolerance;
-    if (periods < static_cast<double>(next_row_time_)) {
-        return std::nullopt;
-    }
-    next_row_time_ = static_cast<std::int64_t>(periods) + 1;
-    return record_rows();
-}
-
-std::optional<UserFailure> Simulation::record_rows() {
-    DataRow const& row = services_.data.row;
-    for (Object const& object : world_.objects) {
-        if (!category_is_recorded_[object.category]) {
-            continue;
-        }
-        if (object.robot == kNone) {
-            data_file_->append(row_of(world_, object, std::nullopt), empty_row_.values);
-            continue;
-        }
-        if (auto failure = call_user_code([this, &object] { programs_.export_row(object.robot); })) {
-            return failure;
-        }
-        if (row.exported) {
-            data_file_->append(row_of(world_, object, programs_.ticks(object.robot)), row.values);
-            record_subparts(object);
-        }
-    }
-    return std::nullopt;
-}
-
-void Simulation::record_subparts(Object const& object) {
-    ObjectSpec const& spec = world_.categories[object.category].spec;
-    if (!spec.ring || !spec.ring->in_data_file) {
-        return;
-    }
-    ObjectRow row = row_of(world_, object, programs_.ticks(object.robot));
-    for (std::uint32_t part = 0; part < object.body_count; ++part) {
-        Vec2 const position_mm = wrapped(world_, world_.bodies.position_mm[object.body + part]);
-        row.x_mm = position_mm.x;
-        row.y_mm = position_mm.y;
-        row.subpart = static_cast<std::int16_t>(part);
-        data_file_->append(row, empty_row_.values);
-    }
-}
-
 void Simulation::report(UserFailure const& failure) const {
     std::string const where =
         fmt::format("{} of {}, t = {:.4f} s", context.phase, current_robot_name(), world_.time_s());
     if (failure.refused) {
-        log().error("{} (asked for in {}){}", failure.what, where, data_file_note());
+        log().error("{} (asked for in {}){}", failure.what, where, recorder_.note());
         return;
     }
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}",
-              failed ? "failed" : "ended", where, failure.what, data_file_note());
-}
-
-std::string Simulation::data_file_note() const {
-    return data_file_ ? fmt::format(". The data file '{}' is complete up to there", scenario_.output.data_filename)
-                      : "";
+              failed ? "failed" : "ended", where, failure.what, recorder_.note());
 }
 
 void Simulation::report_losses() const {

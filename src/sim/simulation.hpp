@@ -1,22 +1,18 @@
 // A whole run: a world, the stages that change it, and what is written down of it.
 #pragma once
 
-#include <array>
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "comms/ir_channel.hpp"
 #include "config/scenario.hpp"
 #include "light/lighting.hpp"
 #include "physics/physics_engine.hpp"
-#include "record/data_file.hpp"
 #include "robot/programs.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/parameters.hpp"
+#include "sim/recorder.hpp"
 #include "sim/stage_clock.hpp"
 #include "world/world.hpp"
 
@@ -53,15 +49,9 @@ public:
 
 private:
     std::optional<UserFailure> run_steps();
-    std::optional<UserFailure> open_data_file();
-    void make_data_file();
-    std::optional<UserFailure> record_if_due();
-    std::optional<UserFailure> record_rows();
-    void record_subparts(Object const& object);
     void fit_time_step();
     bool is_over() const;
     void report(UserFailure const& failure) const;
-    std::string data_file_note() const;
     void report_losses() const;
 
     Scenario scenario_;
@@ -74,10 +64,7 @@ private:
     Lighting lighting_;
     IrChannel channel_;
     std::unique_ptr<PhysicsEngine> physics_;
-    std::unique_ptr<DataFile> data_file_;
-    std::vector<bool> category_is_recorded_;
-    DataRow empty_row_;               // user columns of what runs no user code
-    std::int64_t next_row_time_ = 0;  // in save periods
+    Recorder recorder_;
     StageClock stages_;
 };
 

@@ -1,0 +1,162 @@
+#include "sim/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "robot/user_guard.hpp"
+#include "sim/run_metadata.hpp"
+
+namespace pogosim {
+
+namespace {
+
+// A time that should be a whole number of periods may differ from it in the last bits.
+constexpr double kWholeTolerance = 1e-6;
+
+std::vector<bool> recorded_categories(Scenario const& scenario, World const& world) {
+    std::vector<bool> recorded;
+    for (Category const& category : world.categories) {
+        auto const& allowed = scenario.output.categories;
+        recorded.push_back(!allowed || std::find(allowed->begin(), allowed->end(), category.name) != allowed->end());
+    }
+    return recorded;
+}
+
+std::int32_t packed_rgb(Rgb color) {
+    return color.r << 16 | color.g << 8 | color.b;
+}
+
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+/// A rigid body has a place and a heading, a ring the place of its first body, a wall neither.
+ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
+    ObjectRow row{.time_s = static_cast<float>(world.time_s()),
+                  .category = world.categories[object.category].name,
+                  .id = object.id,
+                  .ticks = ticks,
+                  .x_mm = kNoValue,
+                  .y_mm = kNoValue,
+                  .angle_rad = kNoValue,
+                  .led_rgb = object.robot != kNone ? packed_rgb(world.robots.led[object.robot][0]) : 0};
+    if (object.body != kNone) {
+        Vec2 const place_mm = wrapped(world, world.bodies.position_mm[object.body]);
+        row.x_mm = place_mm.x;
+        row.y_mm = place_mm.y;
+    }
+    if (object.body_count == 1) {
+        row.angle_rad = wrap_angle(world.bodies.heading_rad[object.body]);
+    }
+    return row;
+}
+
+bool has_subparts(World const& world) {
+    return std::ranges::any_of(world.categories, [](Category const& category) {
+        return category.spec.ring && category.spec.ring->in_data_file;
+    });
+}
+
+}  // namespace
+
+Recorder::Recorder(Scenario const& scenario, World const& world, Programs& programs, DataExport const& data,
+                   std::uint32_t seed)
+    : scenario_(scenario),
+      world_(world),
+      programs_(programs),
+      export_(data),
+      seed_(seed),
+      category_is_recorded_(recorded_categories(scenario, world)) {}
+
+std::optional<UserFailure> Recorder::open() {
+    if (!output().enable_data_logging) {
+        return std::nullopt;
+    }
+    if (auto failure = call_user_code([this] { programs_.declare_columns(); })) {
+        return failure;
+    }
+    make_data_file();
+    return std::nullopt;
+}
+
+void Recorder::open_without_rows() {
+    if (!data_file_ && output().enable_data_logging) {
+        make_data_file();
+    }
+}
+
+void Recorder::make_data_file() {
+    DataFileOptions options;
+    options.path = output().data_filename;
+    options.user_columns = export_.columns;
+    options.fields = output().fields;
+    options.subpart_column = has_subparts(world_);
+    options.led_column = output().led_column;
+    options.flush_row_count = output().flush_row_count;
+    options.metadata = run_metadata(scenario_, world_.arena, seed_);
+    data_file_ = std::make_unique<DataFile>(options);
+    empty_row_.values.assign(options.user_columns.size(), CellValue());
+}
+
+std::optional<UserFailure> Recorder::record_if_due() {
+    double const period_s = output().save_data_period_s;
+    bool const at_start = world_.step == 0;
+    if (!data_file_ || (period_s <= 0.0 && !at_start)) {
+        return std::nullopt;
+    }
+    // Rows belong to the first step at or after each multiple of the period.
+    double const periods = at_start ? 0.0 : world_.time_s() / period_s + kWholeTolerance;
+    if (periods < static_cast<double>(next_row_time_)) {
+        return std::nullopt;
+    }
+    next_row_time_ = static_cast<std::int64_t>(periods) + 1;
+    return record_rows();
+}
+
+std::optional<UserFailure> Recorder::record_rows() {
+    DataRow const& row = export_.row;
+    for (Object const& object : world_.objects) {
+        if (!category_is_recorded_[object.category]) {
+            continue;
+        }
+        if (object.robot == kNone) {
+            data_file_->append(row_of(world_, object, std::nullopt), empty_row_.values);
+            continue;
+        }
+        if (auto failure = call_user_code([this, &object] { programs_.export_row(object.robot); })) {
+            return failure;
+        }
+        if (row.exported) {
+            data_file_->append(row_of(world_, object, programs_.ticks(object.robot)), row.values);
+            record_subparts(object);
+        }
+    }
+    return std::nullopt;
+}
+
+void Recorder::record_subparts(Object const& object) {
+    ObjectSpec const& spec = world_.categories[object.category].spec;
+    if (!spec.ring || !spec.ring->in_data_file) {
+        return;
+    }
+    ObjectRow row = row_of(world_, object, programs_.ticks(object.robot));
+    for (std::uint32_t part = 0; part < object.body_count; ++part) {
+        Vec2 const position_mm = wrapped(world_, world_.bodies.position_mm[object.body + part]);
+        row.x_mm = position_mm.x;
+        row.y_mm = position_mm.y;
+        row.subpart = static_cast<std::int16_t>(part);
+        data_file_->append(row, empty_row_.values);
+    }
+}
+
+void Recorder::close() {
+    if (data_file_) {
+        data_file_->close();
+    }
+}
+
+std::string Recorder::note() const {
+    return data_file_ ? fmt::format(". The data file '{}' is complete up to there", output().data_filename) : "";
+}
+
+}  // namespace pogosim

@@ -1,0 +1,56 @@
+// When rows of the data file are due, and what stands in them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/scenario.hpp"
+#include "record/data_file.hpp"
+#include "robot/programs.hpp"
+#include "robot/user_guard.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+class Recorder {
+public:
+    /// All references outlive this. `data` is what user code declares and exports.
+    Recorder(Scenario const& scenario, World const& world, Programs& programs, DataExport const& data,
+             std::uint32_t seed);
+
+    /// Asks the program for its columns and opens the data file, if there is to be one. Throws OutputError.
+    std::optional<UserFailure> open();
+
+    /// For a program that failed before open(): an empty file. Does nothing when the file is open.
+    void open_without_rows();
+
+    /// Writes the rows of now, if a multiple of the save period has come. Throws OutputError.
+    std::optional<UserFailure> record_if_due();
+
+    /// Completes the file. Throws OutputError.
+    void close();
+
+    /// Behind a message about a run that ended early: where its data is. Empty without a data file.
+    std::string note() const;
+
+private:
+    OutputConfig const& output() const { return scenario_.output; }
+    void make_data_file();
+    std::optional<UserFailure> record_rows();
+    void record_subparts(Object const& object);
+
+    Scenario const& scenario_;
+    World const& world_;
+    Programs& programs_;
+    DataExport const& export_;
+    std::uint32_t seed_;
+    std::vector<bool> category_is_recorded_;
+    std::unique_ptr<DataFile> data_file_;
+    DataRow empty_row_;               // user columns of what runs no user code
+    std::int64_t next_row_time_ = 0;  // in save periods
+};
+
+}  // namespace pogosim
