@@ -445,17 +445,36 @@ def title(swarm: Swarm, width_inches: float) -> str:
     return textwrap.fill(text, width=max(int(8.5 * width_inches), 20), break_long_words=False)
 
 
-def draw(swarm: Swarm, tail_s: float | None = None) -> Figure:
-    """Draw a run.
+def draw_scene(axes: Axes, swarm: Swarm, tail_s: float | None = None) -> None:
+    """Draw a run into axes, which then show its arena in true proportions.
 
     Args:
+        axes: Where to.
         swarm: The run.
         tail_s: Length of the trails in s, above 0. None: the whole run.
     """
     low, high = bounds(swarm.polygons)
     extent = high - low
-    first_s = float(swarm.rows["time"].iloc[0])
     margin = 0.02 * extent.max()
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(high[1] + margin, low[1] - margin)  # y runs downwards
+    axes.apply_aspect()
+
+    first_s = float(swarm.rows["time"].iloc[0])
+    floor = draw_arena(axes, swarm.polygons)
+    draw_light(axes, swarm, floor)
+    draw_walls(axes, swarm, floor)
+    draw_trails(axes, swarm, extent, tail_s or max(swarm.end_s - first_s, 1e-9))
+    draw_membranes(axes, swarm)
+    draw_bodies(axes, swarm, floor)
+
+
+def draw(swarm: Swarm, tail_s: float | None = None) -> Figure:
+    """Draw a run, with a heading and a scale bar. Arguments as in draw_scene()."""
+    low, high = bounds(swarm.polygons)
+    extent = high - low
     size = 8.0 * extent / extent.max()
 
     heading = title(swarm, size[0])
@@ -464,18 +483,7 @@ def draw(swarm: Swarm, tail_s: float | None = None) -> Figure:
     part = height / (height + more_lines)
     figure = Figure(figsize=(size[0] + 0.3, height + more_lines), facecolor=PAPER)
     axes = figure.add_axes((0.0, 0.07 * part, 1.0, 0.86 * part))
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    axes.set_xlim(low[0] - margin, high[0] + margin)
-    axes.set_ylim(high[1] + margin, low[1] - margin)  # y runs downwards
-    axes.apply_aspect()
-
-    floor = draw_arena(axes, swarm.polygons)
-    draw_light(axes, swarm, floor)
-    draw_walls(axes, swarm, floor)
-    draw_trails(axes, swarm, extent, tail_s or max(swarm.end_s - first_s, 1e-9))
-    draw_membranes(axes, swarm)
-    draw_bodies(axes, swarm, floor)
+    draw_scene(axes, swarm, tail_s)
     draw_scale_bar(axes, low, high)
     draw_notes(axes, notes(swarm), low, high)
     axes.set_title(heading, color=INK, fontsize=13, pad=8)
