@@ -121,7 +121,9 @@ TEST(ReadYaml, SyntaxErrorsNameTheirLine) {
             << text;
     }
     EXPECT_EQ(read_error("{a: 1}\nb: 2\n"), "x.yaml:2: not valid YAML: 'b: 2' does not belong to what stands above it");
-    EXPECT_EQ(read_error("a: *nobody\n"), "x.yaml:1: not valid YAML: the referenced anchor is not defined");
+    // yaml-cpp 0.8 adds the anchor's name.
+    std::string const anchor = read_error("a: *nobody\n");
+    EXPECT_TRUE(anchor.starts_with("x.yaml:1: not valid YAML: the referenced anchor is not defined")) << anchor;
     EXPECT_EQ(read_error("a: b: c\n"), "x.yaml:1: not valid YAML: illegal map value");
     EXPECT_EQ(read_error("? [1]\n: 2\n"), "x.yaml:1: the key of a map must be a plain text");
     EXPECT_EQ(read_error("a: {~: 1}\n"), "x.yaml:1: the key of a map must be a plain text");
