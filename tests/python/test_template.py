@@ -180,9 +180,23 @@ def test_missing_pogosim_is_one_helpful_line(tmp_path: Path) -> None:
 def test_other_mistakes_are_one_helpful_line(project: Path, tmp_path: Path) -> None:
     (project / "main.c").unlink()
     assert sentence(make(project, "sim")) == "There is no .c or .cpp file in this folder"
-    blank = copy_template(tmp_path / "my swarm")
-    assert "has a blank in it" in sentence(make(blank, "sim"))
     assert "Rename the folder" in sentence(make(copy_template(tmp_path / "sim"), "sim"))
+    assert "Rename the folder" in sentence(make(copy_template(tmp_path / "conf"), "sim"))  # has a folder conf in it
+    blank = sentence(make(project, "sim", f"POGOSIM_DIR={tmp_path}/my pogosim"))
+    assert blank.startswith(f"POGOSIM_DIR has a blank in it, which make cannot handle: {tmp_path}/my pogosim. A link")
+
+
+@pytest.mark.parametrize("name", ["my swarm", "a$b", "a'b", "a(b", "a:b", "a&b", "a;b", "a%b", "a\\b", "-a", "a.c"])
+def test_folder_whose_name_means_something_to_make_is_refused(name: str, tmp_path: Path) -> None:
+    assert "make cannot handle this name" in sentence(make(copy_template(tmp_path / name), "sim"))
+
+
+@pytest.mark.parametrize("name", ["a-b", "a+b", "a.b", "\u00e9t\u00e9", "John Doe/a"])
+def test_other_names_and_blanks_in_the_path_will_do(name: str, tmp_path: Path) -> None:
+    folder = copy_template(tmp_path / name)
+    (folder / "pogosim").symlink_to(build_folder())
+    made(folder, "sim")
+    assert run_command(folder / folder.name, folder, SHORT).code == 0
 
 
 def test_only_sources_are_for_git(project: Path) -> None:
