@@ -13,6 +13,10 @@ FIRMWARE := $(BIN_DIR)/firmware
 
 # ---- bin
 
+ifneq ($(words $(ROBOT_CATEGORY)),1)
+$(error ROBOT_CATEGORY is one word, found '$(ROBOT_CATEGORY)')
+endif
+
 LAYER := $(sort $(wildcard $(POGOSIM_INTERFACE_DIR)/*.c))
 OBJECTS := $(SOURCES:%=$(BIN_DIR)/%.o) $(patsubst $(POGOSIM_INTERFACE_DIR)/%,$(BIN_DIR)/pogosim/%.o,$(LAYER))
 
@@ -33,7 +37,10 @@ bin: $(FIRMWARE).bin
 $(FIRMWARE).bin: $(FIRMWARE).elf
 	$(TRIPLE)-objcopy -O binary $< $@
 
+# A misspelt category would make a robot that does nothing. The compiler leaves out calls for other categories.
 $(FIRMWARE).elf: $(OBJECTS) $(BIN_DIR)/.link
+	@$(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || { echo "There is no pogobot_start() for robots of \
+category '$(ROBOT_CATEGORY)' in this program (ROBOT_CATEGORY)" >&2; exit 1; }
 	$(LINK) -o $@
 
 $(BIN_DIR)/%.c.o: %.c $(BIN_DIR)/.compile

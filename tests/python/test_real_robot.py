@@ -223,6 +223,15 @@ def test_category_chooses_the_controller(project: Path, sdk: Path) -> None:
     assert (b"I follow" in image.read_bytes(), b"I lead" in image.read_bytes()) == (False, True)
 
 
+def test_category_that_no_controller_is_for_is_an_error(project: Path, sdk: Path) -> None:
+    unknown = make(project, "bin", f"POGO_SDK={sdk}", "ROBOT_CATEGORY=robot")
+    assert unknown.code == 2
+    assert "There is no pogobot_start() for robots of category 'robot' in this program" in unknown.errors
+    assert not (project / "build" / "bin" / "firmware.bin").exists()
+    words = make(project, "bin", f"POGO_SDK={sdk}", "ROBOT_CATEGORY=my robots")
+    assert "ROBOT_CATEGORY is one word, found 'my robots'" in words.errors
+
+
 def test_cpp_program_becomes_firmware(project: Path, sdk: Path) -> None:
     header = (PROGRAMS / "two_files" / "userdata.h").read_text()
     count = (PROGRAMS / "two_files" / "count.c").read_text()
