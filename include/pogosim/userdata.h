@@ -19,11 +19,21 @@
 #else
 
 /// Declares `mydata`, a pointer to the T of the robot that runs; in each file of the program that uses it.
-#define DECLARE_USERDATA(T) extern POGO_PER_ROBOT T* mydata;
-/// Defines `mydata`; once per program.
+#define DECLARE_USERDATA(T)             \
+    extern POGO_PER_ROBOT T* mydata;    \
+    extern char REGISTER_USERDATA_once; \
+    POGO_ASK_FOR_USERDATA(__COUNTER__)
+/// Defines `mydata`; once per program. Without it the linker misses `REGISTER_USERDATA_once`.
 #define REGISTER_USERDATA(T)                     \
+    POGO_SHARED char REGISTER_USERDATA_once = 0; \
     POGO_SHARED size_t UserdataSize = sizeof(T); \
     POGO_PER_ROBOT T* mydata = 0;
+
+// The library has a `mydata` for programs without user data, so a forgotten REGISTER_USERDATA would link: robots would
+// have no room for what they write. A constant, used by nobody, asks for something that only REGISTER_USERDATA defines.
+#define POGO_ASK_FOR_USERDATA(number) POGO_ASK_FOR_USERDATA_RAW(number)
+#define POGO_ASK_FOR_USERDATA_RAW(number) \
+    __attribute__((used)) static char const* const pogo_user_data_##number = &REGISTER_USERDATA_once;
 
 #endif
 

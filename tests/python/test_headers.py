@@ -125,6 +125,14 @@ def test_program_needs_neither_user_data_nor_a_step(program: Compile, tmp_path: 
     assert result.frame()["pogobot_ticks"].max() == 125
 
 
+def test_user_data_without_register_userdata_do_not_link(tmp_path: Path) -> None:
+    folder = PROGRAMS / "two_files"
+    main = tmp_path / "main.c"
+    main.write_text((folder / "main.c").read_text().replace("REGISTER_USERDATA(Userdata);", ""))
+    with pytest.raises(AssertionError, match="undefined reference to `REGISTER_USERDATA_once'"):
+        compile_program(tmp_path / "main", main, folder / "count.c", flags=[f"-I{folder}"])
+
+
 def test_program_without_main_does_not_link(tmp_path: Path) -> None:
     source = tmp_path / "main.c"
     source.write_text('#include "pogobase.h"\n')
