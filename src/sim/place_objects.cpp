@@ -38,11 +38,13 @@ char const* size_key(Shape const& shape) {
     }
 }
 
-bool stands_inside(World const& world, Vec2 point_mm) {
+bool is_in_box(World const& world, Vec2 point_mm) {
     Box const& box = world.arena.bounds;
-    bool const in_box =
-        point_mm.x >= box.min.x && point_mm.x <= box.max.x && point_mm.y >= box.min.y && point_mm.y <= box.max.y;
-    return in_box && (world.periodic || world.arena.contains(point_mm));
+    return point_mm.x >= box.min.x && point_mm.x <= box.max.x && point_mm.y >= box.min.y && point_mm.y <= box.max.y;
+}
+
+bool stands_inside(World const& world, Vec2 point_mm) {
+    return is_in_box(world, point_mm) && (world.periodic || world.arena.contains(point_mm));
 }
 
 std::string arena_text(World const& world) {
@@ -87,8 +89,9 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
 void check_position(Scenario const& scenario, World const& world, ObjectConfig const& object) {
     Vec2 const centre_mm = *object.position_mm;
     if (!stands_inside(world, centre_mm)) {
-        throw ConfigError(fmt::format("{}: ({:g}, {:g}) is outside of {}", where_in_object(scenario, object, "x"),
-                                      centre_mm.x, centre_mm.y, arena_text(world)));
+        throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}", where_in_object(scenario, object, "x"), centre_mm.x,
+                                      centre_mm.y, is_in_box(world, centre_mm) ? "beyond the walls of" : "outside of",
+                                      arena_text(world)));
     }
     if (Polygon const corners = outline(object.spec.shape); !corners.empty()) {
         Vec2 const size_mm = bounding_box(corners).size();

@@ -24,10 +24,11 @@ std::string const kScene =
     "  robots: {type: pogobot, geometry: disk, radius: 26.5}\n";
 
 /// The message for a configuration with these objects, "no error" when it can be simulated.
-std::string error_with(std::string const& objects, std::string const& root = "") {
+std::string error_with(std::string const& objects, std::string const& root = "",
+                       std::string const& outline = "0,0\n1,0\n1,1\n0,1\n") {
     Folder const folder;
     Warnings const warnings;
-    Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
+    Folder::write("square.csv", outline);
     std::string text = kScene;
     text.replace(text.find("ROOT"), 4, root.empty() ? "" : "initial_formation_root_object: " + root);
     Folder::write("x.yaml", text + objects);
@@ -105,6 +106,12 @@ TEST(BadObjects, LargerThanTheArena) {
               "x.yaml:7: objects.it.side_length: the object is 1154.7 mm across, too large for " + kArena);
     EXPECT_EQ(error_with("  it: {type: membrane, geometry: disk, radius: 200, x: 900, y: 500}\n"),
               "x.yaml:7: objects.it.radius: around (900, 500) the object reaches beyond " + kArena);
+}
+
+TEST(BadObjects, BeyondTheWallsThoughInsideOfTheBox) {
+    EXPECT_EQ(error_with("  it: {type: passive_object, geometry: disk, x: 20, y: 20}\n", "", "5,0\n10,5\n5,10\n0,5\n"),
+              "x.yaml:7: objects.it.x: (20, 20) is beyond the walls of the arena, which spans (0.0, 0.0) to (1414.2, "
+              "1414.2) mm");
 }
 
 TEST(BadObjects, OutsideOfTheArena) {
