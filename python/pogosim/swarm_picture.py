@@ -438,10 +438,18 @@ def draw_notes(axes: Axes, text: str, low: Floats, high: Floats) -> None:
     axes.text(high[0], y, text, color=INK, ha="right", va="top", fontsize=9)
 
 
+def counted(category: str, count: int) -> str:
+    """Return the name of a category as words behind a number: one robot, two active objects."""
+    words = category.replace("_", "\u00a0").strip()
+    is_plural = words.endswith("s") and not words.endswith("ss")
+    return words[:-1] if count == 1 and is_plural else words
+
+
 def title(swarm: Swarm, width_inches: float) -> str:
     """Return what the picture shows, in lines that fit into it: objects by category, and the time."""
     counts = swarm.rows.groupby("robot_category")["object"].nunique()
-    text = ", ".join(f"{count}\u00a0{category}" for category, count in counts.items()) + f" after {swarm.end_s:g} s"
+    parts = [f"{count}\u00a0{counted(str(category), int(count))}" for category, count in counts.items()]
+    text = ", ".join(parts) + f" after {swarm.end_s:g} s"
     return textwrap.fill(text, width=max(int(8.5 * width_inches), 20), break_long_words=False)
 
 
@@ -478,14 +486,17 @@ def draw(swarm: Swarm, tail_s: float | None = None) -> Figure:
     size = 8.0 * extent / extent.max()
 
     heading = title(swarm, size[0])
-    height = size[1] + 0.9  # with one line of heading
-    more_lines = 0.22 * heading.count("\n")
-    part = height / (height + more_lines)
-    figure = Figure(figsize=(size[0] + 0.3, height + more_lines), facecolor=PAPER)
-    axes = figure.add_axes((0.0, 0.07 * part, 1.0, 0.86 * part))
+    beside_scale_bar = max(int(9.0 * size[0]), 20)  # characters
+    below = textwrap.fill(notes(swarm), width=beside_scale_bar, break_long_words=False)
+    height = size[1] + 0.9  # with one line of heading and one of notes
+    more_above = 0.22 * heading.count("\n")
+    more_below = 0.15 * below.count("\n")
+    total = height + more_above + more_below
+    figure = Figure(figsize=(size[0] + 0.3, total), facecolor=PAPER)
+    axes = figure.add_axes((0.0, (0.07 * height + more_below) / total, 1.0, 0.86 * height / total))
     draw_scene(axes, swarm, tail_s)
     draw_scale_bar(axes, low, high)
-    draw_notes(axes, notes(swarm), low, high)
+    draw_notes(axes, below, low, high)
     axes.set_title(heading, color=INK, fontsize=13, pad=8)
     return figure
 

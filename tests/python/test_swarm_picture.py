@@ -279,6 +279,25 @@ def test_wall_with_a_program_glows_in_the_colour_of_its_led(tmp_path: Path) -> N
     assert is_floor(picture_mm.at(4, 200))
 
 
+def test_title_counts_in_words(tmp_path: Path) -> None:
+    frame = pd.concat(
+        [others(name, [x], [200]) for name, x in (("glass", 50), ("membranes", 300))]
+        + [others("active_objects", [x], [100]).assign(robot_id=np.int32(x)) for x in (100, 200)]
+    )
+    title = swarm_picture.title(read_swarm(write(tmp_path, frame)), 8.0).replace("\u00a0", " ")
+    assert title.startswith("2 active objects, 1 glass, 1 membrane after ")
+
+
+def test_long_notes_stay_beside_the_scale_bar(tmp_path: Path) -> None:
+    towers = {f"lighthouse_{i}": {"type": "rotating_ray_of_light", "geometry": "global"} for i in range(9)}
+    scene(tmp_path, towers)
+    figure = swarm_picture.draw(read_swarm(tmp_path / "data.feather"))
+    figure.canvas.draw()
+    boxes = {text.get_text()[:3]: text.get_window_extent() for text in figure.axes[0].texts}
+    assert boxes["not"].x0 > boxes["100"].x1
+    assert boxes["not"].y0 >= 0
+
+
 def test_long_title_has_several_lines(tmp_path: Path) -> None:
     frame = pd.concat([others(f"category_{i}", [200], [200]) for i in range(12)])
     lines = swarm_picture.title(read_swarm(write(tmp_path, frame)), 8.0).splitlines()
