@@ -109,8 +109,11 @@ void read_real(Place const& place, Limits const& limits, Real& value) {
 /// Reads a list of exactly N values.
 template <class T, std::size_t N>
 std::array<T, N> read_tuple(Place const& place, Limits const& limits, std::string const& expected) {
-    if (place.node.kind != Node::Kind::sequence || place.node.items.size() != N) {
+    if (place.node.kind != Node::Kind::sequence) {
         fail_expected(place, expected);
+    }
+    if (std::size_t const count = place.node.items.size(); count != N) {
+        fail_at(place, fmt::format("expected {}, found a list of {}", expected, count));
     }
     std::array<T, N> values{};
     for (std::size_t i = 0; i < N; ++i) {

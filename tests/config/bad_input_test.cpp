@@ -90,7 +90,7 @@ TEST(BadInput, WrongTypesAndRangesAtTheTopLevel) {
          {"initial_formation_center: [5]",
           "initial_formation_center: expected a list [x, y] of two numbers from -1000000 to 1000000 or .nan (mm), "
           "found "
-          "a list"},
+          "a list of 1"},
          {"initial_formation_root_object: nobody",
           "initial_formation_root_object: expected 'arena' or a category of 'objects', found 'nobody'"},
          {"initial_formation: imported",

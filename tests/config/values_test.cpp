@@ -111,7 +111,7 @@ TEST(Values, TruthHasSixWordsInAnyCase) {
 TEST(Values, PairsHaveTwoNumbersInOrder) {
     EXPECT_EQ(value<Vec2>("[1, -2.5]"), (Vec2{1.0F, -2.5F}));
     EXPECT_EQ(refusal<Vec2>("[1]", {any(), "mm"}),
-              "x.yaml:1: key: expected a list [x, y] of two numbers (mm), found a list");
+              "x.yaml:1: key: expected a list [x, y] of two numbers (mm), found a list of 1");
     EXPECT_EQ(refusal<Vec2>("[1, x]"), "x.yaml:1: key.1: expected a number, found 'x'");
     EXPECT_EQ(value<IntRange>("[-3, 4]").max, 4);
     EXPECT_EQ(refusal<IntRange>("[4, -3]"), "x.yaml:1: key: expected [smallest, largest], found [4, -3]");
