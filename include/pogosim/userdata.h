@@ -6,7 +6,7 @@
 ///     DECLARE_USERDATA(USERDATA);    // beside the struct, wherever it is needed
 ///     REGISTER_USERDATA(USERDATA);   // once per program
 ///
-/// Both work with and without the semicolon. All bytes are zero at the start.
+/// Both work with and without the semicolon. All bytes are zero at the start; in C++, members may have initial values.
 #ifndef POGOSIM_USERDATA_H
 #define POGOSIM_USERDATA_H
 
@@ -27,7 +27,25 @@
 #define REGISTER_USERDATA(T)                     \
     POGO_SHARED char REGISTER_USERDATA_once = 0; \
     POGO_SHARED size_t UserdataSize = sizeof(T); \
+    POGO_CONSTRUCT_USERDATA(T)                   \
     POGO_PER_ROBOT T* mydata = 0;
+
+// In C++ the user data of each robot are constructed, as the global of a real robot is.
+#ifdef __cplusplus
+extern "C++" {
+struct pogosim_place {
+    void* at;
+};
+inline void* operator new(size_t, pogosim_place place) noexcept {
+    return place.at;
+}
+inline void operator delete(void*, pogosim_place) noexcept {}
+}
+#define POGO_CONSTRUCT_USERDATA(T) \
+    POGO_SHARED void (*UserdataConstruct)(void*) = [](void* block) { ::new (pogosim_place{block}) T(); };
+#else
+#define POGO_CONSTRUCT_USERDATA(T)
+#endif
 
 // The library has a `mydata` for programs without user data, so a forgotten REGISTER_USERDATA would link: robots would
 // have no room for what they write. A constant, used by nobody, asks for something that only REGISTER_USERDATA defines.

@@ -11,6 +11,7 @@
 // What the user's program defines. The weak ones stand in for a program without REGISTER_USERDATA.
 extern "C" {
 __attribute__((weak, visibility("default"))) std::size_t UserdataSize = 0;
+__attribute__((weak, visibility("default"))) void (*UserdataConstruct)(void*) = nullptr;
 __attribute__((weak, visibility("default"))) __thread void* mydata = nullptr;
 
 POGO_PER_ROBOT void (*callback_global_setup)() = nullptr;
@@ -114,6 +115,11 @@ void Programs::allocate_user_data() {
         computers_[i].user_data = user_data_.data() + i * stride;
     }
     system_.user_data = user_data_.data() + computers_.size() * stride;
+    if (UserdataConstruct != nullptr) {
+        for (std::size_t i = 0; i <= computers_.size(); ++i) {
+            UserdataConstruct(user_data_.data() + i * stride);
+        }
+    }
 }
 
 void Programs::draw_individual_differences(std::uint64_t seed) {

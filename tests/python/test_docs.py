@@ -88,6 +88,7 @@ def test_api_reference_has_all_functions_and_variables_of_the_library(tmp_path: 
     of_libc = {"main", "rand", "srand", "exit"}
     behind_macros = {name for name in exported if name.startswith("pogosim_")} | {
         "_pogobot_start",
+        "UserdataConstruct",
         "UserdataSize",
         "mydata",
     }

@@ -133,6 +133,32 @@ def test_user_data_without_register_userdata_do_not_link(tmp_path: Path) -> None
         compile_program(tmp_path / "main", main, folder / "count.c", flags=[f"-I{folder}"])
 
 
+@pytest.mark.parametrize("cpp", CPP_COMPILERS)
+@pytest.mark.parametrize("standard", CPP_STANDARDS)
+def test_members_of_user_data_may_have_initial_values_in_cpp(cpp: str, standard: str, tmp_path: Path) -> None:
+    source = tmp_path / "main.cpp"
+    source.write_text(
+        """#include "pogobase.h"
+#include <vector>
+struct State {
+    int count = 5;
+    int other;
+    std::vector<int> list{1, 2, 3};
+};
+DECLARE_USERDATA(State);
+REGISTER_USERDATA(State);
+static void user_init() {
+    mydata->list.push_back(++mydata->count);
+    printf("%d %d %d of %zu", mydata->count, mydata->other, mydata->list.back(), mydata->list.size());
+}
+int main() { pogobot_start(user_init, nullptr); return 0; }
+"""
+    )
+    flags = [f"-std={standard}", *STRICT]
+    result = run(compile_program(tmp_path / "main", source, compiler=cpp, flags=flags), tmp_path)
+    assert result.robot_lines == [f"[ROBOT #{robot}] [PRINTF] 6 0 6 of 4" for robot in range(3)]
+
+
 def test_program_without_main_does_not_link(tmp_path: Path) -> None:
     source = tmp_path / "main.c"
     source.write_text('#include "pogobase.h"\n')
