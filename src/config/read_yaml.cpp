@@ -92,19 +92,31 @@ int line_count(std::string const& text) {
     return static_cast<int>(std::ranges::count(text, '\n')) + (has_open_line ? 1 : 0);
 }
 
+std::string line_of(std::string const& text, int number) {
+    std::istringstream stream(text);
+    std::string line;
+    for (int i = 0; i < number; ++i) {
+        std::getline(stream, line);
+    }
+    return line;
+}
+
 [[noreturn]] void fail_syntax(YAML::Exception const& error, std::string const& text, std::string const& source) {
     // The end mark adds lines that the user does not have.
     int const line = std::clamp(error.mark.line + 1, 1, std::max(1, line_count(text)));
-    throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", source, line, error.msg));
+    std::string const found = line_of(text, line);
+    std::string why = error.msg;
+    if (found.substr(0, found.find_first_not_of(" \t")).find('\t') != std::string::npos) {
+        why = "this line is indented with a tab, it needs spaces";
+    } else if (why == "illegal map value") {
+        why += "; is the line indented like those around it? A text with ': ' in it needs quotes";
+    }
+    throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", source, line, why));
 }
 
 /// The parser takes what follows a finished map or list for a new document, even without the `---` of one.
 void refuse_remains(std::string const& text, int line, std::string const& source) {
-    std::istringstream stream(text);
-    std::string found;
-    for (int i = 0; i < line; ++i) {
-        std::getline(stream, found);
-    }
+    std::string const found = line_of(text, line);
     if (!found.starts_with("---")) {
         throw ConfigError(fmt::format("{}:{}: not valid YAML: '{}' does not belong to what stands above it", source,
                                       line, shown(found)));

@@ -152,7 +152,8 @@ void warn_of_gaps(Scenario const& scenario) {
         }
         float const gap_mm = widest_gap_mm(make_ring(membrane.spec, {}));
         for (ObjectConfig const& other : scenario.objects) {
-            if (other.spec.body && !other.spec.ring && 2.0F * bounding_radius(other.spec.shape) < gap_mm) {
+            if (other.nb > 0 && other.spec.body && !other.spec.ring &&
+                2.0F * bounding_radius(other.spec.shape) < gap_mm) {
                 log().warn(
                     "{}: the gaps between its dots grow to {:.1f} mm, so that '{}' may slip through; use more or "
                     "larger dots",

@@ -114,7 +114,10 @@ TEST(ReadYaml, TopLevelHasToBeAMap) {
 TEST(ReadYaml, SyntaxErrorsNameTheirLine) {
     EXPECT_EQ(read_error("a: 1\nb: [1, 2\nc: 3\n").substr(0, 9), "x.yaml:3:");
     EXPECT_EQ(read_error("a: 1\nb: {x: 1\n").substr(0, 9), "x.yaml:2:");
-    EXPECT_EQ(read_error("a: 1\n\tb: 2\n").substr(0, 9), "x.yaml:2:");
+    for (char const* text : {"a: 1\n\tb: 2\n", "a:\n\tb: 2\n", "a:\n  \tb: {c: 1}\n"}) {
+        EXPECT_EQ(read_error(text), "x.yaml:2: not valid YAML: this line is indented with a tab, it needs spaces")
+            << text;
+    }
     for (char const* text : {"z: 0\na: 'open\n", "z: 0\na: \"open\nb: 2\n", "z: 0\n'a", "z: 0\na: \"x\\"}) {
         EXPECT_EQ(read_error(text),
                   "x.yaml:2: not valid YAML: the text that starts here has no end; is its closing quote missing?")
@@ -124,7 +127,11 @@ TEST(ReadYaml, SyntaxErrorsNameTheirLine) {
     // yaml-cpp 0.8 adds the anchor's name.
     std::string const anchor = read_error("a: *nobody\n");
     EXPECT_TRUE(anchor.starts_with("x.yaml:1: not valid YAML: the referenced anchor is not defined")) << anchor;
-    EXPECT_EQ(read_error("a: b: c\n"), "x.yaml:1: not valid YAML: illegal map value");
+    std::string const illegal =
+        "not valid YAML: illegal map value; is the line indented like those around it? A text with ': ' in it needs "
+        "quotes";
+    EXPECT_EQ(read_error("a: b: c\n"), "x.yaml:1: " + illegal);
+    EXPECT_EQ(read_error("a:\n  b: 1\n    c: 2\n"), "x.yaml:3: " + illegal);
     EXPECT_EQ(read_error("? [1]\n: 2\n"), "x.yaml:1: the key of a map must be a plain text");
     EXPECT_EQ(read_error("a: {~: 1}\n"), "x.yaml:1: the key of a map must be a plain text");
 }

@@ -92,6 +92,21 @@ TEST(BadObjects, RingsThatCannotBe) {
 
 std::string const kArena = "the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm";
 
+TEST(BadObjects, WhatMaySlipThroughAMembraneIsNamedIfThereIsAny) {
+    std::string const ring = "  it: {type: membrane, geometry: disk, radius: 60, num_dots: 5}\n";
+    for (int const nb : {0, 1}) {
+        Folder const folder;
+        Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
+        std::string text = kScene;
+        text.replace(text.find("ROOT"), 4, "");
+        Folder::write("x.yaml",
+                      text + ring + "  pea: {type: passive_object, geometry: disk, nb: " + std::to_string(nb) + "}\n");
+        Warnings const warnings;
+        build_world(load_scenario("x.yaml", {}), 1);
+        EXPECT_EQ(warnings.text().find("'pea' may slip through") != std::string::npos, nb == 1) << warnings.text();
+    }
+}
+
 TEST(BadObjects, LargerThanTheArena) {
     for (char const* const type : {"membrane", "rectmembrane", "passive_object", "active_object", "pogobject"}) {
         for (char const* const place : {"", ", x: 500, y: 500"}) {
