@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -40,6 +41,8 @@ constexpr float kMostSwingsPerStep = 0.5F;
 // The solver cannot hold back a heavy body by a chain of light ones. A robot with wheels weighs so many times as much
 // as a body of a ring at most; lighter ones get more mass.
 constexpr float kMostMassRatio = 30.0F;
+// Box2D takes bodies without any mass, to which specks are rounded, for ones of mass 1.
+constexpr float kLightest = 1e-15F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
 
@@ -65,6 +68,28 @@ std::vector<b2Vec2> wall_corners(Polygon const& polygon, bool outer) {
     return corners;
 }
 
+/// All shapes have their centre of mass at their origin. Box2D does not weigh them: it aborts at a polygon of less than
+/// 0.001 mm^2. `gyration2`: square of the radius of gyration.
+void set_mass(b2Body& body, float mass, float gyration2) {
+    float const at_least = std::max(mass, kLightest);
+    b2MassData const data{.mass = at_least, .center = b2Vec2_zero, .I = at_least * gyration2};
+    body.SetMassData(&data);
+}
+
+/// Area of a convex polygon around its centroid, and the square of its radius of gyration.
+std::pair<float, float> area_and_gyration2(b2PolygonShape const& polygon) {
+    float area = 0.0F;
+    float moment = 0.0F;
+    for (int32 i = 0; i < polygon.m_count; ++i) {
+        b2Vec2 const a = polygon.m_vertices[i];
+        b2Vec2 const b = polygon.m_vertices[(i + 1) % polygon.m_count];
+        float const triangle = 0.5F * b2Cross(a, b);
+        area += triangle;
+        moment += triangle * (b2Dot(a, a) + b2Dot(a, b) + b2Dot(b, b)) / 6.0F;
+    }
+    return {area, area > 0.0F ? moment / area : 0.0F};
+}
+
 /// Corners clockwise on the screen around the centroid, convex. By hand, since b2PolygonShape::Set() joins corners that
 /// lie close together.
 void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef& fixture) {
@@ -74,17 +99,15 @@ void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef& fixture)
     for (std::size_t i = 0; i < corners_mm.size(); ++i) {
         Vec2 const edge = corners_mm[(i + 1) % corners_mm.size()] - corners_mm[i];
         polygon.m_vertices[i] = to_box2d(corners_mm[i]);
-        polygon.m_normals[i] = {edge.y / length(edge), -edge.x / length(edge)};
+        float const edge_mm = std::hypot(edge.x, edge.y);  // squares of specks would be 0
+        polygon.m_normals[i] = {edge.y / edge_mm, -edge.x / edge_mm};
     }
     polygon.m_radius = kSkin;
     fixture.shape = &polygon;
+    float const density = std::exchange(fixture.density, 0.0F);
     body.CreateFixture(&fixture);
-}
-
-/// All shapes have their centre of mass at their origin.
-void set_mass(b2Body& body, float mass, float inertia) {
-    b2MassData const data{.mass = mass, .center = b2Vec2_zero, .I = inertia};
-    body.SetMassData(&data);
+    auto const [area, gyration2] = area_and_gyration2(polygon);
+    set_mass(body, density * area, gyration2);
 }
 
 void add_disk(b2Body& body, float radius_mm, b2FixtureDef& fixture) {
@@ -92,10 +115,11 @@ void add_disk(b2Body& body, float radius_mm, b2FixtureDef& fixture) {
     b2CircleShape disk;
     disk.m_radius = radius + kSkin;
     fixture.shape = &disk;
+    float const density = std::exchange(fixture.density, 0.0F);
     body.CreateFixture(&fixture);
     // The skin weighs nothing.
-    float const mass = fixture.density * std::numbers::pi_v<float> * radius * radius;
-    set_mass(body, mass, 0.5F * mass * radius * radius);
+    float const mass = density * std::numbers::pi_v<float> * radius * radius;
+    set_mass(body, mass, 0.5F * radius * radius);
 }
 
 void add_shape(b2Body& body, Shape const& shape, b2FixtureDef& fixture) {
@@ -217,7 +241,7 @@ private:
                 b2Body& body = *bodies_[ring.body + k];
                 float const factor = heaviest / (kMostMassRatio * body.GetMass());
                 if (factor > 1.0F) {
-                    set_mass(body, factor * body.GetMass(), factor * body.GetInertia());
+                    set_mass(body, factor * body.GetMass(), body.GetInertia() / body.GetMass());
                 }
             }
         }

@@ -103,6 +103,20 @@ TEST(Mass, IsDensityTimesArea) {
     EXPECT_NEAR(mass_in_disks(disk(26.5F), right, 30.0F), 3.0F, 0.03F);
 }
 
+TEST(Mass, SpeckIsPushedWithoutHarm) {
+    for (float const size_mm : {1e-6F, 0.01F}) {
+        for (Shape const& shape : {disk(size_mm), rectangle(size_mm, size_mm), rectangle(size_mm, 1e-30F),
+                                   rectangle(20.0F, size_mm), triangle(size_mm)}) {
+            World world = fine_world();
+            add(world, shape, kMiddle, {});
+            add(world, disk(26.5F), kMiddle - Vec2{50.0F, 0.0F}, {100.0F, 0.0F});
+            run(world, 1.0);
+            EXPECT_NEAR(world.bodies.velocity_mm_s[1].x, 100.0F, 10.0F) << size_mm;
+            EXPECT_GT(world.bodies.position_mm[0].x, kMiddle.x) << size_mm;
+        }
+    }
+}
+
 /// How near a disk of radius 20 mm comes to the centre of a much heavier body before it is thrown back.
 float nearest_approach_mm(Shape const& shape, Vec2 towards) {
     World world = fine_world();

@@ -194,6 +194,7 @@ TEST(Membrane, HoldsInEveryShapeAndMake) {
         {ShapeKind::disk, 150, 5.0F, 0, 1.0F, 0.0F, 10.0F},           // as soft as can be
         {ShapeKind::rectangle, 60, 3.0F, 2, 1000.0F, 0.3F, 1.0F},     // much stiffer than the time step allows
         {ShapeKind::disk, 200, 2.0F, 1, 30.0F, 0.3F, 1.0F},           // dots a thousand times lighter than robots
+        {ShapeKind::rectangle, 100, 5.0F, 0, 30.0F, 0.0F, 1e-30F},    // as light as nothing
         {ShapeKind::triangle, 150, 20.0F, 5, 10000.0F, 1.0F, 100.0F}  // fat dots that overlap in the corners
     };
     for (bool const segments : {false, true}) {
