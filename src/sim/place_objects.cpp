@@ -30,7 +30,7 @@ bool is_placed_by_formation(ObjectConfig const& object) {
 char const* size_key(Shape const& shape) {
     switch (shape.kind) {
         case ShapeKind::rectangle:
-            return "body_width";
+            return shape.width_mm >= shape.height_mm ? "body_width" : "body_height";
         case ShapeKind::triangle:
             return "side_length";
         default:
@@ -86,12 +86,20 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     }
 }
 
+[[noreturn]] void fail_outside(Scenario const& scenario, World const& world, ObjectConfig const& object) {
+    auto const [x, y] = *object.position_mm;
+    Box const& box = world.arena.bounds;
+    bool const x_fits = x >= box.min.x && x <= box.max.x;
+    bool const y_fits = y >= box.min.y && y <= box.max.y;
+    throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}",
+                                  where_in_object(scenario, object, x_fits && !y_fits ? "y" : "x"), x, y,
+                                  x_fits && y_fits ? "beyond the walls of" : "outside of", arena_text(world)));
+}
+
 void check_position(Scenario const& scenario, World const& world, ObjectConfig const& object) {
     Vec2 const centre_mm = *object.position_mm;
     if (!stands_inside(world, centre_mm)) {
-        throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}", where_in_object(scenario, object, "x"), centre_mm.x,
-                                      centre_mm.y, is_in_box(world, centre_mm) ? "beyond the walls of" : "outside of",
-                                      arena_text(world)));
+        fail_outside(scenario, world, object);
     }
     if (Polygon const corners = outline(object.spec.shape); !corners.empty()) {
         Vec2 const size_mm = bounding_box(corners).size();

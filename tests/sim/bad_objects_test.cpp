@@ -117,6 +117,8 @@ TEST(BadObjects, LargerThanTheArena) {
     }
     EXPECT_EQ(error_with("  it: {type: membrane, geometry: rectangle, body_width: 1200, body_height: 50}\n"),
               "x.yaml:7: objects.it.body_width: the object is 1201.0 mm across, too large for " + kArena);
+    EXPECT_EQ(error_with("  it: {type: passive_object, geometry: rectangle, body_height: 1200}\n"),
+              "x.yaml:7: objects.it.body_height: the object is 1200.0 mm across, too large for " + kArena);
     EXPECT_EQ(error_with("  it: {type: membrane, geometry: triangle, side_length: 1000}\n"),
               "x.yaml:7: objects.it.side_length: the object is 1154.7 mm across, too large for " + kArena);
     EXPECT_EQ(error_with("  it: {type: membrane, geometry: disk, radius: 200, x: 900, y: 500}\n"),
@@ -134,6 +136,8 @@ TEST(BadObjects, OutsideOfTheArena) {
          {"pogobot", "pogobject", "pogowall", "membrane", "rectmembrane", "active_object", "passive_object"}) {
         EXPECT_EQ(error_with(std::string("  it: {type: ") + type + ", geometry: disk, x: 1300, y: -2}\n"),
                   "x.yaml:7: objects.it.x: (1300, -2) is outside of " + kArena);
+        EXPECT_EQ(error_with(std::string("  it: {type: ") + type + ", geometry: disk, x: 500,\n    y: 1300}\n"),
+                  "x.yaml:8: objects.it.y: (500, 1300) is outside of " + kArena);
     }
 }
 
