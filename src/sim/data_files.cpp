@@ -42,8 +42,9 @@ std::filesystem::path find_file(Scenario const& scenario, std::string const& key
     Node const* const entry = scenario.resolved.find(key);
     throw ConfigError(fmt::format(
         "{}{}: there is no file '{}'; it is looked for from the working folder ({}), then in the "
-        "folder of Pogosim. Arenas that come along: arenas/disk.csv, arenas/square.csv, ...",
-        entry != nullptr ? entry->where() + ": " : "", key, name, std::filesystem::current_path(ignored).string()));
+        "folder of Pogosim{}",
+        entry != nullptr ? entry->where() + ": " : "", key, name, std::filesystem::current_path(ignored).string(),
+        key == "arena_file" ? ". Arenas that come along: arenas/disk.csv, arenas/square.csv, ..." : ""));
 }
 
 }  // namespace pogosim

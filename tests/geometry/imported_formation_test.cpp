@@ -129,6 +129,8 @@ TEST_F(ImportedFormation, BadRowsAreRefusedWithTheirLine) {
     EXPECT_TRUE(error_of("x,y,time\n1,2,\n", 1).starts_with("poses.csv:2: expected a finite number in column 3"));
     EXPECT_TRUE(error_of("a,b\n1,2\n", 1).starts_with("poses.csv:1: expected a header with the columns x and y"));
     EXPECT_TRUE(error_of("x;y\n1;2\n", 1).starts_with("poses.csv:1: expected a header with the columns x and y"));
+    std::string const utf16 = error_of(std::string("\xff\xfex\0,\0y\0\n\0", 10), 1);
+    EXPECT_TRUE(utf16.ends_with("found '\\xff\\xfex\\x00,\\x00y\\x00'")) << utf16;
     EXPECT_TRUE(error_of("x,y\n1e300,2\n", 1).starts_with("poses.csv:2: the position"));
     EXPECT_TRUE(error_of("", 1).starts_with("poses.csv: expected at least 1 row"));
     EXPECT_TRUE(error_of(std::string("\0\x01\x02\xff\n", 5), 1).starts_with("poses.csv:1: "));

@@ -167,5 +167,18 @@ TEST(BadObjects, FormationsInsideOfSomethingThatIsNoSpace) {
     EXPECT_EQ(narrow.find(key + "inside of 'it': formation 'random' cannot place 1 object"), 0U) << narrow;
 }
 
+TEST(MissingFiles, OnlyArenasAreOfferedArenas) {
+    Folder const folder;
+    Warnings const warnings;
+    std::string const head = "initial_formation: imported\nformation_filename: poses.csv\narena_file: square.csv\n";
+    Folder::write("x.yaml", head + "objects:\n  robots: {type: pogobot, geometry: disk}\n");
+    auto const message = [] { return error_of([] { build_world(load_scenario("x.yaml", {}), 1); }); };
+    EXPECT_EQ(message().find("x.yaml:3: arena_file: there is no file 'square.csv'; "), 0U) << message();
+    EXPECT_NE(message().find("Arenas that come along"), std::string::npos) << message();
+    Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
+    EXPECT_EQ(message().find("x.yaml:2: formation_filename: there is no file 'poses.csv'; "), 0U) << message();
+    EXPECT_EQ(message().find("Arenas that come along"), std::string::npos) << message();
+}
+
 }  // namespace
 }  // namespace pogosim

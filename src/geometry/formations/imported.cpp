@@ -37,8 +37,8 @@ Columns columns_of_header(std::vector<std::string_view> const& names, std::strin
     if (!x || !y) {
         throw ConfigError(
             fmt::format("{}: expected a header with the columns x and y (and theta or angle, and time, if "
-                        "wanted), found '{}'",
-                        where, fmt::join(names, ",")));
+                        "wanted), found {}",
+                        where, in_quotes(fmt::format("{}", fmt::join(names, ",")))));
     }
     auto const theta = find_column(names, "theta");
     auto const angle = theta ? theta : find_column(names, "angle");
