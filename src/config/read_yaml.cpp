@@ -101,16 +101,27 @@ std::string line_of(std::string const& text, int number) {
     return line;
 }
 
+/// The parser's messages in other words: what to do about the usual slips.
+std::string hint_for(std::string_view message) {
+    constexpr std::string_view keys =
+        "; the keys of a map begin in the same column, each is followed by a colon and a space, and a text "
+        "with ': ' in it needs quotes";
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 4> hints{{
+        {"end of map not found", keys},
+        {"illegal map value", keys},
+        {"end of map flow not found", "; is a '}' or a comma missing?"},
+        {"end of sequence flow not found", "; is a ']' or a comma missing?"},
+    }};
+    auto const* const found = std::ranges::find(hints, message, &std::pair<std::string_view, std::string_view>::first);
+    return found == hints.end() ? "" : std::string(found->second);
+}
+
 [[noreturn]] void fail_syntax(YAML::Exception const& error, std::string const& text, std::string const& source) {
     // The end mark adds lines that the user does not have.
     int const line = std::clamp(error.mark.line + 1, 1, std::max(1, line_count(text)));
     std::string const found = line_of(text, line);
-    std::string why = error.msg;
-    if (found.substr(0, found.find_first_not_of(" \t")).find('\t') != std::string::npos) {
-        why = "this line is indented with a tab, it needs spaces";
-    } else if (why == "illegal map value") {
-        why += "; is the line indented like those around it? A text with ': ' in it needs quotes";
-    }
+    bool const tab = found.substr(0, found.find_first_not_of(" \t")).find('\t') != std::string::npos;
+    std::string const why = tab ? "this line is indented with a tab, it needs spaces" : error.msg + hint_for(error.msg);
     throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", source, line, why));
 }
 

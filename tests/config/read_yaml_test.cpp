@@ -127,11 +127,14 @@ TEST(ReadYaml, SyntaxErrorsNameTheirLine) {
     // yaml-cpp 0.8 adds the anchor's name.
     std::string const anchor = read_error("a: *nobody\n");
     EXPECT_TRUE(anchor.starts_with("x.yaml:1: not valid YAML: the referenced anchor is not defined")) << anchor;
-    std::string const illegal =
-        "not valid YAML: illegal map value; is the line indented like those around it? A text with ': ' in it needs "
-        "quotes";
-    EXPECT_EQ(read_error("a: b: c\n"), "x.yaml:1: " + illegal);
-    EXPECT_EQ(read_error("a:\n  b: 1\n    c: 2\n"), "x.yaml:3: " + illegal);
+    std::string const keys =
+        "; the keys of a map begin in the same column, each is followed by a colon and a space, and a text "
+        "with ': ' in it needs quotes";
+    EXPECT_EQ(read_error("a: b: c\n"), "x.yaml:1: not valid YAML: illegal map value" + keys);
+    EXPECT_EQ(read_error("a: 1\n  b: 2\n"), "x.yaml:2: not valid YAML: illegal map value" + keys);
+    EXPECT_EQ(read_error("a:\n    b: 2\n  c: 3\n"), "x.yaml:3: not valid YAML: end of map not found" + keys);
+    EXPECT_EQ(read_error("a: {b: 1\n"),
+              "x.yaml:1: not valid YAML: end of map flow not found; is a '}' or a comma missing?");
     EXPECT_EQ(read_error("? [1]\n: 2\n"), "x.yaml:1: the key of a map must be a plain text");
     EXPECT_EQ(read_error("a: {~: 1}\n"), "x.yaml:1: the key of a map must be a plain text");
 }
