@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <string_view>
 
 #include "base/log.hpp"
 #include "sim/build_world.hpp"
@@ -149,8 +150,11 @@ void Simulation::report(UserFailure const& failure) const {
         return;
     }
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
-    log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}",
-              failed ? "failed" : "ended", where, failure.what, recorder_.note());
+    // C++ compilers let a function without its return run on into the next one; only a real main() is excused.
+    bool const may_lack_return = failure.code == ExitCode::user_program && std::string_view(context.phase) == "main";
+    log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
+              failed ? "failed" : "ended", where, failure.what,
+              may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", recorder_.note());
 }
 
 void Simulation::report_losses() const {

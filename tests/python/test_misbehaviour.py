@@ -131,6 +131,7 @@ def test_failure_in_any_function_of_the_program_names_the_function(
     result = misbehave(program, tmp_path, kind, place)
     assert result.code == 3
     assert f"the user program failed in {place} of {who}: " in result.errors
+    assert ("main() must end with 'return 0;'" in result.errors) == (place == "main")
     # A run that fails before its first row leaves a file without rows, so that an older one does not pass for its own.
     assert (len(result.frame()) > 0) == (place in ("export_data", "global_step", "robot_end"))
 
