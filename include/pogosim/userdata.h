@@ -6,14 +6,26 @@
 ///     DECLARE_USERDATA(USERDATA);    // beside the struct, wherever it is needed
 ///     REGISTER_USERDATA(USERDATA);   // once per program
 ///
-/// Both work with and without the semicolon. All bytes are zero at the start; in C++, members may have initial values.
+/// Both work with and without the semicolon; as the last line of a C file, with it. All bytes are zero at the start; in
+/// C++, members may have initial values.
 #ifndef POGOSIM_USERDATA_H
 #define POGOSIM_USERDATA_H
 
+// What follows may be a semicolon alone. In C that is an extension, of which -Wpedantic then says nothing.
+#ifdef __cplusplus
+#define POGO_MAYBE_SEMICOLON
+#else
+#define POGO_MAYBE_SEMICOLON __extension__
+#endif
+
 #ifdef REAL_ROBOT
 
-#define DECLARE_USERDATA(T) extern T myuserdata;
-#define REGISTER_USERDATA(T) T myuserdata;
+#define DECLARE_USERDATA(T) \
+    extern T myuserdata;    \
+    POGO_MAYBE_SEMICOLON
+#define REGISTER_USERDATA(T) \
+    T myuserdata;            \
+    POGO_MAYBE_SEMICOLON
 #define mydata (&myuserdata)
 
 #else
@@ -22,13 +34,15 @@
 #define DECLARE_USERDATA(T)             \
     extern POGO_PER_ROBOT T* mydata;    \
     extern char REGISTER_USERDATA_once; \
-    POGO_ASK_FOR_USERDATA(__COUNTER__)
+    POGO_ASK_FOR_USERDATA(__COUNTER__)  \
+    POGO_MAYBE_SEMICOLON
 /// Defines `mydata`; once per program. Without it the linker misses `REGISTER_USERDATA_once`.
 #define REGISTER_USERDATA(T)                     \
     POGO_SHARED char REGISTER_USERDATA_once = 0; \
     POGO_SHARED size_t UserdataSize = sizeof(T); \
     POGO_CONSTRUCT_USERDATA(T)                   \
-    POGO_PER_ROBOT T* mydata = 0;
+    POGO_PER_ROBOT T* mydata = 0;                \
+    POGO_MAYBE_SEMICOLON
 
 // In C++ the user data of each robot are constructed, as the global of a real robot is.
 #ifdef __cplusplus

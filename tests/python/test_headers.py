@@ -77,10 +77,13 @@ def test_sample_compiles_without_warnings_and_prints_the_same(name: str, flags: 
     assert result.robot_lines == [READ, *(f"[ROBOT #0] [PRINTF] {line}" for line in PRINTED)]
 
 
-def test_sample_compiles_as_c_with_pedantic_warnings(tmp_path: Path) -> None:
-    # ISO C wants no second semicolon after a declaration; the macros do without.
-    flags = ["-std=c11", "-DNO_SEMICOLON", "-Wpedantic", *STRICT]
-    compile_program(tmp_path / "sample", PROGRAMS / "sample.c", flags=flags)
+@pytest.mark.parametrize("name", C_COMPILERS)
+@pytest.mark.parametrize("std", C_STANDARDS)
+@pytest.mark.parametrize("semicolon", [[], ["-DNO_SEMICOLON"]], ids=["semicolon", "none"])
+def test_sample_compiles_as_c_with_pedantic_warnings(name: str, std: str, semicolon: list[str], tmp_path: Path) -> None:
+    # ISO C wants no second semicolon after a declaration; users write one.
+    flags = [f"-std={std}", *semicolon, "-Wpedantic", *STRICT]
+    compile_program(tmp_path / "sample", PROGRAMS / "sample.c", compiler=name, flags=flags)
 
 
 STANDARD_HEADERS = "".join(f"#include <{name}>\n" for name in ("algorithm", "cstdio", "iostream", "map", "random"))

@@ -128,7 +128,7 @@ def test_user_data_cost_what_a_global_costs(tmp_path: Path) -> None:
 def test_interface_adds_no_code_to_a_program(tmp_path: Path) -> None:
     source = tmp_path / "main.c"
     source.write_text(
-        '#include "pogobase.h"\ntypedef struct { int n; } T;\nDECLARE_USERDATA(T)\nREGISTER_USERDATA(T)\n'
+        '#include "pogobase.h"\ntypedef struct { int n; } T;\nDECLARE_USERDATA(T)\nREGISTER_USERDATA(T);\n'
     )
     assert symbols(compile_object(ROBOT, source, tmp_path / "main.o")) == {"myuserdata"}
 
