@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "geometry/formations/task.hpp"
@@ -50,9 +49,10 @@ Formation const& formation_named(std::string const& name) {
         return *found;
     }
     std::string const nearest = nearest_name(name, formation_names());
-    throw ConfigError(fmt::format("initial_formation: unknown formation '{}'. {}", name,
-                                  nearest.empty() ? fmt::format("Known are {}", fmt::join(formation_names(), ", "))
-                                                  : fmt::format("Did you mean '{}'?", nearest)));
+    throw FormationError(kFormationKey,
+                         fmt::format("unknown formation '{}'. {}", name,
+                                     nearest.empty() ? fmt::format("Known are {}", fmt::join(formation_names(), ", "))
+                                                     : fmt::format("Did you mean '{}'?", nearest)));
 }
 
 void check_spec(FormationSpec const& spec) {
@@ -75,7 +75,7 @@ void check_spec(FormationSpec const& spec) {
     };
     for (Rule const& rule : rules) {
         if (!rule.holds) {
-            throw ConfigError(fmt::format("{}: expected {}, found {:g}", rule.key, rule.expected, rule.found));
+            throw FormationError(rule.key, fmt::format("expected {}, found {:g}", rule.expected, rule.found));
         }
     }
 }
@@ -101,10 +101,10 @@ void check_area(PlacementTask const& task) {
     if (covered > (alone ? free_mm2 : free_mm2 + kShareTolerance * task.domain.area_mm2)) {
         std::string const room = alone ? fmt::format("{:.3g} mm2", free_mm2)
                                        : fmt::format("about {:.2g} mm2 beside what stands there already", free_mm2);
-        throw ConfigError(
-            fmt::format("formation '{}' cannot place {}: with their spacing they cover {:.3g} mm2, and the "
-                        "arena has {}. Ask for fewer or enlarge arena_surface",
-                        task.spec.name, describe_objects(task), covered, room));
+        throw FormationError(kFormationKey,
+                             fmt::format("'{}' cannot place {}: with their spacing they cover {:.3g} mm2, and the "
+                                         "arena has {}. Ask for fewer or enlarge arena_surface",
+                                         task.spec.name, describe_objects(task), covered, room));
     }
 }
 

@@ -8,8 +8,10 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/random.hpp"
 #include "geometry/arena.hpp"
 #include "geometry/obstacle.hpp"
@@ -52,6 +54,20 @@ struct ImportedPose {
     std::size_t row = 0;                                            // line of a csv file, row of a table; for messages
 };
 
+/// Objects do not fit, or a value of the spec makes no sense. The message starts with the key of the configuration.
+class FormationError : public ConfigError {
+public:
+    FormationError(std::string key, std::string const& message)
+        : ConfigError(key + ": " + message), key_(std::move(key)) {}
+
+    std::string const& key() const { return key_; }
+
+private:
+    std::string key_;
+};
+
+constexpr char const* kFormationKey = "initial_formation";
+
 /// Reads all poses of a file that is not text. Its mistakes are ConfigErrors.
 using PoseReader = std::function<std::vector<ImportedPose>(std::filesystem::path const&)>;
 
@@ -63,10 +79,11 @@ std::span<std::string const> formation_names();
 /// its walls and from every obstacle, and at least r_i + r_j from object j; imported ones stand where the file says,
 /// which must be inside, and a warning names the first that is in an obstacle. Obstacles that are not in the domain
 /// change nothing. `read_feather` reads the file of `imported` when its name ends in ".feather". Headings: pi/2 for
-/// aligned_*, the file's for imported, otherwise uniform in (-pi, pi]. Throws ConfigError when they do not fit, after a
-/// bounded search ("formation 'disk' has places for 31 of 40 objects (largest radius 26.5 mm) in this arena. ...");
-/// when a value of the spec makes no sense; when the imported file is unreadable or too short; or when the name is
-/// unknown. The same arguments give the same poses.
+/// aligned_*, the file's for imported, otherwise uniform in (-pi, pi]. Throws FormationError when they do not fit,
+/// after a bounded search ("initial_formation: 'disk' has places for 31 of 40 objects (largest radius 26.5 mm) in this
+/// arena.
+/// ..."); when a value of the spec makes no sense; or when the name is unknown. Throws ConfigError when the imported
+/// file is unreadable or too short. The same arguments give the same poses.
 std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, FormationGround const& ground,
                              RandomStream& random, PoseReader const& read_feather = {});
 

@@ -131,6 +131,18 @@ std::string where_root(Scenario const& scenario) {
     return (value != nullptr ? value->where() + ": " : "") + kRootKey;
 }
 
+/// Objects of several sizes, for a message that tells only how many there are: "; the objects' radii are ...".
+std::string radii_text(Scenario const& scenario, std::vector<std::size_t> const& entries) {
+    std::vector<std::string> radii;
+    for (std::size_t const i : entries) {
+        ObjectConfig const& object = scenario.objects[i];
+        if (object.nb > 0) {
+            radii.push_back(fmt::format("{} ({}) {:.4g} mm", object.category, object.nb, outer_radius_mm(object.spec)));
+        }
+    }
+    return radii.size() > 1 ? fmt::format(". Radii: {}", fmt::join(radii, ", ")) : "";
+}
+
 /// The space that the first object of the root category encloses.
 Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig const& root,
                   std::vector<Placement> const& poses) {
@@ -168,7 +180,16 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, For
         ObjectConfig const& object = scenario.objects[i];
         radii.insert(radii.end(), static_cast<std::size_t>(object.nb), outer_radius_mm(object.spec));
     }
-    std::vector<Placement> const placed = place(formation, radii, ground, random, read_imported_feather);
+    std::vector<Placement> placed;
+    try {
+        placed = place(formation, radii, ground, random, read_imported_feather);
+    } catch (FormationError const& error) {
+        // A default is nowhere in the file; then it is about the objects.
+        Node const* const value = scenario.resolved.find(error.key());
+        Node const* const shown = value != nullptr ? value : scenario.resolved.find("objects");
+        throw ConfigError(fmt::format("{}{}{}", shown != nullptr ? shown->where() + ": " : "", error.what(),
+                                      error.key() == kFormationKey ? radii_text(scenario, entries) : ""));
+    }
     auto next = placed.begin();
     for (std::size_t const i : entries) {
         auto const end = next + scenario.objects[i].nb;
@@ -224,8 +245,8 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
         if (root == kNoEntry) {
             throw;
         }
-        throw ConfigError(
-            fmt::format("{}: inside of '{}': {}", where_root(scenario), scenario.objects[root].category, error.what()));
+        throw ConfigError(fmt::format("{} (inside of '{}': {})", error.what(), scenario.objects[root].category,
+                                      where_root(scenario)));
     }
     return poses;
 }

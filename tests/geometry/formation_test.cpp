@@ -120,7 +120,7 @@ TEST_P(EveryFormation, ThreeHundredRobotsStandLegallyOrAreRefusedWithAdvice) {
         } catch (ConfigError const& error) {
             std::string const message = error.what();
             EXPECT_FALSE(GetParam().ends_with("lloyd")) << arena_name << ": " << message;
-            EXPECT_TRUE(message.starts_with("formation '" + GetParam() + "'")) << message;
+            EXPECT_TRUE(message.starts_with("initial_formation: '" + GetParam() + "'")) << message;
             EXPECT_NE(message.find("300 objects (largest radius 26.5 mm)"), std::string::npos) << message;
             EXPECT_NE(message.find("sk for fewer"), std::string::npos) << message;
         }
@@ -322,7 +322,7 @@ TEST(RandomFormation, LargestSpaceBelowContactIsRefused) {
 
 TEST(RandomFormation, TooManyRobotsAreRefusedWithCountsAndAdvice) {
     std::string const message = error_of(named("random"), robots(40), shipped("disk", 130000.0));
-    EXPECT_TRUE(message.starts_with("formation 'random' placed ")) << message;
+    EXPECT_TRUE(message.starts_with("initial_formation: 'random' placed ")) << message;
     EXPECT_TRUE(
         message.ends_with(" of 40 objects (largest radius 26.5 mm) in this arena after 100 restarts: ask for "
                           "fewer, enlarge arena_surface, or use power_lloyd"))
@@ -528,7 +528,7 @@ TEST(LloydFormation, ThinDiagonalArenaIsPlacedInOrRefused) {
         try {
             expect_legal(place_seeded(spec, small, sliver, 1), small, sliver, name);
         } catch (ConfigError const& error) {
-            EXPECT_TRUE(std::string(error.what()).starts_with("formation '")) << error.what();
+            EXPECT_TRUE(std::string(error.what()).starts_with("initial_formation: '")) << error.what();
         }
     }
 }

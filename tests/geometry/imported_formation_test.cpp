@@ -104,9 +104,9 @@ TEST_F(ImportedFormation, BoxOfTheFileIsMappedOntoTheArenasBox) {
 
 TEST_F(ImportedFormation, BoxThatIsNoneIsRefused) {
     spec_.imported_min = {-1, 10};
-    EXPECT_TRUE(error_of("0,15\n", 1).starts_with("imported_formation_min_coords, imported_formation_max_coords: "));
+    EXPECT_TRUE(error_of("0,15\n", 1).starts_with("imported_formation_min_coords: "));
     spec_.imported_max = {1, 10};
-    EXPECT_TRUE(error_of("0,15\n", 1).starts_with("imported_formation_min_coords, imported_formation_max_coords: "));
+    EXPECT_TRUE(error_of("0,15\n", 1).starts_with("imported_formation_min_coords: "));
 }
 
 TEST_F(ImportedFormation, PositionOutsideTheArenaNamesItsLine) {

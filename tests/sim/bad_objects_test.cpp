@@ -164,7 +164,14 @@ TEST(BadObjects, FormationsInsideOfSomethingThatIsNoSpace) {
     EXPECT_EQ(error_with(ring + ", dot_radius: 90}\n", "it"),
               key + "the ring of 'it' is so thick that there is no space in it; enlarge x.yaml:7: objects.it.radius");
     std::string const narrow = error_with(ring + ", dot_radius: 65}\n", "it");
-    EXPECT_EQ(narrow.find(key + "inside of 'it': formation 'random' cannot place 1 object"), 0U) << narrow;
+    EXPECT_TRUE(narrow.starts_with("x.yaml:3: initial_formation: 'random' cannot place 1 object ")) << narrow;
+    EXPECT_TRUE(narrow.ends_with(" (inside of 'it': x.yaml:4: initial_formation_root_object)")) << narrow;
+}
+
+TEST(BadObjects, FormationsThatHaveNoRoomNameTheirLineAndTheSizes) {
+    std::string const many = error_with("  discs: {type: passive_object, nb: 90, geometry: disk, radius: 60}\n");
+    EXPECT_TRUE(many.starts_with("x.yaml:3: initial_formation: 'random' cannot place 91 objects ")) << many;
+    EXPECT_TRUE(many.ends_with(". Radii: robots (1) 26.5 mm, discs (90) 60 mm")) << many;
 }
 
 TEST(MissingFiles, OnlyArenasAreOfferedArenas) {

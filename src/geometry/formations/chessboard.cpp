@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "geometry/formations/ring_placement.hpp"
 
 namespace pogosim {
@@ -33,8 +32,8 @@ RingPattern squares(Vec2 centre, float pitch_mm) {
 }
 
 [[noreturn]] void refuse(PlacementTask const& task, std::string const& reason) {
-    throw ConfigError(
-        fmt::format("formation '{}' cannot place {}: {}", task.spec.name, describe_objects(task), reason));
+    throw FormationError(kFormationKey,
+                         fmt::format("'{}' cannot place {}: {}", task.spec.name, describe_objects(task), reason));
 }
 
 /// Nodes, row after row, of the grid that is centred in the bounding box, as far as an object of this radius fits.

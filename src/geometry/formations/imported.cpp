@@ -96,7 +96,7 @@ std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
 std::vector<ImportedPose> read_poses(PlacementTask const& task) {
     std::filesystem::path const path = task.spec.filename;
     if (path.empty()) {
-        throw ConfigError("formation 'imported' needs a file: set formation_filename");
+        throw FormationError(kFormationKey, "'imported' needs a file: set formation_filename");
     }
     if (path.extension() != ".feather") {
         return read_csv_poses(path);
@@ -127,9 +127,10 @@ public:
             return;
         }
         if (given < 4 || min.x >= max.x || min.y >= max.y) {
-            throw ConfigError(
-                fmt::format("imported_formation_min_coords, imported_formation_max_coords: expected two "
-                            "corners of a box, found ({:g}, {:g}) and ({:g}, {:g})",
+            throw FormationError(
+                "imported_formation_min_coords",
+                fmt::format("with imported_formation_max_coords expected two corners of a box, smaller and larger, "
+                            "found ({:g}, {:g}) and ({:g}, {:g})",
                             min.x, min.y, max.x, max.y));
         }
         Box const box = task.domain.bounds;

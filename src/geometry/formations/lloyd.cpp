@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "base/error.hpp"
 #include "geometry/formations/power_diagram.hpp"
 #include "geometry/formations/separation.hpp"
 #include "geometry/formations/task.hpp"
@@ -33,8 +32,9 @@ std::vector<Vec2> draw_samples(PlacementTask const& task, std::size_t count) {
         }
     }
     if (samples.size() < task.radii_mm.size()) {
-        throw ConfigError(fmt::format("formation '{}' cannot place {}: the arena is too thin to draw points in it",
-                                      task.spec.name, describe_objects(task)));
+        throw FormationError(kFormationKey,
+                             fmt::format("'{}' cannot place {}: the arena is too thin to draw points in it",
+                                         task.spec.name, describe_objects(task)));
     }
     return samples;
 }
@@ -92,10 +92,10 @@ std::vector<Placement> place_evenly(PlacementTask const& task, std::span<float c
             return placements;
         }
     }
-    throw ConfigError(
-        fmt::format("formation '{}' found no arrangement of {} in this arena that keeps them apart and off "
-                    "the walls. Ask for fewer or enlarge arena_surface",
-                    task.spec.name, describe_objects(task)));
+    throw FormationError(kFormationKey,
+                         fmt::format("'{}' found no arrangement of {} in this arena that keeps them apart and off "
+                                     "the walls. Ask for fewer or enlarge arena_surface",
+                                     task.spec.name, describe_objects(task)));
 }
 
 }  // namespace

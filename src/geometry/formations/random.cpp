@@ -5,7 +5,6 @@
 #include <numbers>
 #include <optional>
 
-#include "base/error.hpp"
 #include "geometry/formations/disk_field.hpp"
 #include "geometry/formations/task.hpp"
 
@@ -40,10 +39,10 @@ private:
     void check_reach() const {
         float const smallest = *std::ranges::min_element(task_.radii_mm);
         if (*reach_mm_ < 2.0F * smallest) {
-            throw ConfigError(
-                fmt::format("formation_max_space_between_neighbors: {:g} mm is less than the {:g} mm that "
-                            "two of the smallest objects keep between their centres",
-                            *reach_mm_, 2.0F * smallest));
+            throw FormationError("formation_max_space_between_neighbors",
+                                 fmt::format("{:g} mm is less than the {:g} mm that "
+                                             "two of the smallest objects keep between their centres",
+                                             *reach_mm_, 2.0F * smallest));
         }
     }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "geometry/formations/disk_field.hpp"
 
 namespace pogosim {
@@ -65,8 +64,8 @@ private:
     }
 
     [[noreturn]] void refuse() const {
-        throw ConfigError(fmt::format("formation '{}' has places for {} of {} in this arena. {}", task_.spec.name,
-                                      placed_, describe_objects(task_), remedy_));
+        throw FormationError(kFormationKey, fmt::format("'{}' has places for {} of {} in this arena. {}",
+                                                        task_.spec.name, placed_, describe_objects(task_), remedy_));
     }
 
     PlacementTask const& task_;

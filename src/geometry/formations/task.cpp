@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/error.hpp"
-
 namespace pogosim {
 
 std::vector<std::uint32_t> largest_first(std::span<float const> radii_mm) {
@@ -33,10 +31,10 @@ void repeat_until_all_stand(PlacementTask const& task, std::int64_t const& point
         }
         most = std::max(most, placed);
         if (points_drawn >= kMostPointsDrawn || restarts == task.spec.max_restarts) {
-            throw ConfigError(
-                fmt::format("formation '{}' placed {} of {} in this arena after {} restarts: ask for fewer, "
-                            "enlarge arena_surface, or use power_lloyd",
-                            task.spec.name, most, describe_objects(task), restarts));
+            throw FormationError(kFormationKey,
+                                 fmt::format("'{}' placed {} of {} in this arena after {} restarts: ask for fewer, "
+                                             "enlarge arena_surface, or use power_lloyd",
+                                             task.spec.name, most, describe_objects(task), restarts));
         }
     }
 }
@@ -47,10 +45,10 @@ Vec2 formation_centre(PlacementTask const& task) {
     Vec2 const centre{std::isnan(asked.x) ? middle.x : asked.x, std::isnan(asked.y) ? middle.y : asked.y};
     Box const box = task.domain.bounds;
     if (centre.x < box.min.x || centre.x > box.max.x || centre.y < box.min.y || centre.y > box.max.y) {
-        throw ConfigError(
-            fmt::format("initial_formation_center: ({:g}, {:g}) is outside the arena, which spans "
-                        "({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm",
-                        centre.x, centre.y, box.min.x, box.min.y, box.max.x, box.max.y));
+        throw FormationError("initial_formation_center",
+                             fmt::format("({:g}, {:g}) is outside the arena, which spans "
+                                         "({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm",
+                                         centre.x, centre.y, box.min.x, box.min.y, box.max.x, box.max.y));
     }
     return centre;
 }
