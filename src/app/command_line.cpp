@@ -84,10 +84,9 @@ ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
         app.parse(normalised_arguments(argc, argv));
     } catch (CLI::Success const& asked) {
         parsed.exit_code = app.exit(asked);
-    } catch (CLI::ExtrasError const&) {
-        parsed.exit_code = report_usage(app, unknown_argument(app));
     } catch (CLI::ParseError const& error) {
-        parsed.exit_code = report_usage(app, error.what());
+        // An option that nobody knows says more than one that is missing.
+        parsed.exit_code = report_usage(app, app.remaining().empty() ? error.what() : unknown_argument(app));
     }
     return parsed;
 }

@@ -40,6 +40,7 @@ def assert_wrong_usage(result: Run, what: str) -> None:
         (["-c"], "--config: 1 required FILE missing"),
         (["-c", "scene.yaml", "-s"], "--seed: 1 required N missing"),
         (["-c", "scene.yaml", "--set"], "--set"),
+        (["-x"], "unknown argument '-x'"),
         (["-c", "scene.yaml", "-x"], "unknown argument '-x'"),
         (["-c", "scene.yaml", "--sead", "3"], "unknown argument '--sead'; did you mean '--seed'?"),
         (["-c", "scene.yaml", "--noGUI"], "did you mean '--no-GUI'?"),
