@@ -92,7 +92,7 @@ std::pair<float, float> area_and_gyration2(b2PolygonShape const& polygon) {
 
 /// Corners clockwise on the screen around the centroid, convex. By hand, since b2PolygonShape::Set() joins corners that
 /// lie close together.
-void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef& fixture) {
+void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef fixture) {
     b2PolygonShape polygon;
     polygon.m_centroid = b2Vec2_zero;
     polygon.m_count = static_cast<int32>(corners_mm.size());
@@ -110,7 +110,7 @@ void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef& fixture)
     set_mass(body, density * area, gyration2);
 }
 
-void add_disk(b2Body& body, float radius_mm, b2FixtureDef& fixture) {
+void add_disk(b2Body& body, float radius_mm, b2FixtureDef fixture) {
     float const radius = radius_mm / kMmPerUnit;
     b2CircleShape disk;
     disk.m_radius = radius + kSkin;
@@ -122,7 +122,7 @@ void add_disk(b2Body& body, float radius_mm, b2FixtureDef& fixture) {
     set_mass(body, mass, 0.5F * radius * radius);
 }
 
-void add_shape(b2Body& body, Shape const& shape, b2FixtureDef& fixture) {
+void add_shape(b2Body& body, Shape const& shape, b2FixtureDef const& fixture) {
     if (shape.kind == ShapeKind::rectangle || shape.kind == ShapeKind::triangle) {
         add_polygon(body, outline(shape), fixture);
     } else {
