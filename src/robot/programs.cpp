@@ -115,11 +115,6 @@ void Programs::allocate_user_data() {
         computers_[i].user_data = user_data_.data() + i * stride;
     }
     system_.user_data = user_data_.data() + computers_.size() * stride;
-    if (UserdataConstruct != nullptr) {
-        for (std::size_t i = 0; i <= computers_.size(); ++i) {
-            UserdataConstruct(user_data_.data() + i * stride);
-        }
-    }
 }
 
 void Programs::draw_individual_differences(std::uint64_t seed) {
@@ -166,6 +161,15 @@ void Programs::call(std::uint32_t robot, char const* phase, void (*function)()) 
     }
 }
 
+/// In C++, what a robot does with its globals before main().
+void Programs::construct_user_data(std::uint32_t robot) {
+    if (UserdataConstruct != nullptr) {
+        enter(robot, "constructor of USERDATA");
+        UserdataConstruct(mydata);
+        leave();
+    }
+}
+
 void Programs::run_main(std::uint32_t robot) {
     enter(robot, "main");
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
@@ -191,6 +195,10 @@ void Programs::warn_of_idle_categories() const {
 
 void Programs::start() {
     auto const count = static_cast<std::uint32_t>(computers_.size());
+    construct_user_data(kNone);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        construct_user_data(i);
+    }
     if (count == 0) {
         // Nobody to run main(): only what the global callbacks need.
         run_main(kNone);

@@ -20,7 +20,8 @@ public:
     Programs(Programs const&) = delete;
     Programs& operator=(Programs const&) = delete;
 
-    /// Runs main() for each robot, then callback_global_setup, then every user_init.
+    /// Constructs the user data of C++ programs, runs main() for each robot, then callback_global_setup, then every
+    /// user_init.
     void start();
 
     /// callback_create_data_schema: fills the services' columns.
@@ -52,6 +53,7 @@ private:
     void draw_individual_differences(std::uint64_t seed);
     void enter(std::uint32_t robot, char const* phase);
     static void leave();
+    void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
     void warn_of_idle_categories() const;
     void call(std::uint32_t robot, char const* phase, void (*function)());

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Compile
-from running import Run, run, run_command, start
+from running import Run, compile_program, run, run_command, start
 
 # Robot 1 misbehaves in tick 10, which begins at 0.16 s: ticks last 16 ms.
 WHERE = "in user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s"
@@ -110,6 +110,20 @@ def test_cpp_exception_is_reported_with_its_text(program: Compile, tmp_path: Pat
     assert result.code == 3
     assert f"the user program failed {WHERE}: C++ exception: a tyre is flat" in result.errors
     assert saved_times(result) == SAVED_TIMES
+
+
+def test_exception_of_a_constructor_of_user_data_ends_with_3_and_an_empty_file(tmp_path: Path) -> None:
+    source = tmp_path / "main.cpp"
+    constructor = 'throws() { if (pogobot_helper_getid() == 1) { throw std::runtime_error("no air"); } }'
+    source.write_text(
+        f'#include <stdexcept>\n#include "pogobase.h"\nstruct throws {{ int n = 1; {constructor} }};\n'
+        "DECLARE_USERDATA(throws);\nREGISTER_USERDATA(throws);\nint main() { return 0; }\n"
+    )
+    result = run(compile_program(tmp_path / "main", source), tmp_path)
+    assert result.code == 3
+    where = "in constructor of USERDATA of robot #1 of category 'robots', tick 0, t = 0.0000 s"
+    assert f"the user program failed {where}: C++ exception: no air" in result.errors
+    assert len(result.frame()) == 0
 
 
 @pytest.mark.parametrize(
