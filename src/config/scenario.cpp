@@ -43,6 +43,11 @@ Node read_parameters(Node const* parameters) {
 
 }  // namespace
 
+std::string where_at_top(Scenario const& scenario, std::string const& key) {
+    Node const* const value = scenario.resolved.find(key);
+    return (value != nullptr ? *value : scenario.resolved).where();
+}
+
 std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key) {
     Node const* const objects = scenario.resolved.find("objects");
     Node const* const entry = objects != nullptr ? objects->find(object.category) : nullptr;

@@ -86,6 +86,9 @@ struct Scenario {
     Node resolved;                      // the whole resolved tree, unknown keys included
 };
 
+/// "file:line" of a top-level key, for messages; of the whole map when the key is absent.
+std::string where_at_top(Scenario const& scenario, std::string const& key);
+
 /// "file:line: objects.category.key" of a key of an entry, for messages; the line of the entry when the key is absent.
 std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key);
 

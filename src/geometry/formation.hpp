@@ -81,9 +81,8 @@ std::span<std::string const> formation_names();
 /// change nothing. `read_feather` reads the file of `imported` when its name ends in ".feather". Headings: pi/2 for
 /// aligned_*, the file's for imported, otherwise uniform in (-pi, pi]. Throws FormationError when they do not fit,
 /// after a bounded search ("initial_formation: 'disk' has places for 31 of 40 objects (largest radius 26.5 mm) in this
-/// arena.
-/// ..."); when a value of the spec makes no sense; or when the name is unknown. Throws ConfigError when the imported
-/// file is unreadable or too short. The same arguments give the same poses.
+/// arena. ..."); when a value of the spec makes no sense; or when the name is unknown. Throws ConfigError when the
+/// imported file is unreadable or too short. The same arguments give the same poses.
 std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, FormationGround const& ground,
                              RandomStream& random, PoseReader const& read_feather = {});
 

@@ -31,9 +31,7 @@ std::vector<b2Vec2> wall_corners(Polygon const& polygon, bool outer) {
         }
     }
     if (corners.size() < 3) {
-        throw ConfigError(
-            "the arena is too small to build walls: its corners lie less than 1 mm apart. Enlarge arena_surface "
-            "(mm^2)");
+        throw ConfigError("the arena is too small to build walls: its corners lie less than 1 mm apart; enlarge it");
     }
     // Chains push to one side: inwards for the outer wall, outwards for holes.
     bool const clockwise_on_screen = signed_area(polygon) > 0.0;

@@ -39,12 +39,11 @@ std::filesystem::path find_file(Scenario const& scenario, std::string const& key
             }
         }
     }
-    Node const* const entry = scenario.resolved.find(key);
-    throw ConfigError(fmt::format(
-        "{}{}: there is no file '{}'; it is looked for from the working folder ({}), then in the "
-        "folder of Pogosim{}",
-        entry != nullptr ? entry->where() + ": " : "", key, name, std::filesystem::current_path(ignored).string(),
-        key == "arena_file" ? ". Arenas that come along: arenas/disk.csv, arenas/square.csv, ..." : ""));
+    throw ConfigError(
+        fmt::format("{}: {}: there is no file '{}'; it is looked for from the working folder ({}), then in the "
+                    "folder of Pogosim{}",
+                    where_at_top(scenario, key), key, name, std::filesystem::current_path(ignored).string(),
+                    key == "arena_file" ? ". Arenas that come along: arenas/disk.csv, arenas/square.csv, ..." : ""));
 }
 
 }  // namespace pogosim

@@ -124,11 +124,9 @@ std::size_t root_entry(Scenario const& scenario) {
     return is_arena ? kNoEntry : static_cast<std::size_t>(found - scenario.objects.begin());
 }
 
-constexpr char const* kRootKey = "initial_formation_root_object";
-
 std::string where_root(Scenario const& scenario) {
-    Node const* const value = scenario.resolved.find(kRootKey);
-    return (value != nullptr ? value->where() + ": " : "") + kRootKey;
+    std::string const key = "initial_formation_root_object";
+    return where_at_top(scenario, key) + ": " + key;
 }
 
 /// Objects of several sizes, for a message that tells only how many there are: "; the objects' radii are ...".
@@ -184,10 +182,7 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, For
     try {
         placed = place(formation, radii, ground, random, read_imported_feather);
     } catch (FormationError const& error) {
-        // A default is nowhere in the file; then it is about the objects.
-        Node const* const value = scenario.resolved.find(error.key());
-        Node const* const shown = value != nullptr ? value : scenario.resolved.find("objects");
-        throw ConfigError(fmt::format("{}{}{}", shown != nullptr ? shown->where() + ": " : "", error.what(),
+        throw ConfigError(fmt::format("{}: {}{}", where_at_top(scenario, error.key()), error.what(),
                                       error.key() == kFormationKey ? radii_text(scenario, entries) : ""));
     }
     auto next = placed.begin();

@@ -6,6 +6,7 @@
 #include <random>
 #include <string_view>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "sim/build_world.hpp"
 #include "sim/interrupt.hpp"
@@ -23,6 +24,16 @@ std::uint32_t seed_of(Scenario const& scenario) {
     return scenario.seed ? *scenario.seed : static_cast<std::uint32_t>(std::random_device{}());
 }
 
+std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world) {
+    WallSpec const walls{.friction = static_cast<float>(scenario.wall_friction),
+                         .restitution = static_cast<float>(scenario.wall_restitution)};
+    try {
+        return make_box2d_engine(world, walls);
+    } catch (ConfigError const& error) {
+        throw ConfigError(fmt::format("{}: arena_surface: {}", where_at_top(scenario, "arena_surface"), error.what()));
+    }
+}
+
 }  // namespace
 
 Simulation::Simulation(Scenario scenario, RunOptions options)
@@ -34,8 +45,7 @@ Simulation::Simulation(Scenario scenario, RunOptions options)
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       programs_(world_, services_, seed_),
       lighting_(lamps_of(scenario_, world_.arena), world_),
-      physics_(make_box2d_engine(world_, {.friction = static_cast<float>(scenario_.wall_friction),
-                                          .restitution = static_cast<float>(scenario_.wall_restitution)})),
+      physics_(make_physics(scenario_, world_)),
       recorder_(scenario_, world_, programs_, services_.data, seed_),
       stages_(options.measure_stages) {}
 

@@ -6,6 +6,7 @@
 
 #include "config/config_file.hpp"
 #include "sim/build_world.hpp"
+#include "sim/simulation.hpp"
 
 namespace pogosim {
 namespace {
@@ -172,6 +173,18 @@ TEST(BadObjects, FormationsThatHaveNoRoomNameTheirLineAndTheSizes) {
     std::string const many = error_with("  discs: {type: passive_object, nb: 90, geometry: disk, radius: 60}\n");
     EXPECT_TRUE(many.starts_with("x.yaml:3: initial_formation: 'random' cannot place 91 objects ")) << many;
     EXPECT_TRUE(many.ends_with(". Radii: robots (1) 26.5 mm, discs (90) 60 mm")) << many;
+}
+
+TEST(BadArenas, TooSmallForWalls) {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
+    Folder::write(
+        "x.yaml",
+        "arena_file: square.csv\narena_surface: 0.5\nobjects:\n  lamp: {type: static_light, geometry: global}\n");
+    EXPECT_EQ(error_of([] { Simulation const simulation(load_scenario("x.yaml", {}), {}); }),
+              "x.yaml:2: arena_surface: the arena is too small to build walls: its corners lie less than 1 mm apart; "
+              "enlarge it");
 }
 
 TEST(MissingFiles, OnlyArenasAreOfferedArenas) {
