@@ -59,6 +59,9 @@ struct Box {
 
     constexpr Vec2 size() const { return max - min; }
     constexpr Vec2 centre() const { return 0.5F * (min + max); }
+    constexpr bool contains(Vec2 point) const {
+        return point.x >= min.x && point.x <= max.x && point.y >= min.y && point.y <= max.y;
+    }
 };
 
 }  // namespace pogosim

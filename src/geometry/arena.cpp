@@ -57,6 +57,12 @@ float Arena::distance_to_walls(Vec2 point_mm) const {
     return nearest;
 }
 
+std::string arena_text(Arena const& arena) {
+    Box const& box = arena.bounds;
+    return fmt::format("the arena, which spans ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm", box.min.x, box.min.y,
+                       box.max.x, box.max.y);
+}
+
 Arena make_arena(std::vector<Polygon> polygons_mm) {
     assert(!polygons_mm.empty());
     double const area = checked_net_area(polygons_mm, "arena");

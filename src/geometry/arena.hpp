@@ -23,6 +23,9 @@ struct Arena {
     float distance_to_walls(Vec2 point_mm) const;
 };
 
+/// "the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm", for messages.
+std::string arena_text(Arena const& arena);
+
 /// The arena that these polygons, in mm, enclose; they stay where they are. Throws ConfigError when the outer polygon
 /// less the holes has no area.
 Arena make_arena(std::vector<Polygon> polygons_mm);

@@ -34,6 +34,11 @@ Shape inset(Shape const& shape, float inwards_mm);
 /// Smallest box around the shape, relative to its origin. Empty, at the origin, for global and arena.
 Box bounding_box(Shape const& shape);
 
+/// True for shapes that are the same wherever they are put: global and arena.
+inline bool is_everywhere(Shape const& shape) {
+    return shape.kind == ShapeKind::global || shape.kind == ShapeKind::arena;
+}
+
 /// True when the point, given relative to the shape's origin, is inside. Global holds every point; arena is the
 /// caller's to decide and counts as everywhere here.
 bool contains(Shape const& shape, Vec2 offset_mm);

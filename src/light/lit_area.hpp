@@ -12,11 +12,6 @@
 
 namespace pogosim {
 
-/// True for shapes that are the same part of the map wherever the lamp is: global and arena.
-inline bool is_everywhere(Shape const& shape) {
-    return shape.kind == ShapeKind::global || shape.kind == ShapeKind::arena;
-}
-
 inline Vec2 cell_centre_mm(LightMap const& map, int column, int row) {
     return map.origin_mm +
            Vec2{(static_cast<float>(column) + 0.5F) * map.cell_mm.x, (static_cast<float>(row) + 0.5F) * map.cell_mm.y};

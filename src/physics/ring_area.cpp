@@ -38,6 +38,9 @@ RingArea::RingArea(Ring const& ring, std::vector<b2Body*> const& bodies)
       area_(enclosed_area(bodies_)) {}
 
 void RingArea::push(float dt_s) const {
+    if (!bodies_.front()->IsAwake()) {
+        return;  // joints let all of them sleep together
+    }
     float inverse_mass = 0.0F;  // of the area as a coordinate
     float growth = 0.0F;        // of the area, per second
     for (std::size_t i = 0; i < bodies_.size(); ++i) {

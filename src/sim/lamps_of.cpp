@@ -10,34 +10,31 @@ namespace pogosim {
 
 namespace {
 
-bool has_centre_in_arena(SpotSpec const& spot) {
-    return spot.shape.kind != ShapeKind::global && spot.shape.kind != ShapeKind::arena;
-}
-
 bool is_between(float low, float value, float high) {
     constexpr float kMarginMm = 1.0F;  // a scaled arena may be a little smaller than meant
     return value >= low - kMarginMm && value <= high + kMarginMm;
 }
 
 [[noreturn]] void fail_outside(Scenario const& scenario, ObjectConfig const& object, std::string const& axis,
-                               Vec2 centre_mm, Box const& box) {
+                               Vec2 centre_mm, Arena const& arena) {
     // The key that says where: center_x of an orbit, else x.
     Node const* const objects = scenario.resolved.find("objects");
     Node const* const entry = objects != nullptr ? objects->find(object.category) : nullptr;
     bool const is_orbit = entry != nullptr && entry->find("center_" + axis) != nullptr;
-    throw ConfigError(fmt::format(
-        "{}: the lamp's centre ({:g}, {:g}) is outside of the arena, which spans ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) "
-        "mm; coordinates of older configurations may need 'arena_stretch: true'",
-        where_in_object(scenario, object, is_orbit ? "center_" + axis : axis), centre_mm.x, centre_mm.y, box.min.x,
-        box.min.y, box.max.x, box.max.y));
+    throw ConfigError(
+        fmt::format("{}: the lamp's centre ({:g}, {:g}) is outside of {}; coordinates of older configurations may need "
+                    "'arena_stretch: true'",
+                    where_in_object(scenario, object, is_orbit ? "center_" + axis : axis), centre_mm.x, centre_mm.y,
+                    arena_text(arena)));
 }
 
-void require_in_arena(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot, Box const& bounds) {
+void require_in_arena(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot, Arena const& arena) {
+    Box const& bounds = arena.bounds;
     if (!is_between(bounds.min.x, spot.centre_mm.x, bounds.max.x)) {
-        fail_outside(scenario, object, "x", spot.centre_mm, bounds);
+        fail_outside(scenario, object, "x", spot.centre_mm, arena);
     }
     if (!is_between(bounds.min.y, spot.centre_mm.y, bounds.max.y)) {
-        fail_outside(scenario, object, "y", spot.centre_mm, bounds);
+        fail_outside(scenario, object, "y", spot.centre_mm, arena);
     }
 }
 
@@ -51,8 +48,8 @@ std::vector<LampSpec> lamps_of(Scenario const& scenario, Arena const& arena) {
         }
         LampSpec const& lamp = *object.spec.lamp;
         auto const* const spot = std::get_if<SpotSpec>(&lamp);
-        if (spot != nullptr && has_centre_in_arena(*spot)) {
-            require_in_arena(scenario, object, *spot, arena.bounds);
+        if (spot != nullptr && !is_everywhere(spot->shape)) {
+            require_in_arena(scenario, object, *spot, arena);
         }
         lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), lamp);
     }

@@ -38,26 +38,15 @@ char const* size_key(Shape const& shape) {
     }
 }
 
-bool is_in_box(World const& world, Vec2 point_mm) {
-    Box const& box = world.arena.bounds;
-    return point_mm.x >= box.min.x && point_mm.x <= box.max.x && point_mm.y >= box.min.y && point_mm.y <= box.max.y;
-}
-
 bool stands_inside(World const& world, Vec2 point_mm) {
-    return is_in_box(world, point_mm) && (world.periodic || world.arena.contains(point_mm));
-}
-
-std::string arena_text(World const& world) {
-    Box const& box = world.arena.bounds;
-    return fmt::format("the arena, which spans ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm", box.min.x, box.min.y,
-                       box.max.x, box.max.y);
+    return world.arena.bounds.contains(point_mm) && (world.periodic || world.arena.contains(point_mm));
 }
 
 [[noreturn]] void fail_too_large(Scenario const& scenario, World const& world, ObjectConfig const& object,
                                  float size_mm) {
     throw ConfigError(fmt::format("{}: the object is {:.1f} mm across, too large for {}",
                                   where_in_object(scenario, object, size_key(object.spec.shape)), size_mm,
-                                  arena_text(world)));
+                                  arena_text(world.arena)));
 }
 
 /// A formation needs room for a disk around each object; say so where the object is given, not where it fails.
@@ -93,7 +82,7 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     bool const y_fits = y >= box.min.y && y <= box.max.y;
     throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}",
                                   where_in_object(scenario, object, x_fits && !y_fits ? "y" : "x"), x, y,
-                                  x_fits && y_fits ? "beyond the walls of" : "outside of", arena_text(world)));
+                                  x_fits && y_fits ? "beyond the walls of" : "outside of", arena_text(world.arena)));
 }
 
 void check_position(Scenario const& scenario, World const& world, ObjectConfig const& object) {
@@ -112,7 +101,7 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
                                                  [&](Vec2 corner) { return stands_inside(world, corner); })) {
         throw ConfigError(fmt::format("{}: around ({:g}, {:g}) the object reaches beyond {}",
                                       where_in_object(scenario, object, size_key(object.spec.shape)), centre_mm.x,
-                                      centre_mm.y, arena_text(world)));
+                                      centre_mm.y, arena_text(world.arena)));
     }
 }
 
@@ -129,7 +118,8 @@ std::string where_root(Scenario const& scenario) {
     return where_at_top(scenario, key) + ": " + key;
 }
 
-/// Objects of several sizes, for a message that tells only how many there are: "; the objects' radii are ...".
+/// Behind a message that tells only how many objects there are: ". Radii: robots (40) 26.5 mm, ..."; nothing when they
+/// are of one category.
 std::string radii_text(Scenario const& scenario, std::vector<std::size_t> const& entries) {
     std::vector<std::string> radii;
     for (std::size_t const i : entries) {
@@ -153,8 +143,7 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     }
     if (spec.lamp) {
         auto const [shape, centre_mm] = area_at_start(*spec.lamp);
-        bool const everywhere = shape.kind == ShapeKind::global || shape.kind == ShapeKind::arena;
-        return everywhere ? world.arena : make_arena({moved(outline(shape), centre_mm, 0.0F)});
+        return is_everywhere(shape) ? world.arena : make_arena({moved(outline(shape), centre_mm, 0.0F)});
     }
     if (spec.shape.kind == ShapeKind::arena) {
         return world.arena;

@@ -12,9 +12,6 @@ namespace pogosim {
 
 namespace {
 
-// A time that should be a whole number of periods may differ from it in the last bits.
-constexpr double kWholeTolerance = 1e-6;
-
 std::vector<bool> recorded_categories(Scenario const& scenario, World const& world) {
     std::vector<bool> recorded;
     for (Category const& category : world.categories) {

@@ -17,9 +17,6 @@ namespace pogosim {
 
 namespace {
 
-// A time that should be a whole number of steps may differ from it in the last bits.
-constexpr double kWholeTolerance = 1e-6;
-
 std::uint32_t seed_of(Scenario const& scenario) {
     return scenario.seed ? *scenario.seed : static_cast<std::uint32_t>(std::random_device{}());
 }

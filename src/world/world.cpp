@@ -22,15 +22,15 @@ Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b) {
     return d;
 }
 
-Vec2 wrapped(World const& world, Vec2 point_mm) {
-    if (!world.periodic) {
-        return point_mm;
-    }
+Vec2 way_into_bounds(World const& world, Vec2 point_mm) {
     Box const& bounds = world.arena.bounds;
     Vec2 const size = bounds.size();
-    Vec2 const turns{std::floor((point_mm.x - bounds.min.x) / size.x),
-                     std::floor((point_mm.y - bounds.min.y) / size.y)};
-    return point_mm - Vec2{turns.x * size.x, turns.y * size.y};
+    return {-size.x * std::floor((point_mm.x - bounds.min.x) / size.x),
+            -size.y * std::floor((point_mm.y - bounds.min.y) / size.y)};
+}
+
+Vec2 wrapped(World const& world, Vec2 point_mm) {
+    return world.periodic ? point_mm + way_into_bounds(world, point_mm) : point_mm;
 }
 
 }  // namespace pogosim

@@ -121,6 +121,9 @@ struct LightMap {
     std::int16_t at(Vec2 point_mm) const;
 };
 
+/// A time that should be a whole number of steps or periods, counted in them, may differ from it in the last bits.
+inline constexpr double kWholeTolerance = 1e-6;
+
 struct World {
     // Time: a count of steps. time = step * time_step_s.
     std::int64_t step = 0;
@@ -153,6 +156,9 @@ struct World {
 
 /// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.
 Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b);
+
+/// What has to be added to a point of a periodic world to bring it into the arena's bounding box; 0 inside.
+Vec2 way_into_bounds(World const& world, Vec2 point_mm);
 
 /// The same point inside the arena's bounding box when the world is periodic; else the point itself.
 Vec2 wrapped(World const& world, Vec2 point_mm);

@@ -12,7 +12,6 @@ namespace {
 constexpr int kMostPushes = 20;
 constexpr double kAreaPoints = 2.0e4;      // in the arena, to estimate what part of it is free
 constexpr double kMostAreaPoints = 1.0e6;  // in its bounding box
-constexpr float kPushMargin = 1.0005F;     // so that rounding does not leave a point short of its clearance
 
 std::size_t count_edges(Arena const& arena) {
     std::size_t count = 0;

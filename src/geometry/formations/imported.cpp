@@ -169,11 +169,8 @@ std::vector<Placement> place_imported(PlacementTask const& task) {
     for (ImportedPose const& pose : poses) {
         Vec2 const place = frame.to_mm(pose);
         if (!task.domain.contains(place)) {
-            throw ConfigError(
-                fmt::format("{}:{}: the position ({:g}, {:g}) mm is outside the walls of the arena, which spans "
-                            "({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm",
-                            task.spec.filename, pose.row, place.x, place.y, task.domain.bounds.min.x,
-                            task.domain.bounds.min.y, task.domain.bounds.max.x, task.domain.bounds.max.y));
+            throw ConfigError(fmt::format("{}:{}: the position ({:g}, {:g}) mm is outside the walls of {}",
+                                          task.spec.filename, pose.row, place.x, place.y, arena_text(task.domain)));
         }
         // A heading that the file does not give stays NaN.
         placements.push_back({place, wrap_angle(static_cast<float>(pose.heading_rad))});

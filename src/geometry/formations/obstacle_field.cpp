@@ -7,7 +7,6 @@ namespace pogosim {
 
 namespace {
 
-constexpr float kPushMargin = 1.0005F;  // so that rounding does not leave a point short of its clearance
 constexpr float kLeastPushMm = 1.0e-3F;
 
 std::size_t count_edges(std::span<Obstacle const> obstacles) {

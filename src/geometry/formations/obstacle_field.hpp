@@ -10,6 +10,9 @@
 
 namespace pogosim {
 
+/// A point is pushed this much further than its clearance, so that rounding does not leave it short of that.
+inline constexpr float kPushMargin = 1.0005F;
+
 class ObstacleField {
 public:
     ObstacleField(std::span<Obstacle const> obstacles, Box bounds_mm);

@@ -43,12 +43,9 @@ Vec2 formation_centre(PlacementTask const& task) {
     Vec2 const middle = centroid(task.domain.outer());
     Vec2 const asked = task.spec.centre_mm;
     Vec2 const centre{std::isnan(asked.x) ? middle.x : asked.x, std::isnan(asked.y) ? middle.y : asked.y};
-    Box const box = task.domain.bounds;
-    if (centre.x < box.min.x || centre.x > box.max.x || centre.y < box.min.y || centre.y > box.max.y) {
+    if (!task.domain.bounds.contains(centre)) {
         throw FormationError("initial_formation_center",
-                             fmt::format("({:g}, {:g}) is outside the arena, which spans "
-                                         "({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm",
-                                         centre.x, centre.y, box.min.x, box.min.y, box.max.x, box.max.y));
+                             fmt::format("({:g}, {:g}) is outside {}", centre.x, centre.y, arena_text(task.domain)));
     }
     return centre;
 }
