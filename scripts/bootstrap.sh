@@ -109,12 +109,21 @@ system_python() {
     fi
 }
 
+# trim_venv: removes from .venv what nothing here uses and pip cannot leave out: the packages' own tests, and Arrow's
+# clients for remote data (Flight, S3), which are a third of pyarrow.
+trim_venv() {
+    local packages
+    packages=$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("platlib"))') || return
+    rm -rf "$packages"/{matplotlib,pandas,pyarrow}/tests \
+        "$packages"/pyarrow/{_flight,_s3fs,libarrow_flight,libarrow_python_flight,libarrow_s3}.*
+}
+
 # make_venv build|test: .venv with the Python package of the project, editable, and what it depends on. A stamp tells
-# for which pyproject.toml and folder that was done; an environment does not survive a move.
+# for which pyproject.toml, recipe and folder that was done; an environment does not survive a move.
 make_venv() {
     local root extra="" stamp=.venv/stamp-$1 key python
     root=$(pwd -P)
-    key="$(cksum <python/pyproject.toml) $root"
+    key="$(cat python/pyproject.toml scripts/bootstrap.sh | cksum) $root"
     if [ "$(cat "$stamp" 2>/dev/null)" = "$key" ] && .venv/bin/python -c '' 2>/dev/null; then
         return
     fi
@@ -129,8 +138,11 @@ make_venv() {
         extra="[test]"
     fi
     say "Installing Python packages in .venv"
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --editable "./python$extra" ||
+    # Python compiles what it imports, when it does: compiling all of it takes half a minute and 100 MB.
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --no-compile \
+        --editable "./python$extra" ||
         fail "pip install ./python$extra" "See pip's message above: check the network, then start again"
+    trim_venv
     printf '%s' "$key" | tee .venv/stamp-build >"$stamp"
 }
 
