@@ -1,4 +1,4 @@
-"""The documentation is true: its programs compile and run, its links lead somewhere."""
+"""The documentation is true: its programs compile, its commands run, its links lead somewhere."""
 
 from __future__ import annotations
 
@@ -12,9 +12,22 @@ import pytest
 from pogosim.utils import load_dataframe
 from project import CLEAN
 from robot_sdk import make_sdk
-from running import LIBRARY, ROOT, build_folder, compile_program, run, run_command
+from running import LIBRARY, ROOT, Run, build_folder, compile_program, example, run, run_command
 
-PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+README = ROOT / "README.md"
+PAGES = [
+    README,
+    ROOT / "CHANGELOG.md",
+    ROOT / "bench" / "README.md",
+    ROOT / "template_prj" / "README.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+]
+# Pages whose commands are run word for word, in a tree with the program of the README.
+PAGES_WITH_COMMANDS = [
+    README,
+    *(ROOT / "docs" / f"{name}.md" for name in ("command_line", "data_file", "examples", "installing")),
+]
+SCRIPTS = ("build.sh", "demo.sh", "test.sh")  # run by test.sh itself
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)]*)?\)")
 
 
@@ -49,15 +62,85 @@ def test_program_in_the_docs_compiles_and_runs(page: Path, code: str, tmp_path: 
     assert len(result.frame()) > 0
 
 
-def test_first_program_of_the_readme_runs_with_its_configuration(tmp_path: Path) -> None:
-    page = ROOT / "README.md"
-    (tmp_path / "first").mkdir()
-    (source := tmp_path / "first" / "main.c").write_text(blocks(page, "c")[0])
-    (tmp_path / "first" / "first.yaml").write_text(blocks(page, "yaml")[0])
-    program = compile_program(tmp_path / "first" / "first", source)
-    result = run_command(program, tmp_path, ["-c", "first/first.yaml", "-g", "-q", "--strict"])
-    assert (result.code, result.errors) == (0, "")
-    assert result.frame("first/first.feather")["heard"].max() > 0
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A project's folder as a reader has it, in which all commands of the README have been run."""
+    folder = tmp_path_factory.mktemp("tree")
+    (folder / "build").mkdir()
+    (folder / "build" / "release").symlink_to(build_folder())
+    for name in (".venv", "arenas", "bench", "conf", "docs", "examples"):
+        (folder / name).symlink_to(ROOT / name)
+    for name in SCRIPTS:
+        (folder / name).write_text("#!/bin/sh\n")
+        (folder / name).chmod(0o755)
+    (folder / "home").mkdir()
+    (folder / "first").mkdir()
+    (folder / "first" / "main.c").write_text(blocks(README, "c")[0])
+    (folder / "first" / "first.yaml").write_text(blocks(README, "yaml")[0])
+    return shell("\n".join(blocks(README, "sh")), folder)
+
+
+def shell(commands: str, folder: Path) -> Run:
+    """Run commands in a project's folder; the first that fails ends them."""
+    environment = CLEAN | {"HOME": str(folder / "home")}
+    ended = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", commands],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+
+
+def test_first_program_of_the_readme_runs_as_it_says(tree: Run) -> None:
+    assert (tree.code, tree.errors) == (0, "")
+    assert "warning" not in tree.output
+    assert tree.frame("first/first.feather")["heard"].max() > 0
+    assert (tree.folder / "first" / "first.png").stat().st_size > 10_000
+    result = shell("first/first -c first/first.yaml -g -q --strict", tree.folder)
+    assert (result.code, result.text) == (0, "")
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES_WITH_COMMANDS if page != README], ids=name_of)
+def test_commands_and_python_of_the_page_work(page: Path, tree: Run) -> None:
+    commands = "\n".join(blocks(page, "sh"))
+    result = shell(commands, tree.folder)
+    assert result.code == 0, f"{commands}\n{result.text}"
+    for code in blocks(page, "python"):
+        done = subprocess.run(
+            [sys.executable, "-c", code], cwd=tree.folder, capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr) == (0, ""), code
+        assert done.stdout, code
+
+
+def test_readme_is_short_and_leads_to_every_page() -> None:
+    text = README.read_text()
+    assert len(text.splitlines()) < 150
+    linked = {(ROOT / target).resolve() for target, _ in LINK.findall(text) if "://" not in target}
+    assert [name_of(page) for page in PAGES if page != README and page not in linked] == []
+
+
+def test_page_of_examples_has_every_example_and_a_configuration_for_it() -> None:
+    page = ROOT / "docs" / "examples.md"
+    rows = re.findall(r"^\| \[(\w+)\]\(\.\./(examples/\S+)\) \|.*\| `(conf/\S+)` \|$", page.read_text(), re.MULTILINE)
+    assert {name for name, _, _ in rows} == {source.parent.name for source in ROOT.glob("examples/*/main.c*")}
+    assert [conf for _, _, conf in rows if not (ROOT / conf).exists()] == []
+
+
+def test_page_of_the_command_line_has_every_option(tmp_path: Path) -> None:
+    listed = set(re.findall(r"`(-{1,2}[A-Za-z][\w-]*)", "\n".join(table(ROOT / "docs" / "command_line.md"))))
+    text = run_command(example("helloworld"), tmp_path, ["-h"]).output
+    offered = set(re.findall(r"(?<![\w-])(-{1,2}[A-Za-z][\w-]*)", text[text.index("Options:") :]))
+    assert listed == offered
+
+
+def table(page: Path) -> list[str]:
+    """Return the first cells of all tables of a page."""
+    return re.findall(r"^\|(.*?)\|", page.read_text(), re.MULTILINE)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
