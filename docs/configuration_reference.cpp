@@ -50,8 +50,7 @@ int main() {
         "Every key that {} reads. This page is printed from the tables the loader checks by\n"
         "([configuration_reference.cpp](configuration_reference.cpp)), and a test holds it to them.\n"
         "[configuration.md](configuration.md) explains. A number may be written as `1.0e6`; keys without a default "
-        "are\n"
-        "absent if not given.\n",
+        "are\nabsent if not given.\n",
         POGOSIM_VERSION_STRING);
     for (KeyGroup const& group : configuration_reference()) {
         print(group);

@@ -1,14 +1,16 @@
 // Who sees whom by infrared.
 //
-//            front (0)             An emitter sits on the rim at 0, 90, 180 and 270 degrees and radiates over the half
-//          ___ ^ ___               plane in front of it. It reaches another robot when that robot's border is within
-//          range
-//         /         \              of the emitter, its centre lies in the half plane, and nearer robots that the
-//         emitter
-//  left  <    (3)    >  right (1)  sees leave at least a part of it uncovered.
-//         \___ _ ___/
-//              v
-//            back (2)
+//             front (0)
+//             ___ ^ ___
+//            /         \
+//  left (3) <           > right (1)
+//            \___   ___/
+//                 v
+//              back (2)
+//
+// An emitter sits on the rim at 0, 90, 180 and 270 degrees and radiates over the half plane in front of it. It reaches
+// another robot when that robot's border is within range of the emitter, its centre lies in the half plane, and nearer
+// robots that the emitter sees leave at least a part of it uncovered.
 //
 // Walls and membranes send and receive along their whole outline instead: there are no half planes and no shadows
 // between an outline and a robot, only the distance from the outline to the robot's emitters.

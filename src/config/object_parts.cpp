@@ -32,8 +32,7 @@ std::span<Key<IrSpec> const> ir_keys() {
           "Infrared reach, from an emitter to the border of the receiver; 0: mute."},
         K{"communication_radius_by_power", &IrSpec::range_by_power_mm, between(0, kMaxLength), "mm",
           "Reach at the emitter powers 1, 2 and 3 of pogobot_infrared_set_power; absent: communication_radius at all "
-          "of "
-          "them. Power 0 sends nothing."},
+          "of them. Power 0 sends nothing."},
         K{"message_queue_size", &IrSpec::queue_size, between(1, 1000), "messages",
           "What a robot's queue of received messages holds; the newest is dropped when it is full."},
         K{"msg_success_rate", Elsewhere{"a map of keys"}, any(), "",

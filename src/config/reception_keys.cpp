@@ -21,9 +21,8 @@ std::span<Key<ModelChoice> const> model_keys() {
                    {{"static", Model::constant}, {"dynamic", Model::dynamic}, {"realistic", Model::realistic}}),
             any(), "",
             "static: always `rate`. dynamic: falls with message size m, send probability p and cluster size c; with "
-            "zeta or theta, or without any of the keys below, 1 / (alpha + beta p^gamma c^delta exp(zeta m) + theta p "
-            "c), "
-            "else 1 / (1 + alpha m^beta p^gamma c^delta). realistic: the latter with its defaults.",
+            "zeta or theta, or without any of the keys below, 1 / (alpha + beta p^gamma c^delta exp(zeta m) + "
+            "theta p c), else 1 / (1 + alpha m^beta p^gamma c^delta). realistic: the latter with its defaults.",
             /*required=*/true},
     };
     return keys;

@@ -85,12 +85,10 @@ TEST(BadInput, WrongTypesAndRangesAtTheTopLevel) {
           "data_logger_flush_row_count: expected an integer from 1 to 1000000000 (rows), found 0"},
          {"initial_formation_center: 5",
           "initial_formation_center: expected a list [x, y] of two numbers from -1000000 to 1000000 or .nan (mm), "
-          "found "
-          "5"},
+          "found 5"},
          {"initial_formation_center: [5]",
           "initial_formation_center: expected a list [x, y] of two numbers from -1000000 to 1000000 or .nan (mm), "
-          "found "
-          "a list of 1"},
+          "found a list of 1"},
          {"initial_formation_root_object: nobody",
           "initial_formation_root_object: expected 'arena' or a category of 'objects', found 'nobody'"},
          {"initial_formation: imported",
@@ -157,8 +155,7 @@ TEST(BadInput, WrongRobots) {
           "objects.robots.angular_systematic_bias_domain: expected [smallest, largest], found [3, -3]"},
          {"    angular_systematic_bias_domain: [0, 5000]",
           "objects.robots.angular_systematic_bias_domain.1: expected an integer from -1023 to 1023 (motor power "
-          "units), "
-          "found 5000"},
+          "units), found 5000"},
          {"    x: 5", "objects.robots.x: stands alone; give both x and y, or neither"},
          {"    y: 5", "objects.robots.y: stands alone; give both x and y, or neither"},
          {"    x: left", "objects.robots.x: expected a number from -1000000 to 1000000 (mm), found 'left'"},

@@ -17,9 +17,9 @@ namespace {
 
 constexpr char const* usage = R"(Usage: pogosim-shared-state [options] PROGRAM
 
-Lists the variables of a simulated program that it could change and that all robots share: everything but USERDATA, what is
-read from the configuration (init_from_configuration), and what is marked POGO_SHARED. Those in headers of the system do not
-count. PROGRAM is linked and has debug information (-g).
+Lists the variables of a simulated program that it could change and that all robots share: everything but USERDATA, what
+is read from the configuration (init_from_configuration), and what is marked POGO_SHARED. Those in headers of the system
+do not count. PROGRAM is linked and has debug information (-g).
 
   --ignore FOLDER         variables declared in files of this folder do not count; may be repeated
   -Werror=shared-state    a variable found is an error
