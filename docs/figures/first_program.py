@@ -1,27 +1,27 @@
-"""Does what docs/first_program.md says, block by block, and keeps its two pictures.
+"""Does what docs/first_program.md says, block by block, with its two pictures.
 
-    .venv/bin/python docs/figures/first_program.py [FOLDER]
+    .venv/bin/python docs/figures/first_program.py FOLDER    # leaves the project in FOLDER
+    .venv/bin/python docs/figures/all.py first_program       # draws
 
-Works in FOLDER (default: a temporary one), in which pictures stay; without FOLDER they go to docs/. A C program becomes
-main.c, YAML conf/crowds.yaml, Python plot.py; shell commands are run, and what the page says that they print must be in
-their output. `make bin` is left out unless POGO_SDK says where the SDK is.
+A C program becomes main.c, YAML conf/crowds.yaml, Python plot.py; shell commands are run, and what the page says that
+they print must be in their output. `make bin` is left out unless POGO_SDK says where the SDK is.
 """
 
 from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from pictures import DOCS, ROOT, Picture, fingerprint
+from pogosim.utils import load_dataframe
+
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
 PLACES = {"~/pogosim": str(ROOT), "~/pogobot-sdk": os.environ.get("POGO_SDK", "")}
 FILES = {"c": "main.c", "yaml": "conf/crowds.yaml", "python": "plot.py"}
-PICTURES = {"results/run.png": "first_program_run.png", "results/neighbours.png": "first_program_plot.png"}
+NAMES = ("first_program_run.png", "first_program_plot.png")
 
 
 def run(commands: str, folder: Path) -> str:
@@ -57,15 +57,21 @@ def follow(page: Path, folder: Path) -> None:
             (project / FILES[language]).write_text(text, encoding="utf-8")
 
 
-def main() -> None:
-    """Follow the page and keep the pictures."""
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(temporary)
-        follow(ROOT / "docs/first_program.md", folder)
-        if len(sys.argv) == 1:
-            for made, picture in PICTURES.items():
-                shutil.copy(folder / "crowds" / made, ROOT / "docs" / picture)
+def pictures_in(project: Path) -> dict[str, Picture]:
+    """Return the pictures that the page's commands have made in a project."""
+    results = project / "results"
+    runs = [load_dataframe(path)[0] for path in sorted(results.glob("*.feather"))]
+    return {
+        "first_program_run.png": Picture((results / "run.png").read_bytes(), fingerprint(runs[0])),
+        "first_program_plot.png": Picture((results / "neighbours.png").read_bytes(), fingerprint(*runs)),
+    }
+
+
+def draw(folder: Path) -> dict[str, Picture]:
+    """Follow the page; return the pictures that it made."""
+    follow(DOCS / "first_program.md", folder)
+    return pictures_in(folder / "crowds")
 
 
 if __name__ == "__main__":
-    main()
+    follow(DOCS / "first_program.md", Path(sys.argv[1]))

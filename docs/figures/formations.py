@@ -1,30 +1,31 @@
 """One picture of every initial formation.
 
-    .venv/bin/python docs/figures/formations.py
+    .venv/bin/python docs/figures/all.py formations
 
-Needs the examples (./build.sh). Runs helloworld for no time at all, once per formation, and draws docs/formations.png.
+Runs helloworld for no time at all, once per formation.
 """
 
 from __future__ import annotations
 
 import math
 import subprocess
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import yaml
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
-from pogosim.utils import load_dataframe
+from pictures import ROOT, Picture, from_figure
+from pogosim.swarm_picture import read_swarm
 
-ROOT = Path(__file__).resolve().parents[2]
+NAMES = ("formations.png",)
 RADIUS_MM = 26.5
 COUNT = 60
-NAMES = (
+FORMATIONS = (
     "random",
     "random_near_walls",
     "disk",
@@ -65,11 +66,12 @@ def place(folder: Path, name: str, options: Mapping[str, object]) -> Path:
     return data
 
 
-def draw_swarm(axes: Axes, data: Path) -> None:
-    """Draw walls, and robots with a line along their heading."""
-    rows, metadata = load_dataframe(data)
-    for polygon in yaml.safe_load(metadata["arena_polygons"]):
-        axes.add_patch(Polygon([(p["x"], p["y"]) for p in polygon], fill=False, edgecolor="0.3"))
+def draw_swarm(axes: Axes, data: Path) -> pd.DataFrame:
+    """Draw walls, and robots with a line along their heading; return the robots."""
+    swarm = read_swarm(data)
+    rows = swarm.rows
+    for polygon in swarm.polygons:
+        axes.add_patch(Polygon(polygon, fill=False, edgecolor="0.3"))
     position = rows[["x", "y"]].to_numpy(dtype=float)
     heading = np.column_stack([np.cos(rows["angle"]), np.sin(rows["angle"])])
     bodies = [Circle((x, y), RADIUS_MM) for x, y in position]
@@ -80,21 +82,17 @@ def draw_swarm(axes: Axes, data: Path) -> None:
     axes.autoscale_view()
     axes.invert_yaxis()
     axes.set_axis_off()
+    return rows
 
 
-def main() -> None:
+def draw(folder: Path) -> dict[str, Picture]:
     """Draw all formations in one figure."""
     figure = Figure(figsize=(9.0, 7.4), layout="constrained")
     panels = list(figure.subplots(3, 4).flat)
     spread = ("chessboard", {"formation_cluster_at_center": False})
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
-        (folder / "spiral.csv").write_text(spiral(), encoding="utf-8")
-        for axes, (name, options) in zip(panels, [*((name, {}) for name in NAMES), spread]):
-            draw_swarm(axes, place(folder, name, options))
-            axes.set_title("\n".join([name, *(f"{k}: {str(v).lower()}" for k, v in options.items())]), fontsize=8)
-    figure.savefig(ROOT / "docs/formations.png", dpi=85)
-
-
-if __name__ == "__main__":
-    main()
+    drawn = []
+    (folder / "spiral.csv").write_text(spiral(), encoding="utf-8")
+    for axes, (name, options) in zip(panels, [*((name, {}) for name in FORMATIONS), spread]):
+        drawn.append(draw_swarm(axes, place(folder, name, options)))
+        axes.set_title("\n".join([name, *(f"{k}: {str(v).lower()}" for k, v in options.items())]), fontsize=8)
+    return {"formations.png": from_figure(figure, 85, *drawn)}

@@ -1,28 +1,28 @@
 """Six examples, each with its configuration.
 
-    .venv/bin/python docs/figures/gallery.py
+    .venv/bin/python docs/figures/all.py gallery
 
-Needs the examples (./build.sh). Runs them and draws docs/gallery.png.
+Each runs with the configuration that shows it best.
 """
 
 from __future__ import annotations
 
 import subprocess
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from pictures import ROOT, Picture, from_figure
 from pogosim.swarm_picture import INK, PAPER, draw_scene, read_swarm
 
-ROOT = Path(__file__).resolve().parents[2]
+NAMES = ("gallery.png",)
 
 
 @dataclass(frozen=True)
-class Picture:
+class Example:
     """An example to run, and when to look."""
 
-    example: str
+    name: str
     shows: str
     configuration: str
     end_s: float
@@ -30,36 +30,34 @@ class Picture:
     settings: tuple[str, ...] = ()
 
 
-PICTURES = (
-    Picture("phototaxis", "robots stay, in blue, where it is bright", "phototaxis", 30.0, 8.0),
-    Picture("walls", "blue: heard the wall; yellow: heard the membrane", "walls_and_membranes", 14.0, 10.0),
-    Picture("lighthouse_localization", "each knows where: the hue is its bearing", "lighthouse", 21.0, 6.0),
-    Picture("vicsek", "a flock, coloured by heading", "vicsek", 60.0, 4.0),
-    Picture("naming_game", "words spread, one will win", "naming_game", 2.2, 2.0),
-    Picture("ssr", "robots have heard that this is an annulus", "ssr", 400.0, 5.0, ("arena_file=arenas/annulus.csv",)),
+EXAMPLES = (
+    Example("phototaxis", "robots stay, in blue, where it is bright", "phototaxis", 30.0, 8.0),
+    Example("walls", "blue: heard the wall; yellow: heard the membrane", "walls_and_membranes", 14.0, 10.0),
+    Example("lighthouse_localization", "each knows where: the hue is its bearing", "lighthouse", 21.0, 6.0),
+    Example("vicsek", "a flock, coloured by heading", "vicsek", 60.0, 4.0),
+    Example("naming_game", "words spread, one will win", "naming_game", 2.2, 2.0),
+    Example("ssr", "robots have heard that this is an annulus", "ssr", 400.0, 5.0, ("arena_file=arenas/annulus.csv",)),
 )
 
 
-def run(picture: Picture, data: Path) -> None:
+def run(example: Example, data: Path) -> None:
     """Run an example, with the colours of its LEDs in the data file."""
-    command = [f"examples/{picture.example}/{picture.example}", "-c", f"conf/{picture.configuration}.yaml", "-g", "-q"]
+    command = [f"examples/{example.name}/{example.name}", "-c", f"conf/{example.configuration}.yaml", "-g", "-q"]
     settings = ("data_logger_led=true", "save_data_period=0.2", f"data_filename={data}", "enable_console_logging=false")
-    for setting in (f"simulation_time={picture.end_s}", *settings, *picture.settings):
+    for setting in (f"simulation_time={example.end_s}", *settings, *example.settings):
         command += ["--set", setting]
     subprocess.run(command, cwd=ROOT, check=True)
 
 
-def main() -> None:
-    """Draw docs/gallery.png."""
+def draw(folder: Path) -> dict[str, Picture]:
+    """Run all and draw them in one figure."""
     figure = Figure(figsize=(12, 8.6), facecolor=PAPER, layout="constrained")
-    for axes, picture in zip(figure.subplots(2, 3).flat, PICTURES, strict=True):
-        with tempfile.TemporaryDirectory() as folder:
-            data = Path(folder) / "data.feather"
-            run(picture, data)
-            draw_scene(axes, read_swarm(data), picture.tail_s)
-        axes.set_title(f"{picture.example}\n{picture.shows}", color=INK, fontsize=11)
-    figure.savefig(ROOT / "docs" / "gallery.png", dpi=80)
-
-
-if __name__ == "__main__":
-    main()
+    drawn = []
+    for axes, example in zip(figure.subplots(2, 3).flat, EXAMPLES):
+        data = folder / f"{example.name}.feather"
+        run(example, data)
+        swarm = read_swarm(data)
+        draw_scene(axes, swarm, example.tail_s)
+        drawn.append(swarm.rows)
+        axes.set_title(f"{example.name}\n{example.shows}", color=INK, fontsize=11)
+    return {"gallery.png": from_figure(figure, 80, *drawn)}

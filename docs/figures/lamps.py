@@ -1,23 +1,24 @@
 """Lamps at several moments, as robots see them.
 
-    .venv/bin/python docs/figures/lamps.py
+    .venv/bin/python docs/figures/all.py lamps
 
-Needs the library (./build.sh). Puts a tiny robot in each cell of the light map and draws docs/lamps.png.
+Puts a tiny robot in each cell of the light map.
 """
 
 from __future__ import annotations
 
 import os
 import subprocess
-import tempfile
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import yaml
 from matplotlib.figure import Figure
+from pictures import ROOT, Picture, from_figure
 from pogosim.utils import load_dataframe
 
-ROOT = Path(__file__).resolve().parents[2]
+NAMES = ("lamps.png",)
 CELLS = 64  # along each side of the map
 SIDE_MM = 1000.0
 BRIGHTEST = 20000
@@ -112,8 +113,8 @@ def positions(folder: Path) -> Path:
     return path
 
 
-def levels(program: Path, folder: Path, lamps: dict[str, dict[str, object]], end_s: float) -> dict[float, np.ndarray]:
-    """Run with these lamps; return what the cells measure at every tenth of a second, by time."""
+def levels(program: Path, folder: Path, lamps: dict[str, dict[str, object]], end_s: float) -> pd.DataFrame:
+    """Run with these lamps; return what the cells measure: a row per tenth of a second, a column per cell."""
     probes = {"type": "pogobot", "nb": CELLS**2, "geometry": "disk", "radius": 0.5, "communication_radius": 0}
     configuration = {
         "arena_file": str(ROOT / "arenas/square.csv"),
@@ -131,28 +132,23 @@ def levels(program: Path, folder: Path, lamps: dict[str, dict[str, object]], end
     (folder / "run.yaml").write_text(yaml.safe_dump(configuration, sort_keys=False), encoding="utf-8")
     subprocess.run([str(program), "-c", str(folder / "run.yaml"), "-g", "-q"], check=True, timeout=120)
     rows, _ = load_dataframe(folder / "light.feather")
-    levels = rows.pivot(index="time", columns="robot_id", values="light")
-    times = levels.index.to_numpy(dtype=float)
-    return {round(time, 1): level.reshape(CELLS, CELLS) for time, level in zip(times, levels.to_numpy())}
+    return rows.pivot(index="time", columns="robot_id", values="light")
 
 
-def main() -> None:
+def draw(folder: Path) -> dict[str, Picture]:
     """One row per lamp, one column per moment."""
     figure = Figure(figsize=(8.0, 8.4), layout="constrained")
     grid = figure.subplots(len(SCENES), 4)
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
-        program = compile_probe(folder)
-        for panels, (title, lamps, times_s) in zip(grid, SCENES, strict=True):
-            measured = levels(program, folder, lamps, max(times_s))
-            for axes, time_s in zip(panels, times_s, strict=True):
-                axes.imshow(measured[time_s], cmap="inferno", vmin=0, vmax=BRIGHTEST, extent=(0, SIDE_MM, SIDE_MM, 0))
-                axes.set_title(f"{time_s:.1f} s", fontsize=8)
-                axes.set_xticks([])
-                axes.set_yticks([])
-            panels[0].set_ylabel(title, fontsize=8)
-    figure.savefig(ROOT / "docs/lamps.png", dpi=85)
-
-
-if __name__ == "__main__":
-    main()
+    program = compile_probe(folder)
+    drawn = []
+    for panels, (title, lamps, times_s) in zip(grid, SCENES):
+        measured = levels(program, folder, lamps, max(times_s))
+        drawn.append(measured)
+        for axes, time_s in zip(panels, times_s):
+            level = measured.loc[np.isclose(measured.index, time_s)].to_numpy().reshape(CELLS, CELLS)
+            axes.imshow(level, cmap="inferno", vmin=0, vmax=BRIGHTEST, extent=(0, SIDE_MM, SIDE_MM, 0))
+            axes.set_title(f"{time_s:.1f} s", fontsize=8)
+            axes.set_xticks([])
+            axes.set_yticks([])
+        panels[0].set_ylabel(title, fontsize=8)
+    return {"lamps.png": from_figure(figure, 85, *drawn)}

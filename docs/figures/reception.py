@@ -1,8 +1,9 @@
 """Reception law against the measurements on real robots.
 
-    .venv/bin/python docs/figures/reception.py
+    .venv/bin/python docs/figures/reception.py        # prints the quality of the fit
+    .venv/bin/python docs/figures/all.py reception    # draws
 
-Draws docs/reception.png and prints the quality of the fit.
+Bytes are those of the message: payload and header.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 from matplotlib.figure import Figure
+from pictures import ROOT, Picture, from_figure
 
-ROOT = Path(__file__).resolve().parents[2]
+NAMES = ("reception.png",)
 MEASUREMENTS = ROOT / "bench" / "ir_reception_profile.csv"
 SHORT_HEADER_BYTES = 3
 NEIGHBOURS = (1, 2, 6)
@@ -37,7 +39,7 @@ def predicted(rows: pd.DataFrame) -> npt.NDArray[np.float64]:
     return reception_probability(message_bytes, rows["p_send"], 1 + rows["nb_neighbors"])
 
 
-def draw(measured: pd.DataFrame) -> Figure:
+def draw_panels(measured: pd.DataFrame) -> Figure:
     """One panel per number of neighbours: dots measured, lines by the law."""
     figure = Figure(figsize=(9.0, 3.2), layout="constrained")
     panels = figure.subplots(1, len(NEIGHBOURS), sharey=True)
@@ -56,13 +58,19 @@ def draw(measured: pd.DataFrame) -> Figure:
     return figure
 
 
+def draw(_folder: Path) -> dict[str, Picture]:
+    """Draw the law and the measurements."""
+    measured = pd.read_csv(MEASUREMENTS)
+    drawn = measured.assign(predicted=predicted(measured).round(9))
+    return {"reception.png": from_figure(draw_panels(measured), 110, drawn)}
+
+
 def main() -> None:
-    """Print R2 and mean absolute error, and draw."""
+    """Print R2 and mean absolute error."""
     measured = pd.read_csv(MEASUREMENTS)
     error = measured["success_probability"] - predicted(measured)
     spread = measured["success_probability"] - measured["success_probability"].mean()
     print(f"R2 = {1.0 - (error**2).sum() / (spread**2).sum():.6f}, MAE = {error.abs().mean():.6f}")
-    draw(measured).savefig(ROOT / "docs" / "reception.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests" / "python"), str(ROOT / "bench")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs/figures")]
 
 from running import PROGRAMS, compile_program  # noqa: E402
 

@@ -9,6 +9,8 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+from first_program import NAMES, pictures_in
+from pictures import difference
 from pogosim.utils import load_dataframe
 from project import CLEAN
 from robot_sdk import make_sdk
@@ -204,7 +206,9 @@ def test_tutorial_does_what_it_says(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     project = tmp_path / "crowds"
     assert (project / "build" / "bin" / "firmware.bin").stat().st_size > 0
-    assert (project / "results" / "neighbours.png").stat().st_size > 10_000
+    made = pictures_in(project)
+    assert set(made) == set(NAMES)
+    assert [text for name, picture in made.items() if (text := difference(ROOT / "docs" / name, picture))] == []
     for seed in range(1, 6):
         rows = load_dataframe(project / "results" / f"{seed}.feather")[0]
         mean = rows.groupby("time").neighbours.mean()
