@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/utf8.hpp"
 #include "config/tree.hpp"
 #include "config/tree_builder.hpp"
 #include "config/values.hpp"
@@ -46,37 +47,12 @@ std::string read_text(std::string const& path) {
     return text;
 }
 
-/// Bytes of the UTF-8 character (RFC 3629) that `text` starts with; 0: not UTF-8.
-std::size_t utf8_length(std::string_view text) {
-    auto const byte = [text](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-    auto const follows = [byte](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
-    unsigned const first = byte(0);
-    unsigned const second = byte(1);
-    if (first < 0x80) {
-        return 1;
-    }
-    if (first >= 0xC2 && first < 0xE0) {
-        return follows(1) ? 2 : 0;
-    }
-    if (first >= 0xE0 && first < 0xF0) {
-        bool const overlong = first == 0xE0 && second < 0xA0;
-        bool const surrogate = first == 0xED && second >= 0xA0;
-        return follows(1) && follows(2) && !overlong && !surrogate ? 3 : 0;
-    }
-    if (first >= 0xF0 && first < 0xF5) {
-        bool const overlong = first == 0xF0 && second < 0x90;
-        bool const too_large = first == 0xF4 && second >= 0x90;
-        return follows(1) && follows(2) && follows(3) && !overlong && !too_large ? 4 : 0;
-    }
-    return 0;
-}
-
 /// YAML is text: UTF-8 without control characters other than tab and line ends.
 void require_text(std::string_view text, std::string const& source) {
     int line = 1;
     for (std::size_t i = 0; i < text.size();) {
         auto const byte = static_cast<unsigned char>(text[i]);
-        std::size_t const length = utf8_length(text.substr(i));
+        std::size_t const length = first_code_point(text.substr(i)).bytes;
         bool const control = (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F;
         if (length == 0 || control) {
             throw ConfigError(

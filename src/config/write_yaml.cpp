@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/utf8.hpp"
 #include "config/tree.hpp"
 
 namespace pogosim {
@@ -27,25 +28,6 @@ bool is_harmless(std::string_view text) {
 
 bool looks_like_null(std::string_view text) {
     return text == "null" || text == "Null" || text == "NULL";
-}
-
-struct CodePoint {
-    char32_t value = 0;
-    std::size_t bytes = 1;
-};
-
-/// First character of a valid UTF-8 text.
-CodePoint first_code_point(std::string_view text) {
-    auto const byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    if (byte(0) < 0x80) {
-        return {byte(0), 1};
-    }
-    std::size_t const bytes = byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3 : 4;
-    char32_t value = byte(0) & (0x7FU >> bytes);
-    for (std::size_t i = 1; i < bytes; ++i) {
-        value = (value << 6U) | (byte(i) & 0x3FU);
-    }
-    return {value, bytes};
 }
 
 /// YAML's printable characters, less the line separators that a reader would fold and the byte order mark.
@@ -73,12 +55,12 @@ std::string in_quotes(std::string_view text) {
             quoted += "\\n";
         } else if (c.value == '\t') {
             quoted += "\\t";
-        } else if (is_printable(c.value)) {
+        } else if (c.bytes > 0 && is_printable(c.value)) {
             quoted += text.substr(0, c.bytes);
         } else {
             quoted += escape(c.value);
         }
-        text.remove_prefix(c.bytes);
+        text.remove_prefix(std::max<std::size_t>(c.bytes, 1));
     }
     return quoted + '"';
 }

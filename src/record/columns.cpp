@@ -10,8 +10,8 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "base/utf8.hpp"
 #include "record/half.hpp"
-#include "record/utf8.hpp"
 
 namespace pogosim {
 

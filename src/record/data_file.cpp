@@ -11,8 +11,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/utf8.hpp"
 #include "record/columns.hpp"
-#include "record/utf8.hpp"
 
 namespace pogosim {
 

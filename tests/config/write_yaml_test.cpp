@@ -167,3 +167,19 @@ TEST(WriteYaml, KeysLongerThanYamlsLimitAreWrittenToo) {
     root.entries.emplace_back(key, parse_yaml("{a: 1}", "x.yaml"));
     EXPECT_EQ(find_path(parse_yaml(to_yaml(root), "x.yaml"), key + ".a")->scalar, "1");
 }
+
+TEST(WriteYaml, BytesThatAreNotTextBecomeReplacementCharacters) {
+    for (std::string const malformed : {"\xC3", "\xE2\x82", "\xF0\x9F\xA4", "\xFF"}) {
+        Node map;
+        map.kind = Node::Kind::map;
+        Node text;
+        text.kind = Node::Kind::scalar;
+        text.scalar = "a" + malformed;
+        map.entries.emplace_back("key", text);
+        std::string marks;
+        for (std::size_t i = 0; i < malformed.size(); ++i) {
+            marks += "\\ufffd";
+        }
+        EXPECT_EQ(to_yaml(map), "key: \"a" + marks + "\"\n");
+    }
+}

@@ -1,4 +1,4 @@
-#include "record/utf8.hpp"
+#include "base/utf8.hpp"
 
 #include <algorithm>
 #include <array>
@@ -28,32 +28,40 @@ constexpr std::array<SequenceRule, 9> kRules{{
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-/// Length of the well-formed sequence at the start of a text that is not empty; 0 if there is none.
-std::size_t sequence_length(std::string_view text) {
+}  // namespace
+
+CodePoint first_code_point(std::string_view text) {
+    if (text.empty()) {
+        return {};
+    }
     auto const byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     auto const* const rule = std::find_if(kRules.begin(), kRules.end(), [&](SequenceRule const& candidate) {
         return byte(0) >= candidate.lead_min && byte(0) <= candidate.lead_max;
     });
     if (rule == kRules.end() || text.size() < rule->length) {
-        return 0;
+        return {};
     }
-    if (rule->length > 1 && (byte(1) < rule->second_min || byte(1) > rule->second_max)) {
-        return 0;
+    if (rule->length == 1) {
+        return {byte(0), 1};
     }
-    for (std::size_t i = 2; i < rule->length; ++i) {
+    if (byte(1) < rule->second_min || byte(1) > rule->second_max) {
+        return {};
+    }
+    // The lead byte has as many ones in front as there are bytes, and a zero; each further one adds six bits.
+    char32_t value = byte(0) & (0x7FU >> rule->length);
+    for (std::size_t i = 1; i < rule->length; ++i) {
         if (byte(i) < 0x80 || byte(i) > 0xBF) {
-            return 0;
+            return {};
         }
+        value = (value << 6U) | (byte(i) & 0x3FU);
     }
-    return rule->length;
+    return {value, rule->length};
 }
-
-}  // namespace
 
 std::size_t well_formed_prefix(std::string_view text) {
     std::size_t good = 0;
     while (good < text.size()) {
-        std::size_t const length = sequence_length(text.substr(good));
+        std::size_t const length = first_code_point(text.substr(good)).bytes;
         if (length == 0) {
             break;
         }
