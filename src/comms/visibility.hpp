@@ -1,12 +1,12 @@
 // Who sees whom by infrared.
 //
-//             front (0)
-//             ___ ^ ___
-//            /         \
-//  left (3) <           > right (1)
-//            \___   ___/
-//                 v
-//              back (2)
+//                front (0)
+//               .---^---.
+//              |         |
+//    left (3) <           > right (1)
+//              |         |
+//               '---v---'
+//                back (2)
 //
 // An emitter sits on the rim at 0, 90, 180 and 270 degrees and radiates over the half plane in front of it. It reaches
 // another robot when that robot's border is within range of the emitter, its centre lies in the half plane, and nearer
