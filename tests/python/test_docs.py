@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -117,6 +118,110 @@ def test_commands_and_python_of_the_page_work(page: Path, tree: Run) -> None:
         )
         assert (done.returncode, done.stderr) == (0, ""), code
         assert done.stdout, code
+
+
+DEBUGGING = ROOT / "docs" / "debugging.md"
+
+
+def works(*command: str) -> bool:
+    """Tell whether a tool is installed and may look at other processes, which some containers forbid."""
+    if not shutil.which(command[0]):
+        return False
+    return "exited normally" in subprocess.run(command, capture_output=True, text=True, check=False).stdout
+
+
+def commands_of(page: Path) -> list[str]:
+    """Return the shell commands of a page, each with the lines that continue it."""
+    return re.findall(r"(?:.*\\\n)*.+", "\n".join(blocks(page, "sh")))
+
+
+def with_step(program: str, code: str) -> str:
+    """Put lines at the start of user_step()."""
+    start = re.search(r"void user_step\(.*\n", program)
+    assert start is not None
+    return program[: start.end()] + code + program[start.end() :]
+
+
+@pytest.fixture(scope="module")
+def debugged(tree: Run) -> Run:
+    """The README's program with the additions of the page on debugging, after its commands but those of debuggers."""
+    prints, function, calls = blocks(DEBUGGING, "c")
+    program = blocks(README, "c")[0]
+    program = program.replace("void user_init(", f"{function}\nvoid user_init(")
+    (tree.folder / "first" / "main.c").write_text(with_step(program, prints + calls))
+    commands = [command for command in commands_of(DEBUGGING) if not command.startswith(("gdb", "valgrind"))]
+    return shell("\n".join(commands), tree.folder)
+
+
+def test_page_on_debugging_shows_one_robot_and_finds_nothing_wrong(debugged: Run) -> None:
+    assert (debugged.code, debugged.errors) == (0, "")
+    said = [line for line in debugged.output.splitlines() if "PRINTF" in line]
+    assert len(said) > 100
+    assert all(re.search(r"\[ROBOT #7\] .*heard \d+ messages$", line) for line in said)
+
+
+@pytest.mark.parametrize("fault", ["int odd[4]; odd[pogobot_ticks] = 1;", "free(malloc(1) + (pogobot_ticks > 5));"])
+def test_sanitizers_of_the_page_on_debugging_name_the_line(fault: str, debugged: Run) -> None:
+    source = debugged.folder / "first" / "main.c"
+    sound = source.read_text()
+    source.write_text(with_step(sound, f"{fault}\n"))
+    line = 1 + source.read_text().splitlines().index(fault)
+    commands = [command for command in commands_of(DEBUGGING) if "sanitize" in command]
+    assert len(commands) == 2
+    result = shell("\n".join(commands).replace("-Wall ", ""), debugged.folder)
+    source.write_text(sound)
+    assert result.code == 1
+    assert f"main.c:{line}" in result.text
+
+
+@pytest.mark.parametrize("name", [name for name in ("gdb",) if works(name, "-batch", "-ex", "run", "/bin/true")])
+def test_gdb_stops_as_the_page_on_debugging_says(name: str, debugged: Run) -> None:
+    (start,) = [command for command in commands_of(DEBUGGING) if command.startswith(name)]
+    first, condition = blocks(DEBUGGING, "gdb")
+    (debugged.folder / "first.gdb").write_text(f"{first}\ndelete\n{condition}\ncontinue\nprint mydata->heard\nkill\n")
+    result = shell(start.replace(name, f"{name} -q -batch -x first.gdb", 1), debugged.folder)
+    assert "hit Breakpoint 1, stop_here ()" in result.output
+    assert re.search(r"\$1 = \{heard = \d+, turn_until_ms = \d+\}\n\$2 = 100\nturns = ", result.output)
+    assert "in user_step () at first/main.c" in result.output
+    heard = re.search(r"\$3 = (\d+)", result.output)
+    assert heard is not None
+    assert int(heard[1]) > 25
+
+
+@pytest.mark.parametrize("name", [name for name in ("valgrind",) if shutil.which(name)])
+def test_valgrind_finds_nothing_wrong_with_the_first_program(name: str, debugged: Run) -> None:
+    (start,) = [command for command in commands_of(DEBUGGING) if command.startswith(name)]
+    result = shell(start, debugged.folder)
+    assert result.code == 0, result.errors
+    assert "ERROR SUMMARY: 0 errors" in result.errors
+
+
+def test_messages_of_the_page_are_those_of_today(tmp_path: Path) -> None:
+    """The page quotes what the README's program says after a mistake in its configuration or its code."""
+    quoted = [line for block in blocks(ROOT / "docs" / "messages.md", "") for line in block.splitlines()]
+    program, configuration = blocks(README, "c")[0], blocks(README, "yaml")[0]
+    crash = "if (pogobot_helper_getid() == 7 && pogobot_ticks == 100) { *(int volatile*)0 = 1; }\n"
+    endless = "while (!pogobot_infrared_message_available()) {}\n"
+    mistakes = [
+        (program, configuration.replace("radius: 26.5", "raduis: 26.5")),
+        (program, configuration.replace("nb: 30", "nb: thirty")),
+        (program, configuration.replace("nb: 30", "nb: 300")),
+        (with_step(program, crash), configuration),
+        (with_step(program, endless), configuration),
+    ]
+    (tmp_path / "first").mkdir()
+    found = []
+    for number, (code, world) in enumerate(mistakes):
+        assert (code, world) != (program, configuration)
+        (tmp_path / "first" / "first.yaml").write_text(world)
+        (tmp_path / "main.c").write_text(code)
+        mistaken = compile_program(tmp_path / f"first{number}", tmp_path / "main.c", flags=["-w"])
+        arguments = ["-c", "first/first.yaml", "-g", "-q", "--set", "user_code_timeout=1"]
+        errors = run_command(mistaken, tmp_path, [*arguments, "--set", "simulation_time=2"]).errors
+        found += [
+            re.sub(r"^\[\d[^]]*\] ", "", line).replace("within 1 s", "within 10 s") for line in errors.splitlines()
+        ]
+    assert quoted == found
 
 
 def test_readme_is_short_and_leads_to_every_page() -> None:
