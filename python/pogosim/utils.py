@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import logging
+import warnings
 from pathlib import Path
 from typing import Any, Union
 
@@ -14,11 +15,15 @@ import pyarrow
 import yaml
 from pyarrow import feather
 
+from pogosim.recover import RecoverError, read_unfinished
+
 PathLike = Union[str, "Path"]
 
 
 def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Read a data file.
+
+    A file whose run goes on or was killed is read as far as it goes, with a warning (RuntimeWarning).
 
     Args:
         path: Feather file, written by the simulator or by a batch of runs.
@@ -31,19 +36,35 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: The file is not a complete Feather file.
+        ValueError: The file is not a complete Feather file, nor an unfinished one of the simulator.
     """
-    path = Path(path)
-    try:
-        table = feather.read_table(path, memory_map=False)
-    except pyarrow.ArrowInvalid as error:
-        raise ValueError(f"{path} is not a complete Feather file: {error}") from error
+    table = read_table(Path(path))
     metadata: dict[str, Any] = {
         key.decode("utf-8", "replace"): value.decode("utf-8", "replace")
         for key, value in (table.schema.metadata or {}).items()
     }
     metadata["configuration"] = parse_configuration(metadata.get("configuration", ""))
     return table.to_pandas(), metadata
+
+
+def read_table(path: Path) -> pyarrow.Table:
+    """Read a data file as load_dataframe does, with its types and metadata as they stand in the file."""
+    try:
+        return feather.read_table(path, memory_map=False)
+    except pyarrow.ArrowInvalid as error:
+        try:
+            unfinished = read_unfinished(path)
+        except RecoverError:
+            raise ValueError(f"{path} is not a complete Feather file: {error}") from error
+        hint = f"to make a complete file of it: pogosim-recover {path}"
+        if not unfinished.says_so:
+            raise ValueError(f"{path} is not a complete Feather file: it was cut off; {hint}") from error
+    warnings.warn(
+        f"{path} is incomplete: its run has not ended, or it was killed. Read: {unfinished.up_to}; {hint}",
+        RuntimeWarning,
+        stacklevel=3,
+    )
+    return unfinished.table
 
 
 def parse_configuration(text: str) -> dict[str, Any]:

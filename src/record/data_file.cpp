@@ -1,18 +1,23 @@
 #include "record/data_file.hpp"
 
 #include <arrow/api.h>
-#include <arrow/io/file.h>
-#include <arrow/ipc/writer.h>
-#include <arrow/util/compression.h>
+#include <arrow/array/concatenate.h>
 #include <arrow/util/key_value_metadata.h>
+#include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <filesystem>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/utf8.hpp"
 #include "record/columns.hpp"
+#include "record/complete_file.hpp"
+#include "record/unfinished_file.hpp"
 
 namespace pogosim {
 
@@ -20,35 +25,13 @@ using arrow::Status;
 
 namespace {
 
-/// Throws OutputError with the path and the system's reason.
+/// Throws OutputError with the path and the reason.
 [[noreturn]] void fail(std::string const& path, std::string const& reason) {
     throw OutputError("cannot write the data file '" + path + "' (data_filename): " + reason);
 }
 
 constexpr auto kNotAFile =
     "it is a device, a pipe or a socket, not a file; for a run without data: enable_data_logging: false";
-
-bool has_type(std::string const& path, std::filesystem::file_type type) {
-    std::error_code error;
-    return std::filesystem::status(path, error).type() == type;
-}
-
-void check(Status const& status, std::string const& path) {
-    if (status.ok()) {
-        return;
-    }
-    if (status.detail()) {  // what the system says
-        fail(path, status.detail()->ToString());
-    }
-    // A device such as /dev/null knows no position in itself, which Arrow's own checks stumble over.
-    fail(path, has_type(path, std::filesystem::file_type::character) ? kNotAFile : status.message());
-}
-
-template <class Value>
-Value checked(arrow::Result<Value> result, std::string const& path) {
-    check(result.status(), path);
-    return std::move(result).ValueUnsafe();
-}
 
 void make_parent_folder(std::string const& path) {
     auto const parent = std::filesystem::path(path).parent_path();
@@ -58,24 +41,17 @@ void make_parent_folder(std::string const& path) {
     }
 }
 
+std::filesystem::file_type kind_of(std::string const& path) {
+    std::error_code error;
+    return std::filesystem::status(path, error).type();
+}
+
 /// Throws OutputError for what would take data for ever or destroy a disk. Opening a pipe would wait for its reader.
 void check_kind_of_file(std::string const& path) {
     using std::filesystem::file_type;
-    if (has_type(path, file_type::fifo) || has_type(path, file_type::socket) || has_type(path, file_type::block)) {
+    auto const kind = kind_of(path);
+    if (kind == file_type::fifo || kind == file_type::socket || kind == file_type::block) {
         fail(path, kNotAFile);
-    }
-}
-
-/// Throws OutputError unless the file at `path` has the size that was written.
-void check_size(std::string const& path, std::int64_t written_bytes) {
-    std::error_code error;
-    auto const size = std::filesystem::file_size(path, error);
-    if (error) {
-        fail(path, error.message() + " (after writing; did another program remove it?)");
-    }
-    if (size != static_cast<std::uintmax_t>(written_bytes)) {
-        fail(path, std::to_string(written_bytes) + " bytes were written, but the file has " + std::to_string(size) +
-                       "; did another program change it?");
     }
 }
 
@@ -87,52 +63,194 @@ std::shared_ptr<arrow::KeyValueMetadata> make_metadata(DataFileOptions const& op
     return metadata;
 }
 
-arrow::ipc::IpcWriteOptions write_options(std::string const& path) {
-    auto options = arrow::ipc::IpcWriteOptions::Defaults();
-    options.codec = checked(arrow::util::Codec::Create(arrow::Compression::ZSTD), path);
-    options.use_threads = false;  // the process stays single-threaded
-    return options;
-}
+/// Rows in several pieces.
+struct Pieces {
+    arrow::RecordBatchVector batches;
+    std::int64_t row_count = 0;
+
+    void add(std::shared_ptr<arrow::RecordBatch> const& batch) {
+        batches.push_back(batch);
+        row_count += batch->num_rows();
+    }
+
+    /// All rows in one batch, and none left here.
+    arrow::Result<std::shared_ptr<arrow::RecordBatch>> take() {
+        auto const taken = std::exchange(*this, {});
+        if (taken.batches.size() == 1) {
+            return taken.batches.front();
+        }
+        auto const& schema = taken.batches.front()->schema();
+        arrow::ArrayVector columns;
+        for (int i = 0; i < schema->num_fields(); ++i) {
+            arrow::ArrayVector parts;
+            for (auto const& batch : taken.batches) {
+                parts.push_back(batch->column(i));
+            }
+            ARROW_ASSIGN_OR_RAISE(columns.emplace_back(), arrow::Concatenate(parts));
+        }
+        return arrow::RecordBatch::Make(schema, taken.row_count, std::move(columns));
+    }
+};
+
+/// When the unfinished file is due again.
+class SaveClock {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    bool is_due() const { return Clock::now() >= next_; }
+
+    /// A power failure is guarded against once a run is old enough that somebody would mind.
+    bool run_is_long() const { return Clock::now() - start_ >= kLongRun; }
+
+    /// Saving began at `begin` and is over now. While a run is young, rows are saved whenever its age has doubled.
+    void saved(Clock::time_point begin) {
+        auto const now = Clock::now();
+        Clock::duration const usual = std::min<Clock::duration>(now - start_, kUsualPeriod);
+        next_ = now + std::min<Clock::duration>(std::max(usual, kLeastRatio * (now - begin)), kLongestPeriod);
+    }
+
+private:
+    static constexpr std::chrono::milliseconds kFirst{10};
+    static constexpr std::chrono::seconds kLongRun{1};
+    static constexpr std::chrono::seconds kUsualPeriod{2};
+    static constexpr std::chrono::seconds kLongestPeriod{4};  // on a slow disk
+    static constexpr int kLeastRatio = 100;                    // of the time between to the time it takes
+
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point next_ = start_ + kFirst;
+};
+
+constexpr std::int64_t kMostUnsavedRows = 1 << 20;  // a bound on memory
 
 }  // namespace
 
 struct DataFile::Impl {
-    std::string path;
+    std::string path;  // as the user wrote it
+    LockedFile file;
+    pid_t owner = getpid();
     std::int64_t flush_row_count;
     Columns columns;
     std::shared_ptr<arrow::Schema> schema;
-    std::shared_ptr<arrow::io::FileOutputStream> stream;
-    std::shared_ptr<arrow::ipc::RecordBatchWriter> writer;
+    std::unique_ptr<UnfinishedFile> unfinished;
+    std::unique_ptr<CompleteFile> complete;  // from the first full batch on
+    Pieces unsaved;                          // not yet in the unfinished file
+    Pieces uncompleted;                      // not yet in the complete file
+    SaveClock clock;
     std::int64_t row_count = 0;
     std::int64_t buffered_rows = 0;
+    float newest_time_s = 0.0F;
+    float saved_time_s = 0.0F;
+    std::int64_t saved_rows = 0;
     bool open = false;  // false from the first failure on, too: nothing good can follow it
 
-    explicit Impl(DataFileOptions const& options)
-        : path(options.path), flush_row_count(options.flush_row_count), columns(options) {
+    Impl(DataFileOptions const& options, LockedFile locked)
+        : path(options.path), file(std::move(locked)), flush_row_count(options.flush_row_count), columns(options) {
         assert(flush_row_count > 0);
-        make_parent_folder(path);
-        check_kind_of_file(path);
         schema = arrow::schema(columns.fields(), make_metadata(options));
-        stream = checked(arrow::io::FileOutputStream::Open(path), path);
-        writer = checked(arrow::ipc::MakeFileWriter(stream, schema, write_options(path)), path);
+        auto started = UnfinishedFile::start(file.descriptor(), schema);
+        if (!started.ok()) {
+            fail(path, started.status().message());
+        }
+        // A device such as /dev/null takes everything and keeps nothing.
+        if (kind_of(path) == std::filesystem::file_type::character) {
+            fail(path, kNotAFile);
+        }
+        file.keep();
+        unfinished = std::move(started).ValueUnsafe();
         open = true;
     }
 
-    Status write_batch() {
+    bool is_writable() const { return open && getpid() == owner; }
+
+    /// The rows in the builders become a piece.
+    Status cut() {
+        if (buffered_rows == 0) {
+            return Status::OK();
+        }
         ARROW_ASSIGN_OR_RAISE(auto arrays, columns.take());
         auto const batch = arrow::RecordBatch::Make(schema, buffered_rows, std::move(arrays));
         buffered_rows = 0;
-        return writer->WriteRecordBatch(*batch);
+        unsaved.add(batch);
+        uncompleted.add(batch);
+        return Status::OK();
     }
 
-    /// After a failure the file is left as it is, and nothing more is tried.
-    void check_still_open(Status const& status) {
-        open = open && status.ok();
-        check(status, path);
+    Status save() {
+        ARROW_RETURN_NOT_OK(cut());
+        if (unsaved.row_count == 0) {
+            return Status::OK();
+        }
+        auto const begin = SaveClock::Clock::now();
+        auto const kept = unsaved;
+        ARROW_ASSIGN_OR_RAISE(auto const batch, unsaved.take());
+        if (auto const status = unfinished->append(*batch); !status.ok()) {
+            unsaved = kept;
+            return status;
+        }
+        saved_rows += batch->num_rows();
+        saved_time_s = newest_time_s;
+        if (clock.run_is_long()) {
+            unfinished->sync();
+        }
+        clock.saved(begin);
+        return Status::OK();
+    }
+
+    /// Moves rows to the complete file.
+    Status add_to_complete() {
+        if (!complete) {
+            ARROW_ASSIGN_OR_RAISE(complete, CompleteFile::start(file, schema));
+        }
+        if (uncompleted.row_count == 0) {
+            return Status::OK();
+        }
+        ARROW_ASSIGN_OR_RAISE(auto const batch, uncompleted.take());
+        return complete->append(*batch);
+    }
+
+    Status finish() {
+        ARROW_RETURN_NOT_OK(cut());
+        ARROW_RETURN_NOT_OK(add_to_complete());
+        return complete->finish(clock.run_is_long());
+    }
+
+    /// After a failure the unfinished file is what there is.
+    void check(Status const& status) {
+        if (status.ok()) {
+            return;
+        }
+        open = false;
+        complete.reset();  // makes room on a full disk
+        std::string const reason = status.message();
+        [[maybe_unused]] auto const last_try = save();
+        if (saved_rows == 0) {
+            fail(path, reason);
+        }
+        fail(path,
+             fmt::format("{}. It is unfinished, and holds the rows up to t = {:.4f} s; to make a complete file of "
+                         "it, make room and run: pogosim-recover '{}'",
+                         reason, saved_time_s, path));
+    }
+
+    /// The complete file stays beside the place that it cannot take.
+    [[noreturn]] void fail_beside(std::string const& reason) const {
+        complete->keep();
+        fail(path, fmt::format("{}. The rows of this run are in '{}'", reason, complete->path().string()));
     }
 };
 
-DataFile::DataFile(DataFileOptions const& options) : impl_(std::make_unique<Impl>(options)) {}
+LockedFile DataFile::reserve(std::string const& path) {
+    make_parent_folder(path);
+    check_kind_of_file(path);
+    try {
+        return LockedFile(path);
+    } catch (FileError const& error) {
+        fail(path, error.what());
+    }
+}
+
+DataFile::DataFile(DataFileOptions const& options, LockedFile file)
+    : impl_(std::make_unique<Impl>(options, std::move(file))) {}
 
 DataFile::~DataFile() {
     try {
@@ -144,26 +262,51 @@ DataFile::~DataFile() {
 
 void DataFile::append(ObjectRow const& row, std::vector<CellValue> const& user) {
     assert(impl_->open);
-    impl_->check_still_open(impl_->columns.append(row, user));
+    impl_->check(impl_->columns.append(row, user));
     ++impl_->row_count;
     ++impl_->buffered_rows;
-    if (impl_->buffered_rows == impl_->flush_row_count) {
-        impl_->check_still_open(impl_->write_batch());
+    impl_->newest_time_s = row.time_s;
+    if (impl_->buffered_rows + impl_->uncompleted.row_count == impl_->flush_row_count && impl_->is_writable()) {
+        impl_->check(impl_->cut());
+        impl_->check(impl_->add_to_complete());
+        if (impl_->unsaved.row_count >= kMostUnsavedRows) {
+            impl_->check(impl_->save());
+        }
+    }
+}
+
+void DataFile::save_if_due() {
+    bool const has_new_rows = impl_->buffered_rows + impl_->unsaved.row_count > 0;
+    if (has_new_rows && impl_->clock.is_due()) {
+        save();
+    }
+}
+
+void DataFile::save() {
+    if (impl_->is_writable()) {
+        impl_->check(impl_->save());
     }
 }
 
 void DataFile::close() {
-    if (!impl_->open) {
+    if (!impl_->is_writable()) {
         return;
     }
-    if (impl_->buffered_rows > 0) {
-        impl_->check_still_open(impl_->write_batch());
+    bool const is_ours = !impl_->unfinished->somebody_changed_it();
+    if (is_ours) {
+        impl_->check(impl_->save());
     }
-    impl_->check_still_open(impl_->writer->Close());
+    impl_->check(impl_->finish());
     impl_->open = false;
-    auto const written_bytes = checked(impl_->stream->Tell(), impl_->path);
-    check(impl_->stream->Close(), impl_->path);
-    check_size(impl_->path, written_bytes);
+    if (!is_ours) {
+        impl_->fail_beside("its size is not that of what was written; did another program change it?");
+    }
+    if (std::error_code error; !std::filesystem::exists(impl_->file.path(), error)) {
+        log().warn("another program has removed the data file '{}' during the run; it is made again", impl_->path);
+    }
+    if (auto const status = impl_->complete->take_the_place_of(impl_->file); !status.ok()) {
+        impl_->fail_beside(status.message());
+    }
 }
 
 std::int64_t DataFile::row_count() const {

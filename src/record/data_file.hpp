@@ -1,5 +1,11 @@
 // The data file: Apache Feather V2 (Arrow IPC, zstd), one row per object and save time. The only room that includes
 // Arrow.
+//
+//     append() ──► columns ──► batches that are not yet ... ──► saved      unfinished_file.hpp, every few seconds
+//                                                           └─► complete   complete_file.hpp, flush_row_count rows each
+//
+// Until the end, the path leads to the unfinished file, which can be read whenever the run is killed. What stands in
+// the complete one depends on the rows alone, not on the clock.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/locked_file.hpp"
 #include "world/data_table.hpp"
 
 namespace pogosim {
@@ -40,10 +47,18 @@ struct ObjectRow {
 /// Columns: time float32, robot_category utf8, robot_id int32, pogobot_ticks int64, x, y, angle float32,
 /// [subpart_id int16], [led_rgb int32], then the user's. Every failure to write throws OutputError naming the path and
 /// the system's reason; nothing is lost silently.
+///
+/// In a child after fork(), it writes nothing.
 class DataFile {
 public:
-    /// Opens the file, so that an unwritable path is known before the run.
-    explicit DataFile(DataFileOptions const& options);
+    /// Opens and locks the file and makes its folder, so that an unwritable path, or another run that writes the same
+    /// file, is known before the run. What the file holds stays until a DataFile is made of it. Throws OutputError.
+    static LockedFile reserve(std::string const& path);
+
+    explicit DataFile(DataFileOptions const& options) : DataFile(options, reserve(options.path)) {}
+
+    /// Empties the file of `options.path` and writes its head.
+    DataFile(DataFileOptions const& options, LockedFile file);
 
     /// Closes what is still open, as far as it can be written; errors are logged.
     ~DataFile();
@@ -54,7 +69,14 @@ public:
     /// Adds a row. `user` holds one value per user column, in their order (monostate: null).
     void append(ObjectRow const& row, std::vector<CellValue> const& user);
 
-    /// Writes what is buffered and the footer, and checks that all of it reached the disk. Further calls do nothing.
+    /// Writes new rows to the unfinished file when it is time: some seconds of wall clock after the last time, so that
+    /// at most a hundredth of the run is spent on it where the disk is not slow. Call it often.
+    void save_if_due();
+
+    /// Writes new rows to the unfinished file now.
+    void save();
+
+    /// Completes the file, and checks that all of it reached the disk. Further calls do nothing.
     void close();
 
     /// Rows appended so far.

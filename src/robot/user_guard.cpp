@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/scratch_file.hpp"
 #include "robot/context.hpp"
 
 namespace pogosim {
@@ -123,6 +124,7 @@ void prepare_last_words() {
 void on_hopeless_rescue(int /*signal*/) {
     [[maybe_unused]] auto const written =
         write(STDERR_FILENO, guard.last_words.data(), std::strlen(guard.last_words.data()));
+    remove_scratch_file();
     _exit(static_cast<int>(guard.code));
 }
 

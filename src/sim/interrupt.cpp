@@ -25,7 +25,7 @@ void catch_interrupts() {
     sigemptyset(&action.sa_mask);
     action.sa_handler = on_interrupt;
     action.sa_flags = SA_RESTART | SA_NODEFER;
-    for (int const signal : {SIGINT, SIGTERM}) {
+    for (int const signal : {SIGINT, SIGTERM, SIGXCPU}) {
         sigaction(signal, &action, nullptr);
     }
     // Under nohup the run goes on when the terminal is closed.

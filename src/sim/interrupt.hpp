@@ -1,4 +1,5 @@
-// Ctrl-C and its relatives (SIGINT, SIGTERM, SIGHUP): the run ends after the present step, with a complete data file.
+// Ctrl-C and its relatives (SIGINT, SIGTERM, SIGHUP, and SIGXCPU of `ulimit -St`): the run ends after the present step,
+// with a complete data file.
 #pragma once
 
 namespace pogosim {

@@ -63,7 +63,11 @@ Recorder::Recorder(Scenario const& scenario, World const& world, Programs& progr
       programs_(programs),
       export_(data),
       seed_(seed),
-      category_is_recorded_(recorded_categories(scenario, world)) {}
+      category_is_recorded_(recorded_categories(scenario, world)) {
+    if (output().enable_data_logging) {
+        reserved_ = DataFile::reserve(output().data_filename);
+    }
+}
 
 std::optional<UserFailure> Recorder::open() {
     if (!output().enable_data_logging) {
@@ -91,7 +95,7 @@ void Recorder::make_data_file() {
     options.led_column = output().led_column;
     options.flush_row_count = output().flush_row_count;
     options.metadata = run_metadata(scenario_, world_.arena, seed_);
-    data_file_ = std::make_unique<DataFile>(options);
+    data_file_ = std::make_unique<DataFile>(options, std::move(reserved_));
     empty_row_.values.assign(options.user_columns.size(), CellValue());
 }
 
@@ -143,6 +147,12 @@ void Recorder::record_subparts(Object const& object) {
         row.y_mm = position_mm.y;
         row.subpart = static_cast<std::int16_t>(part);
         data_file_->append(row, empty_row_.values);
+    }
+}
+
+void Recorder::save_if_due() {
+    if (data_file_) {
+        data_file_->save_if_due();
     }
 }
 

@@ -17,11 +17,12 @@ namespace pogosim {
 
 class Recorder {
 public:
-    /// All references outlive this. `data` is what user code declares and exports.
+    /// Takes the data file, so that no other run writes it. All references outlive this. `data` is what user code
+    /// declares and exports. Throws OutputError.
     Recorder(Scenario const& scenario, World const& world, Programs& programs, DataExport const& data,
              std::uint32_t seed);
 
-    /// Asks the program for its columns and opens the data file, if there is to be one. Throws OutputError.
+    /// Asks the program for its columns and starts the data file, if there is to be one. Throws OutputError.
     std::optional<UserFailure> open();
 
     /// For a program that failed before open(): an empty file. Does nothing when the file is open.
@@ -29,6 +30,10 @@ public:
 
     /// Writes the rows of now, if a multiple of the save period has come. Throws OutputError.
     std::optional<UserFailure> record_if_due();
+
+    /// Brings rows to the disk when that is due, so that they outlive the process. Call it at every step. Throws
+    /// OutputError.
+    void save_if_due();
 
     /// Completes the file. Throws OutputError.
     void close();
@@ -48,6 +53,7 @@ private:
     DataExport const& export_;
     std::uint32_t seed_;
     std::vector<bool> category_is_recorded_;
+    LockedFile reserved_;  // until there is a data file
     std::unique_ptr<DataFile> data_file_;
     DataRow empty_row_;               // user columns of what runs no user code
     std::int64_t next_row_time_ = 0;  // in save periods

@@ -126,6 +126,7 @@ std::optional<UserFailure> Simulation::step() {
     stages_.end(Stage::physics);
     ++world_.step;
     auto failure = recorder_.record_if_due();
+    recorder_.save_if_due();
     stages_.end(Stage::record);
     return failure;
 }

@@ -1,6 +1,8 @@
 // What goes wrong between the simulator and the disk is said, with the path and the system's reason.
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <csignal>
 #include <functional>
 
 #include "base/error.hpp"
@@ -25,6 +27,30 @@ std::string output_error(std::function<void()> const& action) {
 std::string open_error(std::string const& path) {
     return output_error([&path] { DataFile const file({.path = path}); });
 }
+
+void write_one_row(std::string const& path) {
+    DataFile file({.path = path});
+    file.append({.category = "robots"}, {});
+    file.close();
+}
+
+/// No file of this process can grow beyond this, as on a full disk.
+class FileSizeLimit {
+public:
+    explicit FileSizeLimit(rlim_t bytes) : handler_before_(std::signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit const limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_before_);
+    }
+
+private:
+    void (*handler_before_)(int);
+    rlimit before_{};
+};
 
 void expect_says(std::string const& message, std::vector<std::string> const& parts) {
     for (auto const& part : parts) {
@@ -52,42 +78,97 @@ TEST_F(OutputFailure, PipeIsRefusedAtOnceInsteadOfWaitingForItsReader) {
     expect_says(open_error(path("pipe")), {path("pipe"), "a pipe", "not a file", "enable_data_logging: false"});
 }
 
-TEST_F(OutputFailure, DeviceThatTakesEverythingIsAnErrorOnClosing) {
-    DataFile file({.path = "/dev/null"});
-    file.append({.category = "robots"}, {});
-    expect_says(output_error([&file] { file.close(); }), {"/dev/null", "a device", "not a file"});
+TEST_F(OutputFailure, DeviceThatTakesEverythingIsRefusedAtOnce) {
+    expect_says(open_error("/dev/null"), {"/dev/null", "a device", "not a file"});
 }
 
-TEST_F(OutputFailure, FullDiskIsAnErrorOnClosing) {
-    DataFile file({.path = "/dev/full"});
-    file.append({.category = "robots"}, {});
-    expect_says(output_error([&file] { file.close(); }), {"/dev/full", "No space left on device"});
+TEST_F(OutputFailure, FullDiskIsRefusedAtOnce) {
+    expect_says(open_error("/dev/full"), {"/dev/full", "No space left on device"});
+}
+
+/// Writes rows until that fails. Returns the message.
+std::string fill_the_disk(DataFileOptions const& options) {
+    DataFile file(options);
+    std::string const message = output_error([&file] {
+        for (int i = 0; i < 1000000; ++i) {
+            file.append({.time_s = static_cast<float>(i), .category = "robots", .id = i % 977}, {});
+            if (i % 1000 == 999) {
+                file.save();
+            }
+        }
+        file.close();
+    });
     EXPECT_EQ(output_error([&file] { file.close(); }), "");  // said once
+    return message;
 }
 
-TEST_F(OutputFailure, FullDiskIsAnErrorForTheRowThatFillsABatch) {
-    DataFile file({.path = "/dev/full", .flush_row_count = 3});
-    file.append({.category = "robots"}, {});
-    file.append({.category = "robots"}, {});
-    expect_says(output_error([&file] { file.append({.category = "robots"}, {}); }), {"No space left on device"});
+TEST_F(OutputFailure, DiskThatFillsUpLeavesTheRowsUpToThereAndSaysHowToHaveThem) {
+    FileSizeLimit const limit(100000);
+    expect_says(fill_the_disk({.path = path("a.feather")}),
+                {"File too large", "holds the rows up to t = ", "pogosim-recover '" + path("a.feather") + "'"});
+    auto const table = read_unfinished(path("a.feather"));
+    EXPECT_EQ(table->num_rows() % 1000, 0);
+    EXPECT_GT(table->num_rows(), 0);
+    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
 }
 
-TEST_F(OutputFailure, FileWithoutRowsOnAFullDiskIsAnErrorToo) {
-    DataFile file({.path = "/dev/full"});
-    expect_says(output_error([&file] { file.close(); }), {"No space left on device"});
+TEST_F(OutputFailure, DiskThatFillsUpWithTheCompleteFileLeavesTheUnfinishedOne) {
+    FileSizeLimit const limit(100000);
+    DataFileOptions options{.path = path("a.feather"), .flush_row_count = 10};  // its many batches need more room
+    expect_says(fill_the_disk(options), {"File too large", "pogosim-recover"});
+    EXPECT_GT(read_unfinished(path("a.feather"))->num_rows(), 0);
+    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
 }
 
-TEST_F(OutputFailure, FileRemovedDuringTheRunIsNoticed) {
+TEST_F(OutputFailure, FileRemovedDuringTheRunIsMadeAgain) {
     DataFile file({.path = path("a.feather")});
+    file.append({.category = "robots"}, {});
     std::filesystem::remove(path("a.feather"));
-    expect_says(output_error([&file] { file.close(); }), {path("a.feather"), "did another program remove it?"});
+    file.close();
+    EXPECT_EQ(read_back(path("a.feather")).table->num_rows(), 1);
 }
 
-TEST_F(OutputFailure, FileThatAnotherProgramWroteOverIsNoticed) {
+TEST_F(OutputFailure, FolderRemovedDuringTheRunIsAnError) {
+    DataFile file({.path = path("folder/a.feather")});
+    std::filesystem::remove_all(path("folder"));
+    expect_says(output_error([&file] { file.close(); }), {path("folder/a.feather"), "No such file or directory"});
+}
+
+TEST_F(OutputFailure, FileThatAnotherProgramWroteOverIsNoticedAndTheRowsAreBesideIt) {
     DataFile file({.path = path("a.feather")});
     file.append({.category = "robots"}, {});
     std::ofstream(path("a.feather"), std::ios::app) << std::string(100000, 'x');
-    expect_says(output_error([&file] { file.close(); }), {path("a.feather"), "did another program change it?"});
+    expect_says(output_error([&file] { file.close(); }),
+                {path("a.feather"), "did another program change it?", "a.feather.pogosim-new"});
+    EXPECT_EQ(read_back(path("a.feather.pogosim-new")).table->num_rows(), 1);
+}
+
+TEST_F(OutputFailure, FileThatAnotherProgramPutThereIsLeftAlone) {
+    DataFile file({.path = path("a.feather")});
+    file.append({.category = "robots"}, {});
+    std::ofstream(path("b")) << "something else";
+    std::filesystem::rename(path("b"), path("a.feather"));
+    expect_says(output_error([&file] { file.close(); }), {"another program has replaced it", "a.feather.pogosim-new"});
+    EXPECT_EQ(bytes_of(path("a.feather")), "something else");
+    EXPECT_EQ(read_back(path("a.feather.pogosim-new")).table->num_rows(), 1);
+}
+
+TEST_F(OutputFailure, FileThatAnotherRunWritesIsRefusedUntilThatOneHasEnded) {
+    write_one_row(path("a.feather"));
+    auto const before = bytes_of(path("a.feather"));
+    {
+        auto const reserved = DataFile::reserve(path("a.feather"));
+        expect_says(open_error(path("a.feather")), {path("a.feather"), "data_filename", "another run is writing it"});
+        EXPECT_EQ(bytes_of(path("a.feather")), before);
+    }
+    {
+        DataFile file({.path = path("a.feather")});
+        std::filesystem::create_symlink(path("a.feather"), path("link"));
+        expect_says(open_error(path("link")), {path("link"), "another run is writing it"});
+        file.close();
+        expect_says(open_error(path("a.feather")), {"another run is writing it"});  // the complete file, too
+    }
+    EXPECT_EQ(open_error(path("a.feather")), "");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <arrow/ipc/reader.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -27,6 +28,15 @@ protected:
     ~FileTest() override { std::filesystem::remove_all(folder_); }
 
     std::string path(std::string const& name) const { return (folder_ / name).string(); }
+
+    std::vector<std::string> files_in_folder() const {
+        std::vector<std::string> names;
+        for (auto const& entry : std::filesystem::directory_iterator(folder_)) {
+            names.push_back(entry.path().filename().string());
+        }
+        std::sort(names.begin(), names.end());
+        return names;
+    }
 
 private:
     std::filesystem::path folder_;
@@ -61,6 +71,20 @@ inline ReadBack read_back(std::string const& path) {
         throw std::runtime_error(path + ": " + status.ToString());
     }
     return result;
+}
+
+/// Rows of a file that was not closed: the stream behind the magic bytes, up to its torn end.
+inline std::shared_ptr<arrow::Table> read_unfinished(std::string const& path) {
+    auto const file = arrow::io::ReadableFile::Open(path).ValueOrDie();
+    if (!file->Seek(8).ok()) {
+        throw std::runtime_error(path + " has no head");
+    }
+    auto const reader = arrow::ipc::RecordBatchStreamReader::Open(file).ValueOrDie();
+    arrow::RecordBatchVector batches;
+    for (auto next = reader->Next(); next.ok() && *next != nullptr; next = reader->Next()) {
+        batches.push_back(*next);
+    }
+    return arrow::Table::FromRecordBatches(reader->schema(), batches).ValueOrDie();
 }
 
 inline std::string bytes_of(std::string const& path) {

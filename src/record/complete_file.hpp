@@ -1,0 +1,60 @@
+// The complete data file on its way: a Feather file that is written beside the unfinished one and takes its place at
+// the end, so that at every moment one of the two holds all rows.
+#pragma once
+
+#include <arrow/ipc/writer.h>
+#include <arrow/record_batch.h>
+#include <arrow/result.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "base/locked_file.hpp"
+#include "record/descriptor_stream.hpp"
+
+namespace pogosim {
+
+class CompleteFile {
+public:
+    /// Makes an empty file beside `unfinished`, else in the folder for temporary files.
+    static arrow::Result<std::unique_ptr<CompleteFile>> start(LockedFile const& unfinished,
+                                                              std::shared_ptr<arrow::Schema> const& schema);
+
+    /// Removes the file, unless it has taken its place or is kept.
+    ~CompleteFile();
+
+    CompleteFile(CompleteFile const&) = delete;
+    CompleteFile& operator=(CompleteFile const&) = delete;
+
+    arrow::Status append(arrow::RecordBatch const& batch) { return writer_->WriteRecordBatch(batch); }
+
+    /// Writes the footer; afterwards all rows are in the file. `sync`: waits until it is on the disk.
+    arrow::Status finish(bool sync);
+
+    /// Puts the finished file in the place of the unfinished one, also where that was removed: by renaming it, else by
+    /// copying its bytes. Fails when another file stands there now.
+    arrow::Status take_the_place_of(LockedFile const& unfinished);
+
+    /// The file stays where it is.
+    void keep();
+
+    std::filesystem::path const& path() const { return path_; }
+
+private:
+    CompleteFile(std::filesystem::path path, int descriptor);
+
+    static arrow::Result<std::unique_ptr<CompleteFile>> make(std::filesystem::path const& path);
+    bool can_be_renamed_to(LockedFile const& unfinished) const;
+    arrow::Status copy_to(int descriptor) const;
+
+    std::filesystem::path path_;
+    int descriptor_;
+    pid_t owner_;
+    bool temporary_ = true;
+    bool synced_ = false;
+    std::shared_ptr<DescriptorStream> stream_;
+    std::shared_ptr<arrow::ipc::RecordBatchWriter> writer_;
+};
+
+}  // namespace pogosim

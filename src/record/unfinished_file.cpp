@@ -1,0 +1,82 @@
+#include "record/unfinished_file.hpp"
+
+#include <arrow/type.h>
+#include <arrow/util/compression.h>
+#include <arrow/util/key_value_metadata.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <string_view>
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::string_view kMagic("ARROW1\0\0", 8);
+
+constexpr auto kIncomplete =
+    "The run has not ended, or it was killed before its end. pogosim.utils.load_dataframe reads the rows; "
+    "pogosim-recover makes a complete Feather file of this one.";
+
+std::shared_ptr<arrow::Schema> marked(arrow::Schema const& schema) {
+    auto metadata = std::make_shared<arrow::KeyValueMetadata>();
+    if (auto const given = schema.metadata()) {
+        metadata = given->Copy();
+    }
+    metadata->Append("incomplete", kIncomplete);
+    return schema.WithMetadata(metadata);
+}
+
+}  // namespace
+
+arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descriptor,
+                                                                     std::shared_ptr<arrow::Schema> const& schema) {
+    std::unique_ptr<UnfinishedFile> file(new UnfinishedFile(descriptor));
+    auto options = arrow::ipc::IpcWriteOptions::Defaults();
+    ARROW_ASSIGN_OR_RAISE(options.codec, arrow::util::Codec::Create(arrow::Compression::LZ4_FRAME));
+    options.use_threads = false;
+    ARROW_RETURN_NOT_OK(file->stream_->Write(kMagic.data(), kMagic.size()));
+    ARROW_ASSIGN_OR_RAISE(file->writer_, arrow::ipc::MakeStreamWriter(file->stream_, marked(*schema), options));
+    // The schema goes out with the first batch only; a file without rows is to be readable, too.
+    ARROW_ASSIGN_OR_RAISE(auto const nothing, arrow::RecordBatch::MakeEmpty(schema));
+    ARROW_RETURN_NOT_OK(file->writer_->WriteRecordBatch(*nothing));
+    // At once, and before what stands there is cut off: at no moment is there a file without its head.
+    ARROW_RETURN_NOT_OK(file->stream_->Flush());
+    ARROW_ASSIGN_OR_RAISE(file->size_bytes_, file->stream_->Tell());
+    file->stream_->go_back_to(file->size_bytes_);
+    return file;
+}
+
+arrow::Status UnfinishedFile::append(arrow::RecordBatch const& batch) {
+    // The next batch must not stand behind one that a crash or a full disk has torn.
+    if (torn_) {
+        stream_->go_back_to(size_bytes_);
+    }
+    torn_ = true;
+    auto status = writer_->WriteRecordBatch(batch);
+    if (status.ok()) {
+        status = stream_->Flush();
+    }
+    if (!status.ok()) {
+        stream_->go_back_to(size_bytes_);
+        return status;
+    }
+    ARROW_ASSIGN_OR_RAISE(size_bytes_, stream_->Tell());
+    torn_ = false;
+    return arrow::Status::OK();
+}
+
+bool UnfinishedFile::somebody_changed_it() const {
+    struct stat now = {};
+    return !torn_ && fstat(descriptor_, &now) == 0 && now.st_size != size_bytes_;
+}
+
+void UnfinishedFile::sync() const {
+#ifdef __APPLE__
+    fsync(descriptor_);
+#else
+    fdatasync(descriptor_);
+#endif
+}
+
+}  // namespace pogosim

@@ -1,0 +1,45 @@
+// The data file while the run goes on: complete record batches one after the other, and no footer. Whenever the run is
+// killed, all batches but one that is being written can be read.
+//
+//     "ARROW1\0\0" │ schema │ batch │ batch │ ...        the same bytes as a Feather file has before its footer
+//
+// The schema's metadata say that the file is not complete.
+#pragma once
+
+#include <arrow/ipc/writer.h>
+#include <arrow/record_batch.h>
+#include <arrow/result.h>
+
+#include <memory>
+
+#include "record/descriptor_stream.hpp"
+
+namespace pogosim {
+
+class UnfinishedFile {
+public:
+    /// Empties the open file and writes its head. `schema` is that of the complete file.
+    static arrow::Result<std::unique_ptr<UnfinishedFile>> start(int descriptor,
+                                                                std::shared_ptr<arrow::Schema> const& schema);
+
+    /// Appends rows. When that fails, the file is as it was before.
+    arrow::Status append(arrow::RecordBatch const& batch);
+
+    /// Waits until all is on the disk, so that it outlives a power failure.
+    void sync() const;
+
+    /// True when the file has not the size that was written.
+    bool somebody_changed_it() const;
+
+private:
+    explicit UnfinishedFile(int descriptor)
+        : descriptor_(descriptor), stream_(std::make_shared<DescriptorStream>(descriptor)) {}
+
+    int descriptor_;
+    std::shared_ptr<DescriptorStream> stream_;
+    std::shared_ptr<arrow::ipc::RecordBatchWriter> writer_;
+    int64_t size_bytes_ = 0;  // up to the last complete batch
+    bool torn_ = false;       // a part of a batch may stand behind that
+};
+
+}  // namespace pogosim

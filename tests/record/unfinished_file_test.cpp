@@ -1,0 +1,194 @@
+// What the disk holds while a run goes on, and how the complete file takes its place.
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "record/data_file.hpp"
+#include "scratch.hpp"
+
+namespace pogosim {
+namespace {
+
+using UnfinishedDataFile = FileTest;
+using CompletedDataFile = FileTest;
+
+std::vector<ColumnSpec> const kUserColumns{{"number", ColumnType::int64},
+                                           {"text", ColumnType::text},
+                                           {"yes", ColumnType::boolean},
+                                           {"f16", ColumnType::float16}};
+
+/// Rows with nulls here and there, in built-in and in user columns.
+void append_rows(DataFile& file, int first, int count) {
+    for (int i = first; i < first + count; ++i) {
+        ObjectRow row{.time_s = static_cast<float>(i), .category = i % 3 == 0 ? "robots" : "others", .id = i};
+        if (i % 5 != 0) {
+            row.ticks = i;
+        }
+        std::vector<CellValue> cells(kUserColumns.size());
+        if (i % 7 != 0) {
+            cells = {std::int64_t{i}, std::string(static_cast<std::size_t>(i % 11), 'x'), i % 2 == 0, 0.5 * i};
+        }
+        file.append(row, cells);
+    }
+}
+
+/// Bytes of a complete file of 1000 rows, saved after each `rows_between_saves` of them.
+std::string bytes_when_saved(std::string const& path, std::int64_t flush_row_count, int rows_between_saves) {
+    DataFile file({.path = path, .user_columns = kUserColumns, .flush_row_count = flush_row_count});
+    for (int i = 0; i < 1000; ++i) {
+        append_rows(file, i, 1);
+        if (i % rows_between_saves == 0) {
+            file.save();
+        }
+    }
+    file.close();
+    return bytes_of(path);
+}
+
+TEST_F(CompletedDataFile, HasTheSameBytesWhereverItWasSavedInBetween) {
+    for (std::int64_t const flush_row_count : {1000000, 1000, 333, 8, 1}) {
+        auto const never = bytes_when_saved(path("a.feather"), flush_row_count, 5000);
+        for (int const rows : {1, 7, 100, 333, 1000}) {
+            EXPECT_EQ(bytes_when_saved(path("a.feather"), flush_row_count, rows), never)
+                << flush_row_count << ", " << rows;
+        }
+    }
+}
+
+TEST_F(UnfinishedDataFile, HoldsAllRowsThatWereSaved) {
+    DataFile file(
+        {.path = path("a.feather"), .user_columns = kUserColumns, .metadata = {{"configuration", "seed: 1"}}});
+    EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), 0);
+    append_rows(file, 0, 10);
+    file.save();
+    append_rows(file, 10, 20);
+    file.save();
+    append_rows(file, 30, 5);
+
+    auto const table = read_unfinished(path("a.feather"));
+    EXPECT_EQ(table->num_rows(), 30);
+    EXPECT_EQ(table->schema()->metadata()->Get("configuration").ValueOrDie(), "seed: 1");
+    EXPECT_TRUE(table->schema()->metadata()->Contains("incomplete"));
+    file.close();
+    auto const complete = read_back(path("a.feather")).table;
+    EXPECT_FALSE(complete->schema()->metadata()->Contains("incomplete"));
+    EXPECT_TRUE(complete->Slice(0, 30)->Equals(*table->ReplaceSchemaMetadata(complete->schema()->metadata())));
+}
+
+TEST_F(UnfinishedDataFile, HoldsRowsOfManyFullBatches) {
+    DataFile file({.path = path("a.feather"), .user_columns = kUserColumns, .flush_row_count = 3});
+    append_rows(file, 0, 100);
+    file.save();
+    EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), 100);
+}
+
+TEST_F(UnfinishedDataFile, IsSavedByItselfSoonAfterItsFirstRows) {
+    DataFile file({.path = path("a.feather"), .user_columns = kUserColumns});
+    append_rows(file, 0, 10);
+    for (int i = 0; i < 1000 && read_unfinished(path("a.feather"))->num_rows() == 0; ++i) {
+        usleep(1000);
+        file.save_if_due();
+    }
+    EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), 10);
+}
+
+TEST_F(UnfinishedDataFile, CanBeReadUpToAnyByteWhereItIsCutOff) {
+    DataFile file({.path = path("a.feather"), .user_columns = kUserColumns});
+    auto const head = bytes_of(path("a.feather")).size();
+    for (int i = 0; i < 5; ++i) {
+        append_rows(file, 10 * i, 10);
+        file.save();
+    }
+    auto const bytes = bytes_of(path("a.feather"));
+    std::int64_t rows_before = 0;
+    for (std::size_t size = head; size < bytes.size() + 13; size += 13) {
+        std::ofstream(path("cut"), std::ios::binary) << bytes.substr(0, size);
+        auto const rows = read_unfinished(path("cut"))->num_rows();
+        EXPECT_EQ(rows % 10, 0);
+        EXPECT_GE(rows, rows_before);
+        rows_before = rows;
+    }
+    EXPECT_EQ(rows_before, 50);
+}
+
+TEST_F(UnfinishedDataFile, IsNotTouchedByAChildOfTheProcess) {
+    DataFile file({.path = path("a.feather"), .user_columns = kUserColumns, .flush_row_count = 20});
+    append_rows(file, 0, 10);
+    file.save();
+    pid_t const child = fork();
+    if (child == 0) {
+        append_rows(file, 10, 50);
+        file.save();
+        file.close();
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), 10);
+    append_rows(file, 10, 20);
+    file.close();
+    EXPECT_EQ(read_back(path("a.feather")).table->num_rows(), 30);
+    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
+}
+
+TEST_F(UnfinishedDataFile, ThatWasReservedInVainIsNotThere) {
+    { auto const reserved = DataFile::reserve(path("a.feather")); }
+    EXPECT_TRUE(files_in_folder().empty());
+}
+
+TEST_F(UnfinishedDataFile, LeavesWhatStandsInAReservedFile) {
+    std::ofstream(path("a.feather")) << "older data";
+    { auto const reserved = DataFile::reserve(path("a.feather")); }
+    EXPECT_EQ(bytes_of(path("a.feather")), "older data");
+}
+
+// ---- in the place of the unfinished file ----------------------------------------------------------------------------
+
+void write_rows(std::string const& path) {
+    DataFile file({.path = path, .user_columns = kUserColumns, .flush_row_count = 20});
+    append_rows(file, 0, 50);
+    file.close();
+}
+
+TEST_F(CompletedDataFile, StandsAloneInItsFolder) {
+    std::ofstream(path("a.feather.pogosim-new")) << "of a run that was killed";
+    write_rows(path("a.feather"));
+    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
+}
+
+TEST_F(CompletedDataFile, StandsWhereASymbolicLinkLeads) {
+    std::filesystem::create_directory(path("elsewhere"));
+    std::filesystem::create_symlink(path("elsewhere/b.feather"), path("a.feather"));
+    for (int run = 0; run < 2; ++run) {  // the first one makes the file
+        write_rows(path("a.feather"));
+        EXPECT_TRUE(std::filesystem::is_symlink(path("a.feather")));
+        EXPECT_EQ(read_back(path("elsewhere/b.feather")).table->num_rows(), 50);
+    }
+}
+
+TEST_F(CompletedDataFile, StandsUnderAllNamesOfTheFile) {
+    std::ofstream(path("a.feather")) << "older data, longer than the new: " << std::string(100000, 'x');
+    std::filesystem::create_hard_link(path("a.feather"), path("b.feather"));
+    write_rows(path("a.feather"));
+    EXPECT_EQ(read_back(path("b.feather")).table->num_rows(), 50);
+    EXPECT_TRUE(std::filesystem::equivalent(path("a.feather"), path("b.feather")));
+    EXPECT_EQ(files_in_folder(), (std::vector<std::string>{"a.feather", "b.feather"}));
+}
+
+TEST_F(CompletedDataFile, KeepsThePermissionsOfTheFile) {
+    std::ofstream(path("a.feather")) << "older data";
+    chmod(path("a.feather").c_str(), 0640);
+    write_rows(path("a.feather"));
+    struct stat now = {};
+    ASSERT_EQ(stat(path("a.feather").c_str(), &now), 0);
+    EXPECT_EQ(now.st_mode & 0777, 0640U);
+}
+
+TEST_F(CompletedDataFile, IsWrittenEvenWhereNoOtherFileCanStandBesideIt) {
+    std::filesystem::create_directories(path("a.feather.pogosim-new/in the way"));
+    write_rows(path("a.feather"));
+    EXPECT_EQ(read_back(path("a.feather")).table->num_rows(), 50);
+}
+
+}  // namespace
+}  // namespace pogosim
