@@ -34,7 +34,7 @@ def check(program: Path, *options: str, folder: Path = CASES) -> Run:
 
 
 def found_by_tool(report: str) -> Found:
-    line = re.compile(r"^([\w./]+):(\d+):(?:\d+:)? warning: '([^']+)'.*?\((\d+) bytes?\)", re.MULTILINE)
+    line = re.compile(r"^([^:\n]+):(\d+):(?:\d+:)? warning: '([^']+)'.*?\((\d+) bytes?\)", re.MULTILINE)
     return {(file, int(number), name, int(size)) for file, number, name, size in line.findall(report)}
 
 
@@ -62,6 +62,28 @@ def test_every_kind_of_variable_is_told_apart(name: str, files: list[str], optio
     expected = marked_in_source(files)
     assert len(expected) > 10
     assert found_by_tool(check(program).errors) == expected
+
+
+def links(folder: Path, name: str, flags: list[str]) -> bool:
+    """Whether the compiler has what these flags need: its sanitizers are packages of their own."""
+    source = folder / "empty.c"
+    source.write_text("int main(void) { return 0; }\n")
+    language = "c++" if "++" in name else "c"
+    command = [name, "-x", language, *flags, str(source), "-o", str(folder / "empty")]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+@pytest.mark.parametrize("sanitizers", ["address,undefined", "thread"])
+@pytest.mark.parametrize(("name", "files"), COMPILERS, ids=lambda part: part if isinstance(part, str) else "")
+def test_variables_of_sanitizers_are_not_the_programs(
+    name: str, files: list[str], sanitizers: str, tmp_path: Path
+) -> None:
+    sources = [CASES / file for file in files if not file.endswith(".h")]
+    flags = ["-g", "-O1", f"-fsanitize={sanitizers}"]
+    if not links(tmp_path, name, flags):
+        pytest.skip(f"{name} comes without -fsanitize={sanitizers} here")
+    program = compile_program(tmp_path / "program", *sources, compiler=name, flags=flags)
+    assert found_by_tool(check(program).errors) == marked_in_source(files)
 
 
 @pytest.mark.parametrize("main", EXAMPLES, ids=lambda path: path.parent.name)

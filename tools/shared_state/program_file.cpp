@@ -27,6 +27,13 @@ bool holds(GElf_Shdr const& header, uint64_t address) {
            address - header.sh_addr < header.sh_size;
 }
 
+// Sections that the loader fills or reads before the program starts, and nobody writes afterwards. Sanitizers leave
+// a pointer of theirs in .preinit_array, with debug information.
+bool is_for_the_loader(GElf_Shdr const& header, std::string const& name) {
+    return header.sh_type == SHT_PREINIT_ARRAY || header.sh_type == SHT_INIT_ARRAY ||
+           header.sh_type == SHT_FINI_ARRAY || name.starts_with(".data.rel.ro");
+}
+
 }  // namespace
 
 ProgramFile::ProgramFile(std::string const& path) : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -61,7 +68,7 @@ ProgramFile::Section ProgramFile::section_at(uint64_t address) const {
         if (holds(header, address)) {
             char const* name = elf_strptr(elf_, names, header.sh_name);
             found.name = name ? name : "";
-            found.writable = (header.sh_flags & SHF_WRITE) && !found.name.starts_with(".data.rel.ro");
+            found.writable = (header.sh_flags & SHF_WRITE) && !is_for_the_loader(header, found.name);
         }
     });
     return found;

@@ -27,7 +27,7 @@ public:
 
     struct Section {
         std::string name;
-        bool writable = false;  ///< while the program runs: not after the loader has filled in addresses (.data.rel.ro)
+        bool writable = false;  ///< while the program runs: not what only the loader writes or reads
     };
     /// The section that holds this address; an unnamed one if none does.
     Section section_at(uint64_t address) const;
