@@ -166,6 +166,26 @@ def test_template_itself_has_no_warnings(project: Path) -> None:
     assert result.errors == ""
 
 
+@pytest.mark.parametrize("goals", [(), ("all",), ("clean", "all")], ids=" ".join)
+def test_without_an_sdk_make_builds_the_simulation_and_says_so(goals: tuple[str, ...], project: Path) -> None:
+    result = made(project, *goals)
+    assert (project / "swarm").exists()
+    assert result.errors == ""
+    assert result.output.splitlines()[-2:] == [
+        "Built ./swarm",
+        "Only the simulation: there is no Pogobot SDK in ../../pogobot-sdk. "
+        "To build for robots, too: make POGO_SDK=<its folder>",
+    ]
+    assert made(project, *goals[-1:]).output.count("Only the simulation") == 1  # also if nothing is left to do
+    assert "Only the simulation" not in made(project, "sim").output
+
+
+def test_sdk_that_was_named_and_is_not_there_is_an_error(project: Path, tmp_path: Path) -> None:
+    absent = f"There is no Pogobot SDK in {tmp_path}: get it, then make bin POGO_SDK=<its folder>"
+    assert sentence(make(project, f"POGO_SDK={tmp_path}")) == absent
+    assert sentence(make(project, environment={"POGO_SDK": str(tmp_path)})) == absent
+
+
 def test_missing_pogosim_is_one_helpful_line(tmp_path: Path) -> None:
     project = copy_template(tmp_path / "lonely")
     advice = "build or install it, then make sim POGOSIM_DIR=<its folder>"
