@@ -34,6 +34,21 @@ float bounding_radius(Shape const& shape) {
     return 0.0F;
 }
 
+float inner_radius(Shape const& shape) {
+    switch (shape.kind) {
+        case ShapeKind::disk:
+            return shape.radius_mm;
+        case ShapeKind::rectangle:
+            return 0.5F * std::min(shape.width_mm, shape.height_mm);
+        case ShapeKind::triangle:
+            return shape.side_length_mm / (2.0F * kSqrt3);
+        case ShapeKind::global:
+        case ShapeKind::arena:
+            break;
+    }
+    return 0.0F;
+}
+
 Polygon outline(Shape const& shape, int disk_corners) {
     switch (shape.kind) {
         case ShapeKind::disk: {

@@ -24,6 +24,9 @@ struct Shape {
 /// occlusion, sensors and drawing. 0 for global and arena.
 float bounding_radius(Shape const& shape);
 
+/// Radius of the largest disk around the shape's origin that it holds, mm. 0 for global and arena.
+float inner_radius(Shape const& shape);
+
 /// Corners of the shape around its origin, clockwise on the screen; a disk has `disk_corners` of them, the first at +x.
 /// Empty for global and arena.
 Polygon outline(Shape const& shape, int disk_corners = 128);

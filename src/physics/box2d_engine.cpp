@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
+#include "physics/containment.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/ring_area.hpp"
 #include "physics/ring_filter.hpp"
@@ -25,6 +27,11 @@ constexpr Iterations kForJoints{12, 6};  // a pull has to go round a ring
 // sub-steps in which no two robots at full speed approach by more than this, as long as that is not too many.
 constexpr float kApproachMm = 1.0F;
 constexpr int kMaxSubsteps = 8;
+// Box2D cuts off what a body moves or turns beyond these in one step. Speeds that need more sub-steps get them, up to
+// as many as these.
+constexpr int kMostSubsteps = 100;
+constexpr float kMostMotionMm = 0.99F * b2_maxTranslation * kMmPerUnit;
+constexpr float kMostTurnRad = 0.99F * b2_maxRotation;
 // Box2D calls slower collisions inelastic; its own limit of 1 unit/s is the full speed of a robot.
 constexpr float kRestitutionThreshold = 0.05F;  // units/s
 // A spring that swings more often than this per step cannot be followed and would shake; it is taken for one that
@@ -36,17 +43,23 @@ constexpr float kMostMassRatio = 30.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
 
-/// Sub-steps of one step: see kApproachMm. Counts what the motors ask for; collisions make few bodies a little faster.
+/// Sub-steps of one step: see kApproachMm and kMostMotionMm. Counts what the motors ask for; collisions make few bodies
+/// a little faster.
 int substeps_for(World const& world) {
     float fastest_mm2_s2 = 0.0F;
+    float fastest_rad_s = 0.0F;
     for (Drive const& drive : world.robots.drive) {
         fastest_mm2_s2 = std::max(fastest_mm2_s2, squared_length(drive.velocity_mm_s));
+        fastest_rad_s = std::max(fastest_rad_s, std::abs(drive.spin_rad_s));
     }
-    auto const approach_mm = 2.0F * std::sqrt(fastest_mm2_s2) * static_cast<float>(world.time_step_s);
+    auto const step_s = static_cast<float>(world.time_step_s);
+    float const motion_mm = std::sqrt(fastest_mm2_s2) * step_s;
     // Speeds are round numbers, give or take a rounding.
     constexpr float tolerance = 1e-3F;
-    float const substeps = std::ceil(approach_mm / kApproachMm - tolerance);
-    return static_cast<int>(std::clamp(substeps, 1.0F, static_cast<float>(kMaxSubsteps)));
+    float const fine = std::ceil(2.0F * motion_mm / kApproachMm - tolerance);
+    float const needed = std::ceil(std::max(motion_mm / kMostMotionMm, fastest_rad_s * step_s / kMostTurnRad));
+    float const substeps = std::max(std::clamp(fine, 1.0F, static_cast<float>(kMaxSubsteps)), needed);
+    return static_cast<int>(std::min(substeps, static_cast<float>(kMostSubsteps)));
 }
 
 class Box2dEngine final : public PhysicsEngine {
@@ -57,6 +70,7 @@ public:
         engine_.SetContactFilter(&filter_);
         if (!world.periodic) {
             add_walls(world.arena, walls);
+            containment_.emplace(world);
         }
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
             bodies_.push_back(add_body(world.bodies, i));
@@ -83,6 +97,9 @@ public:
                 area.push(dt_s);
             }
             engine_.Step(dt_s, iterations.velocity, iterations.position);
+        }
+        if (containment_) {
+            containment_->hold(bodies_);
         }
         if (world.periodic) {
             wrap_objects(world, bodies_);
@@ -212,12 +229,17 @@ private:
 
     RingFilter filter_;
     b2World engine_;
+    std::optional<Containment> containment_;  // nobody leaves a periodic world
     bool any_awake_ = true;
     std::vector<RingArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
 };
 
 }  // namespace
+
+MotionLimits box2d_motion_limits() {
+    return {.motion_mm = kMostSubsteps * kMostMotionMm, .turn_rad = kMostSubsteps * kMostTurnRad};
+}
 
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls) {
     return std::make_unique<Box2dEngine>(world, walls);

@@ -14,7 +14,8 @@ namespace pogosim {
 namespace {
 
 // Box2D lets shapes sink into each other by its tolerance, half of it on either side. Shapes are larger by that half,
-// so that they rest at their true distance.
+// so that they rest at their true distance. A chain has a skin of b2_polygonRadius, 1 mm, which Box2D gives every copy
+// of it: bodies rest 0.5 to 1.25 mm before walls.
 constexpr float kSkin = b2_linearSlop / 2.0F;
 // Corners of a wall that lie closer together than this are joined; Box2D's tolerance is 0.5 mm.
 constexpr float kShortestEdgeMm = 1.0F;
@@ -92,7 +93,6 @@ void add_disk(b2Body& body, float radius_mm, b2FixtureDef fixture) {
 void add_wall(b2Body& body, Polygon const& polygon, bool outer, b2FixtureDef fixture) {
     std::vector<b2Vec2> const corners = wall_corners(polygon, outer);
     b2ChainShape chain;
-    chain.m_radius = kSkin;
     chain.CreateLoop(corners.data(), static_cast<int32>(corners.size()));
     fixture.shape = &chain;
     body.CreateFixture(&fixture);

@@ -15,6 +15,13 @@ public:
     virtual void advance(World& world) = 0;
 };
 
+/// What the engine can follow in one time step: some 20 m and 25 turns.
+struct MotionLimits {
+    float motion_mm;
+    float turn_rad;
+};
+MotionLimits box2d_motion_limits();
+
 struct WallSpec {
     float friction = 0.05F;
     float restitution = 0.5F;

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "sim/build_world.hpp"
+#include "sim/check_motion.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/progress_bar.hpp"
@@ -106,6 +107,7 @@ std::optional<UserFailure> Simulation::start() {
         return failure;
     }
     fit_time_step();
+    check_motion(scenario_, world_.time_step_s);
     if (auto failure = recorder_.open()) {
         return failure;
     }

@@ -33,6 +33,14 @@ TEST(Shape, BoundingRadiusIsThatOfTheSmallestDiskAroundTheOrigin) {
     EXPECT_FLOAT_EQ(bounding_radius(kArena), 0.0F);
 }
 
+TEST(Shape, InnerRadiusIsThatOfTheLargestDiskWithin) {
+    EXPECT_FLOAT_EQ(inner_radius(kDisk), 26.5F);
+    EXPECT_FLOAT_EQ(inner_radius(kRectangle), 0.5F * std::min(kRectangle.width_mm, kRectangle.height_mm));
+    EXPECT_FLOAT_EQ(inner_radius(kTriangle), 0.5F * bounding_radius(kTriangle));
+    EXPECT_FLOAT_EQ(inner_radius(kGlobal), 0.0F);
+    EXPECT_FLOAT_EQ(inner_radius(kArena), 0.0F);
+}
+
 TEST(Shape, CountedAreaIsTheFormulasArea) {
     EXPECT_NEAR(area_by_counting(kDisk), 2206.2, 70.0);
     EXPECT_NEAR(area_by_counting(kRectangle), 4800.0, 80.0);

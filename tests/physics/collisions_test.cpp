@@ -144,6 +144,31 @@ TEST(Shapes, TriangleHasOneCornerTowardsMinusYAtHeadingZero) {
     EXPECT_NEAR(nearest_approach_mm(triangle(120), {0, -1}), height_mm / 3.0F + 20.0F, kToleranceMm);  // from below
 }
 
+TEST(Shapes, DoNotOverlapWhenTheyArePressedTogether) {
+    struct Pair {
+        Shape left;
+        Shape right;
+        float touch_mm;  // between the centres
+    };
+    std::array const pairs{Pair{disk(26.5F), disk(26.5F), 53.0F}, Pair{disk(5.0F), disk(40.0F), 45.0F},
+                           Pair{rectangle(60, 80), rectangle(40, 60), 50.0F},
+                           Pair{disk(20.0F), rectangle(40, 60), 40.0F}};
+    for (Pair const& pair : pairs) {
+        World world = square_world(2000.0F);
+        add(world, pair.left, kMiddle - Vec2{pair.touch_mm + 1.0F, 0.0F}, {}, {.restitution = 0.0F});
+        add(world, pair.right, kMiddle, {}, {.restitution = 0.0F});
+        auto const engine = make_box2d_engine(world, {});
+        for (int i = 0; i < 300; ++i) {
+            world.robots.drive[0] = {.velocity_mm_s = {20, 0}, .fresh = true};
+            world.robots.drive[1] = {.velocity_mm_s = {-20, 0}, .fresh = true};
+            engine->advance(world);
+        }
+        float const gap_mm = world.bodies.position_mm[1].x - world.bodies.position_mm[0].x - pair.touch_mm;
+        EXPECT_GT(gap_mm, 0.0F) << pair.touch_mm;
+        EXPECT_LT(gap_mm, 0.5F) << pair.touch_mm;
+    }
+}
+
 TEST(Collision, HeadOnLosesRelativeSpeedByTheRestitutionAndKeepsMomentum) {
     for (float const restitution : {0.0F, 0.3F, 0.8F, 1.0F}) {
         World world = fine_world();
@@ -156,6 +181,19 @@ TEST(Collision, HeadOnLosesRelativeSpeedByTheRestitutionAndKeepsMomentum) {
         EXPECT_NEAR(a + 4.0F * b, 100.0F - 4.0F * 60.0F, 0.1F);
         EXPECT_NEAR(b - a, restitution * 160.0F, 0.5F) << restitution;
     }
+}
+
+TEST(Collision, FastRobotDoesNotJumpASmallBody) {
+    // 25 mm per sub-step, and the other one is in the middle between two places of the robot.
+    World world = square_world(2000.0F);
+    add(world, disk(5.0F), {500, 1000}, {});
+    add(world, disk(5.0F), {612.5F, 1000}, {});
+    world.robots.drive[0] = {.velocity_mm_s = {2e4F, 0}, .fresh = true};
+    auto const engine = make_box2d_engine(world, {});
+    engine->advance(world);
+    engine->advance(world);
+    EXPECT_GT(world.bodies.velocity_mm_s[1].x, 1e3F);
+    EXPECT_LT(world.bodies.position_mm[0].x, world.bodies.position_mm[1].x);
 }
 
 TEST(Collision, ObliqueOneChangesVelocitiesAlongTheLineOfCentresOnly) {

@@ -16,27 +16,46 @@ RADIUS = 26.5
 
 
 def walk(folder: Path, **settings: object) -> Run:
-    fast = {"simulation_time": 60.0, "objects.robots.nb": 20, "parameters.run_duration_max": 5000}
-    result = run(example("run_and_tumble"), folder, {"arena_file": "arenas/square.csv", **fast, **settings})
+    fast = {
+        "simulation_time": 60.0,
+        "objects.robots.nb": 20,
+        "parameters.run_duration_max": 5000,
+    }
+    result = run(
+        example("run_and_tumble"),
+        folder,
+        {"arena_file": "arenas/square.csv", **fast, **settings},
+    )
     assert (result.code, result.errors) == (0, "")
     return result
 
 
 def polygons(result: Run) -> list[npt.NDArray[np.float64]]:
     text = result.table().schema.metadata[b"arena_polygons"].decode()
-    return [np.array([[p["x"], p["y"]] for p in corners]) for corners in yaml.safe_load(text)]
+    return [
+        np.array([[p["x"], p["y"]] for p in corners])
+        for corners in yaml.safe_load(text)
+    ]
 
 
-def distance_to_walls(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def distance_to_walls(
+    points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
     nearest = np.full(len(points), np.inf)
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
         along = np.clip((points - a) @ (b - a) / np.dot(b - a, b - a), 0, 1)
-        nearest = np.minimum(nearest, np.hypot(*(points - a - along[:, None] * (b - a)).T))
+        nearest = np.minimum(
+            nearest, np.hypot(*(points - a - along[:, None] * (b - a)).T)
+        )
     return nearest
 
 
-@pytest.mark.parametrize("arena", ["square", "disk", "star", "annulus", "squarewithHole", "H", "arena8"])
-def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena: str) -> None:
+@pytest.mark.parametrize(
+    "arena", ["square", "disk", "star", "annulus", "squarewithHole", "H", "arena8"]
+)
+def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(
+    tmp_path: Path, arena: str
+) -> None:
     result = walk(tmp_path, arena_file=f"arenas/{arena}.csv", arena_surface=5.0e5)
     points = result.frame()[["x", "y"]].to_numpy(dtype=np.float64)
     outer, *holes = polygons(result)
@@ -48,11 +67,96 @@ def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena:
         assert not Outline(hole).contains_points(points).any()
 
 
-def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("radius", "speed"), [(1.0, 3e3), (1.0, 1e4), (26.5, 1e6)])
+def test_nobody_leaves_however_small_and_fast(
+    tmp_path: Path, radius: float, speed: float
+) -> None:
+    # Robots among light bodies, heads and bars, and a membrane whose dots are small.
+    solid = {"geometry": "disk", "radius": 10.0}
+    soft = {
+        "type": "membrane",
+        "geometry": "disk",
+        "radius": 60.0,
+        "num_dots": 40,
+        "dot_radius": 4.0,
+    }
+    settings = {
+        "arena_file": "arenas/annulusBarred.csv",
+        "simulation_time": 2.0,
+        "save_data_period": 0.02,
+        "objects.robots.radius": radius,
+        "objects.robots.max_linear_speed": speed,
+        "objects.robots.linear_noise_stddev": speed / 1000.0,
+        "objects.robots.nb": 10,
+        "objects.light": {
+            "type": "passive_object",
+            "nb": 5,
+            "body_density": 0.1,
+            **solid,
+        },
+        "objects.heads": {"type": "pogobject", "nb": 5, **solid},
+        "objects.bars": {"type": "passive_object", "nb": 3, "geometry": "rectangle"},
+        "objects.bars.body_width": 60.0,
+        "objects.bars.body_height": 4.0,
+        "objects.soft": {**soft, "serialize_dot_pose": True},
+    }
+    result = run(example("run_and_tumble"), tmp_path, settings)
+    assert result.code == 0, result.text
+    rows = result.frame().query("robot_category != 'soft' or subpart_id >= 0")
+    points = rows[["x", "y"]].to_numpy(dtype=np.float64)
+    assert len(points) > 5000
+    outer, *holes = polygons(result)
+    assert Outline(outer).contains_points(points).all()
+    for hole in holes:
+        assert not Outline(hole).contains_points(points).any()
+
+
+def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that_it_can(
+    tmp_path: Path,
+) -> None:
+    spin = "objects.robots.max_angular_speed"
+    result = run(example("run_and_tumble"), tmp_path, {spin: 1e4})
+    assert result.code == 2
+    assert (
+        "objects.robots.max_angular_speed: at 10000 rad/s robots turn up to 400 rad in a time_step of 0.01 s, more than "
+        "the 156 rad that can be simulated; use at most 3880 rad/s, or a time_step of at most 0.00388 s"
+    ) in result.errors
+    assert not (tmp_path / "data.feather").exists()
+    for accepted in ({spin: 3.88e3}, {spin: 1e4, "time_step": 0.00388}):
+        assert (
+            run(
+                example("run_and_tumble"),
+                tmp_path,
+                {**accepted, "simulation_time": 0.1},
+            ).code
+            == 0
+        )
+
+    # A program of 5 Hz may have steps of 0.2 s.
+    slow = {
+        "objects.robots.max_linear_speed": 1e6,
+        "time_step": 0.2,
+        "parameters.loop_dt": 0.2,
+    }
+    result = run(example("coverage_neighbors_novelty"), tmp_path, slow)
+    assert result.code == 2
+    assert "scene.yaml:" in result.errors
+    assert (
+        "objects.robots.max_linear_speed: at 1000000 mm/s robots move up to 200000 mm in a"
+        in result.errors
+    )
+    assert "use at most 99000 mm/s, or a time_step of at most 0.0198 s" in result.errors
+
+
+def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(
+    tmp_path: Path,
+) -> None:
     frame = walk(tmp_path, boundary_condition="periodic").frame()
     crossings = 0
     for column in ("x", "y"):
-        path = frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
+        path = frame.pivot(index="time", columns="robot_id", values=column).to_numpy(
+            dtype=np.float64
+        )
         assert path.min() >= 0
         assert path.max() <= SIDE
         step = np.diff(path, axis=0)
@@ -65,18 +169,27 @@ def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(tm
 
 
 def test_arena_without_polygons_is_a_periodic_square(tmp_path: Path) -> None:
-    settings = {"arena_file": "arenas/empty.csv", "simulation_time": 30.0, "objects.robots.nb": 10}
+    settings = {
+        "arena_file": "arenas/empty.csv",
+        "simulation_time": 30.0,
+        "objects.robots.nb": 10,
+    }
     result = run(example("run_and_tumble"), tmp_path, settings)
     assert result.code == 0
     assert "periodic" in result.errors
     frame = result.frame()
     assert frame["x"].between(0, SIDE).all()
-    assert frame.groupby("robot_id")["x"].agg(lambda x: x.diff().abs().max()).max() > SIDE / 2
+    assert (
+        frame.groupby("robot_id")["x"].agg(lambda x: x.diff().abs().max()).max()
+        > SIDE / 2
+    )
 
 
 @pytest.mark.parametrize(("boundary", "heard"), [("solid", False), ("periodic", True)])
 @pytest.mark.parametrize("axis", [0, 1])
-def test_messages_pass_the_seam_of_a_periodic_arena_only(tmp_path: Path, boundary: str, heard: bool, axis: int) -> None:
+def test_messages_pass_the_seam_of_a_periodic_arena_only(
+    tmp_path: Path, boundary: str, heard: bool, axis: int
+) -> None:
     # Two robots 60 mm apart across the seam, 940 mm within the arena.
     positions = np.array([[30.0, 500.0], [970.0, 500.0]])
     if axis == 1:

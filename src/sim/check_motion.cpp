@@ -1,0 +1,68 @@
+#include "sim/check_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/error.hpp"
+#include "physics/physics_engine.hpp"
+
+namespace pogosim {
+
+namespace {
+
+struct Motion {
+    char const* key;
+    char const* verb;
+    double speed;            // as the key has it
+    double per_key;          // largest speed of the robot for each unit of the key
+    double most;             // in one step
+    char const* unit;        // of what is done in a step
+    char const* speed_unit;  // of the key
+};
+
+/// Three digits, not more than the value.
+double rounded_down(double value) {
+    double const digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    return std::floor(value / digit) * digit;
+}
+
+std::string text(double value) {
+    return value >= 100.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
+void check(Scenario const& scenario, ObjectConfig const& object, Motion const& motion, double time_step_s) {
+    double const in_a_step = motion.per_key * motion.speed * time_step_s;
+    if (in_a_step <= motion.most) {
+        return;
+    }
+    throw ConfigError(fmt::format(
+        "{}: at {} {} robots {} up to {} {} in a time_step of {} s, more than the {} {} that can be simulated; use at "
+        "most {} {}, or a time_step of at most {} s",
+        where_in_object(scenario, object, motion.key), text(motion.speed), motion.speed_unit, motion.verb,
+        text(in_a_step), motion.unit, text(time_step_s), text(motion.most), motion.unit,
+        text(rounded_down(motion.most / motion.per_key / time_step_s)), motion.speed_unit,
+        text(rounded_down(motion.most / motion.per_key / motion.speed))));
+}
+
+}  // namespace
+
+void check_motion(Scenario const& scenario, double time_step_s) {
+    MotionLimits const limits = box2d_motion_limits();
+    for (ObjectConfig const& object : scenario.objects) {
+        if (object.nb == 0 || !object.spec.body || !object.spec.robot || !object.spec.robot->has_wheels) {
+            continue;
+        }
+        RobotSpec const& robot = *object.spec.robot;
+        check(scenario, object,
+              {"max_linear_speed", "move", robot.max_linear_speed_mm_s, 1.0, limits.motion_mm, "mm", "mm/s"},
+              time_step_s);
+        // Motors at full power against each other turn at four times max_angular_speed.
+        check(scenario, object,
+              {"max_angular_speed", "turn", robot.max_angular_speed_rad_s, 4.0, limits.turn_rad, "rad", "rad/s"},
+              time_step_s);
+    }
+}
+
+}  // namespace pogosim
