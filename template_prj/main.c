@@ -4,7 +4,7 @@
 //     ./template_prj -c conf/test.yaml
 #include "pogobase.h"
 
-// The variables of one robot: simulated robots have a block each, on a real robot they become plain globals.
+// The variables of one robot: simulated robots have a block each, on a real robot they are plain globals.
 // All bytes are zero at the start.
 typedef struct {
     uint32_t turning_since_ms;
@@ -13,8 +13,8 @@ typedef struct {
 DECLARE_USERDATA(USERDATA);
 REGISTER_USERDATA(USERDATA);
 
-// Outside of USERDATA, a variable is shared by all simulated robots. That is right for a parameter: global_setup reads
-// it from `parameters:` in the configuration, and on real robots this value stands.
+// A variable outside USERDATA is shared by all simulated robots. That is right for a parameter: global_setup reads it
+// from `parameters:` in the configuration; real robots use the value given here.
 uint32_t turn_duration = 10000;  // ms
 
 static void turn(bool left) {

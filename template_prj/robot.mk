@@ -52,7 +52,7 @@ $(BIN_DIR)/%.cpp.o: %.cpp $(BIN_DIR)/.compile
 $(BIN_DIR)/pogosim/%.c.o: $(POGOSIM_INTERFACE_DIR)/%.c $(BIN_DIR)/.compile
 	$(compile)
 
-# As in the Makefile: built anew when options, category, SDK or the list of sources change.
+# As in the Makefile: rebuilt when options, category, SDK or the list of sources change.
 $(BIN_DIR)/.compile: COMMANDS = $(CC) $(CFLAGS) $(CPP_FLAGS)
 $(BIN_DIR)/.link: COMMANDS = $(LINK)
 $(BIN_DIR)/.compile $(BIN_DIR)/.link: FORCE

@@ -1,9 +1,9 @@
 // IMU: what a robot can feel of its own movement.
 //
-// Shows: reading gyroscope, accelerometer and thermometer, and checking them against what the motors were told.
+// Shows: reading gyroscope, accelerometer and thermometer, and checking them against the commands of the motors.
 //
 // A robot walks by run and tumble (green and red; see examples/run_and_tumble). At the end of each run and each tumble
-// robot 0 prints what it feels, and a verdict: at the end of a run it should hardly turn, at the end of a tumble it
+// robot 0 prints what it measures, and a verdict: at the end of a run it should hardly turn, at the end of a tumble it
 // should turn fast. "CHECK" instead of "OK" means that something else moved or held it, such as a neighbour or a wall.
 //
 //     ./examples/IMU/IMU -c conf/simple.yaml
@@ -36,7 +36,7 @@ static uint32_t random_between(uint32_t low, uint32_t high) {
     return high > low ? low + (uint32_t)rand() % (high - low + 1) : low;
 }
 
-// Both direction bits as calibrated, or both the other way round.
+// Both direction bits as calibrated, or both inverted.
 static void set_direction(bool forward) {
     uint8_t const flip = forward ? 0 : 1;
     pogobot_motor_dir_set(motorR, mydata->forward_dir[0] ^ flip);

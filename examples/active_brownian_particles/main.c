@@ -11,9 +11,9 @@
 // directed propulsion to random walk", Phys. Rev. Lett. 99, 048102, 2007; Romanczuk et al., "Active Brownian
 // particles", Eur. Phys. J. Spec. Top. 202, 2012).
 //
-// A robot cannot turn as suddenly as white noise. So it turns at a constant rate w, whose sign it draws anew after each
-// time T; with w^2 T = 2 D_r that makes the same mean squared displacement after long times, exactly, and nearly the
-// same before, the nearer the shorter T is. T is as short as the robot's wheels allow, a tick or more.
+// A robot cannot turn as suddenly as white noise. So it turns at a constant rate w, whose sign it redraws after each
+// time T. With w^2 T = 2 D_r the mean squared displacement is exactly the same after long times, and nearly the same
+// before, the closer the shorter T is. T is as short as the robot's wheels allow, a tick or more.
 //
 // Particles that push against a wall stay there for a time 1 / D_r or so. Robots need not: one that feels, with its
 // IMU, that it does not move as it should (red), drives back a little, spins (blue), and swims on (green).
@@ -22,8 +22,8 @@
 #include "pogobase.h"
 
 #define CRUISE_POWER motorHalf     // of both motors: leaves as much room for turning as possible
-#define VELOCITY_MEMORY_S 1.0f     // so long we believe the accelerometer, which drifts, before the motors
-#define VELOCITY_SMOOTHING_S 0.1f  // bounces off a wall last less
+#define VELOCITY_MEMORY_S 1.0f     // for so long the accelerometer, which drifts, counts more than the motors
+#define VELOCITY_SMOOTHING_S 0.1f  // longer than bounces off a wall last
 #define MAX_TICKS_A_TURN 10000
 
 typedef enum { PHASE_SWIM, PHASE_REVERSE, PHASE_SPIN } phase_t;
@@ -39,7 +39,7 @@ typedef struct {
     int16_t turn_power;     // more on one motor, less on the other: turns the robot at the rate w
 
     float velocity_forward, velocity_right;  // as the IMU feels it, m/s
-    float commanded;                         // forward, what the motors were told, m/s
+    float commanded;                         // forward, as the motors were set, m/s
     float smooth_forward;                    // velocity_forward without its jitter, m/s
     uint32_t slow_since_ms;                  // when it was last as fast as it should be
 } USERDATA;
@@ -50,7 +50,7 @@ REGISTER_USERDATA(USERDATA);
 float rotational_diffusion = 1.4f;  // D_r, rad^2/s
 float max_linear_speed = 100.0f;    // mm/s, of this kind of robot with both motors at full power
 float max_angular_speed = 2.0f;     // rad/s; one motor alone at full power turns it at twice this rate
-uint32_t stuck_duration = 300;      // ms below half the speed, until a robot says that it is stuck
+uint32_t stuck_duration = 300;      // ms below half the speed after which a robot counts as stuck
 uint32_t reverse_duration = 400;    // ms
 uint32_t spin_duration_min = 100;   // ms
 uint32_t spin_duration_max = 500;   // ms
@@ -120,8 +120,8 @@ static void start_spinning(void) {
     drive(power, (int16_t)-power);
 }
 
-// Adds up accelerations to a velocity in the robot's frame, and lets it slowly forget them for what the motors were
-// told (a complementary filter).
+// Integrates accelerations to a velocity in the robot's frame, which slowly relaxes to the one that the motors command
+// (a complementary filter).
 static void feel_velocity(void) {
     float acc[3], gyro[3];
     pogobot_imu_read(acc, gyro);

@@ -1,6 +1,6 @@
-// Avoid walls: robots drive about and turn away from what says that it is in the way.
+// Avoid walls: robots drive around and turn away from whatever announces that it is in the way.
 //
-// Shows: several controllers in one program, the wall controller that comes along, which face of a robot has heard a
+// Shows: several controllers in one program, the ready-made controller of walls, which face of a robot has heard a
 // message.
 //
 // The walls of the arena run `default_walls_user_init` and `default_walls_user_step`, which keep sending "wall".
@@ -86,7 +86,7 @@ static void robot_step(void) {
     uint32_t const now_ms = current_time_milliseconds();
     bool const is_over = now_ms >= mydata->phase_end_ms;
     bool const remembers = mydata->has_heard && now_ms - mydata->heard_ms <= wall_memory_ms;
-    // What it hears with its back lies behind it already.
+    // What it hears with its back is behind it already.
     bool const is_in_the_way = remembers && mydata->heard_face != ir_back;
     if (mydata->phase == TURN && is_over) {
         enter(is_in_the_way ? TURN : COMMIT, now_ms);

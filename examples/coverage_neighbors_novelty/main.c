@@ -7,13 +7,13 @@
 // Shows: a random walk that adapts to the neighbours, a table of neighbours with ages, a text as a parameter, a program
 // in several files.
 //
-// A robot runs and tumbles, and knows nothing but who is near. Two feelings rise in it and fade away again:
+// A robot runs and tumbles, and knows only who is near. Two feelings rise in it and fade away again:
 //
 //     isolation  while it hears one robot or none,
 //     boredom    while it has known nearly all of those it hears for a while.
 //
 // Their weighted sum is its urge to move on, the "surprise": a content robot hardly moves, a restless one runs fast.
-// When the urge exceeds a threshold after a tumble, the robot escapes: the longest run there is, away from here. Each
+// When the urge exceeds a threshold after a tumble, the robot escapes: the longest run possible, away from here. Each
 // escape calms it and raises the threshold, which then falls slowly.
 //
 // Head LED: colour by number of neighbours. LED 1: green in a run, orange in a tumble.
@@ -65,9 +65,9 @@ float max_speed_frac = 0.5f;
 bool enable_backward_dir = true;
 float p_backward = 0.05f;  // share of the runs that go backwards
 
-uint8_t iso_min_ids = 1;          // isolated with so many neighbours or fewer
+uint8_t iso_min_ids = 1;          // isolated with this many neighbours or fewer
 float repeat_frac_thres = 0.85f;  // bored when more than this share of the neighbours is known
-float decay_tau = 5.0f;           // s: both feelings fade with it; a robot is known from so long after it was met
+float decay_tau = 5.0f;           // s: time constant of both feelings, and until a robot that was met is known
 float w_iso = 0.7f;               // weights in the surprise
 float w_nov = 0.7f;
 float encounter_graph_scale = 1.0f;  // s of a feeling that make one unit of surprise
@@ -77,7 +77,7 @@ bool use_adaptive_surprise_min = true;
 float d_surprise_up = 0.3f;     // rise of the threshold at an escape
 float d_surprise_down = 0.02f;  // fall per second
 
-POGO_SHARED run_law_t law = RUN_LEVY;  // run_law, understood
+POGO_SHARED run_law_t law = RUN_LEVY;  // run_law, parsed
 
 // ---- Feelings ----
 
@@ -128,7 +128,7 @@ static void start_state(state_t state, uint32_t now_ms, uint32_t duration_ms) {
     mydata->state_duration_ms = duration_ms;
 }
 
-// Both direction bits as calibrated, or both the other way round.
+// Both direction bits as calibrated, or both inverted.
 static void set_direction(bool forward) {
     uint8_t const flip = forward ? 0 : 1;
     pogobot_motor_dir_set(motorR, mydata->forward_dir[0] ^ flip);

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 typedef enum {
-    RUN_LEVY,         // Pareto: P(longer than t) = (min / t)^alpha; few long runs cover most of the way
+    RUN_LEVY,         // Pareto: P(longer than t) = (min / t)^alpha; few long runs cover most of the distance
     RUN_EXPONENTIAL,  // of mean min
     RUN_LINEAR,       // uniform between min and max
 } run_law_t;

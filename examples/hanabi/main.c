@@ -1,10 +1,11 @@
 // Hanabi (fireworks): colours that spread through a swarm by gossip.
 //
-// Shows: sending and receiving messages, starting an experiment with a flash of light, own columns in the data file.
+// Shows: sending and receiving messages, starting an experiment with a flash of light, columns of its own in the data
+// file.
 //
-// After the flash and five seconds of white, each robot now and then, on its own, picks a new colour and grows one
-// older. Robots tell each other age and colour all the time, and a robot takes over the colour of an older one. So each
-// new colour runs through the swarm like a firework.
+// After the flash and five seconds of white, each robot now and then picks a new colour on its own and becomes one
+// older. Robots keep telling each other age and colour, and a robot adopts the colour of an older one. So each new
+// colour runs through the swarm like a firework.
 //
 //     ./examples/hanabi/hanabi -c conf/simple.yaml
 //
@@ -17,7 +18,7 @@
 #define FLASH_RISE 40             // rise of a photosensor within one tick that starts the experiment
 #define BOOT_MS 5000              // white before the first colour
 #define COLOR_COUNT 10            // colours of qualitative_colormap
-#define CHANGE_CHANCE 20000       // a robot changes its colour in 2 of so many ticks
+#define CHANGE_CHANCE 20000       // a robot changes its colour in 2 of this many ticks
 #define MAX_AGE_DIFFERENCE 10000  // a larger one is the overflow of an age
 
 typedef struct {

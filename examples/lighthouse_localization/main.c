@@ -1,16 +1,16 @@
 // Lighthouse localization: robots find out where they are from the times at which two beams of light pass them.
 //
-// The idea is that of the tracking of Valve's SteamVR, which small drones use, too (A. Taffanel et al., "Lighthouse
+// The idea is that of the tracking in Valve's SteamVR, which small drones use, too (A. Taffanel et al., "Lighthouse
 // positioning system: dataset, accuracy, and precision for UAV research", arXiv:2104.11523, 2021).
 //
-// Shows: looking at the photosensors in every tick, a program driven by what they see, geometry on the robot, own
-// columns in the data file.
+// Shows: reading the photosensors in every tick, a program driven by them, geometry on the robot, columns of its own in
+// the data file.
 //
 // Two lighthouses stand in two corners of a square map. What a robot sees, over and over:
 //
-//     long white     all is bright for 0.5 s
+//     long white     everything is bright for 0.5 s
 //     ray 1          a beam from lighthouse 1 turns from -90 to 0 degrees, clockwise on the screen, at 3 rad/s
-//     short white    all is bright for 0.1 s
+//     short white    everything is bright for 0.1 s
 //     ray 2          a beam from lighthouse 2 turns from -180 to -90 degrees
 //
 // The time from the end of a white frame until the beam passes gives the direction in which that lighthouse sees the
@@ -21,8 +21,8 @@
 //       .       .           x_mm = L / 2 * (1 + x / 0.75), and the same for y.
 //     1           2
 //
-// A robot looks every 16 ms, and meanwhile a beam turns by 0.05 rad: this limits the accuracy to a few centimetres on a
-// square metre. What has changed between two ticks has changed in the middle between them, on average.
+// A robot looks every 16 ms, during which a beam turns by 0.05 rad: this limits the accuracy to a few centimetres on a
+// square metre. What has changed between two ticks changed midway between them, on average.
 //
 // Head LED: the hue is the direction from the centre of the map; red when the position is not known. LED 1: the hue is
 // the distance from there; white when the position is not known.
@@ -34,8 +34,8 @@
 
 #define PI 3.14159265f
 #define NB_SENSORS 3
-#define WHITE_LEVEL 1000      // a white frame: all sensors see so much. Beams have to be weaker
-#define SWEEP_TOLERANCE 1.5f  // when a sweep has taken so many times too long, the lighthouses are off
+#define WHITE_LEVEL 1000      // a white frame: all sensors read at least this. Beams have to be weaker
+#define SWEEP_TOLERANCE 1.5f  // a sweep that takes this many times too long: the lighthouses are off
 #define MIN_DETERMINANT 1e-6f
 
 // Which beam turns. After a long white frame it is ray 1, after a short one ray 2, if ray 1 was before.
@@ -59,7 +59,7 @@ typedef struct {
 DECLARE_USERDATA(USERDATA);
 REGISTER_USERDATA(USERDATA);
 
-// Parameters, the same for all robots. The first three have to be those of the light.
+// Parameters, the same for all robots. The first three have to match the lighthouses.
 float lighthouse_omega = 1.0f;  // rad/s
 float long_white_duration_s = 0.5f;
 float short_white_duration_s = 0.1f;

@@ -1,15 +1,15 @@
-// Moving oscillators: robots that wander about and fall into step (Y. Kuramoto, 1975; J. A. Acebron et al., "The
+// Moving oscillators: robots that wander around and fall into step (Y. Kuramoto, 1975; J. A. Acebron et al., "The
 // Kuramoto model: a simple paradigm for synchronization phenomena", Reviews of Modern Physics 77, 2005).
 //
 // Shows: a differential equation in real time, motion and inner state that act on each other, a text parameter, ending
 // a run from the program.
 //
-// Each robot is a clock with phase theta and its own pace w. It is pulled towards the n neighbours it hears:
+// Each robot is a clock with phase theta and its own frequency w. It is pulled towards the n neighbours it hears:
 //
 //     d theta / dt = w + K / n * sum over neighbours of sin(theta_j - theta) + g_m * (1 in a run, -1 in a tumble)
 //
 // Meanwhile it runs and tumbles, with tumbles longer and runs shorter while sin(theta) is positive. As they meet ever
-// new neighbours, the robots agree on one rhythm. How well is told by the order parameter R = |mean of exp(i theta)|,
+// new neighbours, the robots agree on one rhythm. The order parameter R = |mean of exp(i theta)| measures how well,
 // from 0 (no order) to 1 (all in phase). The run ends when R and the share of the robots in one half of
 // the dial both exceed 0.95.
 //
@@ -175,7 +175,7 @@ static void show_state(void) {
 // ---- The end of the run ----
 
 #ifdef SIMULATOR
-// On purpose shared by all robots: what an observer of the whole swarm sees.
+// Shared by all robots on purpose: what an observer of the whole swarm sees.
 POGO_SHARED static int nb_in_upper_half;
 POGO_SHARED static double sum_cos, sum_sin;
 

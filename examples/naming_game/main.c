@@ -2,13 +2,13 @@
 // vocabulary", Artificial Life 2, 1995; A. Baronchelli et al., "Sharp transition towards shared vocabularies in
 // multi-agent systems", J. Stat. Mech. P06014, 2006).
 //
-// Shows: sets as bit fields, telling copies of a message apart, own columns in the data file.
+// Shows: sets as bit fields, telling copies of a message apart, columns of its own in the data file.
 //
 // Each robot knows a set of words out of 256, empty at the start. Now and then it speaks: it draws one of its words, or
-// invents one if it has none, and tells all neighbours. A listener that does not know the word learns it. One that does
-// forgets all others. The speaker does not learn whether it was understood: this is the listener-only game, made for
-// broadcasting (A. Baronchelli, "Role of feedback and broadcasting in the naming game", Phys. Rev. E 83, 046103, 2011).
-// At first vocabularies grow, then groups agree, grow, and one word remains.
+// invents one if it has none, and tells it to all neighbours. A listener that does not know the word learns it. One
+// that does forgets all others. The speaker does not learn whether it was understood: this is the listener-only game,
+// made for broadcasting (A. Baronchelli, "Role of feedback and broadcasting in the naming game", Phys. Rev. E 83,
+// 046103, 2011). At first vocabularies grow, then groups agree, grow, and one word remains.
 //
 // The head shows the word of a robot that knows one only, and white when it hesitates; the ring shines green where all
 // neighbours last said that same word.
@@ -22,7 +22,7 @@
 
 typedef struct __attribute__((__packed__)) {
     uint16_t sender_id;
-    uint8_t number;  // of the speech: two faces may hear the same one
+    uint8_t number;  // of the utterance: two faces may hear the same one
     uint8_t word;
 } speech_t;
 

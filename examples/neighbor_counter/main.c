@@ -1,11 +1,11 @@
 // Neighbour counter: who is around me, and on which side?
 //
-// Shows: heartbeats, a table of neighbours that forgets those it no longer hears, the faces that messages arrive at,
+// Shows: heartbeats, a table of neighbours that forgets those it no longer hears, the faces at which messages arrive,
 // all five LEDs. It is the first layer of most swarm algorithms.
 //
-// Each robot sends its id some times a second, and keeps for each id it hears when it last arrived at each of the four
-// faces. A neighbour counts as long as that is recent. One that stands between two faces is heard by both of them, so
-// the four counts can add up to more than there are neighbours.
+// Each robot sends its id several times a second, and keeps for each id it hears when it last arrived at each of the
+// four faces. A neighbour counts as long as that is recent. One that stands between two faces is heard by both of them,
+// so the four counts can add up to more than there are neighbours.
 //
 //     ./examples/neighbor_counter/neighbor_counter -c conf/neighbor_counter.yaml
 #include "pogobase.h"
@@ -18,7 +18,7 @@ typedef struct {
 
 typedef struct {
     uint16_t id;
-    uint32_t heard_ms[IR_RX_COUNT];  // when it last was heard at each face; 0: never
+    uint32_t heard_ms[IR_RX_COUNT];  // when it was last heard at each face; 0: never
 } neighbor_t;
 
 typedef struct {

@@ -3,8 +3,8 @@
 // Shows: reading the photosensors, a phase that follows a sensor at every tick.
 //
 // A robot wanders by run and tumble (green and red; see examples/run_and_tumble). It compares no directions: wherever
-// the mean of its three photosensors reaches a threshold, it stops (blue), and goes on if it gets dark again or
-// somebody pushes it out of the light. So the swarm gathers in the bright places, the simplest kind of orientation by
+// the mean of its three photosensors reaches a threshold, it stops (blue), and goes on if it gets dark again or another
+// robot pushes it out of the light. So the swarm gathers in the bright places, the simplest kind of orientation by
 // light, called photokinesis in Fraenkel and Gunn, "The Orientation of Animals", 1940.
 //
 //     ./examples/phototaxis/phototaxis -c conf/phototaxis.yaml
@@ -40,7 +40,7 @@ static void set_motors(uint16_t left, uint16_t right) {
     pogobot_motor_set(motorR, right);
 }
 
-// Both direction bits as calibrated, or both the other way round.
+// Both direction bits as calibrated, or both inverted.
 static void set_direction(bool forward) {
     uint8_t const flip = forward ? 0 : 1;
     pogobot_motor_dir_set(motorR, mydata->forward_dir[0] ^ flip);

@@ -4,8 +4,8 @@
 //
 // In the dark a robot wanders by run and tumble (green and red; see examples/run_and_tumble), with the bias of swimming
 // bacteria: runs that lead to more light last longer (Berg and Brown, "Chemotaxis in Escherichia coli analysed by
-// three-dimensional tracking", Nature 239, 1972). As soon as it sees light (yellow), it drives to where the light comes
-// from, like vehicle 2b of Braitenberg's "Vehicles", 1984: the farther to the side, the slower the motor on that side.
+// three-dimensional tracking", Nature 239, 1972). As soon as it sees light (yellow), it drives towards the light,
+// like vehicle 2b of Braitenberg's "Vehicles", 1984: the farther to the side, the slower the motor on that side.
 //
 //     ./examples/phototaxis_gradient/phototaxis_gradient -c conf/phototaxis_gradient.yaml
 #include "pogobase.h"
@@ -16,7 +16,7 @@
 
 typedef enum { PHASE_RUN, PHASE_TUMBLE, PHASE_CLIMB } phase_t;
 
-// How the light changes around the robot. In sensor counts per body radius, but for the level.
+// How the light changes around the robot: in sensor counts per body radius, except the level.
 typedef struct {
     float level;  // mean of the three sensors, sensor counts
     float forward;
@@ -39,7 +39,7 @@ uint32_t run_duration_max = 1200;     // ms
 uint32_t tumble_duration_min = 100;   // ms
 uint32_t tumble_duration_max = 1100;  // ms
 uint16_t dark_threshold = 210;        // sensor counts; search below, climb above
-uint8_t uphill_factor = 3;            // so much longer last the runs of the search that lead to more light
+uint8_t uphill_factor = 3;            // search runs that lead to more light last this many times longer
 
 static uint32_t random_between(uint32_t low, uint32_t high) {
     return high > low ? low + (uint32_t)rand() % (high - low + 1) : low;

@@ -1,7 +1,7 @@
 // Probes: how many infrared messages get through?
 //
 // Shows: measuring the communication model of the simulator the way it was measured on real robots, short messages of a
-// chosen size, own columns in the data file.
+// chosen size, columns of its own in the data file.
 //
 // Robot 0 stands in the middle, its neighbours around it. All send short messages of `payload_size` bytes with
 // `send_percent` % chance per tick. Each robot counts what it sends, and each neighbour counts what it hears of robot

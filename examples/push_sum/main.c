@@ -4,17 +4,17 @@
 // Shows: a distributed computation that must not lose anything on links that lose messages, or work in one direction
 // only.
 //
-// Each robot has a sum s, at first its id, and a weight w, at first 1. In each round it splits both in equal parts, one
-// for itself and one for each of its d neighbours, who add it to their own. All s together stay what they were, and all
-// w too, while differences even out: s / w becomes the mean of all ids everywhere.
+// Each robot has a sum s, at first its id, and a weight w, at first 1. In each round it splits both into equal parts,
+// one for itself and one for each of its d neighbours, who add it to their own. The sum of all s stays the same, and so
+// does that of all w, while differences even out: s / w becomes the mean of all ids everywhere.
 //
 // That only holds if each share arrives exactly once at exactly d robots. Two precautions see to that:
-// - A message tells the total of all shares that its sender has ever given to each neighbour, and the receiver takes
-//   what it has not had yet. So a lost message costs nothing, the next one makes up for it, and a copy brings nothing
+// - A message states the total of all shares that its sender has ever given to each neighbour, and the receiver takes
+//   what it has not had yet. So a lost message does no harm, the next one makes up for it, and a copy adds nothing
 //   (the running sums of C. N. Hadjicostis, N. H. Vaidya, A. D. Dominguez-Garcia, "Robust distributed average consensus
 //   via exchange of running sums", IEEE Trans. Automatic Control 61, 2016).
-// - A message lists whom its sender hears, and who of them gets shares: those who list the sender in turn, since the
-//   infrared light of one may reach another but not the other way round.
+// - A message lists whom its sender hears, and which of them get shares: those that list the sender in turn, since one
+//   robot may hear another that does not hear it.
 // When neighbours part, each takes back what it gave since it last heard the other. That is right up to the last share
 // or so: with `moving_robots: true` all find the same value, but only roughly the mean.
 //
@@ -22,7 +22,7 @@
 #include "pogobase.h"
 
 #define MAX_NEIGHBORS 40
-#define SETTLE_MS 2000  // of listening before the first share, so that everybody knows the neighbours
+#define SETTLE_MS 2000  // of listening before the first share, so that all robots know their neighbours
 #define TURN_MS 1000    // of a moving robot between two random turns
 
 typedef struct __attribute__((__packed__)) {
@@ -87,7 +87,7 @@ static neighbor_t* find_neighbor(uint16_t id) {
     return NULL;
 }
 
-// Takes back what a neighbour that has ceased to listen cannot have heard of any more.
+// Takes back what a neighbour that no longer listens cannot have heard.
 static void part_with_listener(neighbor_t* neighbor) {
     mydata->s += mydata->given_s - neighbor->heard_given_s;
     mydata->w += mydata->given_w - neighbor->heard_given_w;
@@ -126,7 +126,7 @@ static void split(void) {
     float const before_s = mydata->given_s, before_w = mydata->given_w;
     mydata->given_s += mydata->s / (float)(nb_listeners + 1);
     mydata->given_w += mydata->w / (float)(nb_listeners + 1);
-    // The shares as rounded in the totals: what goes from here is then exactly what arrives there.
+    // The shares as rounded in the totals: what leaves here is then exactly what arrives there.
     mydata->flying_s = (mydata->given_s - before_s) * (float)nb_listeners;
     mydata->flying_w = (mydata->given_w - before_w) * (float)nb_listeners;
     mydata->s -= mydata->flying_s;

@@ -31,7 +31,7 @@ static uint32_t random_between(uint32_t low, uint32_t high) {
     return high > low ? low + (uint32_t)rand() % (high - low + 1) : low;
 }
 
-// Both direction bits as calibrated, or both the other way round.
+// Both direction bits as calibrated, or both inverted.
 static void set_direction(bool forward) {
     uint8_t const flip = forward ? 0 : 1;
     pogobot_motor_dir_set(motorR, mydata->forward_dir[0] ^ flip);

@@ -1,7 +1,7 @@
-// The rate lambda of an exponential decay s(t) = v exp(-lambda t), from values of s that come one by one.
+// The rate lambda of an exponential decay s(t) = v exp(-lambda t), from values of s that arrive one by one.
 //
 // ln|s| = ln|v| - lambda t is a straight line. What is left of faster decays at the beginning, and noise at the end,
-// bends it; so of all the lines fitted on the way, the one counts that the latest points lie on best.
+// bends it; so of all the lines fitted so far, the one that best fits the latest points counts.
 #ifndef SSR_DECAY_H
 #define SSR_DECAY_H
 
@@ -22,7 +22,7 @@ typedef struct {
 /// s must not be 0.
 void decay_add(decay_t* decay, float t, float s);
 
-/// Whether lambda rests on a full window and on so many points, and these look like an exponential decay at all.
+/// Whether lambda rests on a full window and at least this many points, and they look like an exponential decay at all.
 bool decay_is_known(decay_t const* decay, uint16_t min_nb_points);
 
 #endif

@@ -10,11 +10,11 @@
 // die out: fast ones between neighbours first, at last only one pattern is left, positive in one half of the arena and
 // negative in the other one. It fades as exp(-lambda t), t = steps / k, where lambda is the second eigenvalue of the
 // graph's Laplacian, the slowest time scale of diffusion in that shape. It is smaller in an annulus than in a disk of
-// the same surface, where the way from one end to the other is shorter. Each robot measures lambda on its own number.
+// the same area, where the path from one end to the other is shorter. Each robot measures lambda on its own number.
 //
-// All durations count in unit periods (`unit_period`), one step of a diffusion. A flash of light starts all robots:
+// All durations are in unit periods (`unit_period`), one step of a diffusion. A flash of light starts all robots:
 //
-//     random walk (20), then again and again:
+//     random walk (20), then repeatedly:
 //     wait (1)             LEDs as they were
 //     random walk (20)     another graph of the same arena
 //     pre-diffusion (100)  from random numbers; the end is the mean of them, or close to it
@@ -38,7 +38,7 @@
 
 #define FLASH_RISE 40     // rise of a photosensor within one tick that starts the experiment
 #define WALK_CHOICE 5     // unit periods between two choices of a random walk
-#define WALK_CHANCE 30    // it drives ahead, to the left or to the right with one chance in so many each
+#define WALK_CHANCE 30    // it drives ahead, to the left or to the right with a chance of one in this many each
 #define MIN_CHANGE 1e-3f  // a smaller sum of differences says that a diffusion has ended
 #define MIN_S 1e-7f       // as does a smaller |s|, whose logarithm is noise
 
@@ -56,7 +56,7 @@ typedef struct {
     float s;
     float s_initial;  // the random number at the beginning of pre-diffusion
     float change;     // sum of the differences to the neighbours in the last step
-    bool ended;       // nothing more to be learnt from it
+    bool ended;       // there is nothing more to learn from it
     decay_t decay;
 } diffusion_t;
 

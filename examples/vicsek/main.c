@@ -6,15 +6,15 @@
 // them.
 //
 // All robots drive at the same speed. Every `update_period` each takes a new course: the mean direction of itself and
-// its neighbours, plus an error drawn evenly from -noise_eta/2 to noise_eta/2. The order parameter is the length of the
-// mean of all heading vectors: near 1 if noise_eta is small, 1 / sqrt(number of robots) if it is 2 pi.
+// its neighbours, plus an error drawn uniformly from -noise_eta/2 to noise_eta/2. The order parameter is the length of
+// the mean of all heading vectors: near 1 if noise_eta is small, 1 / sqrt(number of robots) if it is 2 pi.
 //
 // Neighbours must know their headings with respect to the same axis, but a Pogobot has no compass. A lamp to one side
-// replaces it: light that grows evenly across the arena (a `plane` lamp) shows each robot the same direction. The
+// replaces it: light that increases linearly across the arena (a `plane` lamp) shows each robot the same direction. The
 // difference between front and back photosensors is proportional to cos(heading), that between left and right ones to
-// sin(heading), where heading 0 is towards the light. Where the light does not tell, in the dark or across the seam of
-// the arena, the heading follows the gyroscope. With no such light at all it starts from 0: then place the robots in
-// parallel (`aligned_random`).
+// sin(heading), where heading 0 is towards the light. Where the light gives no direction, in the dark or across the
+// seam of the arena, the heading follows the gyroscope. With no such light at all it starts from 0: then place the
+// robots in parallel (`aligned_random`).
 //
 // There is no avoidance of walls: the arena is periodic.
 //
@@ -33,7 +33,7 @@
 #define MIN_CONTRAST 50.0f     // smaller differences between photosensors say nothing about the direction of the light
 #define MAX_CONTRAST 10000.0f  // larger ones are the edge of a shadow, or the seam of the arena
 #define LIGHT_TRUST 0.2f       // share of the compass's error that is corrected at each tick
-#define TURN_GAIN 1.0f         // full turn for a course so many radians away
+#define TURN_GAIN 1.0f         // full turn for a course this many radians away
 
 typedef enum { BACK, FRONT_LEFT, FRONT_RIGHT } photosensor_t;
 
@@ -71,7 +71,7 @@ static float wrapped(float angle) {
 
 // ---- Compass ----
 
-// Sets the heading with respect to the light; false if the light does not tell.
+// Sets the heading with respect to the light; false if the light gives no direction.
 static bool read_light_compass(float* heading) {
     float const back = pogobot_photosensors_read(BACK);
     float const left = pogobot_photosensors_read(FRONT_LEFT);

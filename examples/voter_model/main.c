@@ -4,14 +4,14 @@
 // Shows: an algorithm with two lines (copy_a_neighbor), random choice among neighbours, sending by chance, a random
 // walk.
 //
-// Each robot has one of four opinions, drawn at the start. At each tick it takes over the opinion of a neighbour drawn
-// at random. No opinion is better than another, yet one of them wins: which one, chance decides, with the share of the
+// Each robot has one of four opinions, drawn at the start. At each tick it adopts the opinion of a neighbour drawn
+// at random. No opinion is better than another, yet one of them wins: which one is random, with the share of the
 // robots that had it at the start as its probability. The head shows the opinion; the ring shines green where all
 // neighbours have the same one.
 //
 //     ./examples/voter_model/voter_model -c conf/voter_model.yaml
 //
-// The robots walk around, so that everybody meets. With `moving_robots: false` groups out of each other's reach may
+// The robots walk around, so that all of them meet. With `moving_robots: false` groups out of each other's reach may
 // settle on different opinions.
 #include "pogobase.h"
 

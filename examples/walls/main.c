@@ -3,7 +3,7 @@
 // Three kinds of objects run this program, each with a controller of its own. The walls of the arena (`walls`, a
 // pogowall) and soft rings (`membranes`) carry infrared emitters all along their outlines and keep saying what they
 // are. Robots run and tumble, silent. One that hears a wall stops there and turns blue. One that hears a membrane turns
-// yellow, and runs on, since a membrane is there to be pushed. In the end the robots outside of membranes rest along
+// yellow, and runs on, since a membrane is there to be pushed. In the end the robots outside membranes rest along
 // the walls of the arena.
 //
 //     ./examples/walls/walls -c conf/walls_and_membranes.yaml

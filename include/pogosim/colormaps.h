@@ -1,5 +1,5 @@
 /// @file
-/// Colours for LEDs, 0 to 25 per channel where not said otherwise: more is dazzling on the real robots.
+/// Colours for LEDs, 0 to 25 per channel unless stated otherwise: higher values dazzle on the real robots.
 #ifndef POGOSIM_COLORMAPS_H
 #define POGOSIM_COLORMAPS_H
 
@@ -23,8 +23,8 @@ void qualitative_colormap(uint8_t const value, uint8_t* r, uint8_t* g, uint8_t* 
 /// Red, yellow, green, cyan, blue, magenta and back to red as `value` goes from 0 to 255. Channels 0 to 25, never dark.
 void rainbow_colormap(uint8_t const value, uint8_t* r, uint8_t* g, uint8_t* b);
 
-/// Hue (degrees, 0 to 360; others are red), saturation and value (0 to 1, not checked) to channels of 0 to 255, cut to
-/// whole numbers: scale them down for LEDs. Source: A. R. Smith, "Color gamut transform pairs", SIGGRAPH 1978.
+/// Hue (degrees, 0 to 360; others are red), saturation and value (0 to 1, not checked) to channels of 0 to 255,
+/// truncated to integers: scale them down for LEDs. Source: A. R. Smith, "Color gamut transform pairs", SIGGRAPH 1978.
 void hsv_to_rgb(float h_deg, float s, float v, uint8_t* r, uint8_t* g, uint8_t* b);
 
 #if defined(__GNUC__) && !defined(REAL_ROBOT)

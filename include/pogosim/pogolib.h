@@ -4,7 +4,7 @@
 #define POGOSIM_POGOLIB_H
 
 #ifndef SIMULATOR
-/// Defined in the simulator only: what only the simulator has stands between `#ifdef SIMULATOR` and `#endif`.
+/// Defined in the simulator only: code for the simulator alone goes between `#ifdef SIMULATOR` and `#endif`.
 #define SIMULATOR
 #endif
 
@@ -27,11 +27,11 @@ extern "C++" {
 #include <string.h>
 #include <time.h>
 
-/// Version of the SDK whose functions these are.
+/// Version of the SDK that these functions follow.
 #define POGOLIB_RELEASE_VERSION "v2.6"
 
-// A variable that each robot has for itself: the simulator puts in the running robot's value. Thread-local, so that
-// robots can run on several threads.
+// A variable of which each robot has its own: the simulator puts in the value of the robot that is running.
+// Thread-local, so that robots can run on several threads.
 #define POGO_PER_ROBOT __thread
 #define POGO_BEGIN_API _Pragma("GCC visibility push(default)")
 #define POGO_END_API _Pragma("GCC visibility pop")

@@ -1,6 +1,6 @@
 /// @file
 /// The interface layer: user data, the loop of a program and its globals. It is compiled for simulated and real robots
-/// alike; main_loop.c is its code. On a real robot it stands on the SDK (pogobot.h), here on pogosim/pogolib.h.
+/// alike; main_loop.c is its code. On a real robot it uses the SDK (pogobot.h), here pogosim/pogolib.h.
 #ifndef POGOSIM_POGOSIM_H
 #define POGOSIM_POGOSIM_H
 
@@ -32,9 +32,9 @@ extern "C" {
 
 /// The text of `x`.
 #define STRINGIFY_RAW(x) #x
-/// The text of what `x` stands for.
+/// The text of what the macro `x` expands to.
 #define STRINGIFY(x) STRINGIFY_RAW(x)
-/// strcmp() that the compiler computes if both texts are constants.
+/// strcmp() that the compiler evaluates if both texts are constants.
 #define STATIC_STRCMP(a, b) __builtin_strcmp((a), (b))
 
 #ifdef __cplusplus
@@ -44,21 +44,21 @@ POGO_BEGIN_API
 
 // ---- Globals of the main loop. Each robot has its own. ----
 
-/// Ticks executed so far; one more at the end of each tick.
+/// Ticks executed so far; incremented at the end of each tick.
 extern POGO_PER_ROBOT uint32_t pogobot_ticks;
-/// Ticks per second asked for, 60 at the start. The sleep between ticks is cut to whole milliseconds, so 60 gives 62.5.
+/// Requested ticks per second, 60 at the start. The sleep between ticks is truncated to milliseconds, so 60 gives 62.5.
 /// 0: no sleep, which is one tick per `time_step` in the simulator.
 extern POGO_PER_ROBOT uint8_t main_loop_hz;
-/// Messages handed to msg_rx_fn in one tick, at most, 3 at the start; the others waiting then are dropped.
+/// Most messages handed to msg_rx_fn in one tick, 3 at the start; any others waiting are dropped.
 extern POGO_PER_ROBOT uint8_t max_nb_processed_msg_per_tick;
 /// Chance (0 to 100 %) that msg_tx_fn is called in a tick, 20 at the start. Reception depends on it, too.
 extern POGO_PER_ROBOT uint8_t percent_msgs_sent_per_ticks;
 /// Called with each received message, after the step; NULL, as at the start: messages stay in the queue.
 extern POGO_PER_ROBOT void (*msg_rx_fn)(message_t*);
-/// Called by chance after the step to send a message; returns true when it sent one. NULL, as at the start: none.
+/// Called at random after the step to send a message; returns true if it sent one. NULL, as at the start: none.
 extern POGO_PER_ROBOT bool (*msg_tx_fn)(void);
 ///@{
-/// Messages sent (msg_tx_fn said true) and received (msg_rx_fn called) so far.
+/// Messages sent (msg_tx_fn returned true) and received (msg_rx_fn was called) so far.
 extern POGO_PER_ROBOT uint32_t nb_msgs_sent;
 extern POGO_PER_ROBOT uint32_t nb_msgs_recv;
 ///@}
@@ -91,7 +91,7 @@ void pogo_main_loop_step(void (*user_step)(void));
 /// `pogobot_start(user_init, user_step)` or `pogobot_start(user_init, user_step, "category")`: called by main() once
 /// per category of objects the program controls (default "robots"). user_init runs once, user_step in each tick; it may
 /// be NULL. On a real robot the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in the
-/// simulator all return, and what is in the configuration but named by no call does nothing, with a warning.
+/// simulator all return, and objects of a category that no call names do nothing, with a warning.
 #define pogobot_start(...) POGO_START_PICK(__VA_ARGS__, pogobot_start_3, pogobot_start_2, )(__VA_ARGS__)
 #define POGO_START_PICK(init, step, category, chosen, ...) chosen
 #define pogobot_start_2(init, step) pogobot_start_3(init, step, "robots")
@@ -114,7 +114,7 @@ void user_init(void);
 void user_step(void);
 /// Empties the hardware FIFOs of the four infrared receivers.
 void clear_IR_buffers(void);
-/// Callbacks are the simulator's; here the function need not exist.
+/// Callbacks exist in the simulator only; here the function need not exist.
 #define SET_CALLBACK(callback_name, fn)
 
 #else

@@ -1,6 +1,6 @@
 /// @file
-/// Variables outside of USERDATA: one for all simulated robots, but one for each real robot. `make sim` (and the tool
-/// pogosim-shared-state) warns of each that the program could change, but for those
+/// Variables outside USERDATA: one for all simulated robots, but one for each real robot. `make sim` (and the tool
+/// pogosim-shared-state) warns about each that the program could change, except those
 ///
 ///   - set from the configuration, with `init_from_configuration(variable)` and the like: the same on all robots;
 ///   - marked with #POGO_SHARED: the program means to share them.
@@ -10,9 +10,9 @@
 /// Marks a variable that simulated robots share on purpose, such as a count over the whole swarm for the data file:
 ///
 ///     POGO_SHARED uint32_t messages_of_all_robots;
-///     POGO_SHARED static float table[256];   // filled alike by every robot
+///     POGO_SHARED static float table[256];   // every robot fills it with the same values
 ///
-/// On real robots it says nothing. (g++ forgets it for static variables in templates and, with -flto, in inline
+/// It has no effect on real robots. (g++ forgets it for static variables in templates and, with -flto, in inline
 /// functions.)
 #ifdef REAL_ROBOT
 #define POGO_SHARED

@@ -1,6 +1,6 @@
 /// @file
 /// What only the simulator has: configuration values for a program's globals, columns in the data file, callbacks.
-/// Real robots have nothing of this but an empty SET_CALLBACK(): programs keep its use inside of `#ifdef SIMULATOR`.
+/// Real robots have none of this except an empty SET_CALLBACK(): programs use it inside `#ifdef SIMULATOR` only.
 /// Errors end the run with a message and exit code 2.
 #ifndef POGOSIM_SIMULATION_H
 #define POGOSIM_SIMULATION_H
@@ -38,8 +38,9 @@ extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 // ---- Configuration: values under `parameters:` ----
 
 ///@{
-/// Sets the variable to the value under `parameters.NAME` (dots walk into maps and lists), or to the default when it is
-/// absent. A value of the wrong type or out of the range of the variable's type is an error; integers cut fractions.
+/// Sets the variable to the value under `parameters.NAME` (dots lead into maps and lists), or to the default when it is
+/// absent. A value of the wrong type or out of the range of the variable's type is an error; integers truncate
+/// fractions.
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
 void init_float_from_configuration(float* variable, char const* name, float const default_value);
 void init_double_from_configuration(double* variable, char const* name, double const default_value);
@@ -57,8 +58,8 @@ void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t 
 void init_float_array_from_configuration(float* array, char const* name, size_t const size);
 void init_double_array_from_configuration(double* array, char const* name, size_t const size);
 ///@}
-/// Sets a text (an array of `size` characters) to the one under `parameters.NAME`, cut to `size` - 1 characters; an
-/// absent one changes nothing.
+/// Sets a text (an array of `size` characters) to the one under `parameters.NAME`, truncated to `size` - 1 characters;
+/// an absent one changes nothing.
 void init_string_from_configuration(char* text, char const* name, size_t const size);
 
 // ---- Data file ----
@@ -170,7 +171,7 @@ inline void pogosim_init_array(char* a, char const* name, size_t n) {
 // clang-format on
 #endif
 
-// A call of one of the functions notes the same. (A macro's own name inside of it is the function's.)
+// A call of one of the functions notes the same. (Inside a macro, its own name is the function's.)
 #ifndef POGOSIM_INSIDE
 // clang-format off
 #define init_bool_from_configuration(...) \

@@ -1,6 +1,6 @@
 /// @file
-/// User data: the variables of one robot. In the simulator `mydata` points to the block of the robot that has the
-/// processor; on a real robot it is the address of a global, which the compiler folds away.
+/// User data: the variables of one robot. In the simulator `mydata` points to the block of the robot that is
+/// running; on a real robot it is the address of a global, which the compiler folds away.
 ///
 ///     typedef struct { uint8_t age; } USERDATA;
 ///     DECLARE_USERDATA(USERDATA);    // beside the struct, wherever it is needed

@@ -15,8 +15,8 @@ void pogobot_init(void);
 /// 0 in callback_global_step. A real robot has the number in its memory.
 uint16_t pogobot_helper_getid(void);
 
-/// A seed for srand(), any int16_t. The first one a robot asks for is different on every robot of a run and depends on
-/// nothing but the seed of the run and the robot. rand() without srand() differs between simulated robots, too.
+/// A seed for srand(), any int16_t. The first one a robot asks for is different on every robot of a run and depends
+/// only on the seed of the run and the robot. rand() without srand() differs between simulated robots, too.
 int16_t pogobot_helper_getRandSeed(void);
 
 /// Prints the version of the SDK, #POGOLIB_RELEASE_VERSION.

@@ -6,7 +6,7 @@
 
 #ifndef MAX_PAYLOAD_SIZE_BYTES
 /// Longest payload of a message, bytes. A program may define a smaller one before the include: it makes message_t
-/// smaller, and longer payloads are cut when they are received.
+/// smaller, and longer payloads are truncated when they are received.
 #define MAX_PAYLOAD_SIZE_BYTES 382
 #endif
 #ifndef MAX_NUMBER_OF_WORD
@@ -25,7 +25,7 @@ typedef enum ir_direction { ir_front = 0, ir_right = 1, ir_back = 2, ir_left = 3
 /// Kinds of packets; programs send and receive ir_t_short and ir_t_user.
 typedef enum ir_type_message { ir_t_cmd = 1, ir_t_flash = 2, ir_t_short = 3, ir_t_user = 16 } ir_type_message;
 
-/// What stands in front of a long message.
+/// Header of a long message.
 typedef struct message_header_t {
     uint8_t _packet_type;          ///< ir_type_message
     uint8_t _emitting_power_list;  ///< two bits per emitter, front lowest; 0 in a short message
@@ -41,7 +41,7 @@ typedef struct message_t {
     uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];  ///< payload_length bytes of it count
 } message_t;
 
-/// What stands in front of a short message.
+/// Header of a short message.
 typedef struct message_short_header_t {
     uint8_t _packet_type;     ///< ir_type_message
     uint16_t payload_length;  ///< bytes
@@ -56,7 +56,7 @@ typedef struct short_message_t {
 /// What went wrong at one receiver of a real robot. All zero in the simulator, which loses whole messages.
 typedef struct {
     uint32_t overflow_counter;              ///< messages longer than the buffer
-    uint32_t unknown_escaped_byte_counter;  ///< wrong bytes behind an escape
+    uint32_t unknown_escaped_byte_counter;  ///< wrong bytes after an escape
     uint32_t crc_mismatch_counter;          ///< wrong check sums
 } slip_error_counter_s;
 
@@ -128,15 +128,15 @@ uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* cons
 uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size);
 /// Sends a short message through one emitter, or with `ir_all` through all at once. Returns 0, or 1 as for all.
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size);
-/// Sends a long message as it is, through the emitters whose power in `_emitting_power_list` is not 0 (none: nothing is
-/// sent, with a warning), and as far as the largest of these powers reaches. Sets type and sender. Returns 0, or 1 when
-/// the message is NULL or `payload_length` above 382 and nothing was sent.
+/// Sends a long message unchanged, through the emitters whose power in `_emitting_power_list` is not 0 (none: nothing
+/// is sent, with a warning), and as far as the largest of these powers reaches. Sets type and sender. Returns 0, or 1
+/// when the message is NULL or `payload_length` above 382 and nothing was sent.
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message);
-/// Sends a short message as it is, through one emitter or, with `ir_all`, all. Sets the type. Returns 0, or 1 as for
+/// Sends a short message unchanged, through one emitter or, with `ir_all`, all. Sets the type. Returns 0, or 1 as for
 /// long ones.
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message);
 
-/// Power of the emitters for the functions above but raw long messages: 0 to 3, more counts as 3; 1 at the start. 0
+/// Power of the emitters for the functions above except raw long messages: 0 to 3, more counts as 3; 1 at the start. 0
 /// sends nothing. In the simulator 1 to 3 reach as far as `communication_radius_by_power` says, equally far without it.
 void pogobot_infrared_set_power(uint8_t power);
 

@@ -1,8 +1,8 @@
 /// @file
 /// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stands still while user code
-/// runs and goes on when the robot sleeps; but a loop that waits for it ends, as each look at the clock beyond the
-/// thousandth of a tick takes a microsecond. Differences beyond the range of int32_t (35 minutes) stay at its ends; on
-/// a real robot they wrap round after about 107 s.
+/// runs and goes on when the robot sleeps; but a loop that waits for it ends, since each look at the clock beyond the
+/// thousandth in a tick takes a microsecond. Differences beyond the range of int32_t (35 minutes) are clamped to it; on
+/// a real robot they wrap around after about 107 s.
 #ifndef POGOSIM_POGOLIB_TIMERS_H
 #define POGOSIM_POGOLIB_TIMERS_H
 
@@ -21,12 +21,12 @@ POGO_BEGIN_API
 void pogobot_stopwatch_reset(time_reference_t* stopwatch);
 /// Time since the origin, us.
 int32_t pogobot_stopwatch_get_elapsed_microseconds(time_reference_t* stopwatch);
-/// Time since the origin, us; then starts anew.
+/// Time since the origin, us; then resets the origin to now.
 int32_t pogobot_stopwatch_lap(time_reference_t* stopwatch);
 /// Moves the origin: a positive offset makes the elapsed time smaller.
 void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, int32_t microseconds_offset);
 
-/// Starts a timer that expires in so many microseconds.
+/// Starts a timer that expires after this many microseconds.
 void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go);
 /// Time left, us; negative once it has expired.
 int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer);
@@ -34,11 +34,11 @@ int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer);
 bool pogobot_timer_has_expired(time_reference_t* timer);
 /// Sleeps for the time left, if any.
 void pogobot_timer_wait_for_expiry(time_reference_t* timer);
-/// Moves the expiry by the offset: arms a periodic timer again without drift.
+/// Moves the expiry by the offset: re-arms a periodic timer without drift.
 void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset);
 
-/// Sleeps: the robot's next tick comes so much later, but the rest of this one still runs in the same step of the
-/// simulator, with sensors and messages as they are. Zero and less do nothing.
+/// Sleeps: delays the robot's next tick by this time, but the rest of this one still runs in the same step of the
+/// simulator, with sensors and messages unchanged. Zero and less do nothing.
 void msleep(int milliseconds);
 
 /// Prepares the clock of a real robot; nothing to do here.
