@@ -250,11 +250,23 @@ def table(page: Path) -> list[str]:
     return re.findall(r"^\|(.*?)\|", page.read_text(), re.MULTILINE)
 
 
+def anchors(page: Path) -> set[str]:
+    """Return the names by which links address the headings of a page."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_links_lead_somewhere(page: Path) -> None:
     targets = [target for target, _ in LINK.findall(page.read_text()) if "://" not in target]
     missing = [target for target in targets if not (page.parent / target).exists()]
     assert missing == []
+    sections = [
+        (page.parent / target if target else page, section[1:])
+        for target, section in re.findall(r"\]\(([^)#\s]*)(#[^)\s]+)\)", page.read_text())
+        if "://" not in target
+    ]
+    assert [section for target, section in sections if section not in anchors(target)] == []
 
 
 def test_new_object_type_of_the_docs_compiles(tmp_path: Path) -> None:
