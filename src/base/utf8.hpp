@@ -1,4 +1,4 @@
-// Text of users (configurations, names, what programs write) is bytes of any kind. Here is decided which of them are text:
+// Text of users (configurations, names, what programs write) is bytes of any kind. This tells which of them are text:
 // well-formed UTF-8 (Unicode 15, table 3-7: no overlong forms, no surrogates, nothing above U+10FFFF).
 #pragma once
 

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <optional>
 #include <regex>
+#include <string>
+#include <string_view>
 
 #include "base/log.hpp"
 #include "config/values.hpp"

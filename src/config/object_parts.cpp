@@ -1,6 +1,8 @@
 #include "config/object_parts.hpp"
 
 #include <array>
+#include <optional>
+#include <string_view>
 
 #include "config/reception_keys.hpp"
 #include "config/shape_keys.hpp"

@@ -1,6 +1,7 @@
 #include "config/scenario_keys.hpp"
 
 #include <array>
+#include <string>
 
 #include "config/shape_keys.hpp"
 

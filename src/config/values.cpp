@@ -7,7 +7,10 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <system_error>
 
 #include "base/error.hpp"
 

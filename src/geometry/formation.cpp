@@ -1,6 +1,7 @@
 #include "geometry/formation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,9 @@
 #include "geometry/obstacle.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
+#include <vector>
 
 namespace pogosim {
 

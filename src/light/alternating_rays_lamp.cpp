@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <numbers>
+#include <vector>
 
 #include "light/bearing_order.hpp"
 #include "light/lamp.hpp"

@@ -1,6 +1,7 @@
 #include "light/lighting.hpp"
 
 #include <algorithm>
+#include <variant>
 
 namespace pogosim {
 

@@ -3,7 +3,10 @@
 //     |flash|---- beam from 0 to 2 pi ----|flash|---- ...
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <numbers>
+#include <vector>
 
 #include "light/bearing_order.hpp"
 #include "light/lamp.hpp"

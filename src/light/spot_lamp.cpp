@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <vector>
 
 #include "light/lamp.hpp"
 #include "light/lit_area.hpp"

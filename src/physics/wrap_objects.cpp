@@ -1,5 +1,7 @@
 #include "physics/wrap_objects.hpp"
 
+#include <cstdint>
+
 #include "geometry/polygon.hpp"
 
 namespace pogosim {

@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <variant>
 
 #include "base/error.hpp"
 #include "base/log.hpp"

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <utility>
 
@@ -114,7 +115,7 @@ private:
     static constexpr std::chrono::seconds kLongRun{1};
     static constexpr std::chrono::seconds kUsualPeriod{2};
     static constexpr std::chrono::seconds kLongestPeriod{4};  // on a slow disk
-    static constexpr int kLeastRatio = 100;                    // of the time between to the time it takes
+    static constexpr int kLeastRatio = 100;                   // of the time between to the time it takes
 
     Clock::time_point start_ = Clock::now();
     Clock::time_point next_ = start_ + kFirst;

@@ -5,6 +5,7 @@
 #include <arrow/ipc/api.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <initializer_list>
 #include <limits>
 #include <memory>

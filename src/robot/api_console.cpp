@@ -1,4 +1,5 @@
 // pogolib/console.h: printf of the robots.
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>

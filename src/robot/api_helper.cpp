@@ -3,6 +3,7 @@
 // Programs call them by their usual names; this library stands before libc in the search order.
 #include <dlfcn.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 

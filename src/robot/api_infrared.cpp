@@ -1,5 +1,7 @@
 // pogolib/infrared.h: what user code says goes on the air of the world; comms delivers it after every robot has run.
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <span>
 

@@ -1,6 +1,7 @@
 // pogolib/sensors.h
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numbers>
 
 #include "robot/context.hpp"

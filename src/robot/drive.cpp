@@ -1,5 +1,7 @@
 #include "robot/drive.hpp"
 
+#include <cstdint>
+
 namespace pogosim {
 
 namespace {

@@ -1,6 +1,12 @@
 // The values under `parameters` of a configuration, as user code asks for them.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "config/user_parameters.hpp"
 #include "robot/context.hpp"
 

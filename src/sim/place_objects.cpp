@@ -1,8 +1,11 @@
 #include "sim/place_objects.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
+#include <string>
 
 #include "base/error.hpp"
 #include "record/imported_poses.hpp"

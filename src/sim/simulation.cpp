@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 #include <string_view>
 
 #include "base/error.hpp"

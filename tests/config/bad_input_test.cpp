@@ -1,6 +1,12 @@
 // A wrong configuration ends in one message: where, which key, what was expected, what was found.
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
 #include "base/random.hpp"
 #include "config/object_types.hpp"
 #include "config/reference.hpp"

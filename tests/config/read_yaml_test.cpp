@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
 #include "config/tree.hpp"
 #include "config_file.hpp"
 

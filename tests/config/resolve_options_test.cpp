@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "config/tree.hpp"
 #include "config/yaml_text.hpp"
 #include "config_file.hpp"

@@ -1,5 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <utility>
+
 #include "base/random.hpp"
 #include "config/tree.hpp"
 #include "config/yaml_text.hpp"

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <numbers>
+#include <string>
 
 #include "base/error.hpp"
 

@@ -6,8 +6,14 @@
 #include <chrono>
 #include <cmath>
 #include <complex>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <numbers>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "base/error.hpp"
 

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "geometry/formation.hpp"

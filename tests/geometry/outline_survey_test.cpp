@@ -4,7 +4,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "base/random.hpp"
 

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <numbers>
+#include <vector>
 
 #include "base/random.hpp"
 #include "lit_world.hpp"

@@ -2,8 +2,10 @@
 // law of restitution.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "physics/physics_engine.hpp"

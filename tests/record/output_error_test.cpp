@@ -3,7 +3,11 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "record/data_file.hpp"

@@ -1,6 +1,8 @@
 // A robot's own time: ticks, sleeping, stopwatches and timers.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
 #include <vector>
 
 #include "support/scenes.hpp"

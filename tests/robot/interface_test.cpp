@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "support/scenes.hpp"

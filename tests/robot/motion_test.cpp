@@ -1,7 +1,11 @@
 // How a robot moves at what its program says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "support/lone_robot.hpp"
 

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "config/config_file.hpp"
 #include "support/small_world.hpp"

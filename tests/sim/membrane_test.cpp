@@ -1,7 +1,12 @@
 // Membranes hold: they keep their area, let nobody through, stay at rest when nobody pushes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "support/objects.hpp"
 #include "support/test_program.hpp"

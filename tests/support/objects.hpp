@@ -1,6 +1,8 @@
 // One object of each type, as the configuration makes them, for scenes made in code.
 #pragma once
 
+#include <string>
+
 #include "support/scenes.hpp"
 
 namespace pogosim::testing {

@@ -1,6 +1,7 @@
 // Scenes that tests and benchmarks share: configurations made in code, without a file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 

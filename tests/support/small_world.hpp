@@ -1,6 +1,7 @@
 // Worlds made by hand, for tests of single stages.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "world/world.hpp"

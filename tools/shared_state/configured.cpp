@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <regex>
+#include <string>
+#include <vector>
 
 namespace shared_state {
 

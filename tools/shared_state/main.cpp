@@ -2,6 +2,7 @@
 // its own. It looks at the program's debug information, so the program is compiled with -g.
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <string>
 #include <tuple>

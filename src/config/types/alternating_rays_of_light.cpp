@@ -1,5 +1,6 @@
 // Objects of type `alternating_rays_of_light`: two lighthouses in turn.
 #include <array>
+#include <span>
 
 #include "config/lamp_keys.hpp"
 #include "config/object_parts.hpp"

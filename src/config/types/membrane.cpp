@@ -1,5 +1,6 @@
 // Objects of type `membrane` and `rectmembrane`: soft rings of disks or of segments that run user code.
 #include <array>
+#include <span>
 
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"

@@ -1,6 +1,7 @@
 // Objects of type `orbiting_static_light`: a static light that goes round.
 #include <array>
 #include <optional>
+#include <span>
 
 #include "config/lamp_keys.hpp"
 #include "config/object_parts.hpp"

@@ -1,5 +1,6 @@
 // Objects of type `rotating_ray_of_light`: a lighthouse with one beam.
 #include <array>
+#include <span>
 
 #include "config/lamp_keys.hpp"
 #include "config/object_parts.hpp"

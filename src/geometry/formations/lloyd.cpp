@@ -4,6 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <span>
+#include <vector>
 
 #include "geometry/formations/power_diagram.hpp"
 #include "geometry/formations/separation.hpp"

@@ -1,6 +1,10 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "geometry/formations/disk_field.hpp"
 #include "geometry/formations/task.hpp"

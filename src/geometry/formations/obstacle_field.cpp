@@ -1,6 +1,7 @@
 #include "geometry/formations/obstacle_field.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 namespace pogosim {

@@ -1,5 +1,6 @@
 #include "geometry/formations/power_diagram.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <tuple>
 

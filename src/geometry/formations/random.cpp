@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "geometry/formations/disk_field.hpp"
 #include "geometry/formations/task.hpp"

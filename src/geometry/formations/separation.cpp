@@ -1,6 +1,7 @@
 #include "geometry/formations/separation.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <numbers>
 
 #include "geometry/formations/disk_field.hpp"
