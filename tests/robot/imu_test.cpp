@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -16,7 +15,6 @@ namespace {
 using testing::full_ahead;
 using testing::run_alone;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kG = 9.80665F;    // m/s2
 constexpr float kTickS = 0.016F;  // of a main loop of 60 Hz
 
