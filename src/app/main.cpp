@@ -8,6 +8,8 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "config/scenario.hpp"
+#include "robot/forked_child.hpp"
+#include "robot/last_words.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/simulation.hpp"
 
@@ -48,6 +50,10 @@ ExitCode simulate(CommandLine const& options) {
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv) {
+    if (is_forked_child()) {
+        end_forked_child(0);  // of a constructor: the run is the parent's
+    }
+    enter_stage(RunStage::preparing);
     ParsedCommandLine const parsed = parse_command_line(argc, argv);
     if (parsed.exit_code) {
         return *parsed.exit_code;
@@ -62,7 +68,7 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
         code = code == ExitCode::done ? ExitCode::usage : code;
     }
     flush_logs();
-    if (code == ExitCode::user_program) {
+    if (code == ExitCode::user_program || was_left_by_force()) {
         // The user's program may have destroyed memory: no destructors on top of that.
         std::fflush(nullptr);
         std::_Exit(static_cast<int>(code));

@@ -127,6 +127,11 @@ void flush_logs() {
     loggers().robots->flush();
 }
 
+void silence_logs() {
+    loggers().simulator->set_level(spdlog::level::off);
+    loggers().robots->set_level(spdlog::level::off);
+}
+
 void check_logs() {
     flush_logs();
     if (!first_failure().empty()) {

@@ -26,6 +26,9 @@ spdlog::logger& robot_log();
 /// Writes out what is buffered.
 void flush_logs();
 
+/// Nothing is logged any more.
+void silence_logs();
+
 /// Writes out what is buffered. Throws OutputError if anything since start_logging did not reach the console file.
 void check_logs();
 

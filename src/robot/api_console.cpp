@@ -9,6 +9,8 @@
 
 #include "base/log.hpp"
 #include "robot/context.hpp"
+#include "robot/forked_child.hpp"
+#include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
 using pogosim::context;
@@ -43,7 +45,11 @@ std::string with_robot_longs(std::string_view format) {
 }
 
 void print_line(std::string_view line) {
-    pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(), line);
+    if (context.is_system) {
+        pogosim::robot_log().info("[SYSTEM] [PRINTF] {}", line);
+    } else {
+        pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(), line);
+    }
 }
 
 /// Logs the lines in `text` and leaves the rest there; up to `searched` there is no line end.
@@ -60,9 +66,18 @@ void print_complete_lines(std::string& text, std::size_t searched) {
     }
 }
 
+/// Before main(), after the run, in a thread or a child process of the program: no robot prints, the program does.
+bool is_robot_printing() {
+    return context.printed != nullptr && !pogosim::is_forked_child();
+}
+
 void print(std::string_view text) {
+    if (!is_robot_printing()) {
+        std::fwrite(text.data(), 1, text.size(), stdout);
+        return;
+    }
     pogosim::without_exceptions([&] {
-        std::string& printed = context.computer->printed;
+        std::string& printed = *context.printed;
         std::size_t const before = printed.size();
         printed += text;
         print_complete_lines(printed, before);
@@ -72,6 +87,9 @@ void print(std::string_view text) {
 }  // namespace
 
 int pogosim_vprintf(char const* format, va_list arguments) {
+    if (is_robot_printing()) {
+        pogosim::require_argument(format, "printf", "the format");
+    }
     int size = -1;
     pogosim::without_exceptions([&] {
         std::string const host_format = with_robot_longs(format);
@@ -106,6 +124,9 @@ int pogosim_putchar(int character) {
 }
 
 int pogosim_puts(char const* text) {
+    if (is_robot_printing()) {
+        pogosim::require_argument(text, "puts", "the text");
+    }
     print(text);
     print("\n");
     return 0;

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "robot/context.hpp"
+#include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
 using pogosim::CellValue;
@@ -16,6 +17,8 @@ using pogosim::ColumnType;
 using pogosim::ConfigError;
 using pogosim::context;
 using pogosim::DataExport;
+using pogosim::require_argument;
+using pogosim::require_robot;
 using pogosim::without_exceptions;
 
 namespace {
@@ -28,18 +31,24 @@ std::string_view name_of(ColumnType type) {
     return kTypeNames[static_cast<std::size_t>(type)];
 }
 
-void add_column(char const* name, ColumnType type) {
+void check_call(char const* function, char const* name) {
+    require_robot(function);
+    require_argument(name, function, "the name of the column");
+}
+
+void add_column(char const* function, char const* name, ColumnType type) {
+    check_call(function, name);
     without_exceptions([&] {
         DataExport& data = context.services->data;
         if (!data.declaring) {
-            throw ConfigError(fmt::format("data_add_column_{}(\"{}\") belongs into callback_create_data_schema",
-                                          name_of(type), name));
+            throw ConfigError(
+                fmt::format("{}(\"{}\"): columns can only be added in callback_create_data_schema", function, name));
         }
         bool const known =
             std::any_of(data.columns.begin(), data.columns.end(), [&](auto const& c) { return c.name == name; });
         if (known) {
-            throw ConfigError(fmt::format("data_add_column_{}(\"{}\"): the data file already has a column of this name",
-                                          name_of(type), name));
+            throw ConfigError(
+                fmt::format("{}(\"{}\"): the data file already has a column of this name", function, name));
         }
         data.columns.push_back({.name = name, .type = type});
     });
@@ -62,7 +71,8 @@ std::size_t find_column(DataExport& data, char const* name) {
                     name));
 }
 
-void set_value(char const* name, ColumnType type, CellValue value) {
+void set_value(char const* function, char const* name, ColumnType type, CellValue value) {
+    check_call(function, name);
     without_exceptions([&] {
         DataExport& data = context.services->data;
         if (!data.filling) {
@@ -71,8 +81,8 @@ void set_value(char const* name, ColumnType type, CellValue value) {
         }
         std::size_t const column = find_column(data, name);
         if (data.columns[column].type != type) {
-            throw ConfigError(fmt::format("data_set_value_{}(\"{}\"): the column was declared as {}", name_of(type),
-                                          name, name_of(data.columns[column].type)));
+            throw ConfigError(fmt::format("{}(\"{}\"): the column was declared as {}", function, name,
+                                          name_of(data.columns[column].type)));
         }
         data.row.values[column] = std::move(value);
     });
@@ -81,65 +91,69 @@ void set_value(char const* name, ColumnType type, CellValue value) {
 }  // namespace
 
 void data_add_column_int8(char const* name) {
-    add_column(name, ColumnType::int8);
+    add_column(__func__, name, ColumnType::int8);
 }
 void data_add_column_int16(char const* name) {
-    add_column(name, ColumnType::int16);
+    add_column(__func__, name, ColumnType::int16);
 }
 void data_add_column_int32(char const* name) {
-    add_column(name, ColumnType::int32);
+    add_column(__func__, name, ColumnType::int32);
 }
 void data_add_column_int64(char const* name) {
-    add_column(name, ColumnType::int64);
+    add_column(__func__, name, ColumnType::int64);
 }
 void data_add_column_double(char const* name) {
-    add_column(name, ColumnType::float64);
+    add_column(__func__, name, ColumnType::float64);
 }
 void data_add_column_string(char const* name) {
-    add_column(name, ColumnType::text);
+    add_column(__func__, name, ColumnType::text);
 }
 void data_add_column_bool(char const* name) {
-    add_column(name, ColumnType::boolean);
+    add_column(__func__, name, ColumnType::boolean);
 }
 void data_add_column_float16(char const* name) {
-    add_column(name, ColumnType::float16);
+    add_column(__func__, name, ColumnType::float16);
 }
 
 void data_set_value_int8(char const* name, int8_t value) {
-    set_value(name, ColumnType::int8, std::int64_t{value});
+    set_value(__func__, name, ColumnType::int8, std::int64_t{value});
 }
 void data_set_value_int16(char const* name, int16_t value) {
-    set_value(name, ColumnType::int16, std::int64_t{value});
+    set_value(__func__, name, ColumnType::int16, std::int64_t{value});
 }
 void data_set_value_int32(char const* name, int32_t value) {
-    set_value(name, ColumnType::int32, std::int64_t{value});
+    set_value(__func__, name, ColumnType::int32, std::int64_t{value});
 }
 void data_set_value_int64(char const* name, int64_t value) {
-    set_value(name, ColumnType::int64, std::int64_t{value});
+    set_value(__func__, name, ColumnType::int64, std::int64_t{value});
 }
 void data_set_value_double(char const* name, double value) {
-    set_value(name, ColumnType::float64, value);
+    set_value(__func__, name, ColumnType::float64, value);
 }
 void data_set_value_string(char const* name, char const* value) {
-    set_value(name, ColumnType::text, value != nullptr ? CellValue(std::string(value)) : CellValue());
+    set_value(__func__, name, ColumnType::text, value != nullptr ? CellValue(std::string(value)) : CellValue());
 }
 void data_set_value_bool(char const* name, bool value) {
-    set_value(name, ColumnType::boolean, value);
+    set_value(__func__, name, ColumnType::boolean, value);
 }
 void data_set_value_float16(char const* name, float value) {
-    set_value(name, ColumnType::float16, static_cast<double>(value));
+    set_value(__func__, name, ColumnType::float16, static_cast<double>(value));
 }
 
 void enable_data_export() {
+    require_robot(__func__);
     context.services->data.row.exported = true;
 }
 void disable_data_export() {
+    require_robot(__func__);
     context.services->data.row.exported = false;
 }
 
 uint32_t get_nb_robots() {
+    require_robot(__func__);
     return static_cast<uint32_t>(context.world->robots.size());
 }
 void stop_simulation() {
+    require_robot(__func__);
     context.services->stop_requested = true;
 }

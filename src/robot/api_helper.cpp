@@ -8,9 +8,13 @@
 #include <cstdlib>
 
 #include "robot/context.hpp"
+#include "robot/forked_child.hpp"
+#include "robot/last_words.hpp"
+#include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
 using pogosim::context;
+using pogosim::require_robot;
 
 namespace {
 
@@ -44,10 +48,20 @@ __attribute__((visibility("default"))) void srand(unsigned seed) noexcept {
 }
 
 __attribute__((visibility("default"))) void exit(int status) noexcept {
+    char what[32];
+    std::snprintf(what, sizeof(what), "called exit(%d)", status);
+    auto const code = static_cast<pogosim::ExitCode>(status & 0xFF);
+    if (pogosim::is_forked_child()) {
+        pogosim::end_forked_child(status);
+    }
     if (pogosim::inside_user_code()) {
-        char what[32];
-        std::snprintf(what, sizeof(what), "called exit(%d)", status);
-        pogosim::leave_user_code(what, static_cast<pogosim::ExitCode>(status & 0xFF));
+        pogosim::leave_user_code(what, code);
+    }
+    if (pogosim::is_other_thread_of_run()) {
+        pogosim::end_run_from_thread(what, code);
+    }
+    if (pogosim::run_stage() == pogosim::RunStage::before_main) {
+        std::fprintf(stderr, "pogosim: the user program %s before main(). There was no run.\n", what);
     }
     reinterpret_cast<void (*)(int)>(dlsym(RTLD_NEXT, "exit"))(status);
     std::abort();  // not reached
@@ -57,10 +71,12 @@ __attribute__((visibility("default"))) void exit(int status) noexcept {
 void pogobot_init() {}
 
 uint16_t pogobot_helper_getid() {
+    require_robot(__func__);
     return context.has_robot() ? context.world->robots.id[context.robot] : uint16_t{0};
 }
 
 int16_t pogobot_helper_getRandSeed() {
+    require_robot(__func__);
     pogosim::Computer& computer = *context.computer;
     if (!computer.seed_taken) {
         computer.seed_taken = true;

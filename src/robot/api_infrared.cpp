@@ -7,12 +7,15 @@
 
 #include "base/log.hpp"
 #include "robot/context.hpp"
+#include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
 using pogosim::context;
 using pogosim::FrameHeader;
 using pogosim::kAllFaces;
 using pogosim::kFaceCount;
+using pogosim::require_argument;
+using pogosim::require_robot;
 
 namespace {
 
@@ -104,10 +107,12 @@ std::uint32_t send_short(std::uint8_t emitters, std::uint8_t const* payload, std
 }  // namespace
 
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size) {
+    require_robot(__func__);
     return send_long(kAllFaces, power_list(kAllFaces), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size) {
+    require_robot(__func__);
     uint32_t errors = 0;
     for (int face = 0; face < kFaceCount; ++face) {
         errors += pogobot_infrared_sendLongMessage_uniSpe(static_cast<ir_direction>(face), message, message_size);
@@ -117,19 +122,23 @@ uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16
 
 uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* const message,
                                                  uint16_t const message_size) {
+    require_robot(__func__);
     std::uint8_t const emitters = emitters_of(dir);
     return send_long(emitters, power_list(emitters), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size) {
+    require_robot(__func__);
     return send_short(kAllFaces, message, message_size);
 }
 
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size) {
+    require_robot(__func__);
     return send_short(emitters_of(dir), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
+    require_robot(__func__);
     if (message == nullptr) {
         return kNotSent;
     }
@@ -151,6 +160,7 @@ uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
 }
 
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message) {
+    require_robot(__func__);
     if (message == nullptr) {
         return kNotSent;
     }
@@ -159,22 +169,27 @@ uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t*
 }
 
 void pogobot_infrared_set_power(uint8_t power) {
+    require_robot(__func__);
     context.computer->ir_power = std::min<uint8_t>(power, pogobot_infrared_emitter_power_max);
 }
 
 void pogobot_infrared_update() {}
 
 int pogobot_infrared_message_available() {
+    require_robot(__func__);
     return context.has_robot() && !context.world->mailboxes.empty(context.robot) ? 1 : 0;
 }
 
 void pogobot_infrared_clear_message_queue() {
+    require_robot(__func__);
     if (context.has_robot()) {
         context.world->mailboxes.clear(context.robot);
     }
 }
 
 void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) {
+    require_robot("pogobot_infrared_recover_next_message");
+    require_argument(message, "pogobot_infrared_recover_next_message", "message");
     FrameHeader header;
     std::array<std::byte, MAX_PAYLOAD_SIZE_BYTES> payload;
     if (!context.has_robot() || !context.world->mailboxes.pop(context.robot, header, payload.data())) {

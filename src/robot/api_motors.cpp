@@ -3,9 +3,11 @@
 #include <cstring>
 
 #include "robot/context.hpp"
+#include "robot/require_robot.hpp"
 
 using pogosim::context;
 using pogosim::kMotorCount;
+using pogosim::require_robot;
 
 namespace {
 
@@ -16,6 +18,7 @@ bool is_motor(motor_id motor) {
 }  // namespace
 
 void pogobot_motor_power_set(motor_id motor, uint16_t value) {
+    require_robot(__func__);
     if (is_motor(motor)) {
         context.computer->motors.power[motor] = std::min<uint16_t>(value, motorFull);
         context.computer->motors.driven = true;
@@ -23,10 +26,12 @@ void pogobot_motor_power_set(motor_id motor, uint16_t value) {
 }
 
 void pogobot_motor_set(motor_id motor, uint16_t value) {
+    require_robot(__func__);
     pogobot_motor_power_set(motor, value);
 }
 
 void pogobot_motor_dir_set(motor_id motor, uint8_t value) {
+    require_robot(__func__);
     if (is_motor(motor)) {
         context.computer->motors.direction[motor] = value != 0 ? 1 : 0;
         context.computer->motors.driven = true;
@@ -34,11 +39,13 @@ void pogobot_motor_dir_set(motor_id motor, uint8_t value) {
 }
 
 uint32_t pogobot_motor_dir_current_status() {
+    require_robot(__func__);
     auto const& direction = context.computer->motors.direction;
     return static_cast<uint32_t>(direction[motorR] | (direction[motorL] << 1) | (direction[motorB] << 2));
 }
 
 int8_t pogobot_motor_dir_mem_get(uint8_t* p_directions) {
+    require_robot(__func__);
     if (p_directions == nullptr) {
         return -1;
     }
@@ -47,6 +54,7 @@ int8_t pogobot_motor_dir_mem_get(uint8_t* p_directions) {
 }
 
 int8_t pogobot_motor_dir_mem_set(uint8_t* p_directions) {
+    require_robot(__func__);
     if (p_directions == nullptr) {
         return -1;
     }
@@ -55,6 +63,7 @@ int8_t pogobot_motor_dir_mem_set(uint8_t* p_directions) {
 }
 
 uint8_t pogobot_motor_power_mem_get(uint16_t* p_powers) {
+    require_robot(__func__);
     if (p_powers == nullptr) {
         return UINT8_MAX;
     }
@@ -63,6 +72,7 @@ uint8_t pogobot_motor_power_mem_get(uint16_t* p_powers) {
 }
 
 uint8_t pogobot_motor_power_mem_set(uint16_t* p_powers) {
+    require_robot(__func__);
     if (p_powers == nullptr) {
         return UINT8_MAX;
     }

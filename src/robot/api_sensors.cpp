@@ -5,8 +5,11 @@
 #include <numbers>
 
 #include "robot/context.hpp"
+#include "robot/require_robot.hpp"
 
 using pogosim::context;
+using pogosim::require_argument;
+using pogosim::require_robot;
 using pogosim::Vec2;
 
 namespace {
@@ -36,6 +39,7 @@ Vec2 acceleration_in_body_frame() {
 }  // namespace
 
 int16_t pogobot_photosensors_read(uint8_t sensor_number) {
+    require_robot(__func__);
     if (sensor_number >= pogosim::kPhotosensorCount || !context.has_body()) {
         return -1;
     }
@@ -53,6 +57,9 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
 }
 
 void pogobot_imu_read(float* acc, float* gyro) {
+    require_robot(__func__);
+    require_argument(acc, __func__, "acc");
+    require_argument(gyro, __func__, "gyro");
     std::fill_n(acc, 3, 0.0F);
     std::fill_n(gyro, 3, 0.0F);
     if (!context.has_body()) {
@@ -65,5 +72,6 @@ void pogobot_imu_read(float* acc, float* gyro) {
 }
 
 float pogobot_imu_readTemp() {
+    require_robot(__func__);
     return std::clamp(context.world->temperature_c, kMinTemperature, kMaxTemperature);
 }

@@ -4,8 +4,11 @@
 #include <limits>
 
 #include "robot/context.hpp"
+#include "robot/require_robot.hpp"
 
 using pogosim::context;
+using pogosim::require_argument;
+using pogosim::require_robot;
 
 namespace {
 
@@ -37,44 +40,63 @@ void set_origin(time_reference_t* reference, std::int64_t origin_us) {
 }  // namespace
 
 void pogobot_stopwatch_reset(time_reference_t* stopwatch) {
+    require_robot(__func__);
+    require_argument(stopwatch, __func__, "stopwatch");
     set_origin(stopwatch, now_us());
 }
 
 int32_t pogobot_stopwatch_get_elapsed_microseconds(time_reference_t* stopwatch) {
+    require_robot(__func__);
+    require_argument(stopwatch, __func__, "stopwatch");
     return saturate(now_us() - stopwatch->origin_us);
 }
 
 int32_t pogobot_stopwatch_lap(time_reference_t* stopwatch) {
+    require_robot(__func__);
+    require_argument(stopwatch, __func__, "stopwatch");
     int32_t const elapsed = pogobot_stopwatch_get_elapsed_microseconds(stopwatch);
     pogobot_stopwatch_reset(stopwatch);
     return elapsed;
 }
 
 void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, int32_t microseconds_offset) {
+    require_robot(__func__);
+    require_argument(stopwatch, __func__, "stopwatch");
     set_origin(stopwatch, stopwatch->origin_us + microseconds_offset);
 }
 
 void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go) {
+    require_robot(__func__);
+    require_argument(timer, __func__, "timer");
     set_origin(timer, now_us() + microseconds_to_go);
 }
 
 int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer) {
+    require_robot(__func__);
+    require_argument(timer, __func__, "timer");
     return saturate(timer->origin_us - now_us());
 }
 
 bool pogobot_timer_has_expired(time_reference_t* timer) {
+    require_robot(__func__);
+    require_argument(timer, __func__, "timer");
     return pogobot_timer_get_remaining_microseconds(timer) < 0;
 }
 
 void pogobot_timer_wait_for_expiry(time_reference_t* timer) {
+    require_robot(__func__);
+    require_argument(timer, __func__, "timer");
     context.computer->clock_us = std::max(context.computer->clock_us, timer->origin_us);
 }
 
 void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset) {
+    require_robot(__func__);
+    require_argument(timer, __func__, "timer");
     pogobot_stopwatch_offset_origin_microseconds(timer, microseconds_offset);
 }
 
 void msleep(int milliseconds) {
+    require_robot(__func__);
     context.computer->clock_us += std::max(0, milliseconds) * kMicrosecondsPerMillisecond;
 }
 

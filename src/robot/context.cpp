@@ -17,12 +17,13 @@ void RunServices::warn_once(char const* text) {
     }
 }
 
+std::string current_place() {
+    return context.is_system ? current_robot_name() : fmt::format("{} of {}", context.phase, current_robot_name());
+}
+
 std::string current_robot_name() {
-    if (context.world == nullptr || context.computer == nullptr) {
-        return "no robot";
-    }
-    if (!context.has_robot()) {
-        return fmt::format("the simulator's own context, tick {}", pogobot_ticks);
+    if (context.is_system) {
+        return fmt::format("{}, tick {}", context.phase, pogobot_ticks);
     }
     World const& world = *context.world;
     return fmt::format("robot #{} of category '{}', tick {}", world.robots.id[context.robot],

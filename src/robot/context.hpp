@@ -52,10 +52,11 @@ struct RunServices {
 struct Context {
     World* world = nullptr;
     RunServices* services = nullptr;
-    Computer* computer = nullptr;   // never null while user code runs
-    std::uint32_t robot = kNone;    // index in World::robots; kNone in the context of callback_global_step
-    std::int64_t step_time_us = 0;  // simulated time of this step
-    char const* phase = "";         // "user_step", for messages
+    Computer* computer = nullptr;    // never null while user code runs
+    std::uint32_t robot = kNone;     // index in World::robots; kNone in the context of callback_global_step
+    char const* phase = "";          // "user_step", for messages
+    std::string* printed = nullptr;  // what was printed here since the last line end
+    bool is_system = false;          // a callback of the whole run: global setup, data schema, global step
 
     bool has_robot() const { return robot != kNone; }
     /// False in the global step and in a wall, which have no place.
@@ -67,7 +68,10 @@ struct Context {
 /// The context of this thread.
 extern constinit thread_local Context context;
 
-/// "robot #3 of category 'robots', tick 17": who had the processor.
+/// "user_step of robot #3 of category 'robots', tick 17": which user code has the processor, or had it last.
+std::string current_place();
+
+/// "robot #3 of category 'robots', tick 17", or the callback when it is one of the whole run.
 std::string current_robot_name();
 
 }  // namespace pogosim

@@ -6,6 +6,7 @@
 
 #include "base/log.hpp"
 #include "robot/drive.hpp"
+#include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
 // What the user's program defines. The weak ones stand in for a program without REGISTER_USERDATA.
@@ -142,11 +143,24 @@ Computer& Programs::computer(std::uint32_t robot) {
 
 void Programs::enter(std::uint32_t robot, char const* phase) {
     Computer& self = computer(robot);
-    context = {.world = &world_, .services = &services_, .computer = &self, .robot = robot, .phase = phase};
+    context = {.world = &world_,
+               .services = &services_,
+               .computer = &self,
+               .robot = robot,
+               .phase = phase,
+               .printed = &self.printed,
+               .is_system = robot == kNone};
     mydata = self.user_data;
     self.clock_reads = 0;
     load_globals(self.loop);
     restart_watch();
+}
+
+/// Code of the whole run that has a robot's memory, such as callback_global_setup.
+void Programs::enter_as_system(std::uint32_t robot, char const* phase) {
+    enter(robot, phase);
+    context.printed = &system_.printed;
+    context.is_system = true;
 }
 
 void Programs::leave() {
@@ -156,6 +170,14 @@ void Programs::leave() {
 void Programs::call(std::uint32_t robot, char const* phase, void (*function)()) {
     if (function != nullptr) {
         enter(robot, phase);
+        function();
+        leave();
+    }
+}
+
+void Programs::call_as_system(std::uint32_t robot, char const* phase, void (*function)()) {
+    if (function != nullptr) {
+        enter_as_system(robot, phase);
         function();
         leave();
     }
@@ -207,7 +229,7 @@ void Programs::start() {
         run_main(i);
     }
     warn_of_idle_categories();
-    call(count == 0 ? kNone : count - 1, "global_setup", callback_global_setup);
+    call_as_system(count == 0 ? kNone : count - 1, "callback_global_setup", callback_global_setup);
     for (std::uint32_t i = 0; i < count; ++i) {
         call(i, "user_init", computers_[i].program.init);
     }
@@ -215,14 +237,14 @@ void Programs::start() {
 
 void Programs::declare_columns() {
     services_.data.declaring = true;
-    call(kNone, "create_data_schema", callback_create_data_schema);
+    call_as_system(kNone, "callback_create_data_schema", callback_create_data_schema);
     services_.data.declaring = false;
 }
 
 void Programs::run_step() {
     std::int64_t const now_us = std::llround(world_.time_s() * kMicrosecondsPerSecond);
     if (callback_global_step != nullptr && now_us >= system_.clock_us) {
-        enter(kNone, "global_step");
+        enter(kNone, "callback_global_step");
         pogo_main_loop_step(callback_global_step);
         leave();
     }
@@ -293,8 +315,11 @@ int Programs::highest_loop_hz() const {
 }  // namespace pogosim
 
 using pogosim::context;
+using pogosim::require_argument;
+using pogosim::require_robot;
 
 char const* get_current_robot_category() {
+    require_robot(__func__);
     if (!context.has_robot()) {
         return pogosim::kSystemCategory;
     }
@@ -302,10 +327,13 @@ char const* get_current_robot_category() {
 }
 
 bool current_robot_category_is(char const* category) {
+    require_robot(__func__);
     return category != nullptr && std::string_view(category) == get_current_robot_category();
 }
 
 void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* category) {
+    require_robot("pogobot_start");
+    require_argument(category, "pogobot_start", "the category");
     if (!current_robot_category_is(category)) {
         return;
     }

@@ -52,11 +52,13 @@ private:
     void allocate_user_data();
     void draw_individual_differences(std::uint64_t seed);
     void enter(std::uint32_t robot, char const* phase);
+    void enter_as_system(std::uint32_t robot, char const* phase);
     static void leave();
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
     void warn_of_idle_categories() const;
     void call(std::uint32_t robot, char const* phase, void (*function)());
+    void call_as_system(std::uint32_t robot, char const* phase, void (*function)());
     void tick(std::uint32_t robot);
     Computer& computer(std::uint32_t robot);
 

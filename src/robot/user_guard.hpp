@@ -7,11 +7,15 @@
 //
 // A jump skips the destructors of every frame between, so the code between the fence and the user's functions keeps
 // nothing that needs one.
+//
+// Crashes elsewhere end the program with a message (last_words.hpp): in constructors before main(), in atexit()
+// handlers and destructors after the run. One in a thread that the program started ends the run as one in user code.
 #pragma once
 
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <new>
 #include <optional>
 #include <string>
 
@@ -24,12 +28,16 @@ enum class ExitCode : int { done = 0, usage = 2, user_program = 3, interrupted =
 struct UserFailure {
     std::string what;  // "segmentation fault at address 0x10"
     ExitCode code = ExitCode::user_program;
-    bool refused = false;  // a function of the interface said no: a wrong parameter, a column that is not there
+    bool refused = false;          // a function of the interface said no: a wrong parameter, a column that is not there
+    bool in_other_thread = false;  // in one that the program started
 };
 
-/// Installs handlers for crashes and the watch over processor time. `timeout_s` is the processor time one call of user
-/// code may take; 0: no limit. Call once, before user code runs.
+/// Begins the run: watches over processor time from now on. `timeout_s` is the processor time one call of user code may
+/// take; 0: no limit. Call it before user code runs, in the thread that will call it.
 void install_user_guard(double timeout_s);
+
+/// Ends the run: nothing is watched any more, and what fails from now on fails after the run.
+void remove_user_guard();
 
 /// Runs `body`, which calls user code. Returns nothing when it came back by itself. Not reentrant.
 std::optional<UserFailure> call_user_code(std::function<void()> const& body);
@@ -41,8 +49,11 @@ std::optional<UserFailure> call_simulator_code(std::function<void()> const& body
 /// A new call of user code begins: the watch starts again from zero.
 void restart_watch();
 
-/// True while user code runs inside call_user_code.
+/// True while user code runs inside call_user_code, for the thread that runs it.
 bool inside_user_code();
+
+/// True when user code was left in the middle: no destructor or atexit() handler may rely on its memory and locks.
+bool was_left_by_force();
 
 /// Ends the running call_user_code with this failure. Does not return; outside user code it aborts.
 [[noreturn]] void leave_user_code(char const* what, ExitCode code);
@@ -50,9 +61,28 @@ bool inside_user_code();
 /// The same for a call that the interface refuses: exit code 2.
 [[noreturn]] void refuse_user_code(char const* what);
 
-/// The same from a signal handler, wherever user code is: what follows has some seconds before the program is ended.
-/// Only inside user code.
-[[noreturn]] void abandon_user_code(char const* what, ExitCode code);
+/// True in a thread that the program started, while the run goes on.
+bool is_other_thread_of_run();
+
+/// Ends the run from another thread, which stops here: the run ends with this failure and a complete data file.
+[[noreturn]] void end_run_from_thread(char const* what, ExitCode code);
+
+/// A function of the interface was called where no robot has the processor: before main(), after the run or in a thread
+/// that the program started. Ends the program with a message and exit code 3.
+[[noreturn]] void called_without_robot(char const* function);
+
+/// The run was asked to end by this signal, for the first time: says what it waits for when user code does not return
+/// soon, and leaves it when it has run for `user_code_timeout` of wall-clock time. For signal handlers.
+void hurry_user_code(char const* signal_name);
+
+/// Asked again: leaves user code. Returns at once; does nothing outside user code. For signal handlers.
+void abandon_user_code();
+
+/// Seconds of the monotonic clock. For signal handlers, too.
+double monotonic_s();
+
+/// For handlers of signals that may come on any thread: false when the signal has been passed on to the simulator's.
+bool is_signal_for_this_thread(int signal);
 
 /// Runs part of an interface function that may throw. An exception ends user code with its message and exit code 2,
 /// instead of running through C frames.
@@ -62,6 +92,8 @@ void without_exceptions(Body const& body) {
     try {
         body();
         return;
+    } catch (std::bad_alloc const&) {
+        std::snprintf(what, sizeof(what), "out of memory");
     } catch (std::exception const& error) {
         std::snprintf(what, sizeof(what), "%s", error.what());
     }

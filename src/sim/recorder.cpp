@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "robot/last_words.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/run_metadata.hpp"
 
@@ -96,6 +97,7 @@ void Recorder::make_data_file() {
     options.flush_row_count = output().flush_row_count;
     options.metadata = run_metadata(scenario_, world_.arena, seed_);
     data_file_ = std::make_unique<DataFile>(options, std::move(reserved_));
+    note_data_file(options.path, DataFileState::open);
     empty_row_.values.assign(options.user_columns.size(), CellValue());
 }
 
@@ -159,6 +161,7 @@ void Recorder::save_if_due() {
 void Recorder::close() {
     if (data_file_) {
         data_file_->close();
+        note_data_file(output().data_filename, DataFileState::complete);
     }
 }
 

@@ -33,6 +33,17 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     }
 }
 
+/// Whatever ends a run: what fails or is interrupted from then on has no data to save.
+struct RunEnd {
+    RunEnd() = default;
+    RunEnd(RunEnd const&) = delete;
+    RunEnd& operator=(RunEnd const&) = delete;
+    ~RunEnd() {
+        remove_user_guard();
+        release_interrupts();
+    }
+};
+
 }  // namespace
 
 Simulation::Simulation(Scenario scenario, RunOptions options)
@@ -59,10 +70,13 @@ bool Simulation::is_over() const {
 }
 
 ExitCode Simulation::run() {
+    RunEnd const at_end;
     std::optional<UserFailure> failure;
     std::optional<UserFailure> const crash = call_simulator_code([&] { failure = run_steps(); });
     if (crash) {
         failure = crash;
+    } else if (!failure) {
+        failure = call_user_code([] {});  // a thread of the program may have failed meanwhile
     }
     // The message first: completing the file may fail after a crash that destroyed memory.
     if (failure) {
@@ -154,15 +168,20 @@ void Simulation::fit_time_step() {
 }
 
 void Simulation::report(UserFailure const& failure) const {
-    std::string const where =
-        fmt::format("{} of {}, t = {:.4f} s", context.phase, current_robot_name(), world_.time_s());
+    std::string const where = fmt::format(
+        "{}, t = {:.4f} s", failure.in_other_thread ? "a thread that it started" : current_place(), world_.time_s());
     if (failure.refused) {
         log().error("{} (asked for in {}){}", failure.what, where, recorder_.note());
         return;
     }
+    if (failure.code == ExitCode::interrupted) {
+        log().warn("the run was interrupted in {}: {}{}", where, failure.what, recorder_.note());
+        return;
+    }
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
     // C++ compilers let a function without its return run on into the next one; only a real main() is excused.
-    bool const may_lack_return = failure.code == ExitCode::user_program && std::string_view(context.phase) == "main";
+    bool const may_lack_return =
+        failure.code == ExitCode::user_program && !failure.in_other_thread && std::string_view(context.phase) == "main";
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
               failed ? "failed" : "ended", where, failure.what,
               may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", recorder_.note());

@@ -1,4 +1,10 @@
 // A program that does something wrong on demand: robot `culprit` commits `kind` in `place`, in user_step at tick 10.
+#define _GNU_SOURCE  // -std=c11 alone hides nanosleep()
+#include <errno.h>
+#include <pthread.h>
+#include <sys/select.h>
+#include <unistd.h>
+
 #include "pogobase.h"
 
 #define TICK_OF_THE_MISDEED 10
@@ -49,6 +55,37 @@ static void allocate_for_ever(void) {
 static void print_for_ever(void) {
     for (;;) {
         printf("again and ");
+    }
+}
+
+static void sleep_for_ever(void) {
+    for (;;) {
+        sleep(1000000);
+    }
+}
+
+static void sleep_again_when_interrupted(void) {
+    struct timespec left = {.tv_sec = 1000000};
+    while (nanosleep(&left, &left) != 0 && errno == EINTR) {
+    }
+}
+
+static void wait_for_a_mutex(void) {
+    static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    pthread_mutex_lock(&mutex);
+    pthread_mutex_lock(&mutex);
+}
+
+static void read_from_nobody(void) {
+    int ends[2];
+    char byte = 0;
+    if (pipe(ends) == 0) {
+        spins += (unsigned long)read(ends[0], &byte, 1);
+    }
+}
+
+static void select_nothing(void) {
+    while (select(0, NULL, NULL, NULL, NULL) != 0) {
     }
 }
 
@@ -125,6 +162,11 @@ static struct {
     {"write_to_null", write_to_null},
     {"divide_by_zero", divide_by_zero},
     {"loop_for_ever", loop_for_ever},
+    {"sleep_for_ever", sleep_for_ever},
+    {"sleep_again_when_interrupted", sleep_again_when_interrupted},
+    {"wait_for_a_mutex", wait_for_a_mutex},
+    {"read_from_nobody", read_from_nobody},
+    {"select_nothing", select_nothing},
     {"allocate_for_ever", allocate_for_ever},
     {"print_for_ever", print_for_ever},
     {"free_what_is_not_allocated", free_what_is_not_allocated},

@@ -41,7 +41,7 @@ def test_program_that_behaves_ends_with_0_and_says_nothing(program: Compile, tmp
         ("write_to_null", "segmentation fault at address"),
         ("divide_by_zero", "integer division by zero"),
         ("abort", r"abort\(\)"),
-        ("overflow_the_stack", "segmentation fault at address"),
+        ("overflow_the_stack", r"stack overflow: the \d+ KiB of the stack are full \(ulimit -s\)"),
         ("write_beyond_userdata", "segmentation fault at address"),
         ("free_what_is_not_allocated", r"abort\(\)"),
         ("loop_for_ever", r"did not return within 0\.25 s of processor time \(user_code_timeout\)"),
@@ -130,11 +130,8 @@ def test_exception_of_a_constructor_of_user_data_ends_with_3_and_an_empty_file(t
     ("place", "who"),
     [
         ("main", "robot #1 of category 'robots', tick 0, t = 0.0000 s"),
-        ("global_setup", "robot #2 of category 'robots', tick 0, t = 0.0000 s"),
         ("user_init", "robot #1 of category 'robots', tick 0, t = 0.0000 s"),
-        ("create_data_schema", "the simulator's own context, tick 0, t = 0.0000 s"),
         ("export_data", "robot #1 of category 'robots', tick 6, t = 0.1000 s"),
-        ("global_step", "the simulator's own context, tick 10, t = 0.1600 s"),
         ("robot_end", "robot #1 of category 'robots', tick 125, t = 2.0000 s"),
     ],
 )
@@ -147,7 +144,27 @@ def test_failure_in_any_function_of_the_program_names_the_function(
     assert f"the user program failed in {place} of {who}: " in result.errors
     assert ("main() must end with 'return 0;'" in result.errors) == (place == "main")
     # A run that fails before its first row leaves a file without rows, so that an older one does not pass for its own.
-    assert (len(result.frame()) > 0) == (place in ("export_data", "global_step", "robot_end"))
+    assert (len(result.frame()) > 0) == (place in ("export_data", "robot_end"))
+
+
+@pytest.mark.parametrize(
+    ("place", "when", "rows"),
+    [
+        ("global_setup", "tick 0, t = 0.0000 s", 0),
+        ("create_data_schema", "tick 0, t = 0.0000 s", 0),
+        ("global_step", "tick 10, t = 0.1600 s", 6),
+    ],
+)
+def test_failure_in_a_callback_of_the_whole_run_names_no_robot(
+    program: Compile, tmp_path: Path, place: str, when: str, rows: int
+) -> None:
+    result = misbehave(program, tmp_path, "write_to_null", place)
+    assert result.code == 3
+    assert f"the user program failed in callback_{place}, {when}: segmentation fault" in result.errors
+    assert "robot #" not in result.errors
+    assert len(result.frame()) == rows
+    assert "[SYSTEM] [PRINTF] going to write to null" in result.output
+    assert not any("going to write" in line for line in result.robot_lines)
 
 
 @pytest.mark.parametrize(("kind", "code"), [("exit_with_0", 0), ("exit_with_2", 2), ("exit_with_7", 7)])
@@ -174,7 +191,7 @@ def test_parameter_that_is_refused_leaves_the_older_data(program: Compile, tmp_p
             'data_set_value_double("declared_as_int16"): the column was declared as int16',
         ),
         ("declare_column_twice", "create_data_schema", "already has a column of this name"),
-        ("declare_column_twice", "user_step", "belongs into callback_create_data_schema"),
+        ("declare_column_twice", "user_step", "columns can only be added in callback_create_data_schema"),
     ],
 )
 def test_wrong_use_of_columns_ends_with_2_and_names_the_column(
@@ -227,18 +244,104 @@ def test_interrupted_run_ends_with_130_and_complete_data(program: Compile, tmp_p
     assert times[-1] == int(float(match.group(1)))
 
 
-def test_second_interrupt_ends_user_code_that_hangs(program: Compile, tmp_path: Path) -> None:
-    process = start(program("misbehave.c"), tmp_path, {"user_code_timeout": 0, "parameters.kind": "loop_for_ever"})
+BLOCKING_KINDS = [
+    "sleep_for_ever",
+    "sleep_again_when_interrupted",
+    "wait_for_a_mutex",
+    "read_from_nobody",
+    "select_nothing",
+]
+
+
+def start_blocked(program: Compile, folder: Path, kind: str, timeout_s: float) -> subprocess.Popen[str]:
+    settings = {"user_code_timeout": timeout_s, "parameters.kind": kind}
+    process = start(program("misbehave.c"), folder, settings)
     wait_until_it_runs(process)
     time.sleep(0.3)
+    return process
+
+
+@pytest.mark.parametrize("kind", ["loop_for_ever", "wait_for_a_mutex"])
+def test_second_interrupt_ends_user_code_that_hangs(program: Compile, tmp_path: Path, kind: str) -> None:
+    process = start_blocked(program, tmp_path, kind, 0)
     process.send_signal(signal.SIGINT)
-    time.sleep(0.2)
+    time.sleep(0.3)
     assert process.poll() is None
     process.send_signal(signal.SIGINT)
     result = end(process, tmp_path)
     assert result.code == 130
-    assert f"{WHERE}: interrupted again before it returned" in result.errors
+    assert f"the run was interrupted {WHERE}: interrupted again before it returned" in result.errors
     assert saved_times(result) == SAVED_TIMES
+
+
+def test_signal_that_comes_twice_at_once_is_one(program: Compile, tmp_path: Path) -> None:
+    process = start_blocked(program, tmp_path, "wait_for_a_mutex", 0)
+    process.send_signal(signal.SIGTERM)
+    time.sleep(0.02)
+    process.send_signal(signal.SIGTERM)
+    time.sleep(0.5)
+    assert process.poll() is None
+    process.send_signal(signal.SIGTERM)
+    assert end(process, tmp_path).code == 130
+
+
+def test_first_interrupt_says_at_once_what_it_waits_for(program: Compile, tmp_path: Path) -> None:
+    process = start_blocked(program, tmp_path, "wait_for_a_mutex", 30)
+    process.send_signal(signal.SIGINT)
+    assert process.stderr is not None
+    told = process.stderr.readline()
+    assert told == (
+        f"pogosim: Ctrl-C (SIGINT): the run ends when {WHERE.removeprefix('in ')}, returns. A second signal leaves it at "
+        "once; by itself it is left 30 s after its start (user_code_timeout).\n"
+    )
+    time.sleep(0.15)
+    process.send_signal(signal.SIGINT)
+    assert end(process, tmp_path).code == 130
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"])
+@pytest.mark.parametrize("kind", BLOCKING_KINDS)
+def test_one_signal_ends_user_code_that_has_not_returned_after_its_time(
+    program: Compile, tmp_path: Path, kind: str, name: str
+) -> None:
+    process = start_blocked(program, tmp_path, kind, 0.25)
+    process.send_signal(signal.Signals[name])
+    result = end(process, tmp_path)
+    assert result.code == 130
+    assert f"the run was interrupted {WHERE}: it had not returned 0.25 s after its start (user_code_timeout), and " in (
+        result.errors
+    )
+    assert name in result.errors
+    assert "The data file 'data.feather' is complete up to there" in result.errors
+    assert saved_times(result) == SAVED_TIMES
+
+
+def test_user_code_without_a_limit_has_ten_seconds_after_a_signal(program: Compile, tmp_path: Path) -> None:
+    process = start_blocked(program, tmp_path, "wait_for_a_mutex", 0)
+    process.send_signal(signal.SIGTERM)
+    time.sleep(8)
+    assert process.poll() is None
+    result = end(process, tmp_path)
+    assert result.code == 130
+    assert "it had not returned 10 s after SIGTERM asked the run to end" in result.errors
+    assert saved_times(result) == SAVED_TIMES
+
+
+def test_blocked_user_code_is_not_ended_without_a_signal(program: Compile, tmp_path: Path) -> None:
+    process = start_blocked(program, tmp_path, "wait_for_a_mutex", 0.1)
+    time.sleep(1.5)
+    assert process.poll() is None
+    process.send_signal(signal.SIGTERM)
+    assert end(process, tmp_path).code == 130
+
+
+def test_interrupted_run_whose_steps_return_says_nothing_else(program: Compile, tmp_path: Path) -> None:
+    process = start(program("misbehave.c"), tmp_path, {"simulation_time": 1.0e6, "save_data_period": 1.0})
+    wait_until_it_runs(process)
+    process.send_signal(signal.SIGINT)
+    result = end(process, tmp_path)
+    assert result.code == 130
+    assert result.errors.count("\n") == 1
 
 
 def test_run_under_nohup_survives_the_end_of_its_terminal(program: Compile, tmp_path: Path) -> None:

@@ -1,0 +1,105 @@
+#include "robot/crash_name.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace pogosim {
+
+namespace {
+
+struct CrashName {
+    int signal;
+    char const* name;
+};
+constexpr std::array kNames{
+    CrashName{SIGSEGV, "segmentation fault"},
+    CrashName{SIGBUS, "bus error"},
+    CrashName{SIGFPE, "arithmetic error (such as an integer division by zero)"},
+    CrashName{SIGILL, "illegal instruction"},
+    CrashName{SIGTRAP, "trap instruction"},
+    CrashName{SIGSYS, "forbidden system call"},
+    CrashName{SIGABRT, "abort() (such as a failed assert or an uncaught C++ exception)"},
+};
+static_assert(kNames.size() == kCrashSignals.size());
+
+// A function may touch this much around its stack pointer, and the last pages before the end are not given out.
+constexpr std::uintptr_t kStackMarginBytes = 65536;
+constexpr std::uintptr_t kBytesPerKib = 1024;
+
+struct Stack {
+    std::uintptr_t end = 0;  // its lowest address
+    std::uintptr_t bytes = 0;
+};
+
+thread_local Stack noted;
+
+/// Null on a machine that is not known here.
+void* stack_pointer([[maybe_unused]] void const* signal_context) {
+#if defined(__linux__) && defined(__x86_64__)
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RSP]);
+#elif defined(__linux__) && defined(__aarch64__)
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.sp);
+#else
+    return nullptr;
+#endif
+}
+
+/// The stack pointer is at the end of the stack or beyond, and what was to be touched is there too.
+bool is_stack_overflow(siginfo_t const& info, void const* signal_context) {
+    auto const pointer = reinterpret_cast<std::uintptr_t>(stack_pointer(signal_context));
+    auto const touched = reinterpret_cast<std::uintptr_t>(info.si_addr);
+    std::uintptr_t const first = noted.end + std::min(kStackMarginBytes, noted.bytes / 4);
+    return noted.end > 0 && pointer != 0 && pointer < first && touched < first && touched + kStackMarginBytes > pointer;
+}
+
+}  // namespace
+
+void note_stack() {
+#ifdef __linux__
+    pthread_attr_t attributes;
+    void* end = nullptr;
+    std::size_t bytes = 0;
+    if (pthread_getattr_np(pthread_self(), &attributes) == 0) {
+        if (pthread_attr_getstack(&attributes, &end, &bytes) == 0) {
+            noted = {.end = reinterpret_cast<std::uintptr_t>(end), .bytes = bytes};
+        }
+        pthread_attr_destroy(&attributes);
+    }
+#endif
+}
+
+CrashText crash_name(int signal, siginfo_t const& info, void const* signal_context) {
+    CrashText text;
+    bool const has_address = (signal == SIGSEGV || signal == SIGBUS) && info.si_code > 0;
+    if (has_address && is_stack_overflow(info, signal_context)) {
+        text << "stack overflow: the ";
+        text.whole(noted.bytes / kBytesPerKib) << " KiB of the stack are full (ulimit -s), as after a function that "
+                                                  "calls itself without end, or with large "
+                                                  "local arrays; a real robot has 128 KiB of memory in all";
+        return text;
+    }
+    auto const* const crash =
+        std::find_if(kNames.begin(), kNames.end(), [&](CrashName const& c) { return c.signal == signal; });
+    text << crash->name;
+    if (has_address) {
+        text << " at address ";
+        text.address(info.si_addr);
+    }
+    return text;
+}
+
+void* program_counter([[maybe_unused]] void const* signal_context) {
+#if defined(__linux__) && defined(__x86_64__)
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RIP]);
+#elif defined(__linux__) && defined(__aarch64__)
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.pc);
+#else
+    return nullptr;
+#endif
+}
+
+}  // namespace pogosim

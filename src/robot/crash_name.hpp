@@ -1,0 +1,24 @@
+// What a crash is called in messages.
+#pragma once
+
+#include <array>
+#include <csignal>
+
+#include "robot/signal_text.hpp"
+
+namespace pogosim {
+
+using CrashText = SignalText<512>;
+
+inline constexpr std::array kCrashSignals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGABRT};
+
+/// Notes where the stack of this thread ends, for crash_name(). Not for signal handlers.
+void note_stack();
+
+/// "segmentation fault at address 0x10"; for signal handlers. `signal_context` is what the handler was given.
+CrashText crash_name(int signal, siginfo_t const& info, void const* signal_context);
+
+/// Where the processor was when the signal came; null on a machine that is not known here.
+void* program_counter(void const* signal_context);
+
+}  // namespace pogosim

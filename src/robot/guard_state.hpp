@@ -1,0 +1,67 @@
+// What the fence around user code (user_guard.cpp) and the watch over it (user_watch.cpp) share. No others include
+// this.
+#pragma once
+
+#include <pthread.h>
+
+#include <atomic>
+#include <csetjmp>
+#include <csignal>
+
+#include "robot/signal_text.hpp"
+#include "robot/user_guard.hpp"
+
+namespace pogosim {
+
+struct Guard {
+    pthread_t thread{};  // the simulator's: the only one that may jump
+    sigjmp_buf return_point{};
+    std::atomic<bool> inside = false;
+    // Where a crash outside user code goes.
+    sigjmp_buf rescue_point{};
+    std::atomic<bool> rescuable = false;
+    std::atomic<unsigned long> calls = 0;
+    std::atomic<double> entered_s = 0.0;  // monotonic clock, at the last call_user_code()
+    // What ended the call; plain memory, as a signal handler writes it.
+    SignalText<512> what;
+    ExitCode code = ExitCode::user_program;
+    bool refused = false;
+    std::atomic<bool> crashed = false;
+    std::atomic<bool> left_by_force = false;
+};
+
+extern Guard guard;
+
+bool on_simulator_thread();
+
+void set_reason(char const* text);
+
+/// What follows may crash or hang for ever; after a while the program ends with its last words.
+void expect_the_worst();
+
+[[noreturn]] void jump_out(ExitCode code);
+
+void install_handler(int signal, int flags, void (*handler)(int, siginfo_t*, void*));
+
+/// False in the middle of a library function, such as malloc(): it may hold a lock, which nobody would release.
+bool is_in_user_program(void const* signal_context);
+
+/// Asks for the end of the run from wherever the caller is: another thread, or a signal handler. User code is left as
+/// soon as it holds no lock, as far as that can be told; the simulator's own code comes to its end. The first request
+/// counts.
+void request_end(char const* what, ExitCode code, bool in_other_thread);
+
+struct EndRequest {
+    SignalText<512> what;
+    ExitCode code = ExitCode::user_program;
+    bool in_other_thread = false;
+    double made_s = 0.0;
+};
+
+/// Null while there is none.
+EndRequest const* end_request();
+
+void start_watch(double timeout_s);
+void stop_watch();
+
+}  // namespace pogosim

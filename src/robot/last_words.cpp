@@ -1,0 +1,166 @@
+#include "robot/last_words.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+
+#include "base/scratch_file.hpp"
+#include "robot/context.hpp"
+
+namespace pogosim {
+
+namespace {
+
+using Words = SignalText<4096>;
+
+std::atomic<RunStage> stage = RunStage::before_main;
+std::atomic<DataFileState> data_file_state = DataFileState::none;
+std::array<char, 1024> data_file_path{};
+Words last_words;
+
+void append_data_file(Words& words) {
+    if (data_file_state != DataFileState::none) {
+        words << " The data file '" << data_file_path.data()
+              << (data_file_state == DataFileState::complete
+                      ? "' is complete."
+                      : "' could not be completed; pogosim-recover rescues the rows that it has.");
+    }
+}
+
+char const* place_outside_run(bool in_other_thread, char const* else_where) {
+    return in_other_thread ? "a thread that it started" : else_where;
+}
+
+Words words_before_main(char const* what, bool in_other_thread) {
+    Words words;
+    words << "pogosim: the user program failed before main(), in "
+          << place_outside_run(in_other_thread,
+                               "the constructor of a static object or another function that runs there")
+          << ": " << what << ". There was no run.";
+    return words;
+}
+
+Words words_of_preparation(char const* what) {
+    Words words;
+    words << "pogosim: the program failed before the first robot ran: " << what << ". There was no run.";
+    return words;
+}
+
+Words words_after_run(char const* what, bool in_other_thread) {
+    Words words;
+    words << "pogosim: the user program failed after the run, in "
+          << place_outside_run(in_other_thread, "the destructor of a static object or another function that runs there")
+          << ": " << what << ".";
+    append_data_file(words);
+    return words;
+}
+
+Words words_of_run(char const* where, char const* what, char const* advice) {
+    Words words;
+    words << "pogosim: the user program failed" << where << ": " << what << ".";
+    append_data_file(words);
+    words << " If the program writes to memory that is not its own, building it with -fsanitize=address finds where."
+          << advice;
+    return words;
+}
+
+void append_time(PlaceText& text) {
+    text << ", t = ";
+    text.number(context.world->time_s(), 4) << " s";
+}
+
+/// Runs are repeatable: the same one, ended after the step before this.
+SignalText<256> advice_to_repeat() {
+    SignalText<256> advice;
+    if (data_file_state == DataFileState::open) {
+        World const& world = *context.world;
+        double const time_before_s = std::max(0.0, static_cast<double>(world.step) - 0.5) * world.time_step_s;
+        advice << " To have the data up to there, run it again with -s ";
+        advice.whole(context.services->seed) << " --set simulation_time=";
+        advice.number(time_before_s, 6);
+    }
+    return advice;
+}
+
+void prepare_words_of_run(char const* what) {
+    last_words = words_of_run("", what, "");
+    if (context.world == nullptr) {
+        return;
+    }
+    PlaceText where;
+    where << " in " << context.phase << ", tick ";
+    where.whole(pogobot_ticks);
+    append_time(where);
+    last_words = words_of_run(where.c_str(), what, "");
+    SignalText<256> const advice = advice_to_repeat();
+    last_words = words_of_run(where.c_str(), what, advice.c_str());
+    PlaceText exact;
+    exact << " in " << running_place().c_str();
+    last_words = words_of_run(exact.c_str(), what, advice.c_str());
+}
+
+}  // namespace
+
+void enter_stage(RunStage next) {
+    stage = next;
+}
+
+RunStage run_stage() {
+    return stage;
+}
+
+void note_data_file(std::string const& path, DataFileState state) {
+    std::strncpy(data_file_path.data(), path.c_str(), data_file_path.size() - 1);
+    data_file_state = state;
+}
+
+PlaceText running_place() {
+    PlaceText text;
+    text << context.phase;
+    if (!context.is_system) {
+        text << " of robot #";
+        text.whole(context.world->robots.id[context.robot]) << " of category '" << get_current_robot_category() << "'";
+    }
+    text << ", tick ";
+    text.whole(pogobot_ticks);
+    append_time(text);
+    return text;
+}
+
+void prepare_last_words(char const* what, bool in_other_thread) {
+    switch (stage) {
+        case RunStage::before_main:
+            last_words = words_before_main(what, in_other_thread);
+            break;
+        case RunStage::preparing:
+            last_words = words_of_preparation(what);
+            break;
+        case RunStage::finished:
+            last_words = words_after_run(what, in_other_thread);
+            break;
+        case RunStage::running:
+            if (in_other_thread) {
+                last_words = words_of_run(" in a thread that it started", what, "");
+            } else {
+                prepare_words_of_run(what);
+            }
+            break;
+    }
+}
+
+void prepare_plain_last_words(char const* what) {
+    last_words = {};
+    last_words << "pogosim: " << what << ".";
+    append_data_file(last_words);
+}
+
+void end_with_last_words(int code) {
+    last_words << "\n";
+    last_words.write_to_stderr();
+    remove_scratch_file();
+    _exit(code);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,41 @@
+// The message of a program that ends at once, because a crash has left nothing that can be relied on. It is composed
+// in a signal handler, before anything else is tried, and says only what is true of the stage that the program is in.
+#pragma once
+
+#include <string>
+
+#include "robot/signal_text.hpp"
+
+namespace pogosim {
+
+enum class RunStage {
+    before_main,  // static constructors
+    preparing,    // the configuration is read and the world is built; no user code
+    running,      // from the first call of main() to the end of the data file
+    finished      // atexit() and static destructors
+};
+
+enum class DataFileState { none, open, complete };
+
+void enter_stage(RunStage stage);
+RunStage run_stage();
+
+/// For the message: what has become of the data file.
+void note_data_file(std::string const& path, DataFileState state);
+
+using PlaceText = SignalText<512>;
+
+/// "user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s": which user code runs. For signal handlers.
+PlaceText running_place();
+
+/// Composes the message. It begins with what is certain and says more and more: each look at what user code may have
+/// destroyed can be the last. For signal handlers.
+void prepare_last_words(char const* what, bool in_other_thread);
+
+/// The same for a program that ends although nothing has failed.
+void prepare_plain_last_words(char const* what);
+
+/// Says it and ends the program. For signal handlers.
+[[noreturn]] void end_with_last_words(int code);
+
+}  // namespace pogosim

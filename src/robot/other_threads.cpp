@@ -1,0 +1,100 @@
+#include "robot/other_threads.hpp"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <sys/mman.h>
+
+#include <array>
+#include <csignal>
+#include <cstddef>
+#include <memory>
+
+#include "robot/crash_name.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kSignalStackBytes = 65536;
+
+void use_for_signals(void* memory) {
+    stack_t stack = {};
+    stack.ss_sp = memory;
+    stack.ss_size = kSignalStackBytes;
+    sigaltstack(&stack, nullptr);
+}
+
+/// A stack for signal handlers, as long as the thread lives.
+class SignalStack {
+public:
+    SignalStack() {
+        if (memory_ != MAP_FAILED) {
+            use_for_signals(memory_);
+        }
+    }
+    ~SignalStack() {
+        if (memory_ != MAP_FAILED) {
+            stack_t none = {};
+            none.ss_flags = SS_DISABLE;
+            sigaltstack(&none, nullptr);
+            munmap(memory_, kSignalStackBytes);
+        }
+    }
+    SignalStack(SignalStack const&) = delete;
+    SignalStack& operator=(SignalStack const&) = delete;
+
+private:
+    void* memory_ = mmap(nullptr, kSignalStackBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+};
+
+[[maybe_unused]] void prepare_thread_for_crashes() {
+    note_stack();
+    static thread_local SignalStack const stack;
+}
+
+}  // namespace
+
+void prepare_main_thread_for_crashes() {
+    note_stack();
+    static std::array<char, kSignalStackBytes> memory;  // destructors after the run need it, too
+    use_for_signals(memory.data());
+}
+
+}  // namespace pogosim
+
+#ifdef __linux__
+
+extern "C" {
+
+/// Defined when the program is built with -fsanitize=address, which gives threads such stacks and takes them away.
+__attribute__((weak)) void __asan_init();
+
+using ThreadFunction = void* (*)(void*);
+
+/// As the C library's, which it calls: this library stands before libc in the search order.
+__attribute__((visibility("default"))) int pthread_create(pthread_t* thread, pthread_attr_t const* attributes,
+                                                          ThreadFunction function, void* argument) noexcept {
+    struct Start {
+        ThreadFunction function;
+        void* argument;
+    };
+    using Create = int (*)(pthread_t*, pthread_attr_t const*, ThreadFunction, void*);
+    static auto const create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
+    if (&__asan_init != nullptr) {
+        return create(thread, attributes, function, argument);
+    }
+    auto start = std::make_unique<Start>(Start{function, argument});
+    ThreadFunction const run = [](void* of_start) -> void* {
+        Start const start = *std::unique_ptr<Start>(static_cast<Start*>(of_start));
+        pogosim::prepare_thread_for_crashes();
+        return start.function(start.argument);
+    };
+    int const error = create(thread, attributes, run, start.get());
+    if (error == 0) {
+        [[maybe_unused]] Start const* const owned_by_thread = start.release();
+    }
+    return error;
+}
+}
+
+#endif

@@ -1,0 +1,9 @@
+// What a crash in a thread needs to be named: another stack for the handler, as the thread's own may be full.
+#pragma once
+
+namespace pogosim {
+
+/// For the thread that calls main(). Threads that the program starts prepare themselves.
+void prepare_main_thread_for_crashes();
+
+}  // namespace pogosim

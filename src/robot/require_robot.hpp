@@ -1,0 +1,27 @@
+// The first lines of every function of the interface that works on a robot.
+#pragma once
+
+#include <cstdio>
+
+#include "robot/context.hpp"
+#include "robot/user_guard.hpp"
+
+namespace pogosim {
+
+/// Does not return when no robot has the processor. `function`: its name, for the message.
+inline void require_robot(char const* function) {
+    if (context.computer == nullptr) [[unlikely]] {
+        called_without_robot(function);
+    }
+}
+
+/// Refuses a pointer that must not be NULL: exit code 2.
+inline void require_argument(void const* argument, char const* function, char const* name) {
+    if (argument == nullptr) [[unlikely]] {
+        char what[128];
+        std::snprintf(what, sizeof(what), "%s(): %s is NULL", function, name);
+        refuse_user_code(what);
+    }
+}
+
+}  // namespace pogosim
