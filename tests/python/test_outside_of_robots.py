@@ -105,9 +105,7 @@ def test_crash_in_a_thread_of_the_program_ends_the_run_with_3_and_a_complete_fil
 
 
 @pytest.mark.parametrize("kind", CALLS)
-def test_call_of_the_interface_in_a_thread_of_the_program_is_named(
-    program: Compile, tmp_path: Path, kind: str
-) -> None:
+def test_call_of_the_interface_in_a_thread_of_the_program_is_named(program: Compile, tmp_path: Path, kind: str) -> None:
     result = outside(program, tmp_path, "thread", kind)
     assert result.code == 3
     assert f"in a thread that it started, t = 0.1600 s: {CALLS[kind]}() was called there" in result.errors
