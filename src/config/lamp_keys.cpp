@@ -9,8 +9,8 @@ namespace pogosim {
 std::span<Key<Vec2> const> spot_centre_keys() {
     using K = Key<Vec2>;
     static std::array const keys{
-        K{"x", &Vec2::x, between(-kMaxLength, kMaxLength), "mm", "Centre."},
-        K{"y", &Vec2::y, between(-kMaxLength, kMaxLength), "mm", "Centre."},
+        K{"x", &Vec2::x, kCoordinate, "mm", "Centre."},
+        K{"y", &Vec2::y, kCoordinate, "mm", "Centre."},
     };
     return keys;
 }
@@ -18,9 +18,9 @@ std::span<Key<Vec2> const> spot_centre_keys() {
 std::span<Key<Vec2> const> lighthouse_centre_keys() {
     using K = Key<Vec2>;
     static std::array const keys{
-        K{"x", &Vec2::x, between(-kMaxLength, kMaxLength), "mm",
+        K{"x", &Vec2::x, kCoordinate, "mm",
           "Centre; with `geometry` global or arena it counts from the centre of the arena's bounding box."},
-        K{"y", &Vec2::y, between(-kMaxLength, kMaxLength), "mm", "See x."},
+        K{"y", &Vec2::y, kCoordinate, "mm", "See x."},
     };
     return keys;
 }
@@ -38,11 +38,11 @@ std::span<Key<SpotSpec> const> spot_keys() {
         K{"value", &SpotSpec::value, kLightLevel, "sensor counts", "Light level; levels of several lamps add up."},
         K{"edge_value", &SpotSpec::edge_value, kLightLevel, "sensor counts",
           "gradient and plane: level at the far side."},
-        K{"gradient_radius", &SpotSpec::gradient_radius_mm, between(-kMaxLength, kMaxLength), "mm",
+        K{"gradient_radius", &SpotSpec::gradient_radius_mm, kCoordinate, "mm",
           "gradient: where `edge_value` is reached; 0 or less: the largest distance inside the shape."},
         K{"plane_angle", &SpotSpec::plane_angle_rad, kAngle, "rad",
           "plane: direction of the normal, clockwise on the screen from +x."},
-        K{"plane_half_span", &SpotSpec::plane_half_span_mm, above(0).up_to(kMaxLength), "mm",
+        K{"plane_half_span", &SpotSpec::plane_half_span_mm, kLength, "mm",
           "plane: distance from the centre at which `value` (behind) and `edge_value` (ahead) are reached."},
         K{"photo_start_at", &SpotSpec::photo_start_at_s, kStartTime, "s",
           "At 0 or later: dark before, then a flash, then the normal light. Negative: no flash."},

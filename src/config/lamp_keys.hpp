@@ -13,8 +13,8 @@ inline constexpr Range kLightLevel = between(0, 32767);
 inline constexpr Range kSeconds = between(0, 1e9);
 inline constexpr Range kStartTime = between(-1e9, 1e9);
 inline constexpr Range kHalfWidth = above(0).up_to(std::numbers::pi);
-inline constexpr Range kAngle = between(-1e4, 1e4);
-inline constexpr Range kAngularSpeed = between(-1e4, 1e4);
+inline constexpr Range kAngle = between(-1e4, 1e4).usually_up_to(6.3);
+inline constexpr Range kAngularSpeed = between(-1e4, 1e4).usually_up_to(50);
 
 /// `x` and `y`.
 std::span<Key<Vec2> const> spot_centre_keys();

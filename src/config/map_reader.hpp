@@ -71,7 +71,9 @@ void MapReader::read(std::span<Key<T> const> keys, T& into) {
                        [](Elsewhere const&) {},
                        [&](auto T::*member) {
                            if (value->kind != Node::Kind::null) {
-                               read_value(place, Limits{key.range, key.unit}, into.*member);
+                               Limits const limits{key.range, key.unit};
+                               read_value(place, limits, into.*member);
+                               warn_of_slips(place, limits, kReadsIntegers<std::decay_t<decltype(into.*member)>>);
                            }
                        },
                    },

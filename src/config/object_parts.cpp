@@ -30,9 +30,9 @@ std::span<Key<BodySpec> const> body_keys() {
 std::span<Key<IrSpec> const> ir_keys() {
     using K = Key<IrSpec>;
     static std::array const keys{
-        K{"communication_radius", &IrSpec::range_mm, between(0, kMaxLength), "mm",
+        K{"communication_radius", &IrSpec::range_mm, kLengthOrZero, "mm",
           "Infrared reach, from an emitter to the border of the receiver; 0: mute."},
-        K{"communication_radius_by_power", &IrSpec::range_by_power_mm, between(0, kMaxLength), "mm",
+        K{"communication_radius_by_power", &IrSpec::range_by_power_mm, kLengthOrZero, "mm",
           "Reach at the emitter powers 1, 2 and 3 of pogobot_infrared_set_power; absent: communication_radius at all "
           "of them. Power 0 sends nothing."},
         K{"message_queue_size", &IrSpec::queue_size, between(1, 1000), "messages",
@@ -46,9 +46,9 @@ std::span<Key<IrSpec> const> ir_keys() {
 std::span<Key<RobotSpec> const> robot_keys() {
     using K = Key<RobotSpec>;
     static std::array const keys{
-        K{"max_linear_speed", &RobotSpec::max_linear_speed_mm_s, between(0, 1e6), "mm/s",
+        K{"max_linear_speed", &RobotSpec::max_linear_speed_mm_s, between(0, 1e6).usually_from(1), "mm/s",
           "Speed with both motors at full power."},
-        K{"max_angular_speed", &RobotSpec::max_angular_speed_rad_s, between(0, 1e4), "rad/s",
+        K{"max_angular_speed", &RobotSpec::max_angular_speed_rad_s, between(0, 1e4).usually_up_to(50), "rad/s",
           "Turning scale: one motor at full power and the other stopped turn at twice this."},
         K{"linear_noise_stddev", &RobotSpec::linear_noise_stddev, between(0, 1e4), "100 mm/s",
           "Gaussian noise of each velocity component, drawn at every control tick."},
@@ -85,9 +85,9 @@ struct Position {
 std::span<Key<Position> const> position_keys() {
     using K = Key<Position>;
     static std::array const keys{
-        K{"x", &Position::x, between(-kMaxLength, kMaxLength), "mm",
+        K{"x", &Position::x, kCoordinate, "mm",
           "With y: all objects of the category start there, heading 0. Without: the formation places them."},
-        K{"y", &Position::y, between(-kMaxLength, kMaxLength), "mm", "See x."},
+        K{"y", &Position::y, kCoordinate, "mm", "See x."},
     };
     return keys;
 }

@@ -7,13 +7,16 @@
 
 namespace pogosim {
 
-/// An interval, and whether the special numbers are welcome.
+/// An interval, whether the special numbers are welcome, and which numbers are so unusual that they look like ones in
+/// another unit.
 struct Range {
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
     bool without_min = false;  // min itself is outside
     bool with_infinity = false;
     bool with_nan = false;
+    double usual_min = 0.0;  // of the absolute value; 0 itself is usual
+    double usual_max = std::numeric_limits<double>::infinity();
 
     constexpr Range up_to(double new_max) const {
         Range range = *this;
@@ -30,6 +33,27 @@ struct Range {
         range.with_nan = true;
         return range;
     }
+
+    /// Metres where millimetres are expected, say, are below.
+    constexpr Range usually_from(double smallest) const {
+        Range range = *this;
+        range.usual_min = smallest;
+        return range;
+    }
+    /// Degrees where radians are expected, say, are above.
+    constexpr Range usually_up_to(double largest) const {
+        Range range = *this;
+        range.usual_max = largest;
+        return range;
+    }
+
+    bool is_unusually_small(double value) const {
+        // What a script has computed may miss 0 by a rounding error.
+        constexpr double rounding = 1e-3;
+        double const size = std::abs(value);
+        return size > (min < 0.0 ? rounding * usual_min : 0.0) && size < usual_min;
+    }
+    bool is_unusually_large(double value) const { return std::isfinite(value) && std::abs(value) > usual_max; }
 
     bool contains(double value) const {
         if (std::isnan(value)) {

@@ -56,10 +56,10 @@ std::span<K const> any_geometry_keys() {
 
 std::span<K const> size_keys() {
     static std::array const keys{
-        K{"radius", &Shape::radius_mm, above(0).up_to(kMaxLength), "mm", "Radius of a disk."},
-        K{"body_width", &Shape::width_mm, above(0).up_to(kMaxLength), "mm", "Size of a rectangle along x."},
-        K{"body_height", &Shape::height_mm, above(0).up_to(kMaxLength), "mm", "Size of a rectangle along y."},
-        K{"side_length", &Shape::side_length_mm, above(0).up_to(kMaxLength), "mm",
+        K{"radius", &Shape::radius_mm, kLength, "mm", "Radius of a disk."},
+        K{"body_width", &Shape::width_mm, kLength, "mm", "Size of a rectangle along x."},
+        K{"body_height", &Shape::height_mm, kLength, "mm", "Size of a rectangle along y."},
+        K{"side_length", &Shape::side_length_mm, kLength, "mm",
           "Side of an equilateral triangle, one corner towards -y."},
     };
     return keys;

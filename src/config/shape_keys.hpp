@@ -11,6 +11,11 @@ namespace pogosim {
 /// Largest length and coordinate, mm. A float still tells 0.06 mm apart there.
 inline constexpr double kMaxLength = 1.0e6;
 
+/// Sizes and coordinates. What is below 1 mm is probably in metres.
+inline constexpr Range kLength = above(0).up_to(kMaxLength).usually_from(1);
+inline constexpr Range kLengthOrZero = between(0, kMaxLength).usually_from(1);
+inline constexpr Range kCoordinate = between(-kMaxLength, kMaxLength).usually_from(1);
+
 /// `geometry` of things with a body: disk, rectangle, triangle.
 std::span<Key<Shape> const> solid_geometry_keys();
 /// Of walls: those, or arena.

@@ -10,9 +10,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
+#include <string>
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 
 namespace pogosim {
 
@@ -107,6 +110,30 @@ void read_real(Place const& place, Limits const& limits, Real& value) {
         fail_expected(place, expected_number(limits));
     }
     value = static_cast<Real>(*number);
+}
+
+/// A unit that is easily taken for that of a key.
+struct SimilarUnit {
+    std::string_view expected;
+    std::string_view taken;
+    double factor;  // one of the taken ones is this many of the expected ones
+};
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::array kSimilarUnits{
+    SimilarUnit{"mm", "metres", 1e3},
+    SimilarUnit{"mm/s", "metres per second", 1e3},
+    SimilarUnit{"mm2", "square metres", 1e6},
+    SimilarUnit{"rad", "degrees", kDegree},
+    SimilarUnit{"rad/s", "degrees per second", kDegree},
+};
+
+void warn_of_unit(std::string const& where, std::string const& found, double number, std::string_view unit) {
+    auto const similar = std::ranges::find(kSimilarUnits, unit, &SimilarUnit::expected);
+    if (similar != kSimilarUnits.end()) {
+        double const meant = std::stod(fmt::format("{:.6g}", number * similar->factor));
+        log().warn("{}: the unit is {}, in which {} is unusually {}; if {} are meant, write {}", where, unit, found,
+                   similar->factor > 1.0 ? "small" : "large", similar->taken, number_text(meant));
+    }
 }
 
 /// Reads a list of exactly N values.
@@ -248,6 +275,23 @@ void read_value(Place const& place, Limits const& limits, std::vector<std::strin
     value.clear();
     for (std::size_t i = 0; i < place.node.items.size(); ++i) {
         read_value({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits, value.emplace_back());
+    }
+}
+
+void warn_of_slips(Place const& place, Limits const& limits, bool is_integer) {
+    for (std::size_t i = 0; i < place.node.items.size(); ++i) {
+        warn_of_slips({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits, is_integer);
+    }
+    std::optional<double> const number = number_of(place.node);
+    if (!number) {
+        return;
+    }
+    std::string const where = fmt::format("{}: {}", place.node.where(), shown(place.path));
+    if (is_integer && std::trunc(*number) != *number) {
+        log().warn("{}: expected an integer, found {}; {} is used", where, place.node.scalar,
+                   number_text(std::trunc(*number)));
+    } else if (limits.range.is_unusually_small(*number) || limits.range.is_unusually_large(*number)) {
+        warn_of_unit(where, place.node.scalar, *number, limits.unit);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "base/vec2.hpp"
@@ -66,6 +67,16 @@ template <class T>
 void read_value(Place const& place, Limits const& limits, std::optional<T>& value) {
     read_value(place, limits, value.emplace());
 }
+
+/// Warns of numbers at a node that has been read which stand for others than they say: fractions that are cut
+/// (`is_integer`), and what looks like another unit than that of the limits (Range::usual_min, usual_max).
+void warn_of_slips(Place const& place, Limits const& limits, bool is_integer);
+
+/// Whether numbers are read into T as integers.
+template <class T>
+inline constexpr bool kReadsIntegers =
+    std::is_same_v<T, int> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::uint32_t> ||
+    std::is_same_v<T, std::optional<std::uint32_t>> || std::is_same_v<T, IntRange>;
 
 /// expected_text: what a key of that type takes, "a number above 0 (mm)".
 std::string expected_text(Limits const& limits, bool);

@@ -15,7 +15,7 @@ std::span<Key<RingSpec> const> ring_keys() {
     using K = Key<RingSpec>;
     static std::array const keys{
         K{"num_dots", &RingSpec::body_count, between(3, kMostBodies), "", "Bodies along the outline."},
-        K{"dot_radius", &RingSpec::radius_mm, above(0).up_to(kMaxLength), "mm", "Radius of a dot."},
+        K{"dot_radius", &RingSpec::radius_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm", "Radius of a dot."},
         K{"cross_span", &RingSpec::cross_span, between(0, kMostBodies), "dots",
           "Above 1: weaker springs from each dot to the one this many places on, which keep the membrane from "
           "folding."},
@@ -30,7 +30,7 @@ std::span<Key<RingSpec> const> ring_keys() {
 std::span<Key<RingSpec> const> thickness_keys() {
     using K = Key<RingSpec>;
     static std::array const keys{
-        K{"rect_thickness", &RingSpec::thickness_mm, above(0).up_to(kMaxLength), "mm",
+        K{"rect_thickness", &RingSpec::thickness_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm",
           "Thickness of the segments; absent: dot_radius."},
     };
     return keys;

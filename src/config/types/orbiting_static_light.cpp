@@ -20,10 +20,8 @@ struct OrbitCentre {
 std::span<Key<OrbitCentre> const> orbit_centre_keys() {
     using K = Key<OrbitCentre>;
     static std::array const keys{
-        K{"center_x", &OrbitCentre::x_mm, between(-kMaxLength, kMaxLength), "mm",
-          "Centre of the circle; without: `x`."},
-        K{"center_y", &OrbitCentre::y_mm, between(-kMaxLength, kMaxLength), "mm",
-          "Centre of the circle; without: `y`."},
+        K{"center_x", &OrbitCentre::x_mm, kCoordinate, "mm", "Centre of the circle; without: `x`."},
+        K{"center_y", &OrbitCentre::y_mm, kCoordinate, "mm", "Centre of the circle; without: `y`."},
     };
     return keys;
 }
@@ -31,7 +29,7 @@ std::span<Key<OrbitCentre> const> orbit_centre_keys() {
 std::span<Key<Orbit> const> orbit_keys() {
     using K = Key<Orbit>;
     static std::array const keys{
-        K{"orbit_radius", &Orbit::radius_mm, between(0, kMaxLength), "mm",
+        K{"orbit_radius", &Orbit::radius_mm, kLengthOrZero, "mm",
           "Radius of the circle on which the lamp's centre goes round; 0: it stands still."},
         K{"orbit_angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s",
           "Above 0: clockwise on the screen."},

@@ -1,0 +1,88 @@
+"""Numbers that look like ones in another unit, or are cut, are warned of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from running import ROOT, Run, Settings, example, run
+
+SQUARE: Settings = {"arena_file": str(ROOT / "arenas/square.csv"), "simulation_time": 0.1, "time_step": 0.001}
+
+
+def greet(folder: Path, settings: Settings) -> Run:
+    return run(example("helloworld"), folder, {**SQUARE, **settings})
+
+
+def warnings(result: Run) -> list[str]:
+    """Return the warnings without date and level; the run has ended well."""
+    assert result.code == 0, result.text
+    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
+
+
+@pytest.mark.parametrize(
+    ("settings", "text"),
+    [
+        (
+            {"objects.robots.nb": 2.5},
+            "objects.robots.nb: expected an integer, found 2.5; 2 is used",
+        ),
+        (
+            {"objects.robots.angular_systematic_bias_domain": [-1.5, 2]},
+            "objects.robots.angular_systematic_bias_domain.0: expected an integer, found -1.5; -1 is used",
+        ),
+        ({"seed": 0.5}, "seed: expected an integer, found 0.5; 0 is used"),
+    ],
+    ids=["nb", "list", "seed"],
+)
+def test_fraction_of_an_integer_is_warned_of_once(tmp_path: Path, settings: Settings, text: str) -> None:
+    (warning,) = warnings(greet(tmp_path, settings))
+    assert warning.startswith("scene.yaml:")
+    assert warning.endswith(text)
+
+
+BODY = {"type": "passive_object", "geometry": "rectangle", "body_width": 9, "body_height": 9, "x": 500, "y": 500}
+LAMP = {"type": "static_light", "light_mode": "plane", "geometry": "disk", "radius": 500, "x": 500, "y": 500}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "unit", "hint"),
+    [
+        ("robots.radius", 0.0265, "mm", "small; if metres are meant, write 26.5"),
+        ("robots.communication_radius", 0.08, "mm", "small; if metres are meant, write 80"),
+        ("robots.max_linear_speed", 0.1, "mm/s", "small; if metres per second are meant, write 100"),
+        ("robots.max_angular_speed", 114.6, "rad/s", "large; if degrees per second are meant, write 2.00015"),
+        ("body.body_width", 0.3, "mm", "small; if metres are meant, write 300"),
+        ("lamp.y", 0.5, "mm", "small; if metres are meant, write 500"),
+        ("lamp.radius", 0.5, "mm", "small; if metres are meant, write 500"),
+        ("lamp.plane_angle", 90, "rad", "large; if degrees are meant, write 1.5708"),
+    ],
+)
+def test_number_in_another_unit_is_warned_of_with_the_one_that_was_meant(
+    tmp_path: Path, key: str, value: float, unit: str, hint: str
+) -> None:
+    settings = {"objects.body": dict(BODY), "objects.lamp": dict(LAMP), f"objects.{key}": value}
+    (warning,) = warnings(greet(tmp_path, settings))
+    assert warning.endswith(f": objects.{key}: the unit is {unit}, in which {value} is unusually {hint}")
+
+
+def test_arena_of_a_square_metre_is_warned_of_before_it_has_no_room(tmp_path: Path) -> None:
+    result = greet(tmp_path, {"arena_surface": 1.0})
+    assert result.code == 2
+    warning, error = result.errors.splitlines()
+    assert warning.endswith(
+        "the unit is mm2, in which 1.0 is unusually small; if square metres are meant, write 1000000"
+    )
+    assert error.startswith("Error: ")
+
+
+def test_small_and_computed_numbers_that_are_meant_are_not_warned_of(tmp_path: Path) -> None:
+    settings = {
+        "arena_surface": 1.0e4,
+        "objects.robots.radius": 1.0,
+        "objects.robots.communication_radius": 0,
+        "objects.robots.max_linear_speed": 0,
+        "objects.body": {**BODY, "body_width": 5, "body_height": 1, "x": 50, "y": 50},
+        "objects.lamp": {**LAMP, "x": 6.1e-15, "y": 0, "plane_angle": 6.2831853},
+    }
+    assert warnings(greet(tmp_path, settings)) == []
