@@ -1,6 +1,6 @@
-"""Reception law against the measurements on real robots.
+"""The reception laws against the measurements on real robots.
 
-    .venv/bin/python docs/figures/reception.py        # prints the quality of the fit
+    .venv/bin/python docs/figures/reception.py        # prints how well each law fits
     .venv/bin/python docs/figures/all.py reception    # draws
 
 Bytes are those of the message: payload and header.
@@ -8,6 +8,7 @@ Bytes are those of the message: payload and header.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -26,17 +27,39 @@ COLOURS = {3: "#1b6ca8", 20: "#d98200", 100: "#a8321b"}  # by bytes of payload
 def reception_probability(
     message_bytes: npt.ArrayLike, send_probability: npt.ArrayLike, cluster_size: npt.ArrayLike
 ) -> npt.NDArray[np.float64]:
-    """Return what `type: dynamic` computes with its defaults (src/comms/reception.cpp), 0 to 1. Takes arrays, too."""
+    """Return what `type: dynamic` computes with its defaults (src/comms/reception.cpp), 0 to 1. Takes arrays, too.
+
+    It is the article's equation, and also what holds without `msg_success_rate`.
+    """
     m, p, c = (np.asarray(x, dtype=float) for x in (message_bytes, send_probability, cluster_size))
     collisions = 0.00073859 * p**3.14782227 * c**3.52543753 * np.exp(0.05720136 * m)
     probability: npt.NDArray[np.float64] = np.minimum(1.0 / (1.03215183 + collisions + 0.001 * p * c), 1.0)
     return probability
 
 
+def four_parameter_law(
+    message_bytes: npt.ArrayLike, send_probability: npt.ArrayLike, cluster_size: npt.ArrayLike
+) -> npt.NDArray[np.float64]:
+    """Return what `type: realistic` computes, 0 to 1. Takes arrays, too."""
+    m, p, c = (np.asarray(x, dtype=float) for x in (message_bytes, send_probability, cluster_size))
+    probability: npt.NDArray[np.float64] = 1.0 / (1.0 + 4e-6 * m**2.8096 * p**2.3807 * c**1.2457)
+    return probability
+
+
+Law = Callable[[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike], npt.NDArray[np.float64]]
+
+
+def quality_of(law: Law, measured: pd.DataFrame) -> tuple[float, float]:
+    """Return R2 and the mean absolute error of a law at the measured points."""
+    message_bytes = SHORT_HEADER_BYTES + measured["payload_size"]
+    error = measured["success_probability"] - law(message_bytes, measured["p_send"], 1 + measured["nb_neighbors"])
+    spread = measured["success_probability"] - measured["success_probability"].mean()
+    return float(1.0 - (error**2).sum() / (spread**2).sum()), float(error.abs().mean())
+
+
 def predicted(rows: pd.DataFrame) -> npt.NDArray[np.float64]:
-    """Return the law at the measured points."""
-    message_bytes = SHORT_HEADER_BYTES + rows["payload_size"]
-    return reception_probability(message_bytes, rows["p_send"], 1 + rows["nb_neighbors"])
+    """Return the article's equation at the measured points."""
+    return reception_probability(SHORT_HEADER_BYTES + rows["payload_size"], rows["p_send"], 1 + rows["nb_neighbors"])
 
 
 def draw_panels(measured: pd.DataFrame) -> Figure:
@@ -66,11 +89,12 @@ def draw(_folder: Path) -> dict[str, Picture]:
 
 
 def main() -> None:
-    """Print R2 and mean absolute error."""
+    """Print R2 and mean absolute error of both laws."""
     measured = pd.read_csv(MEASUREMENTS)
-    error = measured["success_probability"] - predicted(measured)
-    spread = measured["success_probability"] - measured["success_probability"].mean()
-    print(f"R2 = {1.0 - (error**2).sum() / (spread**2).sum():.6f}, MAE = {error.abs().mean():.6f}")
+    laws: dict[str, Law] = {"article's equation": reception_probability, "four-parameter law": four_parameter_law}
+    for name, law in laws.items():
+        r2, mean_absolute_error = quality_of(law, measured)
+        print(f"{name}: R2 = {r2:.6f}, MAE = {mean_absolute_error:.6f}")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 #include "config/reception_keys.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <array>
 #include <span>
+#include <string>
 
 namespace pogosim {
 
@@ -11,7 +13,7 @@ namespace {
 enum class Model { constant, dynamic, realistic };
 
 struct ModelChoice {
-    Model model = Model::realistic;
+    Model model = Model::dynamic;
 };
 
 std::span<Key<ModelChoice> const> model_keys() {
@@ -21,9 +23,11 @@ std::span<Key<ModelChoice> const> model_keys() {
             one_of(&ModelChoice::model,
                    {{"static", Model::constant}, {"dynamic", Model::dynamic}, {"realistic", Model::realistic}}),
             any(), "",
-            "static: always `rate`. dynamic: falls with message size m, send probability p and cluster size c; with "
-            "zeta or theta, or without any of the keys below, 1 / (alpha + beta p^gamma c^delta exp(zeta m) + "
-            "theta p c), else 1 / (1 + alpha m^beta p^gamma c^delta). realistic: the latter with its defaults.",
+            "static: always `rate`. dynamic: falls with message size m, send probability p and cluster size c. With "
+            "zeta or theta, or with none of the keys below, it is the article's equation, 1 / (alpha + beta p^gamma "
+            "c^delta exp(zeta m) + theta p c); with some of alpha, beta, gamma, delta alone it is the older "
+            "four-parameter law, 1 / (1 + alpha m^beta p^gamma c^delta). realistic: the four-parameter law with its "
+            "own defaults. Without msg_success_rate: the article's equation with its defaults.",
             /*required=*/true},
     };
     return keys;
@@ -31,26 +35,22 @@ std::span<Key<ModelChoice> const> model_keys() {
 
 std::span<Key<ReceptionSpec> const> parameter_keys() {
     using K = Key<ReceptionSpec>;
+    static ReceptionSpec const older = four_parameter_law();
+    static auto const doc = [](char const* name, double of_older) {
+        return fmt::format("dynamic: {} of the law; its default in the four-parameter law is {}.", name, of_older);
+    };
+    static std::array const docs{doc("alpha", older.alpha), doc("beta", older.beta), doc("gamma", older.gamma),
+                                 doc("delta", older.delta)};
     static std::array const keys{
         K{"rate", &ReceptionSpec::rate, between(0, 1), "", "static: the probability."},
-        K{"alpha", &ReceptionSpec::alpha, any(), "", "dynamic; with zeta or theta: 1.03215183."},
-        K{"beta", &ReceptionSpec::beta, any(), "", "dynamic; with zeta or theta: 0.00073859."},
-        K{"gamma", &ReceptionSpec::gamma, any(), "", "dynamic; with zeta or theta: 3.14782227."},
-        K{"delta", &ReceptionSpec::delta, any(), "", "dynamic; with zeta or theta: 3.52543753."},
-        K{"zeta", &ReceptionSpec::zeta, any(), "1/byte", "dynamic: chooses the law with the exponential."},
-        K{"theta", &ReceptionSpec::theta, any(), "", "dynamic: chooses the law with the exponential."},
+        K{"alpha", &ReceptionSpec::alpha, any(), "", docs[0]},
+        K{"beta", &ReceptionSpec::beta, any(), "", docs[1]},
+        K{"gamma", &ReceptionSpec::gamma, any(), "", docs[2]},
+        K{"delta", &ReceptionSpec::delta, any(), "", docs[3]},
+        K{"zeta", &ReceptionSpec::zeta, any(), "1/byte", "dynamic: chooses the article's equation."},
+        K{"theta", &ReceptionSpec::theta, any(), "", "dynamic: chooses the article's equation."},
     };
     return keys;
-}
-
-ReceptionSpec four_parameter_law() {
-    ReceptionSpec spec;
-    spec.law = ReceptionLaw::power;
-    spec.alpha = 4.0e-6;
-    spec.beta = 2.8096;
-    spec.gamma = 2.3807;
-    spec.delta = 1.2457;
-    return spec;
 }
 
 ReceptionSpec defaults_of(Model model, MapReader const& reader) {
@@ -78,7 +78,7 @@ ReceptionSpec read_reception_map(MapReader& reader) {
 ReceptionSpec read_reception(MapReader const& robot) {
     Node const* map = robot.find("msg_success_rate");
     if (map == nullptr) {
-        return four_parameter_law();
+        return {};
     }
     MapReader reader(*map, robot.path_of("msg_success_rate"), robot.is_strict());
     ReceptionSpec const spec = read_reception_map(reader);

@@ -6,12 +6,13 @@
 
 namespace pogosim {
 
-/// The law a robot's `msg_success_rate` asks for; `robot` reads the map it stands in. Absent: `realistic`.
+/// The law a robot's `msg_success_rate` asks for; `robot` reads the map it stands in.
 ///
+///   absent      the article's equation with its defaults
 ///   static      P = rate
 ///   realistic   the four-parameter law with its own defaults, whatever else the map holds
 ///   dynamic     with alpha, beta, gamma or delta, but neither zeta nor theta: the four-parameter law;
-///               otherwise the article's law. Parameters that are not given have the defaults of the law.
+///               otherwise the article's equation. Parameters that are not given have the defaults of the law.
 ReceptionSpec read_reception(MapReader const& robot);
 
 /// The same from the map `msg_success_rate` itself; the caller finishes the reader.

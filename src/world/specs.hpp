@@ -42,6 +42,11 @@ struct ReceptionSpec {
     double theta = 0.001;
 };
 
+/// The older four-parameter law with its own parameters, `type: realistic`.
+inline ReceptionSpec four_parameter_law() {
+    return {.law = ReceptionLaw::power, .alpha = 4.0e-6, .beta = 2.8096, .gamma = 2.3807, .delta = 1.2457};
+}
+
 /// Infrared link of one category of robots.
 struct IrSpec {
     float range_mm = 80.0F;  // from an emitter to the receiver's border; 0: mute

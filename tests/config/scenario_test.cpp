@@ -525,14 +525,26 @@ TEST(Scenario, EveryFormationIsAccepted) {
     }
 }
 
-TEST(Scenario, ReceptionWithoutAKeyIsTheRealisticLaw) {
-    for (ReceptionSpec const& spec : {robot("").ir.reception, reception("{type: realistic}"), reception("~"),
-                                      reception("{type: realistic, alpha: 7}")}) {
+TEST(Scenario, RealisticReceptionIsTheOlderLawWithItsOwnParameters) {
+    for (ReceptionSpec const& spec : {reception("{type: realistic}"), reception("{type: realistic, alpha: 7}")}) {
         EXPECT_EQ(spec.law, ReceptionLaw::power);
         EXPECT_EQ(spec.alpha, 4e-6);
         EXPECT_EQ(spec.beta, 2.8096);
         EXPECT_EQ(spec.gamma, 2.3807);
         EXPECT_EQ(spec.delta, 1.2457);
+    }
+}
+
+TEST(Scenario, ReceptionWithoutAKeyIsTheArticlesEquation) {
+    for (ReceptionSpec const& spec : {robot("").ir.reception, reception("~")}) {
+        ReceptionSpec const dynamic = reception("{type: dynamic}");
+        EXPECT_EQ(spec.law, ReceptionLaw::article);
+        EXPECT_EQ(spec.alpha, dynamic.alpha);
+        EXPECT_EQ(spec.beta, dynamic.beta);
+        EXPECT_EQ(spec.gamma, dynamic.gamma);
+        EXPECT_EQ(spec.delta, dynamic.delta);
+        EXPECT_EQ(spec.zeta, dynamic.zeta);
+        EXPECT_EQ(spec.theta, dynamic.theta);
     }
 }
 
