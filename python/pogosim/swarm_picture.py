@@ -135,13 +135,15 @@ def read_swarm(path: PathLike) -> Swarm:
     categories = read_categories(metadata["configuration"])
     rows = coloured(completed(rows), categories)
 
-    has_pose = np.isfinite(rows["x"]) & np.isfinite(rows["y"])
+    # In files of earlier versions, walls have no pose.
+    is_wall = rows["robot_category"].isin([name for name, own in categories.items() if own.type == "pogowall"])
+    has_pose = np.isfinite(rows["x"]) & np.isfinite(rows["y"]) & ~is_wall
     is_part = rows["subpart_id"] >= 0
     objects = rows[has_pose & ~is_part].reset_index(drop=True)
     if objects.empty:
         raise PictureError("it holds no object with a position")
     end_s = float(objects["time"].iloc[-1])
-    walls = rows[~has_pose].groupby("robot_category").tail(1)
+    walls = rows[is_wall].groupby("robot_category").tail(1)
     return Swarm(
         rows=objects,
         dots=rows[has_pose & is_part & (rows["time"] == end_s)],

@@ -100,6 +100,9 @@ public:
         Object object{.id = is_robot_like ? next_up_++ : next_down_--, .category = category};
         if (spec.body) {
             add_bodies(world_, object, spec, placement);
+        } else {
+            object.fixed_mm =
+                spec.shape.kind == ShapeKind::arena ? world_.arena.bounds.centre() : placement.position_mm;
         }
         if (spec.robot) {
             object.robot = static_cast<std::uint32_t>(world_.robots.size());

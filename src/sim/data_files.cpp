@@ -2,7 +2,10 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "base/error.hpp"
@@ -11,8 +14,7 @@ namespace pogosim {
 
 namespace {
 
-/// Folders with the arenas that come along: of the installed library, wherever it has been moved to, and of the
-/// sources.
+/// Folders with the bundled arenas: of the installed library, wherever it has been moved to, and of the sources.
 std::vector<std::filesystem::path> data_folders() {
     std::vector<std::filesystem::path> folders;
     Dl_info library = {};
@@ -24,26 +26,52 @@ std::vector<std::filesystem::path> data_folders() {
     return folders;
 }
 
+/// Where a relative name may lead, in this order; the working folder first.
+std::vector<std::filesystem::path> search_folders(Scenario const& scenario) {
+    std::vector<std::filesystem::path> folders{""};
+    if (!scenario.file.empty()) {
+        folders.push_back(scenario.file.parent_path());
+    }
+    std::ranges::move(data_folders(), std::back_inserter(folders));
+    return folders;
+}
+
+/// The folders as absolute paths, each once.
+std::vector<std::string> folder_names(std::vector<std::filesystem::path> const& folders) {
+    std::vector<std::string> names;
+    for (std::filesystem::path const& folder : folders) {
+        std::error_code ignored;
+        std::filesystem::path const full = std::filesystem::weakly_canonical(
+            folder.empty() ? std::filesystem::current_path(ignored) : folder, ignored);
+        std::string name = full.string();
+        if (std::filesystem::is_directory(full, ignored) && std::ranges::find(names, name) == names.end()) {
+            names.push_back(std::move(name));
+        }
+    }
+    return names;
+}
+
 }  // namespace
 
 std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name) {
-    std::filesystem::path path(name);
+    std::filesystem::path const path(name);
     std::error_code ignored;
-    if (path.empty() || std::filesystem::exists(path, ignored)) {
+    if (path.empty() || (path.is_absolute() && std::filesystem::exists(path, ignored))) {
         return path;
     }
+    std::string looked_for;
     if (path.is_relative()) {
-        for (std::filesystem::path const& folder : data_folders()) {
+        std::vector<std::filesystem::path> const folders = search_folders(scenario);
+        for (std::filesystem::path const& folder : folders) {
             if (std::filesystem::exists(folder / path, ignored)) {
                 return folder / path;
             }
         }
+        looked_for = fmt::format("; it was looked for in {}", fmt::join(folder_names(folders), ", then in "));
     }
     throw ConfigError(
-        fmt::format("{}: {}: there is no file '{}'; it is looked for from the working folder ({}), then in the "
-                    "folder of Pogosim{}",
-                    where_at_top(scenario, key), key, name, std::filesystem::current_path(ignored).string(),
-                    key == "arena_file" ? ". Arenas that come along: arenas/disk.csv, arenas/square.csv, ..." : ""));
+        fmt::format("{}: {}: there is no file '{}'{}{}", where_at_top(scenario, key), key, name, looked_for,
+                    key == "arena_file" ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
 }
 
 }  // namespace pogosim

@@ -8,8 +8,9 @@
 
 namespace pogosim {
 
-/// A file that the configuration names under `key`: below the working folder, else below the folders of what comes
-/// along. Throws ConfigError when there is none. An empty name stays empty.
+/// A file that the configuration names under `key`. A relative name is looked for in the working folder, then beside
+/// the configuration, then in the folders of what is installed or bundled with Pogosim. Throws ConfigError, naming
+/// them, when there is none. An empty name stays empty.
 std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name);
 
 }  // namespace pogosim

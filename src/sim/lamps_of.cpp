@@ -1,11 +1,9 @@
 #include "sim/lamps_of.hpp"
 
-#include <fmt/format.h>
-
 #include <string>
 #include <variant>
 
-#include "base/error.hpp"
+#include "base/log.hpp"
 
 namespace pogosim {
 
@@ -16,26 +14,25 @@ bool is_between(float low, float value, float high) {
     return value >= low - kMarginMm && value <= high + kMarginMm;
 }
 
-[[noreturn]] void fail_outside(Scenario const& scenario, ObjectConfig const& object, std::string const& axis,
-                               Vec2 centre_mm, Arena const& arena) {
+void warn_outside(Scenario const& scenario, ObjectConfig const& object, std::string const& axis, Vec2 centre_mm,
+                  Arena const& arena) {
     // The key that says where: center_x of an orbit, else x.
-    Node const* const objects = scenario.resolved.find("objects");
-    Node const* const entry = objects != nullptr ? objects->find(object.category) : nullptr;
+    Node const* const entry = node_of(scenario, object);
     bool const is_orbit = entry != nullptr && entry->find("center_" + axis) != nullptr;
-    throw ConfigError(
-        fmt::format("{}: the lamp's centre ({:g}, {:g}) is outside of {}; coordinates of older configurations may need "
-                    "'arena_stretch: true'",
-                    where_in_object(scenario, object, is_orbit ? "center_" + axis : axis), centre_mm.x, centre_mm.y,
-                    arena_text(arena)));
+    log().warn(
+        "{}: the lamp's centre ({:g}, {:g}) is outside of {}; coordinates of older configurations may need "
+        "'arena_stretch: true'",
+        where_in_object(scenario, object, is_orbit ? "center_" + axis : axis), centre_mm.x, centre_mm.y,
+        arena_text(arena));
 }
 
-void require_in_arena(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot, Arena const& arena) {
+void look_whether_in_arena(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot,
+                           Arena const& arena) {
     Box const& bounds = arena.bounds;
     if (!is_between(bounds.min.x, spot.centre_mm.x, bounds.max.x)) {
-        fail_outside(scenario, object, "x", spot.centre_mm, arena);
-    }
-    if (!is_between(bounds.min.y, spot.centre_mm.y, bounds.max.y)) {
-        fail_outside(scenario, object, "y", spot.centre_mm, arena);
+        warn_outside(scenario, object, "x", spot.centre_mm, arena);
+    } else if (!is_between(bounds.min.y, spot.centre_mm.y, bounds.max.y)) {
+        warn_outside(scenario, object, "y", spot.centre_mm, arena);
     }
 }
 
@@ -49,8 +46,8 @@ std::vector<LampSpec> lamps_of(Scenario const& scenario, Arena const& arena) {
         }
         LampSpec const& lamp = *object.spec.lamp;
         auto const* const spot = std::get_if<SpotSpec>(&lamp);
-        if (spot != nullptr && !is_everywhere(spot->shape)) {
-            require_in_arena(scenario, object, *spot, arena);
+        if (object.nb > 0 && spot != nullptr && !is_everywhere(spot->shape)) {
+            look_whether_in_arena(scenario, object, *spot, arena);
         }
         lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), lamp);
     }

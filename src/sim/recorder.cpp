@@ -28,7 +28,7 @@ std::int32_t packed_rgb(Rgb color) {
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-/// A rigid body has a place and a heading, a ring the place of its first body, a wall neither.
+/// A rigid body has a place and a heading, a ring the place of its first body, a wall its centre and heading 0.
 ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
     ObjectRow row{.time_s = static_cast<float>(world.time_s()),
                   .category = world.categories[object.category].name,
@@ -38,7 +38,11 @@ ObjectRow row_of(World const& world, Object const& object, std::optional<std::in
                   .y_mm = kNoValue,
                   .angle_rad = kNoValue,
                   .led_rgb = object.robot != kNone ? packed_rgb(world.robots.led[object.robot][0]) : 0};
-    if (object.body != kNone) {
+    if (object.body == kNone) {
+        row.x_mm = object.fixed_mm.x;
+        row.y_mm = object.fixed_mm.y;
+        row.angle_rad = 0.0F;
+    } else {
         Vec2 const place_mm = wrapped(world, world.bodies.position_mm[object.body]);
         row.x_mm = place_mm.x;
         row.y_mm = place_mm.y;

@@ -99,6 +99,7 @@ struct Object {
     std::uint32_t robot = kNone;   // index into World::robots
     std::uint32_t body = kNone;    // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;  // more than one: a ring, in this order
+    Vec2 fixed_mm{};  // where it stands when it has no body; along the arena's walls: the centre of its box
 };
 
 /// Where an object with Emitters::outline sends and receives.

@@ -139,14 +139,14 @@ def test_rows_stand_in_order_of_creation_at_every_time(mixed: Run) -> None:
         assert list(zip(now["robot_category"], now["subpart_id"])) == expected
 
 
-def test_what_has_a_place_has_one_and_what_has_none_is_empty(mixed: Run) -> None:
+def test_everything_has_a_place_and_what_bends_has_no_angle(mixed: Run) -> None:
     frame = mixed.frame()
     kind = frame["robot_category"].map({name: entry["type"] for name, entry in OBJECTS.items()})
     is_wall = kind == "pogowall"
     is_dot = frame["subpart_id"] >= 0
-    assert (frame[["x", "y"]].isna().all(axis=1) == is_wall).all()
-    assert (frame["angle"].isna() == (is_wall | kind.isin(["membrane", "rectmembrane"]))).all()
-    assert np.isfinite(frame.loc[~is_wall, ["x", "y"]]).all(axis=None)
+    assert (frame["angle"].isna() == kind.isin(["membrane", "rectmembrane"])).all()
+    assert np.isfinite(frame[["x", "y"]]).all(axis=None)
+    assert (frame.loc[is_wall, "angle"] == 0.0).all()
     ticks = mixed.table().column("pogobot_ticks").to_pandas(integer_object_nulls=True)
     has_none = np.array([tick is None for tick in ticks])
     assert (has_none == (kind == "passive_object")).all()

@@ -267,9 +267,10 @@ def test_lighthouse_is_a_note(tmp_path: Path) -> None:
 
 
 def test_wall_with_a_program_glows_in_the_colour_of_its_led(tmp_path: Path) -> None:
-    wall = others("walls", [math.nan], [math.nan], math.nan)
+    wall = others("walls", [200.0], [200.0], 0.0)
     picture_mm = scene(tmp_path, {"walls": {"type": "pogowall", "geometry": "arena"}}, wall)
     assert is_floor(scene(tmp_path, {}).at(4, 200))
+    assert is_floor(picture_mm.at(200, 200))  # where the row of the wall says it is
     red, green, blue = picture_mm.at(4, 200)
     assert green > max(red, blue) + 0.1
     island = {"type": "pogowall", "geometry": "disk", "radius": 50, "x": 200, "y": 200}
