@@ -58,6 +58,7 @@ std::string where_in_object(Scenario const& scenario, ObjectConfig const& object
 
 Scenario load_scenario(std::string const& path, LoadOptions const& options) {
     Scenario scenario;
+    scenario.file = path;
     scenario.resolved = resolved_tree(path, options.overrides);
     if (scenario.resolved.kind != Node::Kind::map) {
         fail_expected({scenario.resolved, "the top level"}, "a map of keys");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,6 +65,7 @@ struct OutputConfig {
 };
 
 struct Scenario {
+    std::filesystem::path file;  // the configuration; relative names are also looked for beside it
     std::string arena_file = "test.csv";
     double arena_surface_mm2 = 1.0e6;
     bool arena_stretch = false;
