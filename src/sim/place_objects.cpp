@@ -161,6 +161,22 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     return make_arena({moved(space, pose.position_mm, pose.heading_rad)});
 }
 
+/// A lamp may light more than the arena, but nothing starts beyond the walls.
+void check_inside(Scenario const& scenario, World const& world, ObjectConfig const& root,
+                  std::vector<std::vector<Placement>> const& poses) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        bool const is_placed = is_placed_by_formation(scenario.objects[i]);
+        for (Placement const& pose : poses[i]) {
+            if (is_placed && !stands_inside(world, pose.position_mm)) {
+                throw ConfigError(
+                    fmt::format("{}: '{}' reaches beyond {}, and some of what it holds would start there; "
+                                "move it or make it smaller",
+                                where_root(scenario), root.category, arena_text(world.arena)));
+            }
+        }
+    }
+}
+
 /// Lets the formation place the objects of these entries together.
 void place_entries(Scenario const& scenario, FormationSpec const& formation, FormationGround const& ground,
                    std::vector<std::size_t> const& entries, RandomStream& random,
@@ -194,7 +210,9 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     std::size_t const root = root_entry(scenario);
     RandomStream random(seed, kFormationStream);
     FormationSpec formation = scenario.formation;
-    formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
+    if (formation.name == "imported") {
+        formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
+    }
 
     auto const add_obstacles = [&](std::size_t i) {
         std::ranges::move(obstacles_of(scenario.objects[i], poses[i]), std::back_inserter(obstacles));
@@ -234,6 +252,9 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
         }
         throw ConfigError(fmt::format("{} (inside of '{}': {})", error.what(), scenario.objects[root].category,
                                       where_root(scenario)));
+    }
+    if (root != kNoEntry) {
+        check_inside(scenario, world, scenario.objects[root], poses);
     }
     return poses;
 }

@@ -1,6 +1,7 @@
 // Objects that cannot be made or do not fit: one message that names file, line, object and key.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -193,11 +194,67 @@ TEST(MissingFiles, OnlyArenasAreOfferedArenas) {
     std::string const head = "initial_formation: imported\nformation_filename: poses.csv\narena_file: square.csv\n";
     Folder::write("x.yaml", head + "objects:\n  robots: {type: pogobot, geometry: disk}\n");
     auto const message = [] { return error_of([] { build_world(load_scenario("x.yaml", {}), 1); }); };
-    EXPECT_EQ(message().find("x.yaml:3: arena_file: there is no file 'square.csv'; "), 0U) << message();
-    EXPECT_NE(message().find("Arenas that come along"), std::string::npos) << message();
+    EXPECT_EQ(message().find("x.yaml:3: arena_file: there is no file 'square.csv'; it was looked for in "), 0U)
+        << message();
+    EXPECT_NE(message().find("Bundled arenas"), std::string::npos) << message();
     Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
-    EXPECT_EQ(message().find("x.yaml:2: formation_filename: there is no file 'poses.csv'; "), 0U) << message();
-    EXPECT_EQ(message().find("Arenas that come along"), std::string::npos) << message();
+    EXPECT_EQ(message().find("x.yaml:2: formation_filename: there is no file 'poses.csv'; it was looked for in "), 0U)
+        << message();
+    EXPECT_EQ(message().find("Bundled arenas"), std::string::npos) << message();
+}
+
+TEST(BadObjects, NothingStartsOutsideOfTheArenaThoughALampReachesOut) {
+    std::string const robots = "  crowd: {type: pogobot, geometry: disk, nb: 20}\n";
+    std::string const lamp = "  lamp: {type: static_light, geometry: disk, radius: 300, y: 500, x: ";
+    EXPECT_EQ(error_with(robots + lamp + "500}\n", "lamp"), "no error");
+    for (char const* x : {"0", "-500"}) {
+        EXPECT_EQ(error_with(robots + lamp + x + "}\n", "lamp"),
+                  "x.yaml:4: initial_formation_root_object: 'lamp' reaches beyond the arena, which spans (0.0, 0.0) to "
+                  "(1000.0, 1000.0) mm, and some of what it holds would start there; move it or make it smaller");
+    }
+}
+
+TEST(MissingFiles, FilesOfOtherFormationsAreNotLookedFor) {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
+    Folder::write(
+        "x.yaml",
+        "arena_file: square.csv\nformation_filename: none.csv\nobjects:\n  robots: {type: pogobot, geometry: disk}\n");
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+}
+
+TEST(MissingFiles, FilesBesideTheConfigurationAreFoundAfterThoseOfTheWorkingFolder) {
+    Folder const folder;
+    Warnings const warnings;
+    std::filesystem::create_directory("conf");
+    Folder::write("conf/x.yaml",
+                  "arena_file: own.csv\narena_surface: 250000\nobjects:\n  robots: {type: pogobot, geometry: disk}\n");
+    auto const width_mm = [] { return build_world(load_scenario("conf/x.yaml", {}), 1).arena.bounds.size().x; };
+    Folder::write("conf/own.csv", "0,0\n500,0\n500,500\n0,500\n");
+    EXPECT_FLOAT_EQ(width_mm(), 500.0F);
+    Folder::write("own.csv", "0,0\n4,0\n4,1\n0,1\n");
+    EXPECT_FLOAT_EQ(width_mm(), 1000.0F);
+}
+
+TEST(MissingFiles, MessageSaysWhereWasLooked) {
+    Folder const folder;
+    Warnings const warnings;
+    std::filesystem::create_directory("conf");
+    std::string const here = std::filesystem::canonical(".").string();
+    std::string const head = "objects:\n  robots: {type: pogobot, geometry: disk}\narena_file: ";
+    auto const message = [&](std::string const& file) {
+        Folder::write("conf/x.yaml", head + file + "\n");
+        return error_of([] { build_world(load_scenario("conf/x.yaml", {}), 1); });
+    };
+    EXPECT_EQ(message("none.csv")
+                  .find("conf/x.yaml:3: arena_file: there is no file 'none.csv'; it was looked for in " + here +
+                        ", then in " + here + "/conf, then in "),
+              0U)
+        << message("none.csv");
+    EXPECT_EQ(message("/none/at/all.csv"),
+              "conf/x.yaml:3: arena_file: there is no file '/none/at/all.csv'. Bundled arenas: arenas/disk.csv, "
+              "arenas/square.csv, ...");
 }
 
 }  // namespace
