@@ -85,7 +85,7 @@ private:
     std::vector<Vec2> positions_;
     std::vector<Candidate> candidates_;
     std::vector<Sight> sights_;
-    std::vector<Interval> shadows_;  // disjoint, sorted
+    std::vector<Interval> shadows_;  // disjoint, in no order
     std::vector<Receiver> receivers_;
 };
 

@@ -1,5 +1,6 @@
-// What is fixed for a whole run: what the objects of each category are made of, as the configuration gave it. Defaults
-// stand here and nowhere else.
+// What is fixed for a whole run: what the objects of each category are made of, as the configuration gave it. The
+// defaults of these parameters stand here, those of shapes in geometry/shape.hpp and those of a run in
+// config/scenario.hpp.
 #pragma once
 
 #include <algorithm>
