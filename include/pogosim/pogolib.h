@@ -36,8 +36,11 @@ extern "C++" {
 #define POGO_BEGIN_API _Pragma("GCC visibility push(default)")
 #define POGO_END_API _Pragma("GCC visibility pop")
 
-// The real main() is the simulator's; it calls the program's once for each robot.
-#define main robot_main
+// The real main() is the simulator's; it calls the program's once for each robot, by the name robot_main, with one
+// argument: the name of the program. Both `int main(void)` and `int main(int argc, char** argv)` do.
+#define main(...) \
+    POGO_MAIN_PICK(__VA_ARGS__, POGO_MAIN_WITH_ARGUMENTS, POGO_MAIN_WITH_ARGUMENTS, robot_main, )(__VA_ARGS__)
+#define POGO_MAIN_PICK(first, second, third, chosen, ...) chosen
 
 #include "pogosim/pogolib/console.h"
 #include "pogosim/pogolib/helper.h"

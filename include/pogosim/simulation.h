@@ -70,6 +70,7 @@ void data_add_column_int8(char const* name);
 void data_add_column_int16(char const* name);
 void data_add_column_int32(char const* name);
 void data_add_column_int64(char const* name);
+void data_add_column_float(char const* name);
 void data_add_column_double(char const* name);
 void data_add_column_string(char const* name);
 void data_add_column_bool(char const* name);
@@ -79,11 +80,12 @@ void data_add_column_float16(char const* name);
 ///@{
 /// Sets the value of a column in this object's row; only in callback_export_data, elsewhere it does nothing, with a
 /// warning. A column that is not set is null, as is a text that is NULL. An unknown column or another type than
-/// declared is an error; a column left out by `data_logger_fields` is ignored. float16 holds 11 bits and at most 65504.
+/// declared is an error; a column left out by `data_logger_fields` is ignored. float holds 24 bits, float16 11 bits and at most 65504.
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
 void data_set_value_int32(char const* name, int32_t value);
 void data_set_value_int64(char const* name, int64_t value);
+void data_set_value_float(char const* name, float value);
 void data_set_value_double(char const* name, double value);
 void data_set_value_string(char const* name, char const* value);
 void data_set_value_bool(char const* name, bool value);
@@ -101,8 +103,16 @@ POGO_END_API
 }
 #endif
 
+#define POGO_CONFIGURABLE_TYPES                                                                                    \
+    "init_from_configuration() reads variables of type bool, float, double, int8_t to int32_t and uint8_t to "     \
+    "uint32_t; use init_array_from_configuration() for arrays of float, double or char (texts), and one call for " \
+    "each member of a struct"
 #ifdef __cplusplus
 extern "C++" {
+template <class T>
+inline void pogosim_init_variable(T&, char const*) {
+    static_assert(sizeof(T) == 0, POGO_CONFIGURABLE_TYPES);
+}
 inline void pogosim_init_variable(bool& v, char const* name) {
     init_bool_from_configuration(&v, name, v);
 }
@@ -149,10 +159,16 @@ inline void pogosim_init_array(char* a, char const* name, size_t n) {
     (POGO_NOTE_CONFIGURED(array, ), pogosim_init_array((array), #array, sizeof(array) / sizeof((array)[0])))
 #else
 // clang-format off
+#define POGO_CHECK_CONFIGURABLE(variable)                                                                       \
+    __extension__({ _Static_assert(                                                                             \
+        _Generic((variable), bool: 1, float: 1, double: 1, int32_t: 1, uint32_t: 1, int16_t: 1, uint16_t: 1,    \
+                 int8_t: 1, uint8_t: 1, default: 0), POGO_CONFIGURABLE_TYPES); })
+// Never called: the assertion has said why.
+void pogosim_init_unsupported(void const* variable, char const* name, ...);
 /// Sets a variable from `parameters` by its own name, as in `init_from_configuration(walk.speed)` for
 /// `parameters.walk.speed`; its present value is the default. Types: bool, float, double and integers of up to 32 bits.
 #define init_from_configuration(variable)               \
-    (POGO_NOTE_CONFIGURED(variable, ), _Generic((variable), \
+    (POGO_NOTE_CONFIGURED(variable, ), POGO_CHECK_CONFIGURABLE(variable), _Generic((variable), \
         bool: init_bool_from_configuration,             \
         float: init_float_from_configuration,           \
         double: init_double_from_configuration,         \
@@ -161,7 +177,8 @@ inline void pogosim_init_array(char* a, char const* name, size_t n) {
         int16_t: init_int16_from_configuration,         \
         uint16_t: init_uint16_from_configuration,       \
         int8_t: init_int8_from_configuration,           \
-        uint8_t: init_uint8_from_configuration)(&(variable), #variable, (variable)))
+        uint8_t: init_uint8_from_configuration,         \
+        default: pogosim_init_unsupported)(&(variable), #variable, (variable)))
 /// The same for arrays of float or double, and for texts (arrays of char).
 #define init_array_from_configuration(array)            \
     (POGO_NOTE_CONFIGURED(array, ), _Generic(&(array)[0], \

@@ -73,6 +73,21 @@ std::string unknown_argument(CLI::App const& app) {
     return "unknown argument '" + typed + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
 }
 
+/// CLI11 counts what it required and what it received.
+std::string problem_of(CLI::App const& app, CLI::ParseError const& error) {
+    if (dynamic_cast<CLI::ArgumentMismatch const*>(&error) == nullptr) {
+        return error.what();
+    }
+    for (CLI::Option const* option : app.get_options()) {
+        bool const takes_one = option->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw;
+        if (takes_one && option->count() > 1) {
+            return option->get_name() + " can be given only once";
+        }
+    }
+    std::string const what = error.what();
+    return what.substr(0, what.find(':')) + " needs a value";
+}
+
 }  // namespace
 
 ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
@@ -86,7 +101,7 @@ ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
         parsed.exit_code = app.exit(asked);
     } catch (CLI::ParseError const& error) {
         // An option that nobody knows says more than one that is missing.
-        parsed.exit_code = report_usage(app, app.remaining().empty() ? error.what() : unknown_argument(app));
+        parsed.exit_code = report_usage(app, app.remaining().empty() ? problem_of(app, error) : unknown_argument(app));
     }
     return parsed;
 }

@@ -82,7 +82,7 @@ Status append_text(ArrayBuilder& builder, CellValue const& cell) {
     return well_formed_prefix(text) == text.size() ? texts.Append(text) : texts.Append(replace_malformed(text));
 }
 
-constexpr std::array<UserColumnType, 8> kUserColumnTypes{{
+constexpr std::array<UserColumnType, 9> kUserColumnTypes{{
     {ColumnType::int8, arrow::int8, append_cell<arrow::Int8Builder, std::int64_t>},
     {ColumnType::int16, arrow::int16, append_cell<arrow::Int16Builder, std::int64_t>},
     {ColumnType::int32, arrow::int32, append_cell<arrow::Int32Builder, std::int64_t>},
@@ -91,6 +91,7 @@ constexpr std::array<UserColumnType, 8> kUserColumnTypes{{
     {ColumnType::text, arrow::utf8, append_text},
     {ColumnType::boolean, arrow::boolean, append_bool},
     {ColumnType::float16, arrow::float16, append_half},
+    {ColumnType::float32, arrow::float32, append_cell<arrow::FloatBuilder, double>},
 }};
 
 UserColumnType const& user_column_type(ColumnType type) {

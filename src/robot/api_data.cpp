@@ -24,8 +24,8 @@ using pogosim::without_exceptions;
 namespace {
 
 /// As in the names of the functions.
-constexpr std::array<std::string_view, 8> kTypeNames{"int8",   "int16",  "int32", "int64",
-                                                     "double", "string", "bool",  "float16"};
+constexpr std::array<std::string_view, 9> kTypeNames{"int8",   "int16", "int32",   "int64", "double",
+                                                     "string", "bool",  "float16", "float"};
 
 std::string_view name_of(ColumnType type) {
     return kTypeNames[static_cast<std::size_t>(type)];
@@ -115,6 +115,10 @@ void data_add_column_float16(char const* name) {
     add_column(__func__, name, ColumnType::float16);
 }
 
+void data_add_column_float(char const* name) {
+    add_column(__func__, name, ColumnType::float32);
+}
+
 void data_set_value_int8(char const* name, int8_t value) {
     set_value(__func__, name, ColumnType::int8, std::int64_t{value});
 }
@@ -138,6 +142,10 @@ void data_set_value_bool(char const* name, bool value) {
 }
 void data_set_value_float16(char const* name, float value) {
     set_value(__func__, name, ColumnType::float16, static_cast<double>(value));
+}
+
+void data_set_value_float(char const* name, float value) {
+    set_value(__func__, name, ColumnType::float32, static_cast<double>(value));
 }
 
 void enable_data_export() {

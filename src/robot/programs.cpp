@@ -1,6 +1,9 @@
 #include "robot/programs.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <string_view>
 
@@ -90,6 +93,20 @@ void measure_velocity(Accelerometer& meter, Vec2 velocity_mm_s, std::int64_t clo
     meter.current_mm_s = velocity_mm_s;
     meter.interval_s = first ? 0.0F : static_cast<float>(clock_us - meter.current_us) * seconds_per_us;
     meter.current_us = clock_us;
+}
+
+char const* program_name() {
+#ifdef __APPLE__
+    return getprogname();
+#else
+    return program_invocation_name;
+#endif
+}
+
+/// As the C library calls main(): with arguments, whether the program's takes them or not.
+void call_main(char** arguments) {
+    using Main = int (*)(int, char**, char**);
+    reinterpret_cast<Main>(reinterpret_cast<void (*)()>(&robot_main))(1, arguments, environ);
 }
 
 }  // namespace
@@ -195,7 +212,10 @@ void Programs::construct_user_data(std::uint32_t robot) {
 void Programs::run_main(std::uint32_t robot) {
     enter(robot, "main");
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
-    robot_main();
+    // A program may write to its arguments, so each robot gets them anew.
+    program_name_ = program_name();
+    main_arguments_ = {program_name_.data(), nullptr};
+    call_main(main_arguments_.data());
     leave();
     Program& program = computer(robot).program;
     program.export_data = callback_export_data;

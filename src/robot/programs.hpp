@@ -2,7 +2,9 @@
 // function that does so belongs inside call_user_code().
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "robot/context.hpp"
@@ -67,6 +69,8 @@ private:
     std::vector<Computer> computers_;
     Computer system_;  // of the global step
     FencedMemory user_data_;
+    std::string program_name_;
+    std::array<char*, 2> main_arguments_{};  // of the program's main(): its name, and NULL
 };
 
 }  // namespace pogosim

@@ -9,14 +9,14 @@
 
 namespace pogosim {
 
-enum class ColumnType { int8, int16, int32, int64, float64, text, boolean, float16 };
+enum class ColumnType { int8, int16, int32, int64, float64, text, boolean, float16, float32 };
 
 struct ColumnSpec {
     std::string name;
     ColumnType type = ColumnType::float64;
 };
 
-/// One value; monostate is null. Integers of all widths travel as int64, float16 as double.
+/// One value; monostate is null. Integers of all widths travel as int64, float16 and float32 as double.
 using CellValue = std::variant<std::monostate, std::int64_t, double, bool, std::string>;
 
 /// User part of one row, in the order of the columns.

@@ -20,6 +20,7 @@ static void create_data_schema(void) {
     data_add_column_string("text");
     data_add_column_bool("flag");
     data_add_column_float16("f16");
+    data_add_column_float("f32");
     data_add_column_int32("never_set");
 }
 
@@ -32,10 +33,12 @@ static void set_low_values(void) {
     data_set_value_string("text", "");
     data_set_value_bool("flag", false);
     data_set_value_float16("f16", -1.0e6f);
+    data_set_value_float("f32", -1.0e6f);
 }
 
 // In another order than the columns.
 static void set_high_values(void) {
+    data_set_value_float("f32", 1.0f / 3.0f);
     data_set_value_float16("f16", 1.0f / 3.0f);
     data_set_value_bool("flag", true);
     data_set_value_string("text", "h\xc3\xa9, \"quoted\"\n");

@@ -55,6 +55,7 @@ def test_columns_have_the_names_order_and_types_of_the_format(program: Compile, 
         ("text", "string"),
         ("flag", "bool"),
         ("f16", "halffloat"),
+        ("f32", "float"),
         ("never_set", "int32"),
     ]
 
@@ -78,10 +79,12 @@ def test_values_at_the_ends_of_their_ranges_come_back(program: Compile, tmp_path
     for row in cells(table, 0):
         assert {name: row[name] for name in low} == low
         assert row["f16"] == -np.inf
+        assert row["f32"] == -1e6
     for row in cells(table, 1):
         assert {name: row[name] for name in high} == high
         assert row["text"] == 'h\u00e9, "quoted"\n'
         assert row["f16"] == np.float16(1 / 3)
+        assert row["f32"] == np.float32(1 / 3)
 
 
 def test_cell_that_is_not_set_is_null_and_nothing_of_other_rows_leaks_into_it(program: Compile, tmp_path: Path) -> None:

@@ -51,9 +51,7 @@ SETTINGS = {
         "text": "too long a text",
     },
 }
-READ = (
-    "[ROBOT #2] [PRINTF] read 1 -8 -1600 -320000 200 60000 4000000000 0.5 1e+100 2.5 [10 20.5 30] [0.25 0.75] too lon"
-)
+READ = "[SYSTEM] [PRINTF] read 1 -8 -1600 -320000 200 60000 4000000000 0.5 1e+100 2.5 [10 20.5 30] [0.25 0.75] too lon"
 PRINTED = [
     "sum 0",
     "rainbow 25 0 0, light 0, temperature 42.0",
@@ -74,7 +72,9 @@ def test_sample_compiles_without_warnings_and_prints_the_same(name: str, flags: 
     sample = compile_program(tmp_path / "sample", PROGRAMS / "sample.c", compiler=name, flags=[*flags, *STRICT])
     result = run(sample, tmp_path, SETTINGS)
     assert (result.code, result.errors) == (0, "")
-    assert result.robot_lines == [READ, *(f"[ROBOT #0] [PRINTF] {line}" for line in PRINTED)]
+    printed = [line.split("[info] ")[1] for line in result.output.splitlines() if "[PRINTF]" in line]
+    who = ["SYSTEM" if "__system" in line else "ROBOT #0" for line in PRINTED]
+    assert printed == [READ, *(f"[{name}] [PRINTF] {line}" for name, line in zip(who, PRINTED, strict=True))]
 
 
 @pytest.mark.parametrize("name", C_COMPILERS)
@@ -162,6 +162,37 @@ int main() { pogobot_start(user_init, nullptr); return 0; }
     assert result.robot_lines == [f"[ROBOT #{robot}] [PRINTF] 6 0 6 of 4" for robot in range(3)]
 
 
+MAINS = [
+    "int main(void)",
+    "int main()",
+    "int main(int argc, char** argv)",
+    "int main(int argc, char* argv[])",
+    "int main(int argc, char const** argv)",
+    "int main(int argc, char** argv, char** environment)",
+]
+
+
+@pytest.mark.parametrize("signature", MAINS)
+def test_main_may_take_arguments_in_every_standard(signature: str, tmp_path: Path) -> None:
+    source = tmp_path / "main"
+    told = 'printf("%d %s %d\\n", argc, argv[0], argv[1] == NULL);' if "argc" in signature else 'printf("none\\n");'
+    used = "(void)environment;" if "environment" in signature else ""
+    code = f'#include "pogobase.h"\n{signature} {{\n{used}{told}\nreturn 0;\n}}\n'
+    compiled: list[Path] = []
+    for names, standards, suffix in [(C_COMPILERS, C_STANDARDS, ".c"), (CPP_COMPILERS, CPP_STANDARDS, ".cpp")]:
+        path = source.with_suffix(suffix)
+        path.write_text(code)
+        for name in names:
+            for standard in standards:
+                compiled.append(tmp_path / f"{name}-{standard}-{suffix[1:]}".replace("+", "p"))
+                compile_program(compiled[-1], path, compiler=name, flags=[f"-std={standard}", *STRICT, "-Wpedantic"])
+    for binary in (compiled[0], compiled[-1]):
+        result = run(binary, tmp_path)
+        assert result.code == 0
+        told_by_main = f"1 {binary} 1" if "argc" in signature else "none"
+        assert result.robot_lines == [f"[ROBOT #{robot}] [PRINTF] {told_by_main}" for robot in range(3)]
+
+
 def test_program_without_main_does_not_link(tmp_path: Path) -> None:
     source = tmp_path / "main.c"
     source.write_text('#include "pogobase.h"\n')
@@ -185,3 +216,18 @@ def test_library_shows_users_the_interface_and_nothing_else() -> None:
 def test_interface_layer_is_short_enough_to_be_read() -> None:
     lines = sum(len(path.read_text().splitlines()) for path in (ROOT / "src" / "interface").glob("*.c"))
     assert lines < 200
+
+
+@pytest.mark.parametrize("suffix", [".c", ".cpp"])
+@pytest.mark.parametrize("variable", ["int* v", "struct { int a; } v", "int v[3]", "int64_t v", "char v[9]"])
+def test_variable_that_cannot_be_read_from_the_configuration_does_not_compile_and_says_why(
+    suffix: str, variable: str, tmp_path: Path
+) -> None:
+    source = (tmp_path / "main").with_suffix(suffix)
+    source.write_text(
+        f'#include "pogobase.h"\nstatic {variable};\nint main(void) {{ init_from_configuration(v); return 0; }}\n'
+    )
+    with pytest.raises(
+        AssertionError, match=r"init_from_configuration\(\) reads variables of type bool, float, double"
+    ):
+        compile_program(tmp_path / "program", source, flags=[])

@@ -15,8 +15,24 @@ int pogosim_vprintf(char const* format, va_list arguments);
 int pogosim_putchar(int character);
 int pogosim_puts(char const* text);
 
-// The program's main(), renamed by pogosim/pogolib.h.
+// The program's main(), renamed by pogosim/pogolib.h. With arguments it has the same name for the linker.
 int robot_main(void);
+#define POGO_SYMBOL_PREFIX(prefix) POGO_SYMBOL_PREFIX_RAW(prefix)
+#define POGO_SYMBOL_PREFIX_RAW(prefix) #prefix
+#define POGO_ROBOT_MAIN __asm__(POGO_SYMBOL_PREFIX(__USER_LABEL_PREFIX__) "robot_main")
+#ifdef __cplusplus
+#define POGO_MAIN_WITH_ARGUMENTS robot_main_with_arguments
+extern "C++" {
+int robot_main_with_arguments(int argc, char** argv) POGO_ROBOT_MAIN;
+int robot_main_with_arguments(int argc, char const** argv) POGO_ROBOT_MAIN;
+int robot_main_with_arguments(int argc, char** argv, char** environment) POGO_ROBOT_MAIN;
+}
+#else
+// In C there is one declaration, and only the program knows the types in it.
+#define POGO_MAIN_WITH_ARGUMENTS(...)                                                              \
+    robot_main_with_arguments(__VA_ARGS__) POGO_ROBOT_MAIN __attribute__((visibility("default"))); \
+    int robot_main_with_arguments(__VA_ARGS__)
+#endif
 
 POGO_END_API
 #ifdef __cplusplus
