@@ -24,4 +24,4 @@ configure "$folder" "$type" -DPOGOSIM_BUILD_EXAMPLES=ON -DPOGOSIM_BUILD_TESTS=OF
 cmake --build "$folder" --parallel "$(processors)" || fail "the compiler" "See its message above"
 
 echo "Built the library in $folder and the examples in their folders ($type)."
-echo "Try:  ./examples/hanabi/hanabi -c conf/simple.yaml"
+echo "Try:  ./examples/hanabi/hanabi -c conf/demo.yaml"

@@ -7,7 +7,7 @@
 // older. Robots keep telling each other age and colour, and a robot adopts the colour of an older one. So each new
 // colour runs through the swarm like a firework.
 //
-//     ./examples/hanabi/hanabi -c conf/simple.yaml
+//     ./examples/hanabi/hanabi -c conf/demo.yaml
 //
 // The robots stand still; on a real robot uncomment MOVING_ROBOTS to let them circle, in the simulator set
 // `parameters: {moving_robots: true}`.

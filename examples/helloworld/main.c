@@ -6,7 +6,7 @@
 // Every robot turns to one side under a blue light for ten seconds, then to the other side under a red one, and so on.
 // Robot 0 greets every 1000 ticks.
 //
-//     ./examples/helloworld/helloworld -c conf/simple.yaml
+//     ./examples/helloworld/helloworld -c conf/helloworld.yaml
 #include "pogobase.h"
 
 #define PERIOD_US 10000000  // time between two changes of side

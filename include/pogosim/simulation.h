@@ -40,7 +40,7 @@ extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 ///@{
 /// Sets the variable to the value under `parameters.NAME` (dots lead into maps and lists), or to the default when it is
 /// absent. A value of the wrong type or out of the range of the variable's type is an error; integers truncate
-/// fractions.
+/// fractions, with a warning.
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
 void init_float_from_configuration(float* variable, char const* name, float const default_value);
 void init_double_from_configuration(double* variable, char const* name, double const default_value);
@@ -61,6 +61,15 @@ void init_double_array_from_configuration(double* array, char const* name, size_
 /// Sets a text (an array of `size` characters) to the one under `parameters.NAME`, truncated to `size` - 1 characters;
 /// an absent one changes nothing.
 void init_string_from_configuration(char* text, char const* name, size_t const size);
+
+/// Ends the run with a message that says where `parameters.NAME` stands, what was `expected` and what was found, and
+/// with exit code 2: for values that the program cannot work with.
+void refuse_parameter(char const* name, char const* expected);
+/// The same unless `value`, which was read from `parameters.NAME`, is from `min` to `max` (NaN never is).
+void check_parameter_range(char const* name, double value, double min, double max);
+/// Ends the run with a message, as refuse_parameter(), unless a variable set by init_from_configuration() is a number
+/// from `min` to `max`: `check_parameter(heartbeat_hz, 1, 1000)`.
+#define check_parameter(variable, min, max) check_parameter_range(#variable, (double)(variable), (min), (max))
 
 // ---- Data file ----
 

@@ -43,7 +43,7 @@ ExitCode simulate(CommandLine const& options) {
     }
 
     catch_interrupts();
-    Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar});
+    Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar, .strict = options.strict});
     return simulation.run();
 }
 

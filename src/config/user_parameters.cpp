@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/error.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -78,6 +79,20 @@ std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std
         numbers[i] = read_number({node->items[i], fmt::format("{}.{}", path_of(name), i)}, largest);
     }
     return numbers;
+}
+
+void refuse_parameter(Node const& parameters, std::string_view name, std::string_view expected) {
+    Node const* const node = find_path(parameters, name);
+    if (node == nullptr || node->kind == Node::Kind::null) {
+        throw ConfigError(fmt::format("{}: expected {}, found the program's own default", path_of(name), expected));
+    }
+    fail_expected({*node, path_of(name)}, expected);
+}
+
+void check_parameter_range(Node const& parameters, std::string_view name, double value, Range const& range) {
+    if (!range.contains(value)) {
+        refuse_parameter(parameters, name, "a number" + range.text());
+    }
 }
 
 }  // namespace pogosim

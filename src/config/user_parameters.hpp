@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/range.hpp"
 #include "config/tree.hpp"
 
 namespace pogosim {
@@ -32,5 +33,11 @@ std::optional<std::string> text_parameter(Node const& parameters, std::string_vi
 /// ConfigError.
 std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std::string_view name, std::size_t size,
                                                      double largest = kLargestNumber);
+
+/// Throws ConfigError, whatever the value is: the program expects another one.
+[[noreturn]] void refuse_parameter(Node const& parameters, std::string_view name, std::string_view expected);
+
+/// Throws ConfigError unless `value`, which the program has after reading this name, is in the range.
+void check_parameter_range(Node const& parameters, std::string_view name, double value, Range const& range);
 
 }  // namespace pogosim

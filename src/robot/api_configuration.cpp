@@ -100,3 +100,11 @@ void init_string_from_configuration(char* text, char const* name, size_t const s
         }
     });
 }
+
+void refuse_parameter(char const* name, char const* expected) {
+    without_exceptions([&] { context.services->parameters->refuse(name, expected); });
+}
+
+void check_parameter_range(char const* name, double value, double min, double max) {
+    without_exceptions([&] { context.services->parameters->check_range(name, value, min, max); });
+}

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 #include "robot/context.hpp"
 #include "robot/forked_child.hpp"
@@ -68,7 +69,17 @@ __attribute__((visibility("default"))) void exit(int status) noexcept {
 }
 }
 
-void pogobot_init() {}
+void pogobot_init() {
+    if (context.computer == nullptr) {
+        return;  // before main(), in a static constructor
+    }
+    pogosim::Program& program = context.computer->program;
+    if (program.registered && std::string_view(context.phase) == "main") {
+        context.services->warn_once(
+            "pogobot_init() is called after pogobot_start(), which never returns on a real robot: call it first");
+    }
+    program.prepared = true;
+}
 
 uint16_t pogobot_helper_getid() {
     require_robot(__func__);

@@ -31,9 +31,15 @@ static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
 /// Puts one transmission on the air.
 std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header, std::uint16_t header_bytes,
                    std::uint8_t const* payload) {
-    bool const valid =
-        header.payload_length <= MAX_PAYLOAD_SIZE_BYTES && (payload != nullptr || header.payload_length == 0);
-    if (!valid) {
+    if (header.payload_length > MAX_PAYLOAD_SIZE_BYTES) {
+        context.services->warn_once(
+            "a message of {} bytes was not sent: the payload of a message has at most {} bytes "
+            "(MAX_PAYLOAD_SIZE_BYTES); the sending function has returned {}",
+            header.payload_length, MAX_PAYLOAD_SIZE_BYTES, kNotSent);
+        return kNotSent;
+    }
+    if (payload == nullptr && header.payload_length > 0) {
+        context.services->warn_once("a message of {} bytes was not sent: its payload is NULL", header.payload_length);
         return kNotSent;
     }
     if (!context.has_robot() || emitters == 0 || power == 0) {
@@ -177,6 +183,7 @@ void pogobot_infrared_update() {}
 
 int pogobot_infrared_message_available() {
     require_robot(__func__);
+    context.computer->program.reads_messages = true;
     return context.has_robot() && !context.world->mailboxes.empty(context.robot) ? 1 : 0;
 }
 
@@ -190,6 +197,7 @@ void pogobot_infrared_clear_message_queue() {
 void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) {
     require_robot("pogobot_infrared_recover_next_message");
     require_argument(message, "pogobot_infrared_recover_next_message", "message");
+    context.computer->program.reads_messages = true;
     FrameHeader header;
     std::array<std::byte, MAX_PAYLOAD_SIZE_BYTES> payload;
     if (!context.has_robot() || !context.world->mailboxes.pop(context.robot, header, payload.data())) {

@@ -12,7 +12,23 @@ using pogosim::require_robot;
 namespace {
 
 bool is_motor(motor_id motor) {
-    return static_cast<int>(motor) >= 0 && static_cast<int>(motor) < kMotorCount;
+    bool const known = static_cast<int>(motor) >= 0 && static_cast<int>(motor) < kMotorCount;
+    if (!known) {
+        context.services->warn_once("there is no motor {}, and nothing is set: use motorL, motorR or motorB",
+                                    static_cast<int>(motor));
+    }
+    return known;
+}
+
+/// Powers above motorFull count as that, but what is negative in 16 bits was meant otherwise.
+void warn_if_negative(std::uint16_t power) {
+    if (power > INT16_MAX) {
+        context.services->warn_once(
+            "pogobot_motor_set was called with {}: powers are unsigned (0 to {}), so this one is {} and drives the "
+            "motor "
+            "at full power; to turn it backwards, use pogobot_motor_dir_set and a positive power",
+            static_cast<int>(static_cast<std::int16_t>(power)), static_cast<int>(motorFull), power);
+    }
 }
 
 }  // namespace
@@ -20,6 +36,7 @@ bool is_motor(motor_id motor) {
 void pogobot_motor_power_set(motor_id motor, uint16_t value) {
     require_robot(__func__);
     if (is_motor(motor)) {
+        warn_if_negative(value);
         context.computer->motors.power[motor] = std::min<uint16_t>(value, motorFull);
         context.computer->motors.driven = true;
     }

@@ -40,7 +40,14 @@ Vec2 acceleration_in_body_frame() {
 
 int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     require_robot(__func__);
-    if (sensor_number >= pogosim::kPhotosensorCount || !context.has_body()) {
+    if (sensor_number >= pogosim::kPhotosensorCount) {
+        context.services->warn_once(
+            "pogobot_photosensors_read: there is no light sensor {}, and -1 is returned: 0 is at the back, 1 at the "
+            "front left, 2 at the front right",
+            sensor_number);
+        return -1;
+    }
+    if (!context.has_body()) {
         return -1;
     }
     pogosim::World& world = *context.world;

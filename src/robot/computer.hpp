@@ -31,7 +31,9 @@ struct LoopGlobals {
 
 /// What the program registered for this robot.
 struct Program {
-    bool registered = false;  // a pogobot_start() named this robot's category
+    bool registered = false;      // a pogobot_start() named this robot's category
+    bool prepared = false;        // pogobot_init() was called
+    bool reads_messages = false;  // it looked into its queue, in user code or for msg_rx_fn
     void (*init)() = nullptr;
     void (*step)() = nullptr;
     void (*export_data)() = nullptr;

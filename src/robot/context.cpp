@@ -1,7 +1,5 @@
 #include "robot/context.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "base/log.hpp"
@@ -10,11 +8,16 @@ namespace pogosim {
 
 constinit thread_local Context context;
 
-void RunServices::warn_once(char const* text) {
-    if (std::find(warned.begin(), warned.end(), text) == warned.end()) {
-        warned.push_back(text);
-        log().warn("{}: {}", current_robot_name(), text);
+bool RunServices::is_first(std::string_view format) {
+    bool const first = std::find(warned.begin(), warned.end(), format) == warned.end();
+    if (first) {
+        warned.push_back(format);
     }
+    return first;
+}
+
+void RunServices::warn_of_robot(std::string const& text) {
+    log().warn("{}: {}", current_robot_name(), text);
 }
 
 std::string current_place() {

@@ -1,9 +1,13 @@
 // Who has the processor: what the functions of the C interface work on.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "robot/computer.hpp"
@@ -17,15 +21,18 @@ namespace pogosim {
 class ParameterSource {
 public:
     virtual ~ParameterSource() = default;
-    virtual std::optional<bool> boolean(std::string const& name) const = 0;
+    virtual std::optional<bool> boolean(std::string const& name) = 0;
     /// From -largest to largest, or .inf, -.inf or .nan.
-    virtual std::optional<double> number(std::string const& name, double largest) const = 0;
+    virtual std::optional<double> number(std::string const& name, double largest) = 0;
     /// Text of a fraction is truncated.
-    virtual std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) const = 0;
-    virtual std::optional<std::string> text(std::string const& name) const = 0;
+    virtual std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) = 0;
+    virtual std::optional<std::string> text(std::string const& name) = 0;
     /// The first `size` numbers of a list; nothing for an absent or empty list.
-    virtual std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size,
-                                                       double largest) const = 0;
+    virtual std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size, double largest) = 0;
+    /// Throws ConfigError: the value is not what the program expects.
+    virtual void refuse(std::string const& name, std::string const& expected) = 0;
+    /// Throws ConfigError unless `value`, which was read under this name, is from `min` to `max`.
+    virtual void check_range(std::string const& name, double value, double min, double max) = 0;
 };
 
 /// The user's columns and the row being filled.
@@ -39,14 +46,25 @@ struct DataExport {
 
 /// What user code can reach beside its own robot.
 struct RunServices {
-    ParameterSource const* parameters = nullptr;
+    ParameterSource* parameters = nullptr;
     std::uint32_t seed = 0;  // of the run
     DataExport data;
     bool stop_requested = false;
-    std::vector<char const*> warned;  // texts of warn_once
+    std::vector<std::string_view> warned;  // formats of warn_once
 
-    /// Logs the text (a literal) as a warning with the robot's name, the first time.
-    void warn_once(char const* text);
+    /// Logs a warning that names the running robot and its tick, the first time in the run that this format (a literal)
+    /// is used.
+    template <class... Args>
+    void warn_once(fmt::format_string<Args...> format, Args&&... args) {
+        fmt::string_view const text = format;
+        if (is_first({text.data(), text.size()})) {
+            warn_of_robot(fmt::format(format, std::forward<Args>(args)...));
+        }
+    }
+
+private:
+    bool is_first(std::string_view format);
+    static void warn_of_robot(std::string const& text);
 };
 
 struct Context {

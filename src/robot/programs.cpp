@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "base/log.hpp"
 #include "robot/drive.hpp"
+#include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
@@ -223,20 +223,9 @@ void Programs::run_main(std::uint32_t robot) {
     program.click = callback_robot_click;
 }
 
-void Programs::warn_of_idle_categories() const {
-    std::vector<bool> warned(world_.categories.size());
-    for (std::size_t i = 0; i < computers_.size(); ++i) {
-        std::uint16_t const category = world_.robots.category[i];
-        if (!computers_[i].program.registered && !warned[category]) {
-            warned[category] = true;
-            log().warn("no pogobot_start() of the program names the category '{}': its robots do nothing",
-                       world_.categories[category].name);
-        }
-    }
-}
-
 void Programs::start() {
     auto const count = static_cast<std::uint32_t>(computers_.size());
+    warn_of_large_user_data(UserdataSize);
     construct_user_data(kNone);
     for (std::uint32_t i = 0; i < count; ++i) {
         construct_user_data(i);
@@ -248,17 +237,19 @@ void Programs::start() {
     for (std::uint32_t i = 0; i < count; ++i) {
         run_main(i);
     }
-    warn_of_idle_categories();
+    warn_of_idle_categories(world_, computers_);
     call_as_system(count == 0 ? kNone : count - 1, "callback_global_setup", callback_global_setup);
     for (std::uint32_t i = 0; i < count; ++i) {
         call(i, "user_init", computers_[i].program.init);
     }
+    warn_of_missing_init(computers_);
 }
 
 void Programs::declare_columns() {
     services_.data.declaring = true;
     call_as_system(kNone, "callback_create_data_schema", callback_create_data_schema);
     services_.data.declaring = false;
+    warn_of_empty_columns(services_.data.columns, computers_);
 }
 
 void Programs::run_step() {
@@ -324,6 +315,11 @@ void Programs::print_unfinished_lines() {
     print_rest(kNone);
 }
 
+void Programs::warn_of_messages(std::uint64_t arrivals) const {
+    warn_of_lost_messages(world_, computers_);
+    warn_of_unused_messages(world_, computers_, arrivals);
+}
+
 int Programs::highest_loop_hz() const {
     int highest = 0;
     for (Computer const& self : computers_) {
@@ -356,6 +352,12 @@ void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* catego
     require_argument(category, "pogobot_start", "the category");
     if (!current_robot_category_is(category)) {
         return;
+    }
+    if (context.computer->program.registered) {
+        context.services->warn_once(
+            "pogobot_start() is called again for the category '{}': the last call counts here, the first one on real "
+            "robots",
+            category);
     }
     context.computer->program.registered = true;
     context.computer->program.init = user_init;

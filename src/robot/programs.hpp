@@ -38,6 +38,9 @@ public:
     /// callback_robot_end of every robot.
     void end();
 
+    /// Warns of messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
+    void warn_of_messages(std::uint64_t arrivals) const;
+
     /// Logs what robots have printed and not ended with a newline. Called after the last call of user code.
     void print_unfinished_lines();
 
@@ -58,7 +61,6 @@ private:
     static void leave();
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
-    void warn_of_idle_categories() const;
     void call(std::uint32_t robot, char const* phase, void (*function)());
     void call_as_system(std::uint32_t robot, char const* phase, void (*function)());
     void tick(std::uint32_t robot);

@@ -89,11 +89,25 @@ ExitCode Simulation::run() {
         return failure->code;
     }
     finish();
+    programs_.warn_of_messages(channel_.receptions());
+    report_unread_parameters();
     if (interrupted()) {
         log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), recorder_.note());
         return ExitCode::interrupted;
     }
     return ExitCode::done;
+}
+
+void Simulation::report_unread_parameters() const {
+    std::string const unread = parameters_.unread();
+    if (unread.empty()) {
+        return;
+    }
+    std::string const message = "parameters that the program never reads: " + unread;
+    if (options_.strict && !interrupted()) {
+        throw ConfigError(message + " (--strict; the run itself is complete)");
+    }
+    log().warn("{}", message);
 }
 
 std::optional<UserFailure> Simulation::run_steps() {
@@ -150,7 +164,6 @@ std::optional<UserFailure> Simulation::step() {
 
 void Simulation::finish() {
     recorder_.close();
-    report_losses();
 }
 
 void Simulation::fit_time_step() {
@@ -185,16 +198,6 @@ void Simulation::report(UserFailure const& failure) const {
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
               failed ? "failed" : "ended", where, failure.what,
               may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", recorder_.note());
-}
-
-void Simulation::report_losses() const {
-    std::uint64_t dropped = 0;
-    for (std::size_t i = 0; i < world_.robots.size(); ++i) {
-        dropped += world_.mailboxes.dropped(i);
-    }
-    if (dropped > 0) {
-        log().info("{} messages were lost because a robot's queue was full (message_queue_size)", dropped);
-    }
 }
 
 }  // namespace pogosim

@@ -21,6 +21,7 @@ namespace pogosim {
 struct RunOptions {
     bool progress_bar = false;
     bool measure_stages = false;  // for benchmarks
+    bool strict = false;          // parameters that nobody reads are an error
 };
 
 class Simulation {
@@ -33,7 +34,8 @@ public:
     Simulation& operator=(Simulation const&) = delete;
 
     /// From the first main() to the last callback: runs until the simulated time is over, the program or the user ends
-    /// it, or user code fails. Errors of user code are logged and give the exit code; OutputError is thrown.
+    /// it, or user code fails. Errors of user code are logged and give the exit code. Throws OutputError; and, when
+    /// strict, a ConfigError at the end of a run in which a parameter was not read.
     ExitCode run();
 
     // The same in parts, for tests and benchmarks. start() once, then steps, then finish().
@@ -52,7 +54,7 @@ private:
     void fit_time_step();
     bool is_over() const;
     void report(UserFailure const& failure) const;
-    void report_losses() const;
+    void report_unread_parameters() const;
 
     Scenario scenario_;
     RunOptions options_;

@@ -6,6 +6,7 @@ static void greet(void) {
 }
 
 int main(void) {
+    pogobot_init();
     pogobot_start(greet, NULL);
     return 0;
 }

@@ -25,6 +25,8 @@ def run_in_new_folder(name: str, folder: Path, *arguments: str) -> Run:
     folder.mkdir()
     shutil.copy(ROOT / "conf" / "simple.yaml", folder)
     command = ["-c", "simple.yaml", "-g", *arguments]
+    if name == "hanabi":  # the file's parameters are those of run_and_tumble
+        command += ["--set", "parameters={moving_robots: true}"]
     for setting in SETTINGS + [f"objects.robots.{key}={value}" for key, value in NOISE.items()]:
         command += ["--set", setting]
     result = run_command(example(name), folder, command)

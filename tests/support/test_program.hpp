@@ -22,7 +22,10 @@ extern std::function<void()> program_main;
 
 /// The usual program: one init and one step for the category "robots".
 inline void use_program(void (*init)(), void (*step)()) {
-    program_main = [=] { pogobot_start(init, step); };
+    program_main = [=] {
+        pogobot_init();
+        pogobot_start(init, step);
+    };
 }
 
 }  // namespace pogosim::testing

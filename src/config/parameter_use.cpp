@@ -1,0 +1,53 @@
+#include "config/parameter_use.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/nearest_name.hpp"
+#include "config/values.hpp"
+
+namespace pogosim {
+
+Node const* ParameterUse::ask(std::string const& name) {
+    Node const* const node = find_path(parameters_, name);
+    if (node == nullptr) {
+        if (std::ranges::find(missed_, name) == missed_.end()) {
+            missed_.push_back(name);
+        }
+        return nullptr;
+    }
+    return read_.insert(node).second ? node : nullptr;
+}
+
+std::string ParameterUse::unread() const {
+    std::vector<std::string> unread;
+    collect(parameters_, "", unread);
+    return fmt::format("{}", fmt::join(unread, ", "));
+}
+
+bool ParameterUse::any_item_was_read(Node const& list) const {
+    return std::ranges::any_of(list.items, [this](Node const& item) {
+        return was_read(item) || any_item_was_read(item) ||
+               std::ranges::any_of(item.entries, [this](auto const& entry) {
+                   return was_read(entry.value) || any_item_was_read(entry.value);
+               });
+    });
+}
+
+void ParameterUse::collect(Node const& node, std::string const& path, std::vector<std::string>& unread) const {
+    if (was_read(node) || any_item_was_read(node)) {
+        return;
+    }
+    for (auto const& [key, value] : node.entries) {
+        collect(value, path.empty() ? key : fmt::format("{}.{}", path, key), unread);
+    }
+    if (node.entries.empty() && &node != &parameters_) {
+        std::string const nearest = nearest_name(shown(path), missed_);
+        unread.push_back(fmt::format("{} ({}{})", shown(path), node.where(),
+                                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+    }
+}
+
+}  // namespace pogosim

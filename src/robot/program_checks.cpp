@@ -1,0 +1,126 @@
+#include "robot/program_checks.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/log.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kRobotMemoryBytes = std::size_t{128} * 1024;  // SRAM of a real robot
+
+/// For each category, whether it has robots and all of them are so.
+template <class Test>
+std::vector<bool> categories_where_all(World const& world, std::span<Computer const> computers, Test const& is_so) {
+    std::vector<std::size_t> robots(world.categories.size());
+    std::vector<std::size_t> matching(world.categories.size());
+    for (std::size_t i = 0; i < computers.size(); ++i) {
+        std::uint16_t const category = world.robots.category[i];
+        ++robots[category];
+        matching[category] += is_so(computers[i]) ? 1 : 0;
+    }
+    std::vector<bool> all(world.categories.size());
+    for (std::size_t category = 0; category < all.size(); ++category) {
+        all[category] = robots[category] > 0 && matching[category] == robots[category];
+    }
+    return all;
+}
+
+bool sends_never(Computer const& computer) {
+    return computer.loop.send != nullptr && computer.loop.send_percent == 0 && computer.loop.sent == 0;
+}
+
+bool receives_never(Computer const& computer) {
+    return computer.loop.receive != nullptr && computer.loop.max_messages_per_tick == 0 &&
+           !computer.program.reads_messages;
+}
+
+}  // namespace
+
+void warn_of_large_user_data(std::size_t bytes) {
+    if (bytes > kRobotMemoryBytes) {
+        log().warn("USERDATA has {} bytes, more than the {} bytes (128 KiB) of a real robot's memory", bytes,
+                   kRobotMemoryBytes);
+    }
+}
+
+void warn_of_idle_categories(World const& world, std::span<Computer const> computers) {
+    std::vector<bool> warned(world.categories.size());
+    for (std::size_t i = 0; i < computers.size(); ++i) {
+        std::uint16_t const category = world.robots.category[i];
+        if (!computers[i].program.registered && !warned[category]) {
+            warned[category] = true;
+            log().warn("no pogobot_start() of the program names the category '{}': its robots do nothing",
+                       world.categories[category].name);
+        }
+    }
+}
+
+void warn_of_missing_init(std::span<Computer const> computers) {
+    auto const runs = [](Computer const& computer) { return computer.program.registered; };
+    auto const is_prepared = [](Computer const& computer) { return computer.program.prepared; };
+    if (std::ranges::any_of(computers, runs) && std::ranges::none_of(computers, is_prepared)) {
+        log().warn(
+            "the program never calls pogobot_init(), without which nothing works on a real robot: call it in main(), "
+            "before pogobot_start()");
+    }
+}
+
+void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Computer const> computers) {
+    auto const exports = [](Computer const& computer) { return computer.program.export_data != nullptr; };
+    if (!columns.empty() && !computers.empty() && std::ranges::none_of(computers, exports)) {
+        log().warn(
+            "the column '{}'{} of the data file will be empty: the program sets no callback_export_data "
+            "(SET_CALLBACK in main())",
+            columns.front().name, columns.size() > 1 ? " and the program's other ones" : "");
+    }
+}
+
+void warn_of_lost_messages(World const& world, std::span<Computer const> computers) {
+    std::vector<std::uint64_t> lost(world.categories.size());
+    for (std::size_t i = 0; i < computers.size(); ++i) {
+        if (computers[i].program.reads_messages) {
+            lost[world.robots.category[i]] += world.mailboxes.dropped(i);
+        }
+    }
+    for (std::size_t category = 0; category < lost.size(); ++category) {
+        if (lost[category] > 0) {
+            log().warn(
+                "{} messages to robots of category '{}' were lost because their queues were full "
+                "(message_queue_size: {})",
+                lost[category], world.categories[category].name, world.categories[category].spec.robot->ir.queue_size);
+        }
+    }
+}
+
+void warn_of_unused_messages(World const& world, std::span<Computer const> computers, std::uint64_t arrivals) {
+    auto const mute = categories_where_all(world, computers, sends_never);
+    auto const deaf = categories_where_all(world, computers, receives_never);
+    for (std::size_t category = 0; category < world.categories.size(); ++category) {
+        std::string const& name = world.categories[category].name;
+        if (mute[category]) {
+            log().warn(
+                "no robot of category '{}' sent a message: msg_tx_fn is set, but percent_msgs_sent_per_ticks is 0",
+                name);
+        }
+        if (deaf[category]) {
+            log().warn(
+                "no robot of category '{}' read a message: msg_rx_fn is set, but max_nb_processed_msg_per_tick "
+                "is 0",
+                name);
+        }
+    }
+    auto const reads = [](Computer const& computer) { return computer.program.reads_messages; };
+    if (arrivals > 0 && std::ranges::none_of(computers, reads) && std::ranges::none_of(deaf, std::identity())) {
+        log().warn(
+            "{} messages arrived, but no robot reads messages: set msg_rx_fn in user_init, or call "
+            "pogobot_infrared_message_available() in user_step",
+            arrivals);
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,35 @@
+// What looks like a slip in the user's program, told in warnings: at the start of a run, and when it is over. Each is
+// something that no correct program does; what one robot does at one tick is warned of where it happens
+// (RunServices::warn_once).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "robot/computer.hpp"
+#include "world/data_table.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// User data that no real robot has room for. `bytes`: of one robot.
+void warn_of_large_user_data(std::size_t bytes);
+
+/// Categories that no pogobot_start() names.
+void warn_of_idle_categories(World const& world, std::span<Computer const> computers);
+
+/// A program that has never called pogobot_init(), not even in user_init.
+void warn_of_missing_init(std::span<Computer const> computers);
+
+/// Columns of the data file that nobody can fill.
+void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Computer const> computers);
+
+/// Messages dropped because the queue of a robot that reads messages was full, by category.
+void warn_of_lost_messages(World const& world, std::span<Computer const> computers);
+
+/// Messages that nobody reads, or that a program means to send and read but cannot. `arrivals`: messages that reached
+/// robots in the whole run.
+void warn_of_unused_messages(World const& world, std::span<Computer const> computers, std::uint64_t arrivals);
+
+}  // namespace pogosim

@@ -1,0 +1,186 @@
+"""A beginner's slip is not silent: one warning says what was meant, and the run goes on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import Compile
+from running import Run, Settings, compile_program, run
+
+FIRST = r"robot #0 of category 'robots', tick 10: "
+CROWD: Settings = {
+    "objects.robots.nb": 60,
+    "objects.robots.msg_success_rate": {"type": "static", "rate": 1.0},
+}
+
+
+def slip(
+    program: Compile,
+    folder: Path,
+    kind: str,
+    settings: Settings | None = None,
+    *arguments: str,
+) -> Run:
+    return run(
+        program("slips.c"),
+        folder,
+        {"parameters.kind": kind, **(settings or {})},
+        arguments,
+    )
+
+
+def warnings(result: Run) -> list[str]:
+    """Return the warnings without date and level; the run has ended well."""
+    assert result.code == 0, result.text
+    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
+
+
+# ---- In the program ----
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        ("negative_power", f"{FIRST}pogobot_motor_set was called with -500: "),
+        ("motor_3", f"{FIRST}there is no motor 3, "),
+        ("led_5", f"{FIRST}pogobot_led_setColors: there is no LED 5, "),
+        ("sensor_3", f"{FIRST}pogobot_photosensors_read: there is no light sensor 3, "),
+        (
+            "long_message",
+            "robot #0 of category 'robots', tick 0: a message of 383 bytes was not sent: ",
+        ),
+        ("no_init", "the program never calls pogobot_init(), "),
+        (
+            "late_init",
+            "robot #0 of category 'robots', tick 0: pogobot_init() is called after pogobot_start(), ",
+        ),
+        (
+            "two_starts",
+            "robot #0 of category 'robots', tick 0: pogobot_start() is called again for the category ",
+        ),
+        ("empty_column", "the column 'age' of the data file will be empty: "),
+        ("sends_never", "no robot of category 'robots' sent a message: "),
+        ("reads_none", "no robot of category 'robots' read a message: "),
+    ],
+)
+def test_slip_in_a_program_is_warned_of_once(program: Compile, tmp_path: Path, kind: str, text: str) -> None:
+    (warning,) = warnings(slip(program, tmp_path, kind))
+    assert warning.startswith(text)
+
+
+@pytest.mark.parametrize("kind", ["nothing", "large_power", "polls", "late_reading"])
+def test_program_without_a_slip_is_not_nagged(program: Compile, tmp_path: Path, kind: str) -> None:
+    assert (
+        warnings(
+            slip(
+                program,
+                tmp_path,
+                kind,
+                {"parameters.late": 1.0} if kind == "late_reading" else {},
+            )
+        )
+        == []
+    )
+
+
+def test_messages_that_nobody_reads_are_counted(program: Compile, tmp_path: Path) -> None:
+    (warning,) = warnings(slip(program, tmp_path, "deaf", CROWD))
+    count, _, rest = warning.partition(" ")
+    assert int(count) > 1000
+    assert rest.startswith("messages arrived, but no robot reads messages: set msg_rx_fn ")
+
+
+def test_full_queues_are_counted_by_category_of_those_who_read(program: Compile, tmp_path: Path) -> None:
+    second = {"type": "pogobot", "nb": 2, "geometry": "disk", "radius": 26.5}
+    settings = {**CROWD, "arena_surface": 3.0e5, "objects.strangers": second}
+    idle, lost = warnings(slip(program, tmp_path, "slow", settings))
+    assert "names the category 'strangers': its robots do nothing" in idle
+    count, _, rest = lost.partition(" ")
+    assert int(count) > 0
+    assert rest == (
+        "messages to robots of category 'robots' were lost because their queues were full (message_queue_size: 20)"
+    )
+
+
+def test_user_data_beyond_a_real_robots_memory_are_warned_of(tmp_path: Path) -> None:
+    source = tmp_path / "main.c"
+    source.write_text(
+        '#include "pogobase.h"\ntypedef struct { uint8_t bytes[131073]; } USERDATA;\nDECLARE_USERDATA(USERDATA)\n'
+        "REGISTER_USERDATA(USERDATA)\nint main(void) { pogobot_init(); pogobot_start(NULL, NULL); return 0; }\n"
+    )
+    (warning,) = warnings(run(compile_program(tmp_path / "main", source), tmp_path))
+    assert warning.startswith(
+        "USERDATA has 131073 bytes, more than the 131072 bytes (128 KiB) of a real robot's memory"
+    )
+
+
+# ---- Parameters ----
+
+
+def unread(folder: Path) -> str:
+    lines = (folder / "scene.yaml").read_text().splitlines()
+    places = {line.split(":")[0].strip(): number + 1 for number, line in enumerate(lines)}
+    return (
+        "parameters that the program never reads: "
+        f"turn_duratoin (scene.yaml:{places['turn_duratoin']}; did you mean 'turn_duration'?), "
+        f"walk.speed (scene.yaml:{places['speed']}), list (scene.yaml:{places['list']})"
+    )
+
+
+UNREAD: Settings = {
+    "parameters.turn_duratoin": 400,
+    "parameters.walk": {"speed": 1},
+    "parameters.list": [1],
+}
+
+
+def test_parameters_that_nobody_reads_are_listed_with_their_lines(program: Compile, tmp_path: Path) -> None:
+    result = slip(program, tmp_path, "nothing", UNREAD)
+    assert warnings(result) == [unread(tmp_path)]
+
+
+def test_parameters_that_nobody_reads_are_an_error_with_strict_after_the_whole_run(
+    program: Compile, tmp_path: Path
+) -> None:
+    settings = UNREAD
+    result = slip(program, tmp_path, "nothing", settings, "--strict")
+    assert result.code == 2
+    assert result.errors == f"Error: {unread(tmp_path)} (--strict; the run itself is complete)\n"
+    assert result.frame()["time"].max() == pytest.approx(2.0)
+    plain = slip(program, tmp_path / "plain", "nothing", settings)
+    assert (plain.folder / "data.feather").read_bytes() == (tmp_path / "data.feather").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [{"late": 1.0}, {"vector": [1, 2, 3]}, {"turn_duration": None}],
+    ids=["late", "list", "null"],
+)
+def test_parameter_that_is_read_at_any_time_is_not_listed(
+    program: Compile, tmp_path: Path, parameters: dict[str, object]
+) -> None:
+    settings = {"parameters": {"kind": "late_reading", **parameters}}
+    assert warnings(run(program("slips.c"), tmp_path, settings, ["--strict"])) == []
+
+
+def test_part_of_a_map_that_is_not_read_is_listed(tmp_path: Path) -> None:
+    source = tmp_path / "main.c"
+    source.write_text(
+        '#include "pogobase.h"\nstruct { float speed; } walk;\nint32_t first = 0;\n'
+        "static void setup(void) { init_from_configuration(walk.speed); "
+        'init_int32_from_configuration(&first, "ids.0", 0); }\n'
+        "int main(void) { pogobot_init(); pogobot_start(NULL, NULL); "
+        "SET_CALLBACK(callback_global_setup, setup); return 0; }\n"
+    )
+    program = compile_program(tmp_path / "main", source)
+    settings = {"parameters": {"walk": {"speed": 1.0, "sped": 2.0}, "ids": [4, 5]}}
+    (warning,) = warnings(run(program, tmp_path, settings))
+    assert "never reads: walk.sped (scene.yaml:" in warning
+    assert "ids" not in warning
+
+
+def test_fraction_of_an_integer_parameter_is_warned_of_once(program: Compile, tmp_path: Path) -> None:
+    (warning,) = warnings(slip(program, tmp_path, "nothing", {"parameters.turn_duration": 400.7}))
+    assert warning.startswith("scene.yaml:")
+    assert warning.endswith(": parameters.turn_duration: expected an integer, found 400.7; 400 is used")
