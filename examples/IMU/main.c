@@ -6,7 +6,7 @@
 // robot 0 prints what it measures, and a verdict: at the end of a run it should hardly turn, at the end of a tumble it
 // should turn fast. "CHECK" instead of "OK" means that something else moved or held it, such as a neighbour or a wall.
 //
-//     ./examples/IMU/IMU -c conf/simple.yaml
+//     ./examples/IMU/IMU -c conf/IMU.yaml
 //
 // conf/IMU.yaml has no damping, no noise, and a thermometer at 25 degrees. The axes are those of
 // pogobot_imu_read(): x to the right, y forward, z up; turning counter-clockwise, seen from above, is positive.
@@ -98,11 +98,17 @@ void user_step(void) {
 }
 
 #ifdef SIMULATOR
+#define MAX_DURATION_MS 10000000  // nearly three hours
+
 static void global_setup(void) {
     init_from_configuration(run_duration_min);
+    check_parameter(run_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(run_duration_max);
+    check_parameter(run_duration_max, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_min);
+    check_parameter(tumble_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_max);
+    check_parameter(tumble_duration_max, 0, MAX_DURATION_MS);
     init_from_configuration(enable_backward_dir);
 }
 

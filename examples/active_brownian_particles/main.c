@@ -186,14 +186,23 @@ void user_step(void) {
 }
 
 #ifdef SIMULATOR
+#define MAX_DURATION_MS 10000000  // nearly three hours
+
 static void global_setup(void) {
     init_from_configuration(rotational_diffusion);
+    check_parameter(rotational_diffusion, 0, 100);
     init_from_configuration(max_linear_speed);
+    check_parameter(max_linear_speed, 0, 1e6);
     init_from_configuration(max_angular_speed);
+    check_parameter(max_angular_speed, 0.01, 100);
     init_from_configuration(stuck_duration);
+    check_parameter(stuck_duration, 0, MAX_DURATION_MS);
     init_from_configuration(reverse_duration);
+    check_parameter(reverse_duration, 0, MAX_DURATION_MS);
     init_from_configuration(spin_duration_min);
+    check_parameter(spin_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(spin_duration_max);
+    check_parameter(spin_duration_max, 0, MAX_DURATION_MS);
 }
 
 static void create_data_schema(void) {

@@ -117,12 +117,18 @@ static void object_init(void) {
 static void object_step(void) {}
 
 #ifdef SIMULATOR
+#define MAX_DURATION_MS 10000000  // nearly three hours
+
 // Called once, before the robots start.
 static void global_setup(void) {
     init_from_configuration(wall_memory_ms);
+    check_parameter(wall_memory_ms, 0, MAX_DURATION_MS);
     init_from_configuration(turn_duration_ms);
+    check_parameter(turn_duration_ms, 0, MAX_DURATION_MS);
     init_from_configuration(forward_commit_ms);
+    check_parameter(forward_commit_ms, 0, MAX_DURATION_MS);
     init_from_configuration(forward_speed_ratio);
+    check_parameter(forward_speed_ratio, 0, 1);
 }
 #endif
 

@@ -228,33 +228,53 @@ void user_step(void) {
 }
 
 #ifdef SIMULATOR
+#define MAX_DURATION_MS 10000000  // nearly three hours
+
 static void global_setup(void) {
     init_from_configuration(loop_dt);
+    check_parameter(loop_dt, 0.004, 1);
     init_from_configuration(heartbeat_hz);
+    check_parameter(heartbeat_hz, 0, 1000);
     init_from_configuration(max_age);
+    check_parameter(max_age, 0, MAX_DURATION_MS);
     init_from_configuration(run_duration_min);
+    check_parameter(run_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(run_duration_max);
+    check_parameter(run_duration_max, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_min);
+    check_parameter(tumble_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_max);
+    check_parameter(tumble_duration_max, 0, MAX_DURATION_MS);
     init_string_from_configuration(run_law, "run_law", sizeof(run_law));
     init_from_configuration(levy_alpha_g);
+    check_parameter(levy_alpha_g, 0.01, 100);
     init_from_configuration(max_speed_frac);
+    check_parameter(max_speed_frac, 0, 1);
     init_from_configuration(enable_backward_dir);
     init_from_configuration(p_backward);
+    check_parameter(p_backward, 0, 1);
     init_from_configuration(iso_min_ids);
     init_from_configuration(repeat_frac_thres);
+    check_parameter(repeat_frac_thres, 0, 1);
     init_from_configuration(decay_tau);
+    check_parameter(decay_tau, loop_dt, 1e6);
     init_from_configuration(w_iso);
+    check_parameter(w_iso, -1e6, 1e6);
     init_from_configuration(w_nov);
+    check_parameter(w_nov, -1e6, 1e6);
     init_from_configuration(encounter_graph_scale);
+    check_parameter(encounter_graph_scale, 1e-3, 1e6);
     init_from_configuration(urgency_gain);
+    check_parameter(urgency_gain, 0, 1);
     init_from_configuration(surprise_min_0);
+    check_parameter(surprise_min_0, 0, 1e6);
     init_from_configuration(use_adaptive_surprise_min);
     init_from_configuration(d_surprise_up);
+    check_parameter(d_surprise_up, 0, 1e6);
     init_from_configuration(d_surprise_down);
+    check_parameter(d_surprise_down, 0, 1e6);
     if (!run_law_of_name(run_law, &law)) {
-        printf("unknown run_law '%s': levy, exponential or linear?\n", run_law);
-        exit(1);
+        refuse_parameter("run_law", "levy, exponential or linear");
     }
 }
 

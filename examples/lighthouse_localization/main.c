@@ -210,14 +210,23 @@ void user_step(void) {
 #ifdef SIMULATOR
 static void global_setup(void) {
     init_from_configuration(lighthouse_omega);
+    check_parameter(lighthouse_omega, 1e-3, 1e3);
     init_from_configuration(long_white_duration_s);
+    check_parameter(long_white_duration_s, 0, 1e6);
     init_from_configuration(short_white_duration_s);
+    check_parameter(short_white_duration_s, 0, 1e6);
     init_from_configuration(edge_delta);
+    check_parameter(edge_delta, 0, INT16_MAX);
     init_from_configuration(max_dist_from_center);
+    check_parameter(max_dist_from_center, 1e-3, 1e6);
     init_from_configuration(lighthouse1_x);
+    check_parameter(lighthouse1_x, -1e6, 1e6);
     init_from_configuration(lighthouse1_y);
+    check_parameter(lighthouse1_y, -1e6, 1e6);
     init_from_configuration(lighthouse2_x);
+    check_parameter(lighthouse2_x, -1e6, 1e6);
     init_from_configuration(lighthouse2_y);
+    check_parameter(lighthouse2_y, -1e6, 1e6);
 }
 
 static void create_data_schema(void) {

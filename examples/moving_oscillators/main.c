@@ -228,22 +228,34 @@ void user_step(void) {
 }
 
 #ifdef SIMULATOR
+#define MAX_DURATION_MS 10000000  // nearly three hours
+#define MAX_FREQUENCY 20          // rad/s; the sum of all of them stays below half a turn in a tick
+
 static void global_setup(void) {
     init_from_configuration(natural_freq_mean);
+    check_parameter(natural_freq_mean, -MAX_FREQUENCY, MAX_FREQUENCY);
     init_from_configuration(natural_freq_std);
+    check_parameter(natural_freq_std, 0, MAX_FREQUENCY);
     init_from_configuration(coupling_k);
+    check_parameter(coupling_k, -MAX_FREQUENCY, MAX_FREQUENCY);
     init_from_configuration(move_to_osc_gain);
+    check_parameter(move_to_osc_gain, -MAX_FREQUENCY, MAX_FREQUENCY);
     init_from_configuration(osc_to_move_gain);
+    check_parameter(osc_to_move_gain, -1, 1);
     init_from_configuration(enable_locomotion_coupling);
     init_from_configuration(max_speed_frac);
+    check_parameter(max_speed_frac, 0, 1);
     init_from_configuration(run_duration_min);
+    check_parameter(run_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(run_duration_max);
+    check_parameter(run_duration_max, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_min);
+    check_parameter(tumble_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_max);
+    check_parameter(tumble_duration_max, 0, MAX_DURATION_MS);
     init_array_from_configuration(led_mode);
     if (strcmp(led_mode, "sign") != 0 && strcmp(led_mode, "phase") != 0 && strcmp(led_mode, "period") != 0) {
-        printf("led_mode: expected sign, phase or period, found '%s'\n", led_mode);
-        exit(1);
+        refuse_parameter("led_mode", "sign, phase or period");
     }
 }
 

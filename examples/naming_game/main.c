@@ -179,6 +179,7 @@ void user_step(void) {
 #ifdef SIMULATOR
 static void global_setup(void) {
     init_from_configuration(speak_percent);
+    check_parameter(speak_percent, 0, 100);
     init_from_configuration(max_age);
     init_from_configuration(moving_robots);
 }

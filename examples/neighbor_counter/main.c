@@ -131,6 +131,7 @@ void user_step(void) {
 #ifdef SIMULATOR
 static void global_setup(void) {
     init_from_configuration(heartbeat_hz);
+    check_parameter(heartbeat_hz, 1, 1000);
     init_from_configuration(max_age);
 }
 

@@ -147,11 +147,17 @@ void user_step(void) {
 }
 
 #ifdef SIMULATOR
+#define MAX_DURATION_MS 10000000  // nearly three hours
+
 static void global_setup(void) {
     init_from_configuration(run_duration_min);
+    check_parameter(run_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(run_duration_max);
+    check_parameter(run_duration_max, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_min);
+    check_parameter(tumble_duration_min, 0, MAX_DURATION_MS);
     init_from_configuration(tumble_duration_max);
+    check_parameter(tumble_duration_max, 0, MAX_DURATION_MS);
     init_from_configuration(dark_threshold);
     init_from_configuration(uphill_factor);
 }

@@ -60,9 +60,6 @@ void user_init(void) {
     percent_msgs_sent_per_ticks = send_percent;
     msg_rx_fn = process_message;
     msg_tx_fn = send_message;
-    if (payload_size < MIN_PAYLOAD_SIZE) {
-        payload_size = MIN_PAYLOAD_SIZE;
-    }
 }
 
 void user_step(void) {
@@ -74,7 +71,9 @@ void user_step(void) {
 #ifdef SIMULATOR
 static void global_setup(void) {
     init_from_configuration(payload_size);
+    check_parameter(payload_size, MIN_PAYLOAD_SIZE, MAX_PAYLOAD_SIZE_BYTES);
     init_from_configuration(send_percent);
+    check_parameter(send_percent, 0, 100);
 }
 
 static void create_data_schema(void) {

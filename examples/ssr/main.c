@@ -443,13 +443,19 @@ void user_step(void) {
 #ifdef SIMULATOR
 static void global_setup(void) {
     init_from_configuration(unit_period);
+    check_parameter(unit_period, 1, 60000);
     init_from_configuration(nb_diffusion_steps);
+    check_parameter(nb_diffusion_steps, 1, UINT16_MAX);
     init_from_configuration(nb_burn_in_steps);
     init_from_configuration(initial_s_max_val);
+    check_parameter(initial_s_max_val, 1e-3, 1e6);
     init_from_configuration(inv_tau);
+    check_parameter(inv_tau, 1, 1e6);
     init_from_configuration(diffusion_min_nb_points);
     init_from_configuration(diffusion_min_abs_s);
+    check_parameter(diffusion_min_abs_s, 0, 1e6);
     init_from_configuration(diffusion_convergence_threshold);
+    check_parameter(diffusion_convergence_threshold, 0, 1e6);
     init_array_from_configuration(class_centroids);
 }
 

@@ -189,10 +189,15 @@ void user_step(void) {
 }
 
 #ifdef SIMULATOR
+#define MAX_DURATION_MS 10000000  // nearly three hours
+
 static void global_setup(void) {
     init_from_configuration(noise_eta);
+    check_parameter(noise_eta, 0, 2 * PI);
     init_from_configuration(update_period);
+    check_parameter(update_period, 1, MAX_DURATION_MS);
     init_from_configuration(speed_frac);
+    check_parameter(speed_frac, 0, 1);
 }
 
 static void create_data_schema(void) {

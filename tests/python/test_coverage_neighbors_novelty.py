@@ -147,5 +147,5 @@ def test_coverage_runs_take_times_of_the_chosen_law(law: str, longer_than_twice:
 
 def test_coverage_refuses_an_unknown_law(tmp_path: Path) -> None:
     result = run(example(NAME), tmp_path, {"parameters.run_law": "brownian"})
-    assert result.code == 1
-    assert "unknown run_law 'brownian': levy, exponential or linear?" in result.text
+    assert result.code == 2
+    assert "parameters.run_law: expected levy, exponential or linear, found 'brownian'" in result.errors

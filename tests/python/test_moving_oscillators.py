@@ -89,8 +89,8 @@ def test_runs_hurry_the_clock_and_tumbles_slow_it(tmp_path: Path) -> None:
     np.testing.assert_allclose(pace, 1.15, atol=0.01)
 
 
-def test_wrong_led_mode_ends_the_program_with_1(tmp_path: Path) -> None:
+def test_wrong_led_mode_ends_the_program_with_2(tmp_path: Path) -> None:
     arguments = ["-c", str(ROOT / "conf/moving_oscillators.yaml"), "-g", "--set", "parameters.led_mode=disco"]
     result = run_command(example("moving_oscillators"), tmp_path, arguments)
-    assert result.code == 1
-    assert "led_mode: expected sign, phase or period, found 'disco'" in result.text
+    assert result.code == 2
+    assert "parameters.led_mode: expected sign, phase or period, found 'disco'" in result.errors
