@@ -213,7 +213,10 @@ def metadata(result: Run) -> dict[str, str]:
 
 def test_metadata_hold_the_whole_configuration_with_what_was_decided(tmp_path: Path) -> None:
     settings = {"parameters": {"of_mine": [1, 2], "deep.er": {"x": "yes"}}, "result_filename_format": "r.feather"}
-    saved = metadata(hello(tmp_path, **settings))
+    result = run(example("helloworld"), tmp_path, settings)
+    assert result.code == 0
+    assert result.errors.count("\n") == 1  # helloworld reads no such parameters
+    saved = metadata(result)
     configuration = yaml.safe_load(saved["configuration"])
     asked = yaml.safe_load((tmp_path / "scene.yaml").read_text())
     assert {key: configuration[key] for key in asked} == asked
