@@ -12,12 +12,14 @@
 #include "robot/last_words.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/simulation.hpp"
+#include "sim/used_files.hpp"
 
 namespace {
 
 using namespace pogosim;
 
 ExitCode simulate(CommandLine const& options) {
+    ignore_broken_outputs();
     // Until the configuration is known, warnings go to a console as the command line asks.
     LogOptions logging;
     logging.verbose = options.verbose;
@@ -29,6 +31,7 @@ ExitCode simulate(CommandLine const& options) {
     if (options.seed) {
         scenario.seed = options.seed;
     }
+    check_used_files(scenario, options.config);
     logging.minimal = scenario.output.log_format == LogFormat::minimal;
     if (scenario.output.enable_console_logging) {
         logging.file = scenario.output.console_filename;

@@ -3,12 +3,15 @@
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 
+#include <chrono>
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/locked_file.hpp"
 
 namespace pogosim {
 
@@ -16,12 +19,18 @@ namespace {
 
 constexpr auto kDatedPattern = "[%Y-%m-%d %H:%M:%S.%e] [%^%l%$] %v";
 constexpr auto kMinimalPattern = "%v";
+constexpr std::chrono::seconds kFlushPeriod{2};
 
 /// Standard output below `warn`, standard error from there on.
 class ConsoleSink final : public spdlog::sinks::sink {
 public:
+    /// Nobody is told of a console that is broken: where to?
     void log(spdlog::details::log_msg const& message) override {
-        (message.level >= spdlog::level::warn ? static_cast<sink&>(error_) : static_cast<sink&>(output_)).log(message);
+        try {
+            (message.level >= spdlog::level::warn ? static_cast<sink&>(error_) : static_cast<sink&>(output_))
+                .log(message);
+        } catch (spdlog::spdlog_ex const&) {
+        }
     }
     void flush() override {
         output_.flush();
@@ -44,6 +53,7 @@ private:
 struct Loggers {
     std::shared_ptr<spdlog::logger> simulator;
     std::shared_ptr<spdlog::logger> robots;
+    LockedFile lock{};  // of the console file
 };
 
 /// What first kept a line from the console file; empty: nothing.
@@ -75,12 +85,22 @@ spdlog::sink_ptr make_console(LogOptions const& options) {
     return console;
 }
 
-spdlog::sink_ptr make_file(LogOptions const& options) {
+/// The lock of a console file; none for a pipe, say. Parent folders are created.
+LockedFile lock_file(std::filesystem::path const& path) {
+    if (path.has_parent_path()) {
+        std::filesystem::create_directories(path.parent_path());
+    }
+    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
+        return {};
+    }
+    LockedFile lock(path);
+    lock.keep();
+    return lock;
+}
+
+spdlog::sink_ptr make_file(LogOptions const& options, LockedFile& lock) {
     try {
-        std::filesystem::path const path(options.file);
-        if (path.has_parent_path()) {
-            std::filesystem::create_directories(path.parent_path());
-        }
+        lock = lock_file(options.file);
         auto file = std::make_shared<spdlog::sinks::basic_file_sink_st>(options.file, /*truncate=*/true);
         file->set_pattern(kDatedPattern);
         file->set_level(options.verbose ? spdlog::level::debug : spdlog::level::info);
@@ -96,11 +116,12 @@ Loggers make_loggers(LogOptions const& options) {
     if (options.show_robot_lines) {
         robot_sinks.push_back(simulator_sinks.front());
     }
+    LockedFile lock;
     if (!options.file.empty()) {
-        simulator_sinks.push_back(make_file(options));
+        simulator_sinks.push_back(make_file(options, lock));
         robot_sinks.push_back(simulator_sinks.back());
     }
-    return {make_logger("pogosim", simulator_sinks), make_logger("robot", robot_sinks)};
+    return {make_logger("pogosim", simulator_sinks), make_logger("robot", robot_sinks), std::move(lock)};
 }
 
 Loggers& loggers() {
@@ -112,6 +133,7 @@ Loggers& loggers() {
 
 void start_logging(LogOptions const& options) {
     first_failure().clear();
+    loggers().lock = LockedFile();  // this process may open the same console file again
     loggers() = make_loggers(options);
 }
 
@@ -130,6 +152,15 @@ void flush_logs() {
 void silence_logs() {
     loggers().simulator->set_level(spdlog::level::off);
     loggers().robots->set_level(spdlog::level::off);
+}
+
+void flush_logs_if_due() {
+    using Clock = std::chrono::steady_clock;
+    static Clock::time_point next = Clock::now() + kFlushPeriod;
+    if (Clock::now() >= next) {
+        flush_logs();
+        next = Clock::now() + kFlushPeriod;
+    }
 }
 
 void check_logs() {

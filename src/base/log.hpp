@@ -29,6 +29,9 @@ void flush_logs();
 /// Nothing is logged any more.
 void silence_logs();
 
+/// Writes out what is buffered when the last time was 2 s ago, so that it outlives the process. Call it often.
+void flush_logs_if_due();
+
 /// Writes out what is buffered. Throws OutputError if anything since start_logging did not reach the console file.
 void check_logs();
 

@@ -1,9 +1,11 @@
 #include "sim/interrupt.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 
 #include "robot/last_words.hpp"
@@ -77,6 +79,23 @@ void on_ignored_signal(int /*signal*/) {}
 
 }  // namespace
 
+void ignore_broken_outputs() {
+    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+        if (fcntl(descriptor, F_GETFD) == -1 && errno == EBADF) {
+            open("/dev/null", O_RDWR);  // takes the lowest number that is free
+        }
+    }
+    // A reader of the console that has gone away is no reason to lose the data file, and a file that may not grow
+    // further (ulimit -f) is an error of writing it.
+    struct sigaction action = {};
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART | SA_NODEFER;
+    action.sa_handler = on_ignored_signal;
+    for (int const signal : {SIGPIPE, SIGXFSZ}) {
+        sigaction(signal, &action, nullptr);
+    }
+}
+
 void catch_interrupts() {
     struct sigaction action = {};
     sigemptyset(&action.sa_mask);
@@ -89,12 +108,6 @@ void catch_interrupts() {
         if (interrupt.signal != SIGHUP || before.sa_handler != SIG_IGN) {
             sigaction(interrupt.signal, &action, nullptr);
         }
-    }
-    // A reader of the console that has gone away is no reason to lose the data file, and a file that may not grow
-    // further (ulimit -f) is an error of writing it.
-    action.sa_handler = on_ignored_signal;
-    for (int const signal : {SIGPIPE, SIGXFSZ}) {
-        sigaction(signal, &action, nullptr);
     }
 }
 

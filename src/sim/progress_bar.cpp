@@ -47,9 +47,14 @@ void ProgressBar::finish(std::int64_t done) {
             draw(done);
         }
         if (terminal_) {
-            fmt::print(stderr, "\n");
+            print("\n");
         }
     }
+}
+
+void ProgressBar::print(std::string const& text) {
+    bool const written = std::fwrite(text.data(), 1, text.size(), stderr) == text.size();
+    enabled_ = std::fflush(stderr) == 0 && written && enabled_;
 }
 
 void ProgressBar::draw(std::int64_t done) {
@@ -58,11 +63,10 @@ void ProgressBar::draw(std::int64_t done) {
     int const filled = static_cast<int>(share * kBarWidth);
     double const simulated_s = static_cast<double>(done) * time_step_s_;
     double const elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
-    fmt::print(stderr, "{}[{}{}] {:3.0f} %  {:.1f} s simulated in {:.1f} s, {:.1f} x real time{}",
-               terminal_ ? "\r" : "", std::string(static_cast<std::size_t>(filled), '#'),
-               std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), 100.0 * share, simulated_s, elapsed_s,
-               elapsed_s > 0.0 ? simulated_s / elapsed_s : 0.0, terminal_ ? " " : "\n");
-    std::fflush(stderr);
+    print(fmt::format("{}[{}{}] {:3.0f} %  {:.1f} s simulated in {:.1f} s, {:.1f} x real time{}", terminal_ ? "\r" : "",
+                      std::string(static_cast<std::size_t>(filled), '#'),
+                      std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), 100.0 * share, simulated_s,
+                      elapsed_s, elapsed_s > 0.0 ? simulated_s / elapsed_s : 0.0, terminal_ ? " " : "\n"));
 }
 
 }  // namespace pogosim

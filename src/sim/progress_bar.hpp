@@ -3,13 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 namespace pogosim {
 
 class ProgressBar {
 public:
     /// `total` steps. Disabled bars do nothing. On a terminal the line is redrawn in place ten times a second,
-    /// elsewhere a line is printed at each tenth of the run.
+    /// elsewhere a line is printed at each tenth of the run. Nothing more is drawn once the standard error is broken.
     ProgressBar(std::int64_t total, double time_step_s, bool enabled);
 
     void show(std::int64_t done);
@@ -21,6 +22,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void draw(std::int64_t done);
+    void print(std::string const& text);
 
     std::int64_t total_;
     double time_step_s_;

@@ -158,6 +158,7 @@ std::optional<UserFailure> Simulation::step() {
     ++world_.step;
     auto failure = recorder_.record_if_due();
     recorder_.save_if_due();
+    flush_logs_if_due();
     stages_.end(Stage::record);
     return failure;
 }
