@@ -89,7 +89,8 @@ void data_add_column_float16(char const* name);
 ///@{
 /// Sets the value of a column in this object's row; only in callback_export_data, elsewhere it does nothing, with a
 /// warning. A column that is not set is null, as is a text that is NULL. An unknown column or another type than
-/// declared is an error; a column left out by `data_logger_fields` is ignored. float holds 24 bits, float16 11 bits and at most 65504.
+/// declared is an error; a column left out by `data_logger_fields` is ignored. float holds 24 bits, float16 11 bits and
+/// at most 65504.
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
 void data_set_value_int32(char const* name, int32_t value);

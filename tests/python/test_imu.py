@@ -119,7 +119,7 @@ def test_imu_of_a_lone_robot_is_always_ok(tmp_path: Path) -> None:
 
 def test_imu_example_runs_in_the_common_configuration(tmp_path: Path) -> None:
     # 100 robots, which collide, with damping: most verdicts are good all the same.
-    result = run_shipped("IMU", tmp_path, configuration="simple")
+    result = run_shipped("IMU", tmp_path, {"parameters": {}}, configuration="simple")  # those are other examples'
     verdicts = [line.rsplit(": ", 1)[1] for line in result.robot_lines]
     assert len(verdicts) >= 10
     assert verdicts.count("OK") >= 0.7 * len(verdicts)
