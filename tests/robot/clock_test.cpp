@@ -1,7 +1,9 @@
 // A robot's own time: ticks, sleeping, stopwatches and timers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -124,6 +126,34 @@ TEST(Clock, LoopThatWaitsForATimerEnds) {
     EXPECT_NEAR(waited_us, 100000, 10);
 }
 
+TEST(Clock, LookAtTheClockTakesAMicrosecondBeyondTheThousandthOfATick) {
+    static std::vector<int32_t> after_look;  // time of the tick so far, by number of looks
+    static int looks_before = 0;             // in the tick, and not noted
+    auto const note_looks = [] {
+        after_look.assign(static_cast<std::size_t>(looks_before) + 1, 0);
+        time_reference_t start;
+        pogobot_stopwatch_reset(&start);
+        for (int look = looks_before + 2; look <= 3000; ++look) {
+            after_look.push_back(pogobot_stopwatch_get_elapsed_microseconds(&start));
+        }
+    };
+    auto const expect_2000_us = [] {
+        ASSERT_EQ(after_look.size(), 3000U);
+        EXPECT_EQ(after_look[998], 0);
+        EXPECT_EQ(after_look[999], 0);
+        EXPECT_EQ(after_look[1000], 1);
+        EXPECT_EQ(after_look[1001], 2);
+        EXPECT_EQ(after_look[2999], 2000);
+    };
+    looks_before = 0;
+    run_one(note_looks, nullptr, 0.0);
+    expect_2000_us();
+    // Each tick anew; the main loop itself has looked once.
+    looks_before = 1;
+    run_one(nullptr, note_looks, 0.2);
+    expect_2000_us();
+}
+
 TEST(Clock, MillisecondsCountFromTheRobotsStart) {
     static uint32_t milliseconds = 0;
     run_one(
@@ -147,6 +177,29 @@ TEST(Clock, DriftMakesClocksDiffer) {
     }
     EXPECT_NEAR(sum, 0.0, 400.0);
     EXPECT_NEAR(std::sqrt(squares), 500.0, 250.0);
+}
+
+TEST(Clock, DriftTakesHalfOfATickAtMost) {
+    static std::vector<int32_t> fastest_us;
+    fastest_us.assign(30, std::numeric_limits<int32_t>::max());
+    ObjectSpec spec = testing::article_robot();
+    spec.robot->clock_drift_stddev_us = 50000.0F;  // most robots' drift is more than a tick
+    testing::use_program([] { pogobot_stopwatch_reset(reinterpret_cast<time_reference_t*>(mydata)); },
+                         [] {
+                             auto* const since_last = reinterpret_cast<time_reference_t*>(mydata);
+                             int32_t const tick_us = pogobot_stopwatch_lap(since_last);
+                             if (pogobot_ticks > 0) {
+                                 int32_t& fastest = fastest_us[pogobot_helper_getid()];
+                                 fastest = std::min(fastest, tick_us);
+                             }
+                         });
+    Simulation simulation(testing::square_scene({testing::robots(30, spec)}, 2000.0), {});
+    ASSERT_FALSE(simulation.start());
+    ASSERT_FALSE(testing::run_for(simulation, 2.0));
+    // Ticks of 16 ms: whoever is in a hurry takes 8.
+    EXPECT_EQ(std::ranges::min(fastest_us), 8000);
+    EXPECT_GT(std::ranges::count(fastest_us, 8000), 5);
+    EXPECT_GT(std::ranges::max(fastest_us), 16000);
 }
 
 }  // namespace

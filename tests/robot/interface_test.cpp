@@ -103,6 +103,49 @@ TEST(RandomNumbers, SeedsDifferOnEveryRobotAndRepeatWithTheRun) {
     EXPECT_EQ(std::set<int16_t>(runs[0].begin(), runs[0].end()).size(), 300U);
 }
 
+/// The seeds that three robots get, one in each call of init and step; robot 1 takes `extra` more in each.
+std::vector<std::vector<int16_t>> seeds_of_three_robots(int extra) {
+    static std::vector<std::vector<int16_t>> seeds;
+    static int extra_of_robot_1 = 0;
+    seeds.assign(3, {});
+    extra_of_robot_1 = extra;
+    auto const take = [] {
+        auto const id = pogobot_helper_getid();
+        seeds[id].push_back(pogobot_helper_getRandSeed());
+        for (int i = 0; id == 1 && i < extra_of_robot_1; ++i) {
+            pogobot_helper_getRandSeed();
+        }
+    };
+    testing::use_program(take, take);
+    Simulation simulation(square_scene({robots(3)}), {});
+    EXPECT_FALSE(simulation.start());
+    EXPECT_FALSE(testing::run_for(simulation, 0.3));
+    return seeds;
+}
+
+TEST(RandomNumbers, SeedsAfterTheFirstDifferBetweenRobotsToo) {
+    auto const seeds = seeds_of_three_robots(0);
+    ASSERT_GE(seeds[0].size(), 15U);
+    for (auto const& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+        int equal = 0;
+        for (std::size_t i = 0; i < seeds[0].size(); ++i) {
+            equal += seeds[a][i] == seeds[b][i] ? 1 : 0;
+        }
+        EXPECT_LE(equal, 1) << "robots " << a << " and " << b;
+    }
+    for (auto const& own : seeds) {
+        EXPECT_GE(std::set<int16_t>(own.begin(), own.end()).size(), own.size() - 1);
+    }
+}
+
+TEST(RandomNumbers, SeedThatOneRobotTakesChangesNobodyElses) {
+    auto const few = seeds_of_three_robots(0);
+    auto const many = seeds_of_three_robots(5);
+    EXPECT_EQ(few[0], many[0]);
+    EXPECT_EQ(few[2], many[2]);
+    EXPECT_NE(few[1], many[1]);
+}
+
 TEST(RandomNumbers, SrandGivesTheSameNumbersOnEveryRobotAndRandTouchesOnlyItsOwn) {
     static std::vector<std::vector<int>> numbers;
     numbers.assign(3, {});
