@@ -20,7 +20,6 @@ import matplotlib as mpl
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
-import yaml
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
@@ -110,13 +109,12 @@ def category_colours(categories: pd.Series[Any]) -> Floats:
     return palette[[names.index(name) % len(palette) for name in categories]]
 
 
-def read_polygons(text: str) -> list[Floats]:
-    """Outlines of the arena from the metadata of a file: YAML, a sequence of sequences of {x, y}."""
-    try:
-        polygons = yaml.safe_load(text) or []
-        return [np.array([[p["x"], p["y"]] for p in polygon], dtype=float) for polygon in polygons]
-    except (yaml.YAMLError, KeyError, TypeError, ValueError) as error:
-        raise PictureError(f"its metadata 'arena_polygons' is not a list of polygons: {error}") from error
+def arena_of(metadata: dict[str, Any]) -> list[Floats]:
+    """Outlines of the arena from the metadata of a file; none where it does not say."""
+    polygons: list[Floats] | str = metadata.get("arena_polygons", [])
+    if isinstance(polygons, str):
+        raise PictureError("its metadata 'arena_polygons' is not a list of polygons")
+    return polygons
 
 
 def read_swarm(path: PathLike) -> Swarm:
@@ -148,7 +146,7 @@ def read_swarm(path: PathLike) -> Swarm:
         rows=objects,
         dots=rows[has_pose & is_part & (rows["time"] == end_s)],
         wall_colours={str(name): own[RGB].to_numpy()[0] for name, own in walls.groupby("robot_category")},
-        polygons=read_polygons(metadata.get("arena_polygons", "")) or [box_around(rows[has_pose], categories)],
+        polygons=arena_of(metadata) or [box_around(rows[has_pose], categories)],
         categories=categories,
         lamps=read_lamps(metadata["configuration"]),
         rays=ray_names(metadata["configuration"]),

@@ -5,11 +5,14 @@ from __future__ import annotations
 import ast
 import json
 import logging
+import re
 import warnings
 from pathlib import Path
 from typing import Any, Union
 
 import matplotlib.pyplot as plt
+import numpy as np
+import numpy.typing as npt
 import pandas as pd
 import pyarrow
 import yaml
@@ -18,6 +21,46 @@ from pyarrow import feather
 from pogosim.recover import RecoverError, read_unfinished
 
 PathLike = Union[str, "Path"]
+
+INTEGER = "tag:yaml.org,2002:int"
+FLOAT = "tag:yaml.org,2002:float"
+
+# Texts of YAML 1.1 that PyYAML would read as something else, and the simulator as texts.
+ONLY_IN_YAML_1_1 = (INTEGER, FLOAT, "tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
+
+
+class ConfigurationLoader(yaml.SafeLoader):
+    """YAML with the numbers of YAML 1.2, as the simulator reads them: 2.22e6 and 1e3 are numbers, 010 is ten."""
+
+    # Resolvers that are added to a class are added to a copy of this.
+    yaml_implicit_resolvers = {  # noqa: RUF012
+        first: [(tag, pattern) for tag, pattern in resolvers if tag not in ONLY_IN_YAML_1_1]
+        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+
+
+def construct_integer(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int:
+    """Construct a decimal, hexadecimal (0x1F) or octal (0o17) integer."""
+    text = loader.construct_scalar(node).lower()
+    bases = {"0x": 16, "0o": 8}
+    return int(text, bases.get(text.lstrip("+-")[:2], 10))
+
+
+ConfigurationLoader.add_implicit_resolver(
+    INTEGER, re.compile(r"[-+]?([0-9]+|0[xX][0-9a-fA-F]+|0o[0-7]+)$"), list("-+0123456789")
+)
+ConfigurationLoader.add_implicit_resolver(
+    FLOAT,
+    re.compile(
+        r"""[-+]?([0-9]+\.[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$
+        |[-+]?[0-9]+[eE][-+]?[0-9]+$
+        |[-+]?\.(inf|Inf|INF)$
+        |\.(nan|NaN|NAN)$""",
+        re.VERBOSE,
+    ),
+    list("-+.0123456789"),
+)
+ConfigurationLoader.add_constructor(INTEGER, construct_integer)
 
 
 def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
@@ -30,9 +73,10 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
 
     Returns:
         The rows (one per object and save time; lengths in mm, times in s, angles in rad), and the
-        metadata of the file. All metadata are texts, except "configuration": a dictionary, empty
-        if the file has none or it cannot be parsed. YAML texts such as 1.0e6 stay texts there
-        (PyYAML follows YAML 1.1, which wants 1.0e+6).
+        metadata of the file. All metadata are texts, except:
+        "configuration": a dictionary; empty if the file has none or it cannot be parsed.
+        "arena_polygons": a list of outlines, each an array of shape (corners, 2) with x and y in mm;
+        it stays a text if it is no list of polygons.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -44,6 +88,8 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
         for key, value in (table.schema.metadata or {}).items()
     }
     metadata["configuration"] = parse_configuration(metadata.get("configuration", ""))
+    if "arena_polygons" in metadata:
+        metadata["arena_polygons"] = parse_polygons(metadata["arena_polygons"])
     return table.to_pandas(), metadata
 
 
@@ -67,13 +113,32 @@ def read_table(path: Path) -> pyarrow.Table:
     return unfinished.table
 
 
+def parse_yaml(text: str) -> Any:
+    """Parse YAML, with numbers as the simulator reads them."""
+    return yaml.load(text, Loader=ConfigurationLoader)
+
+
+def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
+    """Parse polygons kept in a data file: YAML, a sequence of sequences of {x, y}.
+
+    Returns:
+        Arrays of shape (corners, 2) in the unit of the file (mm); the text itself if it is something else.
+    """
+    try:
+        polygons = parse_yaml(text) or []
+        arrays = [np.array([[p["x"], p["y"]] for p in polygon], dtype=np.float64) for polygon in polygons]
+    except (yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError):
+        return text
+    return arrays if all(array.ndim == 2 for array in arrays) else text
+
+
 def parse_configuration(text: str) -> dict[str, Any]:
     """Parse a configuration kept in a data file: YAML, else JSON, else a Python literal.
 
     Returns:
         The configuration; empty if the text is no map in any of the three.
     """
-    for parse in (yaml.safe_load, json.loads, ast.literal_eval):
+    for parse in (parse_yaml, json.loads, ast.literal_eval):
         try:
             value = parse(text)
         except (yaml.YAMLError, ValueError, SyntaxError, TypeError, RecursionError, MemoryError):

@@ -91,8 +91,8 @@ def test_metadata_hold_version_seed_and_an_arena_of_the_asked_surface(data: Path
     assert metadata["program_version"].startswith("v")
     assert metadata["configuration"]["seed"] == 5
     assert metadata["configuration"]["objects"]["robots"]["nb"] == NB
-    (polygon,) = yaml.safe_load(metadata["arena_polygons"])
-    x, y = np.array([[p["x"], p["y"]] for p in polygon]).T
+    (polygon,) = metadata["arena_polygons"]
+    x, y = polygon.T
     area = abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2
     assert area == pytest.approx(SURFACE_MM2, rel=1e-3)
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -52,11 +53,13 @@ def test_file_without_metadata_has_an_empty_configuration(tmp_path: Path) -> Non
     ("text", "expected"),
     [
         ("a: 1\nb: [x, 2.5]", {"a": 1, "b": ["x", 2.5]}),
-        ("arena_surface: 1.0e6", {"arena_surface": "1.0e6"}),  # PyYAML follows YAML 1.1
+        ("arena_surface: 1.0e6", {"arena_surface": 1.0e6}),
         ('{"a": true,\t"b": null}', {"a": True, "b": None}),
         ("{'a': 'one ' 'text'}", {"a": "one text"}),  # a Python literal only
         ("{'a' 'b': 1, []: 2}", {}),
         ("[" * 100_000, {}),
+        ("- " * 100_000, {}),
+        ("{a: " * 100_000, {}),
         ("", {}),
         ("just a text", {}),
         ("- a\n- list", {}),
@@ -67,6 +70,52 @@ def test_file_without_metadata_has_an_empty_configuration(tmp_path: Path) -> Non
 )
 def test_configuration_is_read_as_yaml_json_or_literal_and_else_empty(text: str, expected: object) -> None:
     assert parse_configuration(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("2.22e6", 2.22e6),
+        ("1e3", 1000.0),
+        ("1E+3", 1000.0),
+        ("-.5e-3", -0.0005),
+        ("5.", 5.0),
+        ("1.0e+6", 1.0e6),
+        ("-.INF", -math.inf),
+        ("+7", 7),
+        ("010", 10),
+        ("0x1F", 31),
+        ("-0x1f", -31),
+        ("0o17", 15),
+    ],
+)
+def test_numbers_come_back_as_the_simulator_reads_them(text: str, number: float) -> None:
+    value = parse_configuration(f"a: {text}\nb: [{text}]")
+    assert value == {"a": number, "b": [number]}
+    assert type(value["a"]) is type(number)
+
+
+@pytest.mark.parametrize("text", ["1:30", "1_000", "0b11", "2024-01-01", "2024-13-45", "=", "1e", ".", "1.2.3"])
+def test_texts_that_are_no_numbers_to_the_simulator_stay_texts(text: str) -> None:
+    assert parse_configuration(f"a: {text}") == {"a": text}
+
+
+def test_numbers_in_quotes_are_texts() -> None:
+    assert parse_configuration("a: '2.22e6'") == {"a": "2.22e6"}
+
+
+def test_arena_comes_back_as_arrays_of_corners(tmp_path: Path) -> None:
+    text = "- [{x: 0, y: 0}, {x: 1e3, y: 0}, {x: 0, y: 2.5}]\n- [{x: 1, y: 2}, {x: 3, y: 4}]\n"
+    _, read = load_dataframe(write(tmp_path / "a.feather", {"arena_polygons": text}))
+    outer, hole = read["arena_polygons"]
+    np.testing.assert_array_equal(outer, [[0, 0], [1000, 0], [0, 2.5]])
+    np.testing.assert_array_equal(hole, [[1, 2], [3, 4]])
+
+
+@pytest.mark.parametrize("text", ["[1, 2]", "[[{x: 1}]]", "[[", "{a: 1}", "5", "none", "[[]]", "[[{x: a, y: 1}]]"])
+def test_arena_that_is_no_list_of_polygons_stays_a_text(tmp_path: Path, text: str) -> None:
+    _, read = load_dataframe(write(tmp_path / "a.feather", {"arena_polygons": text}))
+    assert read["arena_polygons"] == text
 
 
 @given(st.text())
