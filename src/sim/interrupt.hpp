@@ -4,12 +4,12 @@
 
 namespace pogosim {
 
-/// From now on a console that is closed, full or read by nobody any more is no reason to lose the run. Descriptors 0 to 2
-/// that are closed lead to /dev/null, so that no file of the run gets one of these numbers and what is printed.
+/// From now on a console that is closed, full or read by nobody any more is no reason to lose the run. Descriptors
+/// 0 to 2 that are closed lead to /dev/null, so that no file of the run gets one of these numbers and what is printed.
 void ignore_broken_outputs();
 
-/// Catches the signals from now on. The first one asks the run to end and hurries user code that does not return; a second
-/// one leaves it; a third one ends the program, complete or not.
+/// Catches the signals from now on. The first one asks the run to end and hurries user code that does not return; a
+/// second one leaves it; a third one ends the program, complete or not.
 void catch_interrupts();
 
 /// The run is over: the signals end the program again.
