@@ -19,6 +19,7 @@ char kind[32] = "nothing";
 char place[32] = "user_step";
 uint16_t culprit = 1;
 int32_t number = 5;
+bool announced = false;  // robot 0 says so right before the misdeed in user_step
 
 volatile int zero = 0;
 int* volatile nowhere = NULL;
@@ -208,6 +209,9 @@ void user_step(void) {
         printf("first tick\n");
     }
     if (pogobot_ticks == TICK_OF_THE_MISDEED) {
+        if (announced && pogobot_helper_getid() == 0) {
+            printf("here it comes\n");
+        }
         misbehave_if_culprit("user_step");
     }
 }
@@ -243,6 +247,7 @@ int main(void) {
     init_array_from_configuration(kind);
     init_array_from_configuration(place);
     init_from_configuration(culprit);
+    init_from_configuration(announced);
     pogobot_init();
     pogobot_start(user_init, user_step);
     SET_CALLBACK(callback_global_setup, global_setup);

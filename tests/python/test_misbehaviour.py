@@ -254,9 +254,11 @@ BLOCKING_KINDS = [
 
 
 def start_blocked(program: Compile, folder: Path, kind: str, timeout_s: float) -> subprocess.Popen[str]:
-    settings = {"user_code_timeout": timeout_s, "parameters.kind": kind}
+    settings = {"user_code_timeout": timeout_s, "parameters.kind": kind, "parameters.announced": True}
     process = start(program("misbehave.c"), folder, settings)
     wait_until_it_runs(process)
+    assert process.stdout is not None
+    assert "here it comes" in process.stdout.readline()
     time.sleep(0.3)
     return process
 
