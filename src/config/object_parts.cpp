@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "config/lamp_keys.hpp"
 #include "config/reception_keys.hpp"
 #include "config/shape_keys.hpp"
 
@@ -23,6 +24,8 @@ std::span<Key<BodySpec> const> body_keys() {
           "Coulomb friction coefficient; two touching bodies have the geometric mean."},
         K{"body_restitution", &BodySpec::restitution, between(0, 1), "",
           "Part of the approach speed kept after an impact; two touching bodies have the larger one."},
+        K{"body_fixed", &BodySpec::fixed, any(), "",
+          "An obstacle that never moves, whatever pushes it; not for robots with wheels and membranes."},
     };
     return keys;
 }
@@ -80,14 +83,17 @@ std::span<Key<ObjectSpec> const> colormap_keys() {
 struct Position {
     std::optional<float> x;
     std::optional<float> y;
+    std::optional<float> angle;
 };
 
 std::span<Key<Position> const> position_keys() {
     using K = Key<Position>;
     static std::array const keys{
         K{"x", &Position::x, kCoordinate, "mm",
-          "With y: all objects of the category start there, heading 0. Without: the formation places them."},
+          "With y: all objects of the category start there. Without: the formation places them."},
         K{"y", &Position::y, kCoordinate, "mm", "See x."},
+        K{"angle", &Position::angle, kAngle, "rad",
+          "With x and y: the heading of all objects at the start, clockwise on the screen from +x; absent: 0."},
     };
     return keys;
 }
@@ -119,6 +125,10 @@ void read_position(MapReader& reader, ObjectConfig& object) {
     }
     if (position.x) {
         object.position_mm = Vec2{*position.x, *position.y};
+        object.heading_rad = wrap_angle(position.angle.value_or(0.0F));
+    } else if (position.angle) {
+        fail_at({*reader.find("angle"), reader.path_of("angle")},
+                "stands alone; it is the heading of objects at x and y");
     }
 }
 

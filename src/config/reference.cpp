@@ -1,6 +1,7 @@
 #include "config/reference.hpp"
 
 #include "config/object_types.hpp"
+#include "config/placement_keys.hpp"
 #include "config/reception_keys.hpp"
 #include "config/scenario_keys.hpp"
 
@@ -22,6 +23,11 @@ std::vector<KeyGroup> configuration_reference() {
         type.read(reader, object);
         groups.push_back({"objects.<category>", std::string(type.name), std::string(type.doc), reader.known_keys()});
     }
+
+    MapReader area(nothing, "objects.<category>.area", false);
+    read_disk_area(area);
+    groups.push_back(
+        {"objects.<category>.area", "", "A disk; the other form is a list of corners.", area.known_keys()});
 
     MapReader reception(nothing, "objects.<category>.msg_success_rate", false);
     read_reception_map(reception);

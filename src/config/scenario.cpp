@@ -43,6 +43,13 @@ Node read_parameters(Node const* parameters) {
 
 }  // namespace
 
+std::vector<Placement> given_poses(ObjectConfig const& object) {
+    if (object.position_mm) {
+        return {static_cast<std::size_t>(object.nb), {*object.position_mm, object.heading_rad}};
+    }
+    return object.poses;
+}
+
 std::string where_at_top(Scenario const& scenario, std::string const& key) {
     Node const* const value = scenario.resolved.find(key);
     return (value != nullptr ? *value : scenario.resolved).where();

@@ -20,16 +20,30 @@ enum class LogFormat { dated, minimal };
 /// Robots are numbered from 0 in 16 bits.
 inline constexpr int kMaxObjects = 65535;
 
+/// How the objects of an entry are placed apart from those of the others.
+struct OwnFormation {
+    std::optional<std::string> name{};  // absent: that of the top level
+    std::optional<Polygon> area_mm{};   // absent: the arena
+
+    bool is_given() const { return name || area_mm; }
+};
+
 /// One entry of `objects`.
 struct ObjectConfig {
     std::string category;  // its name in the configuration
     std::string type;      // lower case, "pogobot"
     int nb = 1;            // how many
     std::optional<Vec2>
-        position_mm;    // both x and y given: all stand there; else the formation places the tangible ones
-    ObjectSpec spec;    // what the type makes them of
-    std::string where;  // file:line, for messages
+        position_mm;               // both x and y given: all stand there; else the formation places the tangible ones
+    float heading_rad = 0.0F;      // with position_mm
+    std::vector<Placement> poses;  // one for each object, instead of position_mm
+    OwnFormation own_formation;    // without position_mm and poses
+    ObjectSpec spec;               // what the type makes them of
+    std::string where;             // file:line, for messages
 };
+
+/// Where the objects of the entry start, one pose for each; empty when the configuration does not say.
+std::vector<Placement> given_poses(ObjectConfig const& object);
 
 /// Window and drawing; read and kept for the window.
 struct ViewConfig {

@@ -102,10 +102,11 @@ void check_area(PlacementTask const& task) {
     if (covered > (alone ? free_mm2 : free_mm2 + kShareTolerance * task.domain.area_mm2)) {
         std::string const room = alone ? fmt::format("{:.3g} mm2", free_mm2)
                                        : fmt::format("about {:.2g} mm2 beside what stands there already", free_mm2);
-        throw FormationError(kFormationKey,
-                             fmt::format("'{}' cannot place {}: with their spacing they cover {:.3g} mm2, and the "
-                                         "arena has {}. Ask for fewer or enlarge arena_surface",
-                                         task.spec.name, describe_objects(task), covered, room));
+        throw FormationError(
+            kFormationKey,
+            fmt::format("'{}' cannot place {}: with their spacing they cover {:.3g} mm2, and the "
+                        "{} has {}. Ask for fewer or {}",
+                        task.spec.name, describe_objects(task), covered, task.ground, room, task.remedy));
     }
 }
 
@@ -153,7 +154,8 @@ std::vector<Placement> place(FormationSpec const& spec, std::span<float const> r
     }
     std::vector<float> const radii = placement_radii(spec, radii_mm);
     FreeSpace const space(ground.domain, ground.obstacles);
-    PlacementTask const task{spec, radii, ground.domain, ground.obstacles, space, random, read_feather};
+    PlacementTask const task{spec,   radii,        ground.domain, ground.obstacles, space,
+                             random, read_feather, ground.name,   ground.remedy};
     bool const by_file = formation.place == place_imported;
     if (!by_file) {
         check_area(task);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,13 @@
 #include "geometry/obstacle.hpp"
 
 namespace pogosim {
+
+/// Rows of an imported file, counted within its first instant, that belong to objects which are placed at another time.
+struct RowsOfOthers {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    bool may_follow = false;  // those after the rows used may be of others, too, so too many are no warning
+};
 
 /// The keys `initial_formation*`, `formation_*`, `chessboard_*` and `imported_*` of a configuration.
 struct FormationSpec {
@@ -30,6 +38,7 @@ struct FormationSpec {
     float chessboard_pitch_mm = 100.0F;
     bool cluster_at_centre = true;  // chessboard: rings around the centre; false: spread over the bounding box
     std::string filename;           // imported: csv or feather
+    RowsOfOthers rows_of_others{};  // imported
     Vec2 imported_min{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
     Vec2 imported_max{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
 };
@@ -42,7 +51,9 @@ struct Placement {
 /// Where a formation may place objects.
 struct FormationGround {
     Arena const& domain;
-    std::span<Obstacle const> obstacles{};  // that stand there already
+    std::span<Obstacle const> obstacles{};              // that stand there already
+    std::string_view name = "arena";                    // of the domain, for messages
+    std::string_view remedy = "enlarge arena_surface";  // when there is no room
 };
 
 /// One row of a file for the formation `imported`.
@@ -67,6 +78,9 @@ private:
 };
 
 constexpr char const* kFormationKey = "initial_formation";
+
+/// The formation that reads a file.
+constexpr char const* kImportedFormation = "imported";
 
 /// Reads all poses of a file that is not text. Its mistakes are ConfigErrors.
 using PoseReader = std::function<std::vector<ImportedPose>(std::filesystem::path const&)>;

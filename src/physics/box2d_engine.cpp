@@ -129,7 +129,7 @@ private:
 
     b2Body* add_body(Bodies const& bodies, std::size_t i) {
         b2BodyDef definition;
-        definition.type = b2_dynamicBody;
+        definition.type = bodies.spec[i].fixed ? b2_staticBody : b2_dynamicBody;
         definition.position = to_box2d(bodies.position_mm[i]);
         definition.angle = bodies.heading_rad[i];
         definition.linearVelocity = to_box2d(bodies.velocity_mm_s[i]);
@@ -214,6 +214,9 @@ private:
 
     void read_back(Bodies& bodies, std::size_t i) {
         b2Body const& body = *bodies_[i];
+        if (bodies.spec[i].fixed) {
+            return;
+        }
         if (!body.IsAwake()) {
             bodies.velocity_mm_s[i] = {};
             bodies.spin_rad_s[i] = 0.0F;

@@ -38,7 +38,7 @@ Containment::Containment(World const& world) : walls_(world.arena) {
 void Containment::hold(std::vector<b2Body*> const& bodies) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         b2Body& body = *bodies[i];
-        if (!body.IsAwake()) {
+        if (!body.IsAwake() || body.GetType() == b2_staticBody) {
             continue;
         }
         Leash& leash = leashes_[i];

@@ -53,7 +53,7 @@ void wrap_with_contents(World const& world, EngineBodies const& bodies, Object c
 void wrap_objects(World const& world, EngineBodies const& bodies) {
     std::vector<Object const*> rigid;
     for (Object const& object : world.objects) {
-        if (object.body_count == 1) {
+        if (object.body_count == 1 && !world.bodies.spec[object.body].fixed) {
             rigid.push_back(&object);
         }
     }

@@ -17,7 +17,16 @@ constexpr float kDeepShare = 0.1F;
 
 struct FixedEntry {
     ObjectConfig const* object;
+    Vec2 position_mm;
     Obstacle obstacle;
+};
+
+/// What is wrong with the fixed objects of a category, or of two; the text is about the first of them.
+struct Finding {
+    FixedEntry const* entry;
+    ObjectConfig const* other;  // nullptr: a wall
+    std::string text;
+    int more = 0;  // objects or pairs of the same categories
 };
 
 float half_thickness_mm(ObjectSpec const& spec) {
@@ -37,16 +46,47 @@ float half_thickness_mm(ObjectSpec const& spec) {
 std::vector<FixedEntry> fixed_entries(Scenario const& scenario) {
     std::vector<FixedEntry> entries;
     for (ObjectConfig const& object : scenario.objects) {
-        if (object.spec.body && object.position_mm && object.nb > 0) {
-            entries.push_back({&object, obstacles_of(object, {{*object.position_mm, 0.0F}}).front()});
+        std::vector<Placement> poses = given_poses(object);
+        if (object.position_mm && !poses.empty()) {
+            poses.resize(1);  // all stand there
+        }
+        if (object.spec.body) {
+            std::vector<Obstacle> const obstacles = obstacles_of(object, poses);
+            for (std::size_t i = 0; i < poses.size(); ++i) {
+                entries.push_back({&object, poses[i].position_mm, obstacles[i]});
+            }
         }
     }
     return entries;
 }
 
-void warn(Scenario const& scenario, FixedEntry const& entry, std::string const& text) {
-    log().warn("{}: at ({:g}, {:g}) {}", where_in_object(scenario, *entry.object, "x"), entry.object->position_mm->x,
-               entry.object->position_mm->y, text);
+class Findings {
+public:
+    void add(FixedEntry const& entry, ObjectConfig const* other, std::string const& text) {
+        auto const same = std::ranges::find_if(
+            all_, [&](Finding const& known) { return known.entry->object == entry.object && known.other == other; });
+        if (same == all_.end()) {
+            all_.push_back({&entry, other, text});
+        } else {
+            ++same->more;
+        }
+    }
+
+    void warn(Scenario const& scenario) const {
+        for (auto const& [entry, other, text, more] : all_) {
+            log().warn("{}: at ({:g}, {:g}) {}{}",
+                       where_in_object(scenario, *entry->object, entry->object->position_mm ? "x" : "poses"),
+                       entry->position_mm.x, entry->position_mm.y, text,
+                       more > 0 ? fmt::format(", and {} more like this", more) : "");
+        }
+    }
+
+private:
+    std::vector<Finding> all_;
+};
+
+bool may_touch(FixedEntry const& a, FixedEntry const& b) {
+    return length(a.position_mm - b.position_mm) <= outer_radius_mm(a.object->spec) + outer_radius_mm(b.object->spec);
 }
 
 }  // namespace
@@ -69,28 +109,30 @@ std::vector<Obstacle> obstacles_of(ObjectConfig const& object, std::vector<Place
 
 void warn_of_overlaps(Scenario const& scenario, World const& world) {
     std::vector<FixedEntry> const entries = fixed_entries(scenario);
+    Findings findings;
     for (auto entry = entries.begin(); entry != entries.end(); ++entry) {
-        float const own_mm = half_thickness_mm(entry->object->spec);
-        if (entry->object->nb > 1) {
-            warn(scenario, *entry,
-                 fmt::format("all {} objects of '{}' stand inside each other", entry->object->nb,
-                             entry->object->category));
+        ObjectConfig const& object = *entry->object;
+        float const own_mm = half_thickness_mm(object.spec);
+        if (object.position_mm && object.nb > 1) {
+            findings.add(*entry, &object,
+                         fmt::format("all {} objects of '{}' stand inside each other", object.nb, object.category));
         }
         for (auto other = entries.begin(); other != entry; ++other) {
-            float const depth_mm = overlap_mm(entry->obstacle, other->obstacle);
+            float const depth_mm = may_touch(*entry, *other) ? overlap_mm(entry->obstacle, other->obstacle) : 0.0F;
             if (depth_mm > kDeepShare * std::min(own_mm, half_thickness_mm(other->object->spec))) {
-                warn(scenario, *entry,
-                     fmt::format("'{}' reaches {:.1f} mm deep into {}", entry->object->category, depth_mm,
-                                 other->obstacle.name));
+                findings.add(*entry, other->object,
+                             fmt::format("'{}' reaches {:.1f} mm deep into {}", object.category, depth_mm,
+                                         other->object == &object ? "another one" : other->obstacle.name));
             }
         }
         float const depth_mm = world.periodic ? 0.0F : overlap_mm(entry->obstacle, world.arena);
         if (depth_mm > kDeepShare * own_mm) {
-            warn(
-                scenario, *entry,
-                fmt::format("'{}' reaches {:.1f} mm deep into a wall of the arena", entry->object->category, depth_mm));
+            findings.add(
+                *entry, nullptr,
+                fmt::format("'{}' reaches {:.1f} mm deep into a wall of the arena", object.category, depth_mm));
         }
     }
+    findings.warn(scenario);
 }
 
 }  // namespace pogosim

@@ -13,6 +13,7 @@
 #include "sim/fixed_objects.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/make_ring.hpp"
+#include "sim/place_apart.hpp"
 
 namespace pogosim {
 
@@ -27,7 +28,7 @@ constexpr float kSmallestStepMm = 0.1F;
 constexpr std::size_t kNoEntry = std::numeric_limits<std::size_t>::max();
 
 bool is_placed_by_formation(ObjectConfig const& object) {
-    return object.spec.body && !object.position_mm;
+    return object.spec.body && !object.position_mm && object.poses.empty();
 }
 
 char const* size_key(Shape const& shape) {
@@ -78,20 +79,21 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     }
 }
 
-[[noreturn]] void fail_outside(Scenario const& scenario, World const& world, ObjectConfig const& object) {
-    auto const [x, y] = *object.position_mm;
+[[noreturn]] void fail_outside(Scenario const& scenario, World const& world, ObjectConfig const& object,
+                               Vec2 centre_mm) {
+    auto const [x, y] = centre_mm;
     Box const& box = world.arena.bounds;
     bool const x_fits = x >= box.min.x && x <= box.max.x;
     bool const y_fits = y >= box.min.y && y <= box.max.y;
-    throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}",
-                                  where_in_object(scenario, object, x_fits && !y_fits ? "y" : "x"), x, y,
+    char const* const key = !object.position_mm ? "poses" : x_fits && !y_fits ? "y" : "x";
+    throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}", where_in_object(scenario, object, key), x, y,
                                   x_fits && y_fits ? "beyond the walls of" : "outside of", arena_text(world.arena)));
 }
 
-void check_position(Scenario const& scenario, World const& world, ObjectConfig const& object) {
-    Vec2 const centre_mm = *object.position_mm;
+void check_position(Scenario const& scenario, World const& world, ObjectConfig const& object, Placement const& pose) {
+    Vec2 const centre_mm = pose.position_mm;
     if (!stands_inside(world, centre_mm)) {
-        fail_outside(scenario, world, object);
+        fail_outside(scenario, world, object, centre_mm);
     }
     if (Polygon const corners = outline(object.spec.shape); !corners.empty()) {
         Vec2 const size_mm = bounding_box(corners).size();
@@ -100,11 +102,19 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
             fail_too_large(scenario, world, object, std::max(size_mm.x, size_mm.y));
         }
     }
-    if (object.spec.ring && !std::ranges::all_of(moved(outline(object.spec.shape), centre_mm, 0.0F),
-                                                 [&](Vec2 corner) { return stands_inside(world, corner); })) {
-        throw ConfigError(fmt::format("{}: around ({:g}, {:g}) the object reaches beyond {}",
-                                      where_in_object(scenario, object, size_key(object.spec.shape)), centre_mm.x,
+    if (!object.spec.ring) {
+        return;
+    }
+    auto const is_inside = [&](Vec2 point) { return stands_inside(world, point); };
+    std::string const where = where_in_object(scenario, object, size_key(object.spec.shape));
+    if (!std::ranges::all_of(moved(outline(object.spec.shape), centre_mm, pose.heading_rad), is_inside)) {
+        throw ConfigError(fmt::format("{}: around ({:g}, {:g}) the object reaches beyond {}", where, centre_mm.x,
                                       centre_mm.y, arena_text(world.arena)));
+    }
+    if (!std::ranges::all_of(make_ring(object.spec, pose).bodies, is_inside, &RingBody::position_mm)) {
+        throw ConfigError(
+            fmt::format("{}: around ({:g}, {:g}) some dots of the object would start beyond the walls of {}", where,
+                        centre_mm.x, centre_mm.y, arena_text(world.arena)));
     }
 }
 
@@ -177,6 +187,14 @@ void check_inside(Scenario const& scenario, World const& world, ObjectConfig con
     }
 }
 
+std::size_t count_objects(Scenario const& scenario, std::vector<std::size_t> const& entries) {
+    std::size_t count = 0;
+    for (std::size_t const i : entries) {
+        count += static_cast<std::size_t>(scenario.objects[i].nb);
+    }
+    return count;
+}
+
 /// Lets the formation place the objects of these entries together.
 void place_entries(Scenario const& scenario, FormationSpec const& formation, FormationGround const& ground,
                    std::vector<std::size_t> const& entries, RandomStream& random,
@@ -205,8 +223,9 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, For
 
 std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, World const& world, std::uint32_t seed) {
     std::vector<std::vector<Placement>> poses(scenario.objects.size());
-    std::vector<std::size_t> entries;  // for the formation
-    std::vector<Obstacle> obstacles;   // that it keeps off
+    std::vector<std::size_t> entries;      // for the formation
+    std::vector<std::size_t> own_entries;  // for formations of their own, which come before
+    std::vector<Obstacle> obstacles;       // that it keeps off
     std::size_t const root = root_entry(scenario);
     RandomStream random(seed, kFormationStream);
     FormationSpec formation = scenario.formation;
@@ -224,22 +243,33 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
         }
         if (is_placed_by_formation(object)) {
             check_size(scenario, world, object);
-            entries.push_back(i);
+            (object.own_formation.is_given() ? own_entries : entries).push_back(i);
         } else if (object.spec.body || object.spec.robot) {
-            if (object.position_mm) {
-                check_position(scenario, world, object);
+            poses[i] = given_poses(object);
+            for (Placement const& pose : poses[i]) {
+                check_position(scenario, world, object, pose);
             }
-            poses[i].assign(static_cast<std::size_t>(object.nb), {object.position_mm.value_or(Vec2{}), 0.0F});
+            poses[i].resize(static_cast<std::size_t>(object.nb));  // walls that are everywhere have no place
             if (object.spec.body) {
                 add_obstacles(i);
             }
         }
     }
     warn_of_overlaps(scenario, world);
+    for (std::size_t const i : own_entries) {
+        poses[i] = place_apart(scenario, world, scenario.objects[i], obstacles, random);
+        add_obstacles(i);
+    }
     Arena domain = world.arena;
     if (root != kNoEntry) {
-        if (std::erase(entries, root) > 0) {
-            place_entries(scenario, formation, {world.arena, obstacles}, {root}, random, poses);
+        if (auto const place = std::ranges::find(entries, root); place != entries.end()) {
+            // The first to be placed, but the rows of an imported file keep to the order of the categories.
+            std::size_t const rows_before = count_objects(scenario, {entries.begin(), place});
+            FormationSpec of_root = formation;
+            of_root.rows_of_others = {.first = 0, .count = rows_before, .may_follow = true};
+            formation.rows_of_others = {.first = rows_before, .count = count_objects(scenario, {root})};
+            entries.erase(place);
+            place_entries(scenario, of_root, {world.arena, obstacles}, {root}, random, poses);
             add_obstacles(root);
         }
         domain = root_domain(scenario, world, scenario.objects[root], poses[root]);

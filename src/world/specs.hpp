@@ -22,6 +22,7 @@ struct BodySpec {
     float density = 10.0F;         // mass per (100 mm)^2, > 0
     float friction = 0.3F;         // Coulomb coefficient; two bodies: geometric mean
     float restitution = 0.5F;      // 0 to 1; two bodies: the larger
+    bool fixed = false;            // never moves
 };
 
 enum class ReceptionLaw {

@@ -1,6 +1,7 @@
 // Objects of type `active_object`: a body that can be pushed, with a program and infrared, without motors.
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
+#include "config/placement_keys.hpp"
 
 namespace pogosim {
 
@@ -9,7 +10,7 @@ void read_active_object(MapReader& reader, ObjectConfig& object) {
     read_robot(reader, object);
     object.spec.robot->has_wheels = false;
     read_body(reader, object);
-    read_position(reader, object);
+    read_placement(reader, object);
     read_colormap(reader, object);
 }
 

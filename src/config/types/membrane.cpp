@@ -4,6 +4,7 @@
 
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
+#include "config/placement_keys.hpp"
 
 namespace pogosim {
 
@@ -43,7 +44,7 @@ void read_ring_object(MapReader& reader, ObjectConfig& object) {
     object.spec.robot->emitters = Emitters::outline;
     read_body(reader, object);
     reader.read(ring_keys(), object.spec.ring.emplace());
-    read_position(reader, object);
+    read_placement(reader, object);
     read_colormap(reader, object);
 }
 

@@ -1,6 +1,7 @@
 // Objects of type `pogobject`: the head of a robot on a large body without motors.
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
+#include "config/placement_keys.hpp"
 
 namespace pogosim {
 
@@ -10,7 +11,7 @@ void read_pogobject(MapReader& reader, ObjectConfig& object) {
     object.spec.robot->has_wheels = false;
     object.spec.robot->emitters = Emitters::centre;
     read_body(reader, object);
-    read_position(reader, object);
+    read_placement(reader, object);
 }
 
 }  // namespace pogosim

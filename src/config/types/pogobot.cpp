@@ -1,6 +1,7 @@
 // Objects of type `pogobot`.
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
+#include "config/placement_keys.hpp"
 
 namespace pogosim {
 
@@ -8,7 +9,7 @@ void read_pogobot(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
     read_robot(reader, object);
     read_body(reader, object);
-    read_position(reader, object);
+    read_placement(reader, object);
 }
 
 }  // namespace pogosim

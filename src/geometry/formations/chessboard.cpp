@@ -15,7 +15,10 @@ namespace {
 constexpr float kPitchTolerance = 0.08F;  // by which the spread grid may differ from the pitch asked for
 constexpr int kPitchSteps = 16;           // tried on either side
 constexpr double kMostNodes = 1.0e6;      // of a spread grid
-constexpr auto kRemedy = "Ask for fewer, lower chessboard_distance_between_neighbors, or enlarge arena_surface";
+
+std::string remedy(PlacementTask const& task) {
+    return fmt::format("Ask for fewer, lower chessboard_distance_between_neighbors, or {}", task.remedy);
+}
 
 /// Squares of grid nodes around the centre; of each, those nearest to the centre first.
 RingPattern squares(Vec2 centre, float pitch_mm) {
@@ -83,8 +86,8 @@ std::vector<Vec2> best_grid(PlacementTask const& task) {
         }
     }
     if (enough.empty()) {
-        refuse(task, fmt::format("a grid of pitch {:g} mm (+-8 %) has at most {} places in this arena. {}",
-                                 task.spec.chessboard_pitch_mm, most, kRemedy));
+        refuse(task, fmt::format("a grid of pitch {:g} mm (+-8 %) has at most {} places in this {}. {}",
+                                 task.spec.chessboard_pitch_mm, most, task.ground, remedy(task)));
     }
     return enough;
 }
@@ -124,7 +127,7 @@ std::vector<Placement> place_chessboard(PlacementTask const& task) {
     }
     Vec2 const centre = formation_centre(task);
     auto const pattern_for = [&](float) { return squares(centre, task.spec.chessboard_pitch_mm); };
-    return place_on_rings(task, centre, pattern_for, kRemedy);
+    return place_on_rings(task, centre, pattern_for, remedy(task));
 }
 
 }  // namespace pogosim

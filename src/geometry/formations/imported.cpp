@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "geometry/csv_text.hpp"
 #include "geometry/formations/task.hpp"
 
@@ -162,12 +163,22 @@ std::vector<Placement> place_imported(PlacementTask const& task) {
     std::vector<ImportedPose> poses = read_poses(task);
     keep_first_instant(poses);
     std::size_t const count = task.radii_mm.size();
-    if (poses.size() < count) {
+    RowsOfOthers const& others = task.spec.rows_of_others;
+    std::size_t const needed = count + others.count;
+    if (poses.size() < needed) {
         throw ConfigError(
             fmt::format("{}: expected at least {} rows of poses (of the first instant), one for each "
                         "object, found {}",
-                        task.spec.filename, count, poses.size()));
+                        task.spec.filename, needed, poses.size()));
     }
+    if (poses.size() > needed && !others.may_follow) {
+        log().warn(
+            "{}: it has {} rows of poses (of the first instant), and there are {} objects to place; the last {} "
+            "are not used",
+            task.spec.filename, poses.size(), needed, poses.size() - needed);
+    }
+    auto const first_of_others = poses.begin() + static_cast<std::ptrdiff_t>(others.first);
+    poses.erase(first_of_others, first_of_others + static_cast<std::ptrdiff_t>(others.count));
     poses.resize(count);
 
     ImportedFrame const frame(task);

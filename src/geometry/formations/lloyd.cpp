@@ -37,9 +37,8 @@ std::vector<Vec2> draw_samples(PlacementTask const& task, std::size_t count) {
         }
     }
     if (samples.size() < task.radii_mm.size()) {
-        throw FormationError(kFormationKey,
-                             fmt::format("'{}' cannot place {}: the arena is too thin to draw points in it",
-                                         task.spec.name, describe_objects(task)));
+        throw FormationError(kFormationKey, fmt::format("'{}' cannot place {}: the {} is too thin to draw points in it",
+                                                        task.spec.name, describe_objects(task), task.ground));
     }
     return samples;
 }
@@ -97,10 +96,11 @@ std::vector<Placement> place_evenly(PlacementTask const& task, std::span<float c
             return placements;
         }
     }
-    throw FormationError(kFormationKey,
-                         fmt::format("'{}' found no arrangement of {} in this arena that keeps them apart and off "
-                                     "the walls. Ask for fewer or enlarge arena_surface",
-                                     task.spec.name, describe_objects(task)));
+    throw FormationError(
+        kFormationKey,
+        fmt::format("'{}' found no arrangement of {} in this {} that keeps them apart and off the walls. "
+                    "Ask for fewer or {}",
+                    task.spec.name, describe_objects(task), task.ground, task.remedy));
 }
 
 }  // namespace

@@ -66,8 +66,8 @@ private:
     }
 
     [[noreturn]] void refuse() const {
-        throw FormationError(kFormationKey, fmt::format("'{}' has places for {} of {} in this arena. {}",
-                                                        task_.spec.name, placed_, describe_objects(task_), remedy_));
+        throw FormationError(kFormationKey, fmt::format("'{}' has places for {} of {} in this {}. {}", task_.spec.name,
+                                                        placed_, describe_objects(task_), task_.ground, remedy_));
     }
 
     PlacementTask const& task_;

@@ -31,10 +31,11 @@ void repeat_until_all_stand(PlacementTask const& task, std::int64_t const& point
         }
         most = std::max(most, placed);
         if (points_drawn >= kMostPointsDrawn || restarts == task.spec.max_restarts) {
-            throw FormationError(kFormationKey,
-                                 fmt::format("'{}' placed {} of {} in this arena after {} restarts: ask for fewer, "
-                                             "enlarge arena_surface, or use power_lloyd",
-                                             task.spec.name, most, describe_objects(task), restarts));
+            throw FormationError(
+                kFormationKey,
+                fmt::format("'{}' placed {} of {} in this {} after {} restarts: ask for fewer, {}, or use "
+                            "power_lloyd",
+                            task.spec.name, most, describe_objects(task), task.ground, restarts, task.remedy));
         }
     }
 }

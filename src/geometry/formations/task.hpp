@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/formation.hpp"
@@ -28,6 +29,8 @@ struct PlacementTask {
     FreeSpace const& space;  // the domain less the obstacles
     RandomStream& random;
     PoseReader const& read_feather;
+    std::string_view ground = "arena";  // what messages call the domain
+    std::string_view remedy = "enlarge arena_surface";
 };
 
 /// Random sequential addition: each object at a uniform random place where it fits. B. Widom, "Random sequential

@@ -1,0 +1,176 @@
+#include "config/placement_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "config/lamp_keys.hpp"
+#include "config/object_parts.hpp"
+#include "config/shape_keys.hpp"
+#include "geometry/outline_survey.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::string_view kArea = "a map of x, y and radius, or a list of at least 3 corners [x, y] (mm)";
+constexpr std::string_view kPose = "[x, y] or [x, y, angle] (mm, rad)";
+constexpr std::string_view kPoses = "a list of [x, y] or [x, y, angle] (mm, rad)";
+
+std::span<Key<ObjectConfig> const> placement_keys() {
+    using K = Key<ObjectConfig>;
+    static std::array const keys{
+        K{"poses", Elsewhere{kPoses}, any(), "",
+          "Where each object starts, in their order; instead of x and y. Without an angle: heading 0. nb may be absent."},
+        K{"area", Elsewhere{kArea}, any(), "",
+          "The formation places this category there, in what the arena has of it, before those without an area."},
+    };
+    return keys;
+}
+
+std::span<Key<OwnFormation> const> formation_keys() {
+    NamedValues<std::optional<std::string>> names;
+    for (std::string const& name : formation_names()) {
+        if (name != kImportedFormation) {
+            names.emplace_back(name, name);
+        }
+    }
+    static std::array const keys{
+        Key<OwnFormation>{"initial_formation", one_of(&OwnFormation::name, names), any(), "",
+                          "Formation of this category alone, placed before the others; absent: that of the top level."},
+    };
+    return keys;
+}
+
+struct Disk {
+    float x_mm = 0.0F;
+    float y_mm = 0.0F;
+    float radius_mm = 0.0F;
+};
+
+std::span<Key<Disk> const> disk_keys() {
+    using K = Key<Disk>;
+    constexpr bool required = true;
+    static std::array const keys{
+        K{"x", &Disk::x_mm, kCoordinate, "mm", "Centre.", required},
+        K{"y", &Disk::y_mm, kCoordinate, "mm", "Centre.", required},
+        K{"radius", &Disk::radius_mm, above(0).up_to(kMaxLength), "mm", "Radius.", required},
+    };
+    return keys;
+}
+
+/// The numbers of a list, at least `least` and at most `most` of them.
+std::vector<float> read_numbers(Place const& place, std::size_t least, std::size_t most, std::string_view expected) {
+    std::size_t const count = place.node.items.size();
+    if (place.node.kind != Node::Kind::sequence || count < least || count > most) {
+        fail_expected(place, expected);
+    }
+    std::vector<float> numbers(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        Limits const limits = i < 2 ? Limits{kCoordinate, "mm"} : Limits{kAngle, "rad"};
+        Place const number{place.node.items[i], fmt::format("{}.{}", place.path, i)};
+        read_value(number, limits, numbers[i]);
+        warn_of_slips(number, limits, false);
+    }
+    return numbers;
+}
+
+std::vector<Placement> read_poses(Place const& place) {
+    if (place.node.kind != Node::Kind::sequence) {
+        fail_expected(place, kPoses);
+    }
+    if (place.node.items.empty()) {
+        fail_at(place, "the list is empty; give a pose for each object, or leave it out");
+    }
+    std::vector<Placement> poses;
+    for (Node const& item : place.node.items) {
+        std::vector<float> const numbers =
+            read_numbers({item, fmt::format("{}.{}", place.path, poses.size())}, 2, 3, kPose);
+        poses.push_back({{numbers[0], numbers[1]}, numbers.size() == 3 ? wrap_angle(numbers[2]) : 0.0F});
+    }
+    return poses;
+}
+
+Polygon read_polygon_area(Place const& place) {
+    if (place.node.kind != Node::Kind::sequence || place.node.items.size() < 3) {
+        fail_expected(place, kArea);
+    }
+    Polygon corners;
+    for (Node const& item : place.node.items) {
+        std::vector<float> const numbers =
+            read_numbers({item, fmt::format("{}.{}", place.path, corners.size())}, 2, 2, "a corner [x, y] (mm)");
+        corners.push_back({numbers[0], numbers[1]});
+    }
+    if (signed_area(corners) == 0.0) {
+        fail_at(place, "these corners enclose no area");
+    }
+    if (survey_outlines({&corners, 1}).crossing) {
+        fail_at(place, "the sides of this polygon cross or touch each other; give its corners in order, each once");
+    }
+    return corners;
+}
+
+Polygon read_area(MapReader const& object, Node const& node) {
+    Place const place{node, object.path_of("area")};
+    if (node.kind != Node::Kind::map) {
+        return read_polygon_area(place);
+    }
+    MapReader reader(node, place.path, object.is_strict());
+    Polygon const area = read_disk_area(reader);
+    reader.finish();
+    return area;
+}
+
+/// Two ways to say where objects start exclude each other.
+void refuse_both(MapReader const& reader, std::string_view one, std::string_view other) {
+    if (reader.find(one) != nullptr && reader.find(other) != nullptr) {
+        fail_at({*reader.find(one), reader.path_of(one)},
+                fmt::format("cannot be together with '{}'; give one of them", other));
+    }
+}
+
+void refuse_fixed_wheels_and_rings(MapReader const& reader, ObjectConfig const& object) {
+    bool const has_wheels = object.spec.robot && object.spec.robot->has_wheels;
+    if (object.spec.body && object.spec.body->fixed && (has_wheels || object.spec.ring)) {
+        fail_at({*reader.find("body_fixed"), reader.path_of("body_fixed")},
+                fmt::format("{} cannot be fixed; an obstacle is a passive_object, an active_object or a pogobject",
+                            has_wheels ? "a robot with wheels" : "a membrane"));
+    }
+}
+
+}  // namespace
+
+Polygon read_disk_area(MapReader& reader) {
+    Disk disk;
+    reader.read(disk_keys(), disk);
+    return moved(outline({.kind = ShapeKind::disk, .radius_mm = disk.radius_mm}), {disk.x_mm, disk.y_mm}, 0.0F);
+}
+
+void read_placement(MapReader& reader, ObjectConfig& object) {
+    refuse_fixed_wheels_and_rings(reader, object);
+    read_position(reader, object);
+    reader.read(placement_keys(), object);
+    reader.read(formation_keys(), object.own_formation);
+    for (std::string_view const key : {"poses", "area", "initial_formation"}) {
+        refuse_both(reader, key, "x");
+    }
+    refuse_both(reader, "area", "poses");
+    refuse_both(reader, "initial_formation", "poses");
+    if (Node const* area = reader.find("area")) {
+        object.own_formation.area_mm = read_area(reader, *area);
+    }
+    Node const* const poses = reader.find("poses");
+    if (poses == nullptr) {
+        return;
+    }
+    object.poses = read_poses({*poses, reader.path_of("poses")});
+    Node const* const nb = reader.find("nb");
+    auto const count = static_cast<int>(object.poses.size());
+    if (nb != nullptr && object.nb != count) {
+        fail_at({*nb, reader.path_of("nb")},
+                fmt::format("expected {}, as many as there are poses, found {}; nb may be left out", count, object.nb));
+    }
+    object.nb = count;
+}
+
+}  // namespace pogosim

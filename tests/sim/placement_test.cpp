@@ -1,0 +1,197 @@
+// Categories that say themselves where their objects start.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "config/config_file.hpp"
+#include "physics/physics_engine.hpp"
+#include "sim/build_world.hpp"
+
+namespace pogosim {
+namespace {
+
+using config_file::error_of;
+using config_file::Folder;
+using config_file::Warnings;
+
+std::string const kScene =
+    "arena_file: arena.csv\n"
+    "arena_surface: 1e6\n"
+    "initial_formation: random\n"
+    "objects:\n"
+    "  robots: {type: pogobot, geometry: disk, radius: 20, nb: 20}\n";
+
+constexpr char const* kSquare = "0,0\n1,0\n1,1\n0,1\n";
+/// A right triangle: half of the square, the legs along its left and upper side.
+constexpr char const* kTriangle = "0,0\n1,0\n0,1\n";
+
+struct Built {
+    World world;
+    std::string error = "no error";
+    std::vector<std::string> warnings;
+
+    /// Objects of a category, by name.
+    std::vector<Object> of(std::string const& category) const {
+        std::vector<Object> found;
+        for (Object const& object : world.objects) {
+            if (world.categories[object.category].name == category) {
+                found.push_back(object);
+            }
+        }
+        return found;
+    }
+    Vec2 place(Object const& object) const { return world.bodies.position_mm[object.body]; }
+    float heading(Object const& object) const { return world.bodies.heading_rad[object.body]; }
+};
+
+Built build(std::string const& objects, char const* arena = kSquare, std::string const& before = kScene) {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("arena.csv", arena);
+    Folder::write("poses.csv", "x,y\n100,100\n200,100\n300,100\n400,100\n");
+    Folder::write("x.yaml", before + objects);
+    Built built;
+    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}), 1); });
+    built.warnings = warnings.lines();
+    return built;
+}
+
+TEST(Placement, AngleStandsBesideXAndY) {
+    Built const built = build("  it: {type: passive_object, geometry: disk, x: 300, y: 400, angle: 1.5}\n");
+    ASSERT_EQ(built.error, "no error");
+    Object const it = built.of("it").front();
+    EXPECT_EQ(built.place(it), (Vec2{300, 400}));
+    EXPECT_FLOAT_EQ(built.heading(it), 1.5F);
+}
+
+TEST(Placement, PosesStandInTheOrderOfTheListAndSayHowManyThereAre) {
+    Built const built = build("  it: {type: pogobot, geometry: disk, poses: [[300, 400], [500, 600, -1]]}\n");
+    ASSERT_EQ(built.error, "no error");
+    std::vector<Object> const it = built.of("it");
+    ASSERT_EQ(it.size(), 2U);
+    EXPECT_EQ(built.place(it[0]), (Vec2{300, 400}));
+    EXPECT_FLOAT_EQ(built.heading(it[0]), 0.0F);
+    EXPECT_EQ(built.place(it[1]), (Vec2{500, 600}));
+    EXPECT_FLOAT_EQ(built.heading(it[1]), -1.0F);
+}
+
+TEST(Placement, AreaHoldsItsCategoryAndTheOthersKeepOffIt) {
+    for (char const* const formation : {"random", "disk", "lloyd", "power_lloyd"}) {
+        Built const built =
+            build(std::string("  it: {type: pogobot, geometry: disk, radius: 10, nb: 6, "
+                              "area: {x: 800, y: 300, radius: 100}, initial_formation: ") +
+                  formation + "}\n" +
+                  "  bars: {type: passive_object, geometry: rectangle, body_width: 80, body_height: 20, "
+                  "nb: 3, area: [[0, 500], [400, 500], [400, 1000], [0, 1000]]}\n");
+        ASSERT_EQ(built.error, "no error") << formation;
+        ASSERT_EQ(built.of("it").size(), 6U);
+        for (Object const& it : built.of("it")) {
+            EXPECT_LE(length(built.place(it) - Vec2{800, 300}), 90.0F) << formation;
+        }
+        for (Object const& bar : built.of("bars")) {
+            EXPECT_LE(built.place(bar).x, 400.0F);
+            EXPECT_GE(built.place(bar).y, 500.0F);
+        }
+        for (Object const& robot : built.of("robots")) {
+            for (Object const& it : built.of("it")) {
+                EXPECT_GE(length(built.place(robot) - built.place(it)), 30.0F) << formation;
+            }
+        }
+    }
+}
+
+TEST(Placement, AreaIsWhatTheArenaHasOfIt) {
+    // The arena is a triangle with legs of 1414 mm; the area is a square around the middle of its long side.
+    Built const built = build(
+        "  it: {type: pogobot, geometry: disk, radius: 10, nb: 30, initial_formation: random, "
+        "area: [[500, 500], [900, 500], [900, 900], [500, 900]]}\n",
+        kTriangle);
+    ASSERT_EQ(built.error, "no error");
+    for (Object const& it : built.of("it")) {
+        Vec2 const place = built.place(it);
+        EXPECT_TRUE(built.world.arena.contains(place));
+        EXPECT_GE(built.world.arena.distance_to_walls(place), 10.0F);
+        EXPECT_GE(std::min(place.x, place.y), 510.0F);
+    }
+}
+
+TEST(Placement, SaysWhatIsWrongWhere) {
+    struct Case {
+        char const* keys;
+        char const* message;
+    };
+    Case const cases[] = {
+        {"angle: 1", ".angle: stands alone; it is the heading of objects at x and y"},
+        {"nb: 3, poses: [[1, 2]]", ".nb: expected 1, as many as there are poses, found 3; nb may be left out"},
+        {"poses: []", ".poses: the list is empty; give a pose for each object, or leave it out"},
+        {"poses: [[500, 500], [1]]", ".poses.1: expected [x, y] or [x, y, angle] (mm, rad), found a list"},
+        {"poses: [[500, 5000]]",
+         ".poses: (500, 5000) is outside of the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm"},
+        {"x: 1, y: 2, poses: [[1, 2]]", ".poses: cannot be together with 'x'; give one of them"},
+        {"x: 1, y: 2, area: {x: 1, y: 1, radius: 5}", ".area: cannot be together with 'x'; give one of them"},
+        {"area: {x: 500, y: 500, radius: -5}",
+         ".area.radius: expected a number above 0, at most 1000000 (mm), found -5"},
+        {"area: [[0, 0], [10, 10], [10, 0], [0, 10]]", ".area: these corners enclose no area"},
+        {"area: [[0, 0], [10, 10], [20, 0], [0, 12]]",
+         ".area: the sides of this polygon cross or touch each other; give its corners in order, each once"},
+        {"body_fixed: true",
+         ".body_fixed: a robot with wheels cannot be fixed; an obstacle is a passive_object, an active_object or a "
+         "pogobject"},
+    };
+    for (Case const& one : cases) {
+        EXPECT_EQ(build(std::string("  it: {type: pogobot, geometry: disk, ") + one.keys + "}\n").error,
+                  std::string("x.yaml:6: objects.it") + one.message);
+    }
+    std::string const small = "  it: {type: pogobot, geometry: disk, nb: 50, area: {x: 500, y: 500, radius: 50}}\n";
+    EXPECT_EQ(build(small).error.find("x.yaml:6: objects.it.area: initial_formation: 'random' cannot place 50 objects"),
+              0U)
+        << build(small).error;
+    EXPECT_TRUE(build(small).error.ends_with("Ask for fewer or enlarge the area")) << build(small).error;
+    std::string const away = "  it: {type: pogobot, geometry: disk, area: {x: 5000, y: 500, radius: 50}}\n";
+    EXPECT_EQ(
+        build(away).error,
+        "x.yaml:6: objects.it.area: no part of it is in the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm");
+}
+
+TEST(Placement, RowsOfAFileGoToTheCategoriesInTheirOrderAndRowsTooManyAreSaid) {
+    std::string const imported =
+        "arena_file: arena.csv\narena_surface: 1e6\ninitial_formation: imported\nformation_filename: poses.csv\n"
+        "objects:\n";
+    std::string const objects =
+        "  b: {type: pogobot, geometry: disk}\n"
+        "  fixed: {type: pogobot, geometry: disk, x: 800, y: 800}\n"
+        "  a: {type: pogobot, geometry: disk, nb: 2}\n";
+    Built const built = build(objects, kSquare, imported);
+    ASSERT_EQ(built.error, "no error");
+    EXPECT_EQ(built.place(built.of("b")[0]), (Vec2{100, 100}));
+    EXPECT_EQ(built.place(built.of("a")[0]), (Vec2{200, 100}));
+    EXPECT_EQ(built.place(built.of("a")[1]), (Vec2{300, 100}));
+    ASSERT_EQ(built.warnings.size(), 1U);
+    EXPECT_NE(built.warnings[0].find("4 rows of poses"), std::string::npos) << built.warnings[0];
+}
+
+TEST(FixedBody, StaysWhereItIsWhateverHitsIt) {
+    Built built = build(
+        "  it: {type: passive_object, geometry: rectangle, body_width: 50, body_height: 300, x: 500, y: 500, "
+        "angle: 0.5, body_fixed: true}\n"
+        "  light: {type: pogobject, geometry: disk, radius: 30, x: 800, y: 500, body_fixed: true}\n");
+    ASSERT_EQ(built.error, "no error");
+    World& world = built.world;
+    auto const engine = make_box2d_engine(world, {});
+    for (int step = 0; step < 300; ++step) {
+        for (Object const& robot : built.of("robots")) {
+            Vec2 const way = Vec2{500, 500} - built.place(robot);
+            world.robots.drive[robot.robot] = {.velocity_mm_s = (2000.0F / std::max(length(way), 1.0F)) * way,
+                                               .fresh = true};
+        }
+        engine->advance(world);
+    }
+    EXPECT_EQ(built.place(built.of("it")[0]), (Vec2{500, 500}));
+    EXPECT_EQ(built.heading(built.of("it")[0]), 0.5F);
+    EXPECT_EQ(built.place(built.of("light")[0]), (Vec2{800, 500}));
+}
+
+}  // namespace
+}  // namespace pogosim
