@@ -17,6 +17,9 @@ MEMBRANES = ("membrane", "rectmembrane")
 RAYS = ("rotating_ray_of_light", "alternating_rays_of_light")
 SPOTS = ("static_light", "orbiting_static_light", "orbiting_light")
 
+# Of a pogobot without `radius`.
+POGOBOT_RADIUS_MM = 26.5
+
 # Levels of light are sensor counts, and sums of them stop here.
 BRIGHTEST = 32767
 
@@ -158,7 +161,7 @@ def type_of(settings: dict[str, Any]) -> str:
 
 def shape_of(settings: dict[str, Any]) -> Shape:
     """Shape that an entry's `geometry` and sizes say. What cannot be read has the simulator's default."""
-    plain = Shape()
+    plain = Shape(radius_mm=POGOBOT_RADIUS_MM) if type_of(settings) == "pogobot" else Shape()
     return Shape(
         kind=str(settings.get("geometry", plain.kind)).lower(),
         radius_mm=number(settings.get("radius"), plain.radius_mm),

@@ -28,6 +28,7 @@ from matplotlib.path import Path as Outline
 
 from pogosim.scene import (
     MEMBRANES,
+    POGOBOT_RADIUS_MM,
     Category,
     Floats,
     Lamp,
@@ -41,7 +42,7 @@ from pogosim.scene import (
 from pogosim.utils import PathLike, load_dataframe
 
 # Robots of the real swarm, where a file does not say.
-UNKNOWN = Category("robots", "pogobot", Shape(radius_mm=26.5))
+UNKNOWN = Category("robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM))
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500

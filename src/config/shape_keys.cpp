@@ -10,16 +10,27 @@ using K = Key<Shape>;
 
 constexpr ChoiceRule kAnyCase{.any_case = true};
 
+K solid_geometry_key() {
+    return {"geometry",
+            one_of(&Shape::kind,
+                   {{"disk", ShapeKind::disk}, {"rectangle", ShapeKind::rectangle}, {"triangle", ShapeKind::triangle}},
+                   kAnyCase),
+            any(), "", "Shape of the object; capitals do not matter."};
+}
+
 }  // namespace
 
+std::span<K const> robot_geometry_keys() {
+    static std::array const keys{solid_geometry_key()};
+    return keys;
+}
+
 std::span<K const> solid_geometry_keys() {
-    static std::array const keys{
-        K{"geometry",
-          one_of(&Shape::kind,
-                 {{"disk", ShapeKind::disk}, {"rectangle", ShapeKind::rectangle}, {"triangle", ShapeKind::triangle}},
-                 kAnyCase),
-          any(), "", "Shape of the object; capitals do not matter.", /*required=*/true},
-    };
+    static std::array const keys{[] {
+        K key = solid_geometry_key();
+        key.required = true;
+        return key;
+    }()};
     return keys;
 }
 

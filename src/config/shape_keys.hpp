@@ -18,6 +18,8 @@ inline constexpr Range kCoordinate = between(-kMaxLength, kMaxLength).usually_fr
 
 /// `geometry` of things with a body: disk, rectangle, triangle.
 std::span<Key<Shape> const> solid_geometry_keys();
+/// The same for robots, which are disks unless it says otherwise.
+std::span<Key<Shape> const> robot_geometry_keys();
 /// Of walls: those, or arena.
 std::span<Key<Shape> const> outline_geometry_keys();
 /// Of lamps: those, arena, or global.

@@ -15,6 +15,9 @@
 
 namespace pogosim {
 
+/// The outline of a Pogobot: what a `pogobot` is without `geometry` and `radius`.
+inline constexpr Shape kPogobotShape{.kind = ShapeKind::disk, .radius_mm = 26.5F};
+
 /// Rigid-body parameters.
 struct BodySpec {
     float linear_damping = 0.0F;   // 1/s

@@ -238,12 +238,12 @@ TEST(BadInput, ObjectsNeedTypeAndGeometry) {
               "x.yaml:2: objects.a: the key 'type' is missing; expected " + type_names());
     EXPECT_EQ(load_error("objects:\n  a:\n"),
               "x.yaml:2: objects.a: the key 'type' is missing; expected " + type_names());
-    EXPECT_EQ(load_error("objects:\n  a: {type: pogobot}\n"),
+    EXPECT_EQ(load_error("objects:\n  a: {type: pogobject}\n"),
               "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, triangle");
     EXPECT_EQ(load_error("objects:\n  a: {type: static_light}\n"),
               "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of global, arena, disk, rectangle, "
               "triangle");
-    EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: ~}\n"),
+    EXPECT_EQ(load_error("objects:\n  a: {type: pogobject, geometry: ~}\n"),
               "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, triangle");
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: global}\n"),
               "x.yaml:2: objects.a.geometry: expected one of disk, rectangle, triangle, found 'global'");

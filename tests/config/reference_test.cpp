@@ -45,9 +45,12 @@ TEST(Reference, SaysWhatTheLoaderChecks) {
     EXPECT_EQ(key_of(groups, "", "seed").default_text, "");
     EXPECT_EQ(key_of(groups, "", "formation_max_space_between_neighbors").default_text, ".inf");
     EXPECT_EQ(key_of(groups, "", "initial_formation_center").default_text, "[.nan, .nan]");
-    EXPECT_EQ(key_of(groups, "pogobot", "radius").default_text, "10");
+    EXPECT_EQ(key_of(groups, "pogobot", "radius").default_text, "26.5");
     EXPECT_EQ(key_of(groups, "pogobot", "body_friction").default_text, "0.3");
-    EXPECT_TRUE(key_of(groups, "pogobot", "geometry").required);
+    EXPECT_EQ(key_of(groups, "pogobot", "geometry").default_text, "disk");
+    EXPECT_EQ(key_of(groups, "pogobject", "radius").default_text, "10");
+    EXPECT_TRUE(key_of(groups, "pogobject", "geometry").required);
+    EXPECT_EQ(key_of(groups, "", "arena_surface").default_text, "1000000");
     EXPECT_EQ(key_of(groups, "pogobot", "geometry").expected, "one of disk, rectangle, triangle");
     EXPECT_EQ(key_of(groups, "static_light", "photo_start_value").default_text, "32767");
 }

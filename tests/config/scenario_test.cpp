@@ -97,8 +97,7 @@ TEST(Scenario, DefaultsOfRobotsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(s.objects[0].position_mm, std::nullopt);
     ObjectSpec const& made = s.objects[0].spec;
     RobotSpec const& spec = *made.robot;
-    EXPECT_EQ(made.shape, Shape{});
-    EXPECT_EQ(made.shape.radius_mm, 10.0F);
+    EXPECT_EQ(made.shape, kPogobotShape);
     EXPECT_EQ(made.body->linear_damping, 0.0F);
     EXPECT_EQ(made.body->angular_damping, 0.0F);
     EXPECT_EQ(made.body->density, 10.0F);
@@ -650,4 +649,23 @@ TEST(Scenario, ResolvedTreeKeepsUnknownKeysAndReadsBackTheSame) {
 
 TEST(Scenario, NumbersInQuotesAreNumbers) {
     EXPECT_EQ(load(kRobots + "arena_surface: '1.0e5'\n").arena_surface_mm2, 1e5);
+}
+
+TEST(Scenario, PogobotNeedsNoGeometry) {
+    Shape const plain = load("objects: {r: {type: pogobot}}\n").objects.at(0).spec.shape;
+    EXPECT_EQ(plain.kind, ShapeKind::disk);
+    EXPECT_EQ(plain.radius_mm, 26.5F);
+    EXPECT_EQ(load("objects: {r: {type: pogobot, geometry: disk}}\n").objects.at(0).spec.shape, plain);
+    EXPECT_EQ(load("objects: {r: {type: pogobot, radius: 30}}\n").objects.at(0).spec.shape.radius_mm, 30.0F);
+    Shape const box = load("objects: {r: {type: pogobot, geometry: rectangle}}\n").objects.at(0).spec.shape;
+    EXPECT_EQ(box.kind, ShapeKind::rectangle);
+    EXPECT_EQ(box.width_mm, 10.0F);
+}
+
+TEST(Scenario, OtherTypesHaveARadiusOfTenMillimetres) {
+    for (char const* type : {"pogobject", "active_object", "passive_object", "membrane", "static_light"}) {
+        Scenario const s = load(std::string("objects: {r: {type: ") + type + ", geometry: disk}}\n");
+        Shape const shape = s.objects.at(0).spec.lamp ? spot_of(s.objects[0]).shape : s.objects[0].spec.shape;
+        EXPECT_EQ(shape.radius_mm, 10.0F) << type;
+    }
 }

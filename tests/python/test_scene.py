@@ -26,8 +26,10 @@ def level(settings: dict[str, Any], x: float, y: float, time_s: float = 10.0) ->
         ({"radius": "2.65e1"}, 26.5),
         ({"geometry": "Rectangle", "body_width": 30, "body_height": 40}, 25.0),
         ({"geometry": "triangle", "side_length": 30}, 30 / math.sqrt(3)),
-        ({}, 10.0),
-        ({"radius": "large"}, 10.0),
+        ({}, 26.5),
+        ({"radius": "large"}, 26.5),
+        ({"type": "passive_object"}, 10.0),
+        ({"type": "Pogobot"}, 26.5),
     ],
 )
 def test_radius_is_that_of_the_disk_around_the_shape(settings: dict[str, Any], radius: float) -> None:

@@ -62,7 +62,6 @@ TEST(BadObjects, NegativeAndZeroSizesAndMasses) {
                     ".body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found 0"},
                    {"geometry: blob", ".geometry: expected one of disk, rectangle, triangle, found 'blob'"},
                    {"geometry: arena", ".geometry: expected one of disk, rectangle, triangle, found 'arena'"},
-                   {"radius: 20", ": the key 'geometry' is missing; expected one of disk, rectangle, triangle"},
                    {"geometry: disk, x: 4", ".x: stands alone; give both x and y, or neither"}});
     }
 }
@@ -204,7 +203,7 @@ TEST(MissingFiles, OnlyArenasAreOfferedArenas) {
 }
 
 TEST(BadObjects, NothingStartsOutsideOfTheArenaThoughALampReachesOut) {
-    std::string const robots = "  crowd: {type: pogobot, geometry: disk, nb: 20}\n";
+    std::string const robots = "  crowd: {type: pogobot, nb: 20}\n";
     std::string const lamp = "  lamp: {type: static_light, geometry: disk, radius: 300, y: 500, x: ";
     EXPECT_EQ(error_with(robots + lamp + "500}\n", "lamp"), "no error");
     for (char const* x : {"0", "-500"}) {
@@ -218,9 +217,8 @@ TEST(MissingFiles, FilesOfOtherFormationsAreNotLookedFor) {
     Folder const folder;
     Warnings const warnings;
     Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
-    Folder::write(
-        "x.yaml",
-        "arena_file: square.csv\nformation_filename: none.csv\nobjects:\n  robots: {type: pogobot, geometry: disk}\n");
+    Folder::write("x.yaml",
+                  "arena_file: square.csv\nformation_filename: none.csv\nobjects:\n  robots: {type: pogobot}\n");
     EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
 }
 
@@ -242,7 +240,7 @@ TEST(MissingFiles, MessageSaysWhereWasLooked) {
     Warnings const warnings;
     std::filesystem::create_directory("conf");
     std::string const here = std::filesystem::canonical(".").string();
-    std::string const head = "objects:\n  robots: {type: pogobot, geometry: disk}\narena_file: ";
+    std::string const head = "objects:\n  robots: {type: pogobot}\narena_file: ";
     auto const message = [&](std::string const& file) {
         Folder::write("conf/x.yaml", head + file + "\n");
         return error_of([] { build_world(load_scenario("conf/x.yaml", {}), 1); });

@@ -6,7 +6,8 @@
 namespace pogosim {
 
 void read_pogobot(MapReader& reader, ObjectConfig& object) {
-    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    object.spec.shape = kPogobotShape;
+    read_shape(reader, robot_geometry_keys(), object.spec.shape);
     read_robot(reader, object);
     read_body(reader, object);
     read_placement(reader, object);
