@@ -128,7 +128,7 @@ def arenas() -> dict[str, Arena]:
         "arrow": [arrow],
         "arrow2": [double_arrow],
         "disk": [circle(564, 192)],
-        "empty": [],
+        "empty": [rectangle(0, 0, 1000, 1000)],
         "line": [rectangle(0, 0, 450, 2215)],
         "sqtriangle": [square_and_triangle],
         "sqtriangle2": [mirrored(square_and_triangle)],
@@ -140,16 +140,20 @@ def arenas() -> dict[str, Arena]:
         "star6": [star(6, inner=1.0 / math.sqrt(3.0))],
         "star7": [star(7, inner=0.6)],
         "star8": [star(8, inner=0.65)],
-        "torus": [],
+        "torus": [rectangle(0, 0, 1000, 1000)],
         "triangle": [triangle],
     }
 
 
-def as_text(arena: Sequence[Polygon]) -> str:
+# Squares whose opposite sides are one. Earlier simulators had empty files of these names for them.
+PERIODIC = ("empty", "torus")
+
+
+def as_text(arena: Sequence[Polygon], *, periodic: bool = False) -> str:
     """Return the CSV text: a line ``x,y`` for each corner, a blank line between polygons."""
     # Adding zero turns a rounded -0.0 into 0.0.
     blocks = ["".join(f"{round(x, 3) + 0.0:.3f},{round(y, 3) + 0.0:.3f}\n" for x, y in polygon) for polygon in arena]
-    return "\n".join(blocks)
+    return ("# boundary_condition: periodic\n" if periodic else "") + "\n".join(blocks)
 
 
 def main() -> None:
@@ -160,7 +164,7 @@ def main() -> None:
     folder: Path = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
     for name, arena in arenas().items():
-        (folder / f"{name}.csv").write_bytes(as_text(arena).encode("ascii"))
+        (folder / f"{name}.csv").write_bytes(as_text(arena, periodic=name in PERIODIC).encode("ascii"))
 
 
 if __name__ == "__main__":

@@ -32,16 +32,18 @@ Arena make_arena(std::vector<Polygon> polygons_mm);
 
 /// Polygons as they stand in an arena file, in the file's own unit.
 struct ArenaOutline {
-    std::vector<Polygon> polygons;  // empty for an empty file
+    std::vector<Polygon> polygons;  // at least one
     std::string source;             // file name for messages
+    bool periodic = false;          // the file says so: a comment "# boundary_condition: periodic"
 };
 
 /// Reads a CSV outline: one `x,y` a line, any unit; a blank line ends a polygon; the first polygon is the outer one,
 /// the others are holes. Lines that start with '#' are comments. A last corner equal to the first is dropped, and so is
 /// one equal to its predecessor. Numbers are decimal with a point; spaces and tabs around them, a byte order mark and
-/// every kind of line end are accepted. At most 1e6 lines. Throws ConfigError naming file and line for text that is not
-/// two finite numbers, fewer than 3 corners, repeated corners in a row that leave fewer than 3, no area, a polygon that
-/// crosses itself or another, or a hole outside the outer polygon. An unreadable file is a ConfigError too.
+/// every kind of line end are accepted. At most 1e6 lines. Throws ConfigError for a file without a polygon, and naming
+/// file and line for text that is not two finite numbers, fewer than 3 corners, repeated corners in a row that leave
+/// fewer than 3, no area, a polygon that crosses itself or another, or a hole outside the outer polygon. An unreadable
+/// file is a ConfigError too.
 ArenaOutline read_arena_file(std::filesystem::path const& path);
 
 /// How an outline becomes millimetres.

@@ -28,6 +28,7 @@ struct Drawing {
     std::string name;  // of the file
     std::vector<Polygon> polygons;
     std::vector<std::vector<std::size_t>> lines;
+    bool periodic = false;
 
     std::size_t line_of(EdgeOf edge) const { return lines[edge.polygon][edge.edge]; }
     std::size_t first_line(std::size_t polygon) const { return lines[polygon].front(); }
@@ -91,10 +92,31 @@ void add_corner(Drawing& drawing, Vec2 corner, std::size_t line, bool starts_pol
     }
 }
 
+/// "boundary_condition: periodic", as a comment that other readers of the file skip.
+bool says_periodic(Drawing const& drawing, CsvLine const& comment) {
+    constexpr std::string_view kKey = "boundary_condition:";
+    std::string_view text = comment.text;
+    if (!text.starts_with(kKey)) {
+        return false;
+    }
+    text.remove_prefix(kKey.size());
+    std::string_view const value = split_fields(text).front();
+    if (value != "periodic") {
+        refuse(drawing, comment.number,
+               fmt::format("expected 'boundary_condition: periodic', found {}. Solid walls need no such line",
+                           in_quotes(comment.text)));
+    }
+    return true;
+}
+
 Drawing parse(std::filesystem::path const& path) {
-    Drawing drawing{path.string(), {}, {}};
+    Drawing drawing{path.string(), {}, {}, false};
+    CsvText const csv = read_csv(path);
+    for (CsvLine const& comment : csv.comments) {
+        drawing.periodic = says_periodic(drawing, comment) || drawing.periodic;
+    }
     bool starts_polygon = true;
-    for (CsvLine const& line : read_csv_lines(path)) {
+    for (CsvLine const& line : csv.lines) {
         if (line.number > kMostLines) {
             refuse(drawing, line.number, "an arena file has at most 1000000 lines; draw it with fewer corners");
         }
@@ -102,6 +124,12 @@ Drawing parse(std::filesystem::path const& path) {
             add_corner(drawing, parse_corner(drawing, line), line.number, starts_polygon);
         }
         starts_polygon = line.text.empty();
+    }
+    if (drawing.polygons.empty()) {
+        throw ConfigError(
+            fmt::format("{}: the file has no polygon; expected the corners of an arena, one 'x,y' a line. For a square "
+                        "without walls use 'arena_file: arenas/square.csv' and 'boundary_condition: periodic'",
+                        drawing.name));
     }
     return drawing;
 }
@@ -176,7 +204,7 @@ ArenaOutline read_arena_file(std::filesystem::path const& path) {
     OutlineSurvey const survey = survey_outlines(drawing.polygons);
     check_crossings(drawing, survey);
     check_nesting(drawing, survey);
-    return {std::move(drawing.polygons), drawing.name};
+    return {std::move(drawing.polygons), drawing.name, drawing.periodic};
 }
 
 }  // namespace pogosim

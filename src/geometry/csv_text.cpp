@@ -51,23 +51,25 @@ std::string read_text(std::filesystem::path const& path) {
 
 }  // namespace
 
-std::vector<CsvLine> read_csv_lines(std::filesystem::path const& path) {
+CsvText read_csv(std::filesystem::path const& path) {
     std::string const text = read_text(path);
     std::string_view rest = text;
     if (rest.starts_with(kByteOrderMark)) {
         rest.remove_prefix(kByteOrderMark.size());
     }
-    std::vector<CsvLine> lines;
+    CsvText csv;
     for (std::size_t number = 1; !rest.empty(); ++number) {
         std::size_t const end = std::min(rest.find_first_of("\r\n"), rest.size());
         std::string_view const line = trimmed(rest.substr(0, end));
-        if (!line.starts_with('#')) {
-            lines.push_back({number, std::string(line)});
+        if (line.starts_with('#')) {
+            csv.comments.push_back({number, std::string(trimmed(line.substr(1)))});
+        } else {
+            csv.lines.push_back({number, std::string(line)});
         }
         rest.remove_prefix(end);
         rest.remove_prefix(rest.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest.size(), 1));
     }
-    return lines;
+    return csv;
 }
 
 std::vector<std::string_view> split_fields(std::string_view line) {

@@ -14,9 +14,14 @@ struct CsvLine {
     std::string text;        // without spaces and tabs at either end; empty for a blank line
 };
 
-/// All lines of a text file but comments (lines that start with '#'). Accepts a UTF-8 byte order mark and line ends of
+struct CsvText {
+    std::vector<CsvLine> lines;
+    std::vector<CsvLine> comments;  // lines that start with '#', without it
+};
+
+/// All lines of a text file. Accepts a UTF-8 byte order mark and line ends of
 /// every kind. Throws ConfigError when it is not a regular file that can be read, or larger than 256 MiB.
-std::vector<CsvLine> read_csv_lines(std::filesystem::path const& path);
+CsvText read_csv(std::filesystem::path const& path);
 
 /// Fields between commas, without spaces and tabs at either end, nor one pair of double quotes around them.
 std::vector<std::string_view> split_fields(std::string_view line);

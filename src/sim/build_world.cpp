@@ -18,17 +18,16 @@ namespace pogosim {
 
 namespace {
 
-ArenaOutline unit_square() {
-    return {.polygons = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, .source = "square"};
 }
 
 void build_arena(Scenario const& scenario, World& world) {
-    ArenaOutline outline = read_arena_file(find_file(scenario, "arena_file", scenario.arena_file));
-    world.periodic = scenario.boundary == BoundaryCondition::periodic;
-    if (outline.polygons.empty()) {
-        log().warn("arena file '{}' is empty: the arena is a square with a periodic boundary", scenario.arena_file);
-        outline = unit_square();
-        world.periodic = true;
+    ArenaOutline const outline = read_arena_file(find_file(scenario, "arena_file", scenario.arena_file));
+    world.periodic = scenario.boundary == BoundaryCondition::periodic || outline.periodic;
+    Node const* const boundary = scenario.resolved.find("boundary_condition");
+    if (outline.periodic && scenario.boundary == BoundaryCondition::solid && boundary != nullptr) {
+        log().warn(
+            "{}: boundary_condition: '{}' says that it is periodic, and so it is; with walls, use another arena_file",
+            boundary->where(), scenario.arena_file);
     }
     world.arena = scale_arena(outline, {.surface_mm2 = scenario.arena_surface_mm2, .stretch = scenario.arena_stretch});
 }

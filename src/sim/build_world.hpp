@@ -9,7 +9,7 @@
 namespace pogosim {
 
 /// Everything stands in its place, no user code has run. Throws ConfigError when the arena cannot be read or the
-/// objects do not fit. `scenario` is as loaded; an empty arena file makes the world a periodic square, with a warning.
+/// objects do not fit. `scenario` is as loaded.
 World build_world(Scenario const& scenario, std::uint32_t seed);
 
 }  // namespace pogosim

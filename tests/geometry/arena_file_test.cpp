@@ -66,11 +66,27 @@ TEST_F(ArenaFile, FirstPolygonIsTheOuterOneAndBlankLinesStartHoles) {
     EXPECT_EQ(outline.source, path_.string());
 }
 
+TEST_F(ArenaFile, CommentSaysThatAnArenaIsPeriodic) {
+    EXPECT_FALSE(read(kSquare).periodic);
+    EXPECT_FALSE(read("# periodic or not\n" + kSquare).periodic);
+    for (char const* line : {"# boundary_condition: periodic\n", "#boundary_condition:periodic\r\n"}) {
+        EXPECT_TRUE(read(line + kSquare).periodic) << line;
+        EXPECT_TRUE(read(kSquare + line).periodic) << line;
+    }
+    EXPECT_EQ(
+        error_of("# boundary_condition: soft\n" + kSquare),
+        "arena.csv:1: expected 'boundary_condition: periodic', found 'boundary_condition: soft'. Solid walls need no "
+        "such line");
+}
+
 TEST_F(ArenaFile, EmptyFilesAndFilesOfCommentsHaveNoPolygon) {
-    EXPECT_TRUE(read("").polygons.empty());
-    EXPECT_TRUE(read("\n\n  \n\t\r\n").polygons.empty());
-    EXPECT_TRUE(read("# nothing\n\n# here").polygons.empty());
-    EXPECT_TRUE(read("\xEF\xBB\xBF").polygons.empty());
+    for (char const* text :
+         {"", "\n\n  \n\t\r\n", "# nothing\n\n# here", "\xEF\xBB\xBF", "# boundary_condition: periodic\n"}) {
+        EXPECT_EQ(
+            error_of(text),
+            "arena.csv: the file has no polygon; expected the corners of an arena, one 'x,y' a line. For a square "
+            "without walls use 'arena_file: arenas/square.csv' and 'boundary_condition: periodic'");
+    }
 }
 
 TEST_F(ArenaFile, EverySpellingOfTheSameSquareGivesTheSamePolygon) {
@@ -231,15 +247,17 @@ TEST(ShippedArenas, ExistLoadAndKeepTheirAreaAtEverySize) {
             EXPECT_NEAR(scale_arena(outline, {surface, false}).area_mm2, surface, 1.0e-5 * surface) << name;
         }
     }
-    EXPECT_TRUE(read_arena_file(folder / "empty.csv").polygons.empty());
+    // Earlier simulators had empty files of these names, which meant a periodic square.
+    for (char const* const name : {"empty", "torus"}) {
+        ArenaOutline const outline = read_arena_file(folder / (std::string(name) + ".csv"));
+        EXPECT_TRUE(outline.periodic) << name;
+        EXPECT_EQ(outline.polygons, read_arena_file(folder / "square.csv").polygons) << name;
+    }
 }
 
 TEST(ShippedArenas, HaveNoEdgeThatAPhysicsEngineTakesForAPoint) {
     for (auto const& entry : fs::directory_iterator(fs::path(POGOSIM_SOURCE_DIR) / "arenas")) {
         ArenaOutline const outline = read_arena_file(entry.path());
-        if (outline.polygons.empty()) {
-            continue;
-        }
         Arena const arena = scale_arena(outline, {1.0e5, false});
         for (Polygon const& polygon : arena.polygons) {
             for (std::size_t i = 0; i < polygon.size(); ++i) {

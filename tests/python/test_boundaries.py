@@ -168,15 +168,21 @@ def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(
     assert crossings > 20
 
 
-def test_arena_without_polygons_is_a_periodic_square(tmp_path: Path) -> None:
-    settings = {
-        "arena_file": "arenas/empty.csv",
-        "simulation_time": 30.0,
-        "objects.robots.nb": 10,
-    }
+@pytest.mark.parametrize("text", ["", "\n \n", "# an arena\n"])
+def test_arena_file_without_polygons_is_refused(tmp_path: Path, text: str) -> None:
+    (tmp_path / "none.csv").write_text(text)
+    result = run(example("run_and_tumble"), tmp_path, {"arena_file": "none.csv"})
+    assert result.code == 2
+    assert "none.csv: the file has no polygon" in result.errors
+    assert "boundary_condition: periodic" in result.errors
+    assert not (tmp_path / "data.feather").exists()
+
+
+@pytest.mark.parametrize("name", ["empty", "torus"])
+def test_bundled_arena_empty_or_torus_is_a_periodic_square(tmp_path: Path, name: str) -> None:
+    settings = {"arena_file": f"arenas/{name}.csv", "simulation_time": 30.0, "objects.robots.nb": 10}
     result = run(example("run_and_tumble"), tmp_path, settings)
-    assert result.code == 0
-    assert "periodic" in result.errors
+    assert (result.code, result.errors) == (0, "")
     frame = result.frame()
     assert frame["x"].between(0, SIDE).all()
     assert (

@@ -255,5 +255,21 @@ TEST(MissingFiles, MessageSaysWhereWasLooked) {
               "arenas/square.csv, ...");
 }
 
+TEST(Boundary, ArenaFileThatSaysSoIsPeriodic) {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("torus.csv", "# boundary_condition: periodic\n0,0\n1,0\n1,1\n0,1\n");
+    std::string const text = "arena_file: torus.csv\nobjects:\n  robots: {type: pogobot}\n";
+    Folder::write("x.yaml", text);
+    EXPECT_TRUE(build_world(load_scenario("x.yaml", {}), 1).periodic);
+    EXPECT_EQ(warnings.text(), "");
+    Folder::write("x.yaml", text + "boundary_condition: solid\n");
+    EXPECT_TRUE(build_world(load_scenario("x.yaml", {}), 1).periodic);
+    EXPECT_EQ(
+        warnings.text(),
+        "x.yaml:4: boundary_condition: 'torus.csv' says that it is periodic, and so it is; with walls, use another "
+        "arena_file\n");
+}
+
 }  // namespace
 }  // namespace pogosim

@@ -83,7 +83,7 @@ ImportedPose parse_pose(std::vector<std::string_view> const& fields, Columns con
 std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
     std::vector<ImportedPose> poses;
     std::optional<Columns> columns;
-    for (CsvLine const& line : read_csv_lines(path)) {
+    for (CsvLine const& line : read_csv(path).lines) {
         if (line.text.empty()) {
             continue;
         }
