@@ -147,11 +147,16 @@ def bounds(polygons: list[Floats]) -> tuple[Floats, Floats]:
     return vertices.min(axis=0), vertices.max(axis=0)
 
 
-def entries(configuration: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    """Entries of `objects` that are maps, by their names."""
+def entries(configuration: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Entries of `objects` that are maps, each with its name; a category may be a list of several."""
     objects = configuration.get("objects")
     pairs = objects.items() if isinstance(objects, dict) else []
-    return {str(name): settings for name, settings in pairs if isinstance(settings, dict)}
+    return [
+        (str(name), settings)
+        for name, value in pairs
+        for settings in (value if isinstance(value, list) else [value])
+        if isinstance(settings, dict)
+    ]
 
 
 def type_of(settings: dict[str, Any]) -> str:
@@ -186,10 +191,10 @@ def position_of(settings: dict[str, Any]) -> tuple[float, float] | None:
 
 
 def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
-    """All objects but lamps, by their category."""
+    """All objects except lamps, by their category; of a list of entries, the last one stands for all."""
     return {
         name: Category(name, type_of(settings), shape_of(settings), half_thickness_of(settings), position_of(settings))
-        for name, settings in entries(configuration).items()
+        for name, settings in entries(configuration)
         if type_of(settings) not in SPOTS + RAYS
     }
 
@@ -197,7 +202,7 @@ def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
 def read_lamps(configuration: dict[str, Any]) -> list[Lamp]:
     """All spots of light; `nb` of an entry shine at the same place."""
     lamps = []
-    for settings in entries(configuration).values():
+    for _, settings in entries(configuration):
         if type_of(settings) in SPOTS:
             lamps += [read_lamp(settings)] * int(number(settings.get("nb"), 1.0))
     return lamps
@@ -233,7 +238,7 @@ def read_lamp(settings: dict[str, Any]) -> Lamp:
 
 def ray_names(configuration: dict[str, Any]) -> list[str]:
     """Categories of lighthouses."""
-    return [name for name, settings in entries(configuration).items() if type_of(settings) in RAYS]
+    return [name for name, settings in entries(configuration) if type_of(settings) in RAYS]
 
 
 def light_levels(lamps: list[Lamp], polygons: list[Floats], points_mm: Floats, time_s: float) -> Floats:

@@ -60,11 +60,11 @@ std::span<Key<ObjectConfig> const> object_keys() {
     return keys;
 }
 
-ObjectConfig read_object(std::string const& category, Node const& node, bool strict) {
-    MapReader reader(node, "objects." + category, strict);
+ObjectConfig read_object(Place const& place, std::string const& category, bool strict) {
+    MapReader reader(place.node, place.path, strict);
     ObjectConfig object;
     object.category = category;
-    object.where = node.where();
+    object.where = place.node.where();
     reader.read(object_keys(), object);
     if (Node const* type_node = reader.find("type")) {
         ObjectType const& type = type_at({*type_node, reader.path_of("type")});

@@ -37,7 +37,7 @@ POGOSIM_OBJECT_TYPES(POGOSIM_DECLARE_TYPE)
 #undef POGOSIM_DECLARE_TYPE
 
 /// One entry of `objects`, read and checked. Throws ConfigError.
-ObjectConfig read_object(std::string const& category, Node const& node, bool strict);
+ObjectConfig read_object(Place const& place, std::string const& category, bool strict);
 
 // Keys of every type, `type` and `nb`.
 std::span<Key<ObjectConfig> const> object_keys();

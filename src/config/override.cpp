@@ -34,8 +34,9 @@ Node& step_into(Node& parent, std::string const& key, std::string const& assignm
         return *child;
     }
     if (parent.kind == Node::Kind::sequence) {
-        throw ConfigError(fmt::format("{} '{}': '{}' is not one of the {} places of the list there (from 0)", kSource,
-                                      assignment, key, parent.items.size()));
+        throw ConfigError(
+            fmt::format("{} '{}': '{}' is not one of the {} places of the list at {} (from 0); the first one is '0'",
+                        kSource, assignment, key, parent.items.size(), parent.where()));
     }
     if (parent.kind == Node::Kind::scalar) {
         throw ConfigError(fmt::format("{} '{}': '{}' would be inside the single value '{}' ({})", kSource, assignment,

@@ -1,24 +1,17 @@
 // What a single run makes of batch options, hierarchical alternatives and optimisation domains.
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include "base/log.hpp"
+#include "config/option_keys.hpp"
 #include "config/tree.hpp"
 
 namespace pogosim {
 
 namespace {
 
-constexpr std::string_view kHierarchical = "batch_hierarchical_options";
-constexpr std::string_view kDefaultAlternative = "default";
-constexpr std::string_view kDefaultOption = "default_option";
-constexpr std::string_view kDomain = "optimization_domain";
-constexpr std::array kOptionKeys{kDefaultOption, std::string_view("batch_options"),
-                                 std::string_view("batch_options_range"), kDomain};
-
 bool offers_options(Node const& map) {
-    return std::ranges::any_of(kOptionKeys, [&map](std::string_view key) { return map.find(key) != nullptr; });
+    return std::ranges::any_of(kValueOptions, [&map](std::string_view key) { return map.find(key) != nullptr; });
 }
 
 /// `default_option`; without it the point an optimisation starts from; without that nothing, so that the default of
@@ -27,7 +20,7 @@ Node chosen_option(Node const& map) {
     if (Node const* option = map.find(kDefaultOption)) {
         return *option;
     }
-    Node const* domain = map.find(kDomain);
+    Node const* domain = map.find(kOptimizationDomain);
     Node const* start = domain == nullptr ? nullptr : domain->find("init");
     if (start != nullptr) {
         return *start;
@@ -53,12 +46,12 @@ void overlay(Node& map, Node const& upper) {
 }
 
 Node with_default_alternative(Node map) {
-    Node const alternatives = *map.find(kHierarchical);
-    std::erase_if(map.entries, [](auto const& entry) { return entry.key == kHierarchical; });
+    Node const alternatives = *map.find(kHierarchicalOptions);
+    std::erase_if(map.entries, [](auto const& entry) { return entry.key == kHierarchicalOptions; });
     Node const* chosen = alternatives.find(kDefaultAlternative);
     if (chosen == nullptr || chosen->kind != Node::Kind::map) {
         log().warn("{}: '{}' has no map '{}'; a single run uses none of its alternatives", alternatives.where(),
-                   kHierarchical, kDefaultAlternative);
+                   kHierarchicalOptions, kDefaultAlternative);
         return map;
     }
     overlay(map, *chosen);
@@ -68,7 +61,7 @@ Node with_default_alternative(Node map) {
 }  // namespace
 
 Node resolve_options(Node const& node) {
-    if (node.find(kHierarchical) != nullptr) {
+    if (node.find(kHierarchicalOptions) != nullptr) {
         return resolve_options(with_default_alternative(node));
     }
     if (offers_options(node)) {

@@ -1,5 +1,7 @@
 #include "config/scenario.hpp"
 
+#include <fmt/format.h>
+
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
 #include "config/scenario_keys.hpp"
@@ -26,7 +28,15 @@ std::vector<ObjectConfig> read_objects(Node const* objects, bool strict) {
         fail_expected({*objects, "objects"}, "a map of categories");
     }
     for (auto const& [category, node] : objects->entries) {
-        read.push_back(read_object(category, node, strict));
+        if (node.kind != Node::Kind::sequence) {
+            read.push_back(read_object({node, "objects." + category}, category, strict));
+            continue;
+        }
+        for (std::size_t i = 0; i < node.items.size(); ++i) {
+            Place const place{node.items[i], fmt::format("objects.{}.{}", category, i)};
+            read.push_back(read_object(place, category, strict));
+            read.back().item = i;
+        }
     }
     return read;
 }
@@ -55,12 +65,18 @@ std::string where_at_top(Scenario const& scenario, std::string const& key) {
     return (value != nullptr ? *value : scenario.resolved).where();
 }
 
-std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key) {
+Node const* node_of(Scenario const& scenario, ObjectConfig const& object) {
     Node const* const objects = scenario.resolved.find("objects");
     Node const* const entry = objects != nullptr ? objects->find(object.category) : nullptr;
+    return entry != nullptr && object.item ? &entry->items[*object.item] : entry;
+}
+
+std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key) {
+    Node const* const entry = node_of(scenario, object);
     Node const* const value = entry != nullptr ? entry->find(key) : nullptr;
     std::string const where = value != nullptr ? value->where() : object.where;
-    return (where.empty() ? "" : where + ": ") + "objects." + object.category + "." + key;
+    return fmt::format("{}{}objects.{}{}.{}", where, where.empty() ? "" : ": ", object.category,
+                       object.item ? fmt::format(".{}", *object.item) : "", key);
 }
 
 Scenario load_scenario(std::string const& path, LoadOptions const& options) {

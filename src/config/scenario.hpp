@@ -40,6 +40,7 @@ struct ObjectConfig {
     OwnFormation own_formation;    // without position_mm and poses
     ObjectSpec spec;               // what the type makes them of
     std::string where;             // file:line, for messages
+    std::optional<std::size_t> item{};  // the category is a list of entries, and this one has the place, from 0
 };
 
 /// Where the objects of the entry start, one pose for each; empty when the configuration does not say.
@@ -104,6 +105,9 @@ struct Scenario {
 
 /// "file:line" of a top-level key, for messages; of the whole map when the key is absent.
 std::string where_at_top(Scenario const& scenario, std::string const& key);
+
+/// The entry of `objects` as it is written; nullptr when the scenario was not read from a file.
+Node const* node_of(Scenario const& scenario, ObjectConfig const& object);
 
 /// "file:line: objects.category.key" of a key of an entry, for messages; the line of the entry when the key is absent.
 std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key);

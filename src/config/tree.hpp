@@ -40,7 +40,8 @@ struct Node::Entry {
 
 /// Reads a YAML file. Throws ConfigError ("file:line: ...") for a missing or unreadable file, a syntax error, a
 /// document that is not a map, nesting deeper than 100, or more than a million nodes once aliases are followed. A key
-/// that stands twice in one map is a warning, the last one wins. `<<` merges maps as in YAML 1.1.
+/// that stands twice in one map is a warning, the last one wins; in `objects` each is kept: the value becomes a list.
+/// `<<` merges maps as in YAML 1.1.
 Node read_yaml_file(std::string const& path);
 
 /// Applies one `--set a.b.c=value`: the value is YAML; maps on the way are made where they are missing, a number walks

@@ -1,9 +1,14 @@
 #include "config/tree_builder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "config/option_keys.hpp"
 
 namespace pogosim {
 
@@ -79,6 +84,13 @@ void TreeBuilder::OnMapStart(YAML::Mark const& mark, std::string const& /*tag*/,
 /// Merged entries come first, and the map's own entries replace those of the same key.
 void TreeBuilder::OnMapEnd() {
     Open& map = open_.back();
+    for (auto const& [place, lines] : map.again) {
+        auto const& [category, entries] = map.node.entries[place];
+        log().warn(
+            "{}: objects.{} stands in lines {}; each of them is built, in the category '{}'. A list under one key "
+            "says the same without this warning",
+            entries.where(), category, fmt::join(lines, ", "), category);
+    }
     if (!map.merged.empty()) {
         std::vector<Node::Entry> const own = std::exchange(map.node.entries, {});
         map.index.clear();
@@ -156,10 +168,48 @@ void TreeBuilder::take_value(Open& map, Node value) const {
         map.node.entries.emplace_back(map.key, std::move(value));
         return;
     }
-    Node& earlier = map.node.entries[place->second].value;
-    log().warn("{}: key '{}' stands here again, first in line {}; the last one is used", value.where(), map.key,
-               earlier.line);
-    earlier = std::move(value);
+    take_again(map, map.node.entries[place->second], std::move(value));
+}
+
+/// Categories of one name are as many entries; any other key has its last value.
+void TreeBuilder::take_again(Open& map, Node::Entry& earlier, Node value) const {
+    if (!is_in_objects() || is_option_key(map.key)) {
+        log().warn("{}: key '{}' stands here again, first in line {}; the last one is used", value.where(), map.key,
+                   earlier.value.line);
+        earlier.value = std::move(value);
+        return;
+    }
+    std::vector<int>& lines = map.again[map.index[map.key]];
+    if (lines.empty()) {
+        lines.push_back(earlier.value.line);
+    }
+    lines.push_back(value.line);
+    if (earlier.value.kind != Node::Kind::sequence) {
+        Node list;
+        list.kind = Node::Kind::sequence;
+        list.source = earlier.value.source;
+        list.line = earlier.value.line;
+        list.items.push_back(std::move(earlier.value));
+        earlier.value = std::move(list);
+    }
+    if (value.kind == Node::Kind::sequence) {
+        std::ranges::move(value.items, std::back_inserter(earlier.value.items));
+    } else {
+        earlier.value.items.push_back(std::move(value));
+    }
+}
+
+/// True when the innermost open map is `objects`, or what an alternative of a batch lays over it.
+bool TreeBuilder::is_in_objects() const {
+    std::vector<std::string_view> path;
+    for (std::size_t i = 0; i + 1 < open_.size(); ++i) {
+        if (open_[i].key == kHierarchicalOptions) {
+            ++i;  // the name of the alternative
+        } else {
+            path.emplace_back(open_[i].key);
+        }
+    }
+    return path.size() == 1 && path.front() == "objects";
 }
 
 void TreeBuilder::collect_merged(Open& map, Node value) const {

@@ -53,6 +53,7 @@ private:
         int key_line = 0;
         std::vector<Node> merged;                                 // values of `<<`
         std::unordered_map<std::string, std::size_t> index = {};  // key -> place in node.entries
+        std::map<std::size_t, std::vector<int>> again = {};  // place in node.entries -> lines of a repeated category
     };
 
     Node make(Node::Kind kind, YAML::Mark const& mark) const;
@@ -61,6 +62,8 @@ private:
     void add(Node node, YAML::anchor_t anchor);
     void take_key(Open& map, Node const& key) const;
     void take_value(Open& map, Node value) const;
+    void take_again(Open& map, Node::Entry& earlier, Node value) const;
+    bool is_in_objects() const;
     void collect_merged(Open& map, Node value) const;
     void admit(TreeSize const& size, int line);
     [[noreturn]] void fail(int line, std::string const& what) const;

@@ -17,8 +17,7 @@ bool is_between(float low, float value, float high) {
 void warn_outside(Scenario const& scenario, ObjectConfig const& object, std::string const& axis, Vec2 centre_mm,
                   Arena const& arena) {
     // The key that says where: center_x of an orbit, else x.
-    Node const* const objects = scenario.resolved.find("objects");
-    Node const* const entry = objects != nullptr ? objects->find(object.category) : nullptr;
+    Node const* const entry = node_of(scenario, object);
     bool const is_orbit = entry != nullptr && entry->find("center_" + axis) != nullptr;
     log().warn(
         "{}: the lamp's centre ({:g}, {:g}) is outside of {}; coordinates of older configurations may need "

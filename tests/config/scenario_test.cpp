@@ -669,3 +669,68 @@ TEST(Scenario, OtherTypesHaveARadiusOfTenMillimetres) {
         EXPECT_EQ(shape.radius_mm, 10.0F) << type;
     }
 }
+
+TEST(Scenario, CategoryThatStandsSeveralTimesIsAsManyEntries) {
+    std::string const text =
+        "objects:\n"
+        "  robots: {type: pogobot}\n"
+        "  lamp: {type: static_light, geometry: disk, x: 100, y: 100}\n"
+        "  lamp: {type: static_light, geometry: disk, x: 200, y: 100}\n"
+        "  box: {type: passive_object, geometry: disk}\n"
+        "  lamp: {type: static_light, geometry: disk, x: 300, y: 100, nb: 2}\n";
+    Warnings const warnings;
+    Scenario const s = load(text);
+    EXPECT_EQ(warnings.lines(),
+              std::vector<std::string>{"x.yaml:3: objects.lamp stands in lines 3, 4, 6; each of them is built, in the "
+                                       "category 'lamp'. A list under one key says the same without this warning"});
+    ASSERT_EQ(s.objects.size(), 5U);
+    std::vector<float> places;
+    for (ObjectConfig const& object : s.objects) {
+        if (object.category == "lamp") {
+            places.push_back(spot_of(object).centre_mm.x);
+        }
+    }
+    EXPECT_EQ(places, (std::vector<float>{100.0F, 200.0F, 300.0F}));
+    EXPECT_EQ(where_in_object(s, s.objects.at(2), "x"), "x.yaml:4: objects.lamp.1.x");
+
+    // What the metadata say of it is the same world, in YAML that every reader understands.
+    Warnings const none;
+    Scenario const again = load(to_yaml(s.resolved));
+    EXPECT_EQ(none.text(), "");
+    ASSERT_EQ(again.objects.size(), 5U);
+    EXPECT_EQ(spot_of(again.objects.at(3)).centre_mm.x, 300.0F);
+    EXPECT_EQ(again.objects.at(3).nb, 2);
+}
+
+TEST(Scenario, EachEntryOfACategoryIsCheckedAndCanBeSet) {
+    std::string const text =
+        "objects:\n  robots: {type: pogobot}\n  robots: {type: pogobot, nb: 3}\n  robots: {type: pogobot, nb: 7}\n";
+    Warnings const warnings;
+    Scenario const s = load(text, {.overrides = {"objects.robots.1.nb=5"}});
+    EXPECT_EQ(s.objects.at(0).nb, 1);
+    EXPECT_EQ(s.objects.at(1).nb, 5);
+    EXPECT_EQ(s.objects.at(2).nb, 7);
+    EXPECT_EQ(
+        load_error(text, {.overrides = {"objects.robots.nb=5"}}),
+        "--set 'objects.robots.nb=5': 'nb' is not one of the 3 places of the list at x.yaml:2 (from 0); the first "
+        "one is '0'");
+    EXPECT_EQ(load_error(text + "  robots: {type: pogobot, nb: many}\n"),
+              "x.yaml:5: objects.robots.3.nb: expected an integer from 0 to 65535, found 'many'");
+}
+
+TEST(Scenario, CategoriesOfAnAlternativeMayStandSeveralTimesToo) {
+    Warnings const warnings;
+    Scenario const s = load(
+        "objects:\n  robots: {type: pogobot}\n  batch_hierarchical_options:\n    default:\n"
+        "      lamp: {type: static_light, geometry: global}\n      lamp: {type: static_light, geometry: arena}\n");
+    EXPECT_EQ(s.objects.size(), 3U);
+    EXPECT_EQ(warnings.lines().size(), 1U);
+}
+
+TEST(Scenario, KeyThatStandsTwiceElsewhereHasItsLastValue) {
+    Warnings const warnings;
+    Scenario const s = load(kRobots + "    nb: 2\n    nb: 3\nparameters: {objects: {a: 1, a: 2}}\n");
+    EXPECT_EQ(s.objects.at(0).nb, 3);
+    EXPECT_EQ(find_path(s.parameters, "objects.a")->scalar, "2");
+    EXPECT_EQ(warnings.lines().size(), 2U);
+}
