@@ -85,8 +85,7 @@ struct Scenario {
     double arena_surface_mm2 = 1.0e6;
     bool arena_stretch = false;
     BoundaryCondition boundary = BoundaryCondition::solid;
-    double wall_friction = 0.05;
-    double wall_restitution = 0.5;
+    WallSpec walls;
     bool ignore_occlusions = false;
     double arena_temperature_c = 42.0;
     double simulation_time_s = 100.0;

@@ -22,8 +22,6 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"boundary_condition",
           one_of(&Scenario::boundary, {{"solid", BoundaryCondition::solid}, {"periodic", BoundaryCondition::periodic}}),
           any(), "", "solid: walls. periodic: no walls, what leaves the bounding box comes back on the other side."},
-        K{"wall_friction", &Scenario::wall_friction, between(0, 1000), "", "Coulomb friction of the walls."},
-        K{"wall_restitution", &Scenario::wall_restitution, between(0, 1), "", "Bounciness of the walls."},
         K{"arena_temperature", &Scenario::arena_temperature_c, between(-273.15, 10000), "C",
           "What the robots' thermometers read."},
         K{"communication_ignore_occlusions", &Scenario::ignore_occlusions, any(), "",
@@ -45,6 +43,15 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"result_new_columns", Elsewhere{"a list of key paths"}, any(), "", "Batch tool: constant columns to add."},
         K{"optimization", Elsewhere{"a map of keys"}, any(), "", "Optimisation tool: its settings."},
         K{"progress_bar", Elsewhere{"true or false"}, any(), "", "Ignored; the command line says it."},
+    };
+    return keys;
+}
+
+std::span<Key<WallSpec> const> wall_keys() {
+    using K = Key<WallSpec>;
+    static std::array const keys{
+        K{"wall_friction", &WallSpec::friction, between(0, 1000), "", "Coulomb friction of the walls."},
+        K{"wall_restitution", &WallSpec::restitution, between(0, 1), "", "Bounciness of the walls."},
     };
     return keys;
 }
@@ -136,6 +143,7 @@ std::span<Key<ViewConfig> const> view_keys() {
 
 void read_top_level(MapReader& reader, Scenario& scenario) {
     reader.read(scenario_keys(), scenario);
+    reader.read(wall_keys(), scenario.walls);
     reader.read(formation_keys(), scenario.formation);
     reader.read(output_keys(), scenario.output);
     reader.read(view_keys(), scenario.view);

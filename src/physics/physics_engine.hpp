@@ -22,11 +22,6 @@ struct MotionLimits {
 };
 MotionLimits box2d_motion_limits();
 
-struct WallSpec {
-    float friction = 0.05F;
-    float restitution = 0.5F;
-};
-
 /// Box2D behind the interface. Takes the arena and the bodies, with poses and velocities, as they are in the world now.
 /// Throws ConfigError when the arena is too small to build walls.
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls);

@@ -24,10 +24,8 @@ std::uint32_t seed_of(Scenario const& scenario) {
 }
 
 std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world) {
-    WallSpec const walls{.friction = static_cast<float>(scenario.wall_friction),
-                         .restitution = static_cast<float>(scenario.wall_restitution)};
     try {
-        return make_box2d_engine(world, walls);
+        return make_box2d_engine(world, scenario.walls);
     } catch (ConfigError const& error) {
         throw ConfigError(fmt::format("{}: arena_surface: {}", where_at_top(scenario, "arena_surface"), error.what()));
     }

@@ -1,6 +1,6 @@
-// What is fixed for a whole run: what the objects of each category are made of, as the configuration gave it. The
-// defaults of these parameters stand here, those of shapes in geometry/shape.hpp and those of a run in
-// config/scenario.hpp.
+// What is fixed for a whole run: what walls and the objects of each category are made of, as the configuration gave it.
+// The defaults of these parameters stand here; those of shapes in geometry/shape.hpp, those of formations in
+// geometry/formation.hpp, and those of the run itself in config/scenario.hpp.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +26,12 @@ struct BodySpec {
     float friction = 0.3F;         // Coulomb coefficient; two bodies: geometric mean
     float restitution = 0.5F;      // 0 to 1; two bodies: the larger
     bool fixed = false;            // never moves
+};
+
+/// The walls of a solid arena.
+struct WallSpec {
+    float friction = 0.05F;    // Coulomb coefficient
+    float restitution = 0.5F;  // 0 to 1
 };
 
 enum class ReceptionLaw {

@@ -42,8 +42,8 @@ TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(s.arena_surface_mm2, 1.0e6);
     EXPECT_FALSE(s.arena_stretch);
     EXPECT_EQ(s.boundary, BoundaryCondition::solid);
-    EXPECT_EQ(s.wall_friction, 0.05);
-    EXPECT_EQ(s.wall_restitution, 0.5);
+    EXPECT_EQ(s.walls.friction, 0.05F);
+    EXPECT_EQ(s.walls.restitution, 0.5F);
     EXPECT_FALSE(s.ignore_occlusions);
     EXPECT_EQ(s.arena_temperature_c, 42.0);
     EXPECT_EQ(s.simulation_time_s, 100.0);
@@ -213,8 +213,8 @@ parameters: {any: thing}
     EXPECT_EQ(s.arena_surface_mm2, 2e5);
     EXPECT_TRUE(s.arena_stretch);
     EXPECT_EQ(s.boundary, BoundaryCondition::periodic);
-    EXPECT_EQ(s.wall_friction, 0.1);
-    EXPECT_EQ(s.wall_restitution, 0.9);
+    EXPECT_EQ(s.walls.friction, 0.1F);
+    EXPECT_EQ(s.walls.restitution, 0.9F);
     EXPECT_TRUE(s.ignore_occlusions);
     EXPECT_EQ(s.arena_temperature_c, 20.0);
     EXPECT_EQ(s.simulation_time_s, 12.5);
