@@ -31,7 +31,7 @@ void check_counts(Scenario const& scenario) {
     };
     std::array const periods{
         Period{"time_step", scenario.time_step_s},
-        Period{"save_data_period", scenario.output.save_data_period_s},
+        Period{"save_data_period", scenario.output.enable_data_logging ? scenario.output.save_data_period_s : 0.0},
         Period{"save_video_period", scenario.view.save_video_period_s},
     };
     for (auto const& [key, period_s] : periods) {
@@ -115,7 +115,7 @@ void check_formation(Scenario const& scenario) {
         fail_at(place_of(scenario, "initial_formation_root_object"),
                 fmt::format("expected 'arena' or a category of 'objects', found '{}'", shown(root)));
     }
-    if (scenario.formation.name == "imported") {
+    if (scenario.formation.name == kImportedFormation) {
         require_name(scenario, "formation_filename", scenario.formation.filename, "initial_formation");
     }
 }

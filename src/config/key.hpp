@@ -75,6 +75,15 @@ struct Key {
     std::string_view unit;
     std::string_view doc;
     bool required = false;
+    bool (*is_used)(T const&) = nullptr;  // absent: always; asked when the keys above it in the table have been read
+
+    /// The same key, which means something only where this is true of the struct. Elsewhere any value of its type is
+    /// accepted, and ignored.
+    Key only_if(bool (*condition)(T const&)) const {
+        Key key = *this;
+        key.is_used = condition;
+        return key;
+    }
 };
 
 /// A line of a table without its struct: for messages and for the configuration reference.

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "config/key.hpp"
+#include "config/map_reader.hpp"
 #include "world/specs.hpp"
 
 namespace pogosim {
@@ -16,11 +17,10 @@ inline constexpr Range kHalfWidth = above(0).up_to(std::numbers::pi);
 inline constexpr Range kAngle = between(-1e4, 1e4).usually_up_to(6.3);
 inline constexpr Range kAngularSpeed = between(-1e4, 1e4).usually_up_to(50);
 
-/// `x` and `y`.
-std::span<Key<Vec2> const> spot_centre_keys();
+/// `x` and `y` of a lighthouse.
 std::span<Key<Vec2> const> lighthouse_centre_keys();
 
-/// How a spot shines, and its photo start.
-std::span<Key<SpotSpec> const> spot_keys();
+/// How a spot shines, its photo start, and its `x` and `y`. Its shape has been read before.
+void read_spot(MapReader& reader, SpotSpec& spot);
 
 }  // namespace pogosim

@@ -6,9 +6,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/error.hpp"
 #include "config/key.hpp"
 #include "config/tree.hpp"
 #include "config/values.hpp"
@@ -21,9 +23,14 @@ public:
     /// anything else that is no map.
     MapReader(Node const& map, std::string path, bool strict);
 
-    /// Fills `into` from the keys of the table. A key that is absent or null leaves its member as it is.
+    /// Fills `into` from the keys of the table. A key that is absent or null leaves its member as it is, and
+    /// so does one out of its range that means nothing in the mode that was chosen.
     template <class T>
     void read(std::span<Key<T> const> keys, T& into);
+
+    /// The same for a table that means nothing here: only the types of the values have to be right.
+    template <class T>
+    void read_unused(std::span<Key<T> const> keys, T& into);
 
     /// The value under a key, or nullptr when it is absent or null.
     Node const* find(std::string_view key) const;
@@ -44,6 +51,9 @@ private:
     /// Index of the name that stands at `place`; nothing, with a warning, where the default is used instead.
     static std::optional<std::size_t> pick(Place const& place, std::vector<std::string> const& names,
                                            ChoiceRule const& rule, std::string const& default_name);
+    template <class T>
+    void read_one(Key<T> const& key, bool is_used, T& into);
+
     void refuse_missing_keys() const;
     void report_unknown(std::string const& key, Node const& value) const;
 
@@ -56,29 +66,63 @@ private:
 template <class T>
 void MapReader::read(std::span<Key<T> const> keys, T& into) {
     for (Key<T> const& key : keys) {
-        known_.push_back(describe(key, into));
-        Node const* value = map_.find(key.name);
-        if (value == nullptr) {
-            continue;
-        }
-        Place const place{*value, path_of(key.name)};
-        std::visit(Overloaded{
-                       [&](Choice<T> const& choice) {
-                           if (auto const index = pick(place, choice.names, choice.rule, known_.back().default_text)) {
-                               choice.set(into, *index);
-                           }
-                       },
-                       [](Elsewhere const&) {},
-                       [&](auto T::*member) {
-                           if (value->kind != Node::Kind::null) {
-                               Limits const limits{key.range, key.unit};
-                               read_value(place, limits, into.*member);
-                               warn_of_slips(place, limits, kReadsIntegers<std::decay_t<decltype(into.*member)>>);
-                           }
-                       },
-                   },
-                   key.field);
+        read_one(key, key.is_used == nullptr || key.is_used(into), into);
     }
+}
+
+template <class T>
+void MapReader::read_unused(std::span<Key<T> const> keys, T& into) {
+    for (Key<T> const& key : keys) {
+        read_one(key, false, into);
+    }
+}
+
+/// True when the value could be read if its key took every value of this type.
+template <class Value>
+bool is_of_type(Place const& place, Value scratch) {
+    try {
+        read_value(place, Limits{.range = any().or_infinity().or_nan()}, scratch);
+    } catch (ConfigError const&) {
+        return false;
+    }
+    return true;
+}
+
+template <class T>
+void MapReader::read_one(Key<T> const& key, bool is_used, T& into) {
+    known_.push_back(describe(key, into));
+    Node const* value = map_.find(key.name);
+    if (value == nullptr) {
+        return;
+    }
+    Place const place{*value, path_of(key.name)};
+    Limits const limits{key.range, key.unit};
+    std::visit(Overloaded{
+                   [&](Choice<T> const& choice) {
+                       if (auto const index = pick(place, choice.names, choice.rule, known_.back().default_text)) {
+                           choice.set(into, *index);
+                       }
+                   },
+                   [](Elsewhere const&) {},
+                   [&](auto T::*member) {
+                       if (value->kind == Node::Kind::null) {
+                           return;
+                       }
+                       auto read = into.*member;
+                       try {
+                           read_value(place, limits, read);
+                           into.*member = std::move(read);
+                       } catch (ConfigError const&) {
+                           if (is_used || !is_of_type(place, read)) {
+                               throw;
+                           }
+                       }
+                       if (is_used) {
+                           warn_of_slips(place, limits, kReadsIntegers<decltype(read)>);
+                       }
+                   },
+               },
+               key.field);
 }
 
 }  // namespace pogosim

@@ -48,17 +48,23 @@ std::span<Key<IrSpec> const> ir_keys() {
 
 std::span<Key<RobotSpec> const> robot_keys() {
     using K = Key<RobotSpec>;
+    constexpr auto has_wheels = [](RobotSpec const& robot) { return robot.has_wheels; };
     static std::array const keys{
         K{"max_linear_speed", &RobotSpec::max_linear_speed_mm_s, between(0, 1e6).usually_from(1), "mm/s",
-          "Speed with both motors at full power."},
+          "Speed with both motors at full power."}
+            .only_if(has_wheels),
         K{"max_angular_speed", &RobotSpec::max_angular_speed_rad_s, between(0, 1e4).usually_up_to(50), "rad/s",
-          "Turning scale: one motor at full power and the other stopped turn at twice this."},
+          "Turning scale: one motor at full power and the other stopped turn at twice this."}
+            .only_if(has_wheels),
         K{"linear_noise_stddev", &RobotSpec::linear_noise_stddev, between(0, 1e4), "100 mm/s",
-          "Gaussian noise of each velocity component, drawn at every control tick."},
+          "Gaussian noise of each velocity component, drawn at every control tick."}
+            .only_if(has_wheels),
         K{"angular_noise_stddev", &RobotSpec::angular_noise_stddev, between(0, 1e4), "rad/s",
-          "Gaussian noise of the spin, drawn at every control tick."},
+          "Gaussian noise of the spin, drawn at every control tick."}
+            .only_if(has_wheels),
         K{"angular_systematic_bias_domain", &RobotSpec::motor_bias, between(-1023, 1023), "motor power units",
-          "A robot draws b from here once; its left motor runs at power + b, its right one at power - b."},
+          "A robot draws b from here once; its left motor runs at power + b, its right one at power - b."}
+            .only_if(has_wheels),
         K{"photosensors_systematic_bias_domain", &RobotSpec::photosensor_bias, between(-32767, 32767), "sensor counts",
           "Each light sensor draws a constant offset from here once."},
         K{"photosensors_noise_stddev", &RobotSpec::photosensor_noise_stddev, between(0, 32767), "sensor counts",
@@ -109,8 +115,8 @@ void read_body(MapReader& reader, ObjectConfig& object) {
     reader.read(body_keys(), object.spec.body.emplace());
 }
 
-void read_robot(MapReader& reader, ObjectConfig& object) {
-    RobotSpec& robot = object.spec.robot.emplace();
+void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind) {
+    RobotSpec& robot = object.spec.robot.emplace(kind);
     reader.read(robot_keys(), robot);
     reader.read(ir_keys(), robot.ir);
     robot.ir.reception = read_reception(reader);
@@ -130,6 +136,11 @@ void read_position(MapReader& reader, ObjectConfig& object) {
         fail_at({*reader.find("angle"), reader.path_of("angle")},
                 "stands alone; it is the heading of objects at x and y");
     }
+}
+
+void ignore_position(MapReader& reader) {
+    Position ignored;
+    reader.read_unused(position_keys(), ignored);
 }
 
 void read_colormap(MapReader& reader, ObjectConfig& object) {

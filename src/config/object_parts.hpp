@@ -15,11 +15,15 @@ void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Sh
 /// `body_*`: makes the object tangible.
 void read_body(MapReader& reader, ObjectConfig& object);
 
-/// Motors, sensors, infrared: the object runs user code.
-void read_robot(MapReader& reader, ObjectConfig& object);
+/// Motors, sensors, infrared: the object runs user code. `kind` says what the type makes of it: its wheels and
+/// emitters.
+void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind = {});
 
 /// `x` and `y`, both or neither.
 void read_position(MapReader& reader, ObjectConfig& object);
+
+/// `x` and `y` of an object that is wherever it is put: they mean nothing.
+void ignore_position(MapReader& reader);
 
 /// `colormap`.
 void read_colormap(MapReader& reader, ObjectConfig& object);

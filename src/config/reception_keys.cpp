@@ -42,7 +42,8 @@ std::span<Key<ReceptionSpec> const> parameter_keys() {
     static std::array const docs{doc("alpha", older.alpha), doc("beta", older.beta), doc("gamma", older.gamma),
                                  doc("delta", older.delta)};
     static std::array const keys{
-        K{"rate", &ReceptionSpec::rate, between(0, 1), "", "static: the probability."},
+        K{"rate", &ReceptionSpec::rate, between(0, 1), "", "static: the probability."}.only_if(
+            [](ReceptionSpec const& spec) { return spec.law == ReceptionLaw::constant; }),
         K{"alpha", &ReceptionSpec::alpha, any(), "", docs[0]},
         K{"beta", &ReceptionSpec::beta, any(), "", docs[1]},
         K{"gamma", &ReceptionSpec::gamma, any(), "", docs[2]},
@@ -71,8 +72,13 @@ ReceptionSpec read_reception_map(MapReader& reader) {
     ModelChoice choice;
     reader.read(model_keys(), choice);
     ReceptionSpec spec = defaults_of(choice.model, reader);
-    reader.read(parameter_keys(), spec);
-    return choice.model == Model::realistic ? four_parameter_law() : spec;
+    if (choice.model == Model::realistic) {
+        ReceptionSpec ignored = spec;
+        reader.read_unused(parameter_keys(), ignored);
+    } else {
+        reader.read(parameter_keys(), spec);
+    }
+    return spec;
 }
 
 ReceptionSpec read_reception(MapReader const& robot) {

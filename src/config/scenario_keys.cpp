@@ -1,7 +1,10 @@
 #include "config/scenario_keys.hpp"
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 
 #include "config/shape_keys.hpp"
 
@@ -56,8 +59,24 @@ std::span<Key<WallSpec> const> wall_keys() {
     return keys;
 }
 
+/// True when the formation is of these, aligned or not.
+bool is_one_of(FormationSpec const& formation, std::initializer_list<std::string_view> names) {
+    std::string_view name = formation.name;
+    if (constexpr std::string_view kAligned = "aligned_"; name.starts_with(kAligned)) {
+        name.remove_prefix(kAligned.size());
+    }
+    return std::ranges::find(names, name) != names.end();
+}
+
 std::span<Key<FormationSpec> const> formation_keys() {
     using K = Key<FormationSpec>;
+    constexpr auto is_random = [](FormationSpec const& spec) { return is_one_of(spec, {"random"}); };
+    constexpr auto has_attempts = [](FormationSpec const& spec) {
+        return is_one_of(spec, {"random", "random_near_walls"});
+    };
+    constexpr auto has_centre = [](FormationSpec const& spec) { return is_one_of(spec, {"disk", "chessboard"}); };
+    constexpr auto is_chessboard = [](FormationSpec const& spec) { return is_one_of(spec, {"chessboard"}); };
+    constexpr auto is_imported = [](FormationSpec const& spec) { return spec.name == kImportedFormation; };
     NamedValues<std::string> names;
     for (std::string const& name : formation_names()) {
         names.emplace_back(name, name);
@@ -68,40 +87,50 @@ std::span<Key<FormationSpec> const> formation_keys() {
         K{"initial_formation_root_object", &FormationSpec::root_object, any(), "",
           "Category whose contour bounds the formation; arena: the walls."},
         K{"initial_formation_center", &FormationSpec::centre_mm, kCoordinate.or_nan(), "mm",
-          "Centre of disk formations; .nan: the centroid of the outer wall."},
+          "Centre of disk formations; .nan: the centroid of the outer wall."}
+            .only_if(has_centre),
         K{"formation_min_space_between_neighbors", &FormationSpec::min_space_mm, between(0, kMaxLength), "mm",
           "Lower bound of the radius that each object is given when it is placed."},
         K{"formation_max_space_between_neighbors", &FormationSpec::max_space_mm, kLength.or_infinity(), "mm",
-          "random: each object is placed this near another one, centre to centre."},
+          "random: each object is placed this near another one, centre to centre."}
+            .only_if(is_random),
         K{"formation_attempts_per_point", &FormationSpec::attempts_per_point, between(1, 1e9), "",
-          "Random places tried for one object before all starts again."},
+          "Random places tried for one object before all starts again."}
+            .only_if(has_attempts),
         K{"formation_max_restarts", &FormationSpec::max_restarts, between(0, 1e9), "",
-          "New starts before the formation is declared impossible."},
+          "New starts before the formation is declared impossible."}
+            .only_if(has_attempts),
         K{"chessboard_distance_between_neighbors", &FormationSpec::chessboard_pitch_mm, kLength, "mm",
-          "chessboard: distance of neighbours on the grid."},
+          "chessboard: distance of neighbours on the grid."}
+            .only_if(is_chessboard),
         K{"formation_cluster_at_center", &FormationSpec::cluster_at_centre, any(), "",
           "chessboard: around the centre; false: spread over the arena."},
         K{"formation_filename", &FormationSpec::filename, any(), "",
           "imported: CSV or Feather file with the columns x, y and maybe angle."},
         K{"imported_formation_min_coords", &FormationSpec::imported_min, any().or_nan(), "unit of the file",
-          "imported: corner of the file's box that is mapped onto the arena's bounding box; .nan: no mapping."},
+          "imported: corner of the file's box that is mapped onto the arena's bounding box; .nan: no mapping."}
+            .only_if(is_imported),
         K{"imported_formation_max_coords", &FormationSpec::imported_max, any().or_nan(), "unit of the file",
-          "imported: the opposite corner."},
+          "imported: the opposite corner."}
+            .only_if(is_imported),
     };
     return keys;
 }
 
 std::span<Key<OutputConfig> const> output_keys() {
     using K = Key<OutputConfig>;
+    constexpr auto has_data = [](OutputConfig const& output) { return output.enable_data_logging; };
     static std::array const keys{
         K{"enable_data_logging", &OutputConfig::enable_data_logging, any(), "", "Write the data file."},
         K{"data_filename", &OutputConfig::data_filename, any(), "", "The data file, Feather; folders are made."},
         K{"save_data_period", &OutputConfig::save_data_period_s, between(-1e9, 1e9), "s",
-          "Time between two sets of rows; 0 or less: only the rows of time 0."},
+          "Time between two sets of rows; 0 or less: only the rows of time 0."}
+            .only_if(has_data),
         K{"data_logger_fields", &OutputConfig::fields, any(), "", "Columns to write; absent: all."},
         K{"data_logger_category", &OutputConfig::categories, any(), "", "Categories to write; absent: all."},
         K{"data_logger_flush_row_count", &OutputConfig::flush_row_count, between(1, 1e9), "rows",
-          "Rows of one record batch in the file."},
+          "Rows of one record batch in the file."}
+            .only_if(has_data),
         K{"data_logger_led", &OutputConfig::led_column, any(), "", "Add the column led_rgb, the head LED."},
         K{"enable_console_logging", &OutputConfig::enable_console_logging, any(), "", "Write the console file."},
         K{"console_filename", &OutputConfig::console_filename, any(), "", "The console file; folders are made."},
@@ -118,10 +147,12 @@ std::span<Key<ViewConfig> const> view_keys() {
     static std::array const keys{
         K{"GUI", &ViewConfig::gui, any(), "", "Open the window."},
         K{"GUI_speed_up", &ViewConfig::gui_speed_up, above(0).up_to(1e6), "",
-          "Simulated seconds per second in the window."},
+          "Simulated seconds per second in the window."}
+            .only_if([](ViewConfig const& view) { return view.gui; }),
         K{"window_width", &ViewConfig::window_width_px, between(1, 16384), "pixels", "Width of window and frames."},
         K{"window_height", &ViewConfig::window_height_px, between(1, 16384), "pixels", "Height of window and frames."},
-        K{"mm_to_pixels", &ViewConfig::mm_to_pixels, above(0).up_to(1e6), "pixels per mm", "Scale of the drawing."},
+        K{"mm_to_pixels", &ViewConfig::mm_to_pixels, any(), "pixels per mm",
+          "Ignored; the arena is fitted to the window, and the metadata say at which scale."},
         K{"show_time", &ViewConfig::show_time, any(), "", "Write the time."},
         K{"show_scale_bar", &ViewConfig::show_scale_bar, any(), "", "Draw the scale bar."},
         K{"show_communication_channels", &ViewConfig::show_communication_channels, any(), "", "Draw infrared links."},
@@ -143,7 +174,11 @@ std::span<Key<ViewConfig> const> view_keys() {
 
 void read_top_level(MapReader& reader, Scenario& scenario) {
     reader.read(scenario_keys(), scenario);
-    reader.read(wall_keys(), scenario.walls);
+    if (scenario.boundary == BoundaryCondition::solid) {
+        reader.read(wall_keys(), scenario.walls);
+    } else {
+        reader.read_unused(wall_keys(), scenario.walls);
+    }
     reader.read(formation_keys(), scenario.formation);
     reader.read(output_keys(), scenario.output);
     reader.read(view_keys(), scenario.view);

@@ -229,7 +229,7 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     std::size_t const root = root_entry(scenario);
     RandomStream random(seed, kFormationStream);
     FormationSpec formation = scenario.formation;
-    if (formation.name == "imported") {
+    if (formation.name == kImportedFormation) {
         formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
     }
 
@@ -246,8 +246,11 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
             (object.own_formation.is_given() ? own_entries : entries).push_back(i);
         } else if (object.spec.body || object.spec.robot) {
             poses[i] = given_poses(object);
+            bool const is_absent_wall = !object.spec.body && world.periodic;
             for (Placement const& pose : poses[i]) {
-                check_position(scenario, world, object, pose);
+                if (!is_absent_wall) {
+                    check_position(scenario, world, object, pose);
+                }
             }
             poses[i].resize(static_cast<std::size_t>(object.nb));  // walls that are everywhere have no place
             if (object.spec.body) {

@@ -35,7 +35,7 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& co
     };
     OutputConfig const& output = scenario.output;
     add_input("arena_file", scenario.arena_file, true);
-    add_input("formation_filename", scenario.formation.filename, scenario.formation.name == "imported");
+    add_input("formation_filename", scenario.formation.filename, scenario.formation.name == kImportedFormation);
     add_output("data_filename", output.data_filename, output.enable_data_logging);
     add_output("console_filename", output.console_filename, output.enable_console_logging);
     return files;

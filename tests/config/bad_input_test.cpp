@@ -186,12 +186,12 @@ TEST(BadInput, WrongLights) {
                            {"    light_mode: [static]",
                             "objects.lamp.light_mode: expected one of static, gradient, plane, found "
                             "a list"},
-                           {"    photo_start_duration: -1",
+                           {"    photo_start_duration: long",
                             "objects.lamp.photo_start_duration: expected a number from 0 to "
-                            "1000000000 (s), found -1"},
-                           {"    plane_half_span: 0",
+                            "1000000000 (s), found 'long'"},
+                           {"    plane_half_span: wide",
                             "objects.lamp.plane_half_span: expected a number above 0, at most 1000000 "
-                            "(mm), found 0"}});
+                            "(mm), found 'wide'"}});
 }
 
 std::string lamp_of(std::string const& type) {
@@ -217,8 +217,8 @@ TEST(BadInput, WrongMovingLights) {
     expect_refused(lamp_of("rotating_ray_of_light"),
                    {{"    white_frame_duration: -1",
                      "objects.lamp.white_frame_duration: expected a number from 0 to 1000000000 (s), found -1"},
-                    {"    photo_start_duration: -1",
-                     "objects.lamp.photo_start_duration: expected a number from 0 to 1000000000 (s), found -1"}});
+                    {"    photo_start_duration: long",
+                     "objects.lamp.photo_start_duration: expected a number from 0 to 1000000000 (s), found 'long'"}});
     expect_refused(lamp_of("alternating_rays_of_light"),
                    {{"    long_white_frame_duration: -1",
                      "objects.lamp.long_white_frame_duration: expected a number from 0 to 1000000000 (s), found -1"},

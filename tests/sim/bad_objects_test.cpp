@@ -271,5 +271,18 @@ TEST(Boundary, ArenaFileThatSaysSoIsPeriodic) {
         "arena_file\n");
 }
 
+TEST(Boundary, WallsThatAPeriodicArenaDoesNotHaveMayHaveAnyPlace) {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
+    std::string const text =
+        "arena_file: square.csv\nobjects:\n  robots: {type: pogobot}\n"
+        "  walls: {type: pogowall, geometry: disk, x: 5000, y: 0}\n";
+    Folder::write("x.yaml", text + "boundary_condition: periodic\n");
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+    Folder::write("x.yaml", text);
+    EXPECT_NE(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+}
+
 }  // namespace
 }  // namespace pogosim

@@ -7,8 +7,9 @@ namespace pogosim {
 
 void read_active_object(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
-    read_robot(reader, object);
-    object.spec.robot->has_wheels = false;
+    RobotSpec kind;
+    kind.has_wheels = false;
+    read_robot(reader, object, kind);
     read_body(reader, object);
     read_placement(reader, object);
     read_colormap(reader, object);

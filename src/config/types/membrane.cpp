@@ -14,14 +14,18 @@ constexpr int kMostBodies = 10000;  // of one membrane
 
 std::span<Key<RingSpec> const> ring_keys() {
     using K = Key<RingSpec>;
+    constexpr auto has_dot_radius = [](RingSpec const& ring) { return !(ring.segments && ring.thickness_mm); };
+    constexpr auto has_springs = [](RingSpec const& ring) { return !ring.segments || ring.cross_span > 1; };
     static std::array const keys{
         K{"num_dots", &RingSpec::body_count, between(3, kMostBodies), "", "Bodies along the outline."},
-        K{"dot_radius", &RingSpec::radius_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm", "Radius of a dot."},
+        K{"dot_radius", &RingSpec::radius_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm", "Radius of a dot."}
+            .only_if(has_dot_radius),
         K{"cross_span", &RingSpec::cross_span, between(0, kMostBodies), "dots",
           "Above 1: weaker springs from each dot to the one this many places on, which keep the membrane from "
           "folding."},
         K{"stiffness", &RingSpec::stiffness_hz, above(0).up_to(1e4), "Hz",
-          "Frequency of the springs between neighbours; their damping ratio is body_linear_damping."},
+          "Frequency of the springs between neighbours; their damping ratio is body_linear_damping."}
+            .only_if(has_springs),
         K{"serialize_dot_pose", &RingSpec::in_data_file, any(), "",
           "Adds a row for each dot to the data file, with its number in the column subpart_id."},
     };
@@ -37,13 +41,19 @@ std::span<Key<RingSpec> const> thickness_keys() {
     return keys;
 }
 
-void read_ring_object(MapReader& reader, ObjectConfig& object) {
+void read_ring_object(MapReader& reader, ObjectConfig& object, bool segments) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
-    read_robot(reader, object);
-    object.spec.robot->has_wheels = false;
-    object.spec.robot->emitters = Emitters::outline;
+    RobotSpec kind;
+    kind.emitters = Emitters::outline;
+    kind.has_wheels = false;
+    read_robot(reader, object, kind);
     read_body(reader, object);
-    reader.read(ring_keys(), object.spec.ring.emplace());
+    RingSpec& ring = object.spec.ring.emplace();
+    ring.segments = segments;
+    if (segments) {
+        reader.read(thickness_keys(), ring);
+    }
+    reader.read(ring_keys(), ring);
     read_placement(reader, object);
     read_colormap(reader, object);
 }
@@ -51,13 +61,11 @@ void read_ring_object(MapReader& reader, ObjectConfig& object) {
 }  // namespace
 
 void read_membrane(MapReader& reader, ObjectConfig& object) {
-    read_ring_object(reader, object);
+    read_ring_object(reader, object, /*segments=*/false);
 }
 
 void read_rectmembrane(MapReader& reader, ObjectConfig& object) {
-    read_ring_object(reader, object);
-    reader.read(thickness_keys(), *object.spec.ring);
-    object.spec.ring->segments = true;
+    read_ring_object(reader, object, /*segments=*/true);
 }
 
 }  // namespace pogosim

@@ -28,13 +28,17 @@ std::span<Key<OrbitCentre> const> orbit_centre_keys() {
 
 std::span<Key<Orbit> const> orbit_keys() {
     using K = Key<Orbit>;
+    constexpr auto goes_round = [](Orbit const& orbit) { return orbit.radius_mm > 0.0F; };
     static std::array const keys{
         K{"orbit_radius", &Orbit::radius_mm, kLengthOrZero, "mm",
           "Radius of the circle on which the lamp's centre goes round; 0: it stands still."},
         K{"orbit_angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s",
-          "Above 0: clockwise on the screen."},
-        K{"angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s", "Another name of orbit_angular_speed."},
-        K{"orbit_phase", &Orbit::phase_rad, kAngle, "rad", "Where on the circle at time 0, clockwise from +x."},
+          "Above 0: clockwise on the screen."}
+            .only_if(goes_round),
+        K{"angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s", "Another name of orbit_angular_speed."}
+            .only_if(goes_round),
+        K{"orbit_phase", &Orbit::phase_rad, kAngle, "rad", "Where on the circle at time 0, clockwise from +x."}.only_if(
+            goes_round),
     };
     return keys;
 }
@@ -44,7 +48,7 @@ std::span<Key<Orbit> const> orbit_keys() {
 void read_orbiting_static_light(MapReader& reader, ObjectConfig& object) {
     SpotSpec spec;
     read_shape(reader, any_geometry_keys(), spec.shape);
-    reader.read(spot_centre_keys(), spec.centre_mm);
+    read_spot(reader, spec);
     OrbitCentre centre;
     reader.read(orbit_centre_keys(), centre);
     spec.centre_mm = {centre.x_mm.value_or(spec.centre_mm.x), centre.y_mm.value_or(spec.centre_mm.y)};
@@ -53,7 +57,6 @@ void read_orbiting_static_light(MapReader& reader, ObjectConfig& object) {
         fail_at({*reader.find("angular_speed"), reader.path_of("angular_speed")},
                 "is another name of orbit_angular_speed; give one of them");
     }
-    reader.read(spot_keys(), spec);
     object.spec.lamp = spec;
 }
 

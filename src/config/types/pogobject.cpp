@@ -7,9 +7,10 @@ namespace pogosim {
 
 void read_pogobject(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
-    read_robot(reader, object);
-    object.spec.robot->has_wheels = false;
-    object.spec.robot->emitters = Emitters::centre;
+    RobotSpec kind;
+    kind.emitters = Emitters::centre;
+    kind.has_wheels = false;
+    read_robot(reader, object, kind);
     read_body(reader, object);
     read_placement(reader, object);
 }

@@ -6,13 +6,16 @@ namespace pogosim {
 
 void read_pogowall(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, outline_geometry_keys(), object.spec.shape);
-    read_robot(reader, object);
-    object.spec.robot->has_wheels = false;
-    object.spec.robot->emitters = Emitters::outline;
-    read_position(reader, object);
+    RobotSpec kind;
+    kind.emitters = Emitters::outline;
+    kind.has_wheels = false;
+    read_robot(reader, object, kind);
     if (object.spec.shape.kind == ShapeKind::arena) {
-        object.position_mm.reset();
-    } else if (!object.position_mm && reader.find("geometry") != nullptr) {
+        ignore_position(reader);
+        return;
+    }
+    read_position(reader, object);
+    if (!object.position_mm && reader.find("geometry") != nullptr) {
         fail_at(reader.place(), "needs x and y: no formation places a wall of this geometry");
     }
 }

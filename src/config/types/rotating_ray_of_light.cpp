@@ -24,7 +24,8 @@ std::span<Key<RotatingRaySpec> const> ray_keys() {
         K{"white_frame_value", &S::white_frame_value, kLightLevel, "sensor counts", "Level of the flash."},
         K{"photo_start_at", &S::photo_start_at_s, kStartTime, "s",
           "At 0 or later: dark until then and for `photo_start_duration` more. Negative: no photo start."},
-        K{"photo_start_duration", &S::photo_start_duration_s, kSeconds, "s", "See photo_start_at."},
+        K{"photo_start_duration", &S::photo_start_duration_s, kSeconds, "s", "See photo_start_at."}.only_if(
+            [](S const& spec) { return spec.photo_start_at_s >= 0.0; }),
     };
     return keys;
 }

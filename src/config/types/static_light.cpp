@@ -8,8 +8,7 @@ namespace pogosim {
 void read_static_light(MapReader& reader, ObjectConfig& object) {
     SpotSpec spec;
     read_shape(reader, any_geometry_keys(), spec.shape);
-    reader.read(spot_centre_keys(), spec.centre_mm);
-    reader.read(spot_keys(), spec);
+    read_spot(reader, spec);
     object.spec.lamp = spec;
 }
 
