@@ -107,6 +107,14 @@ void check_frames_name(Scenario const& scenario) {
     }
 }
 
+void check_arena(Scenario const& scenario) {
+    if (scenario.arena_stretch && !scenario.arena_surface_mm2) {
+        fail_at(place_of(scenario, "arena_stretch"),
+                "expected false where 'arena_surface: file' keeps the sizes of the file; give an area in mm2 to "
+                "stretch it");
+    }
+}
+
 void check_formation(Scenario const& scenario) {
     constexpr std::array<std::string_view, 3> kArena{"arena", "null", ""};
     std::string const& root = scenario.formation.root_object;
@@ -127,6 +135,7 @@ void check_scenario(Scenario const& scenario) {
     check_object_count(scenario);
     check_file_names(scenario);
     check_frames_name(scenario);
+    check_arena(scenario);
     check_formation(scenario);
 }
 

@@ -55,6 +55,13 @@ Choice<T> one_of(E T::*member, NamedValues<E> const& named, ChoiceRule const& ru
     return choice;
 }
 
+/// A member that takes a number, or a word in place of one.
+template <class T>
+struct NumberOr {
+    std::optional<double> T::*member;  // empty: the word stands there
+    std::string_view word;
+};
+
 /// A key that a function of its own reads (a map of further keys, say), or that only the tools read.
 struct Elsewhere {
     std::string_view expected;  // "a map of categories"
@@ -64,7 +71,7 @@ template <class T>
 using Field = std::variant<bool T::*, int T::*, std::int64_t T::*, float T::*, double T::*, std::string T::*, Vec2 T::*,
                            IntRange T::*, std::optional<float> T::*, std::optional<std::uint32_t> T::*,
                            std::optional<std::array<float, 3>> T::*, std::optional<std::vector<std::string>> T::*,
-                           Choice<T>, Elsewhere>;
+                           Choice<T>, NumberOr<T>, Elsewhere>;
 
 /// One line of a table.
 template <class T>
@@ -118,6 +125,12 @@ KeyDescription describe(Key<T> const& key, T const& defaults) {
                    [&](Choice<T> const& choice) {
                        description.expected = names_text(choice.names);
                        description.default_text = key.required ? "" : choice.current(defaults);
+                   },
+                   [&](NumberOr<T> const& field) {
+                       description.expected = expected_text(Limits{key.range, key.unit}, double{}) + ", or '" +
+                                              std::string(field.word) + "'";
+                       auto const& number = defaults.*field.member;
+                       description.default_text = number ? value_text(*number) : std::string(field.word);
                    },
                    [&](Elsewhere const& elsewhere) { description.expected = elsewhere.expected; },
                    [&](auto T::*member) {

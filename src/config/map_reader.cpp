@@ -89,6 +89,18 @@ std::optional<std::size_t> MapReader::pick(Place const& place, std::vector<std::
     return std::nullopt;
 }
 
+std::optional<double> MapReader::number_or_word(Place const& place, Limits const& limits, std::string_view word,
+                                                std::string_view expected) {
+    if (place.node.kind == Node::Kind::scalar && place.node.scalar == word) {
+        return std::nullopt;
+    }
+    std::optional<double> const number = number_of(place.node);
+    if (!number || !limits.range.contains(*number)) {
+        fail_expected(place, expected);
+    }
+    return number;
+}
+
 void MapReader::refuse_missing_keys() const {
     for (KeyDescription const& key : known_) {
         if (key.required && find(key.name) == nullptr) {

@@ -51,6 +51,10 @@ private:
     /// Index of the name that stands at `place`; nothing, with a warning, where the default is used instead.
     static std::optional<std::size_t> pick(Place const& place, std::vector<std::string> const& names,
                                            ChoiceRule const& rule, std::string const& default_name);
+    /// The number at `place`, or nothing where the word stands.
+    static std::optional<double> number_or_word(Place const& place, Limits const& limits, std::string_view word,
+                                                std::string_view expected);
+
     template <class T>
     void read_one(Key<T> const& key, bool is_used, T& into);
 
@@ -101,6 +105,12 @@ void MapReader::read_one(Key<T> const& key, bool is_used, T& into) {
                    [&](Choice<T> const& choice) {
                        if (auto const index = pick(place, choice.names, choice.rule, known_.back().default_text)) {
                            choice.set(into, *index);
+                       }
+                   },
+                   [&](NumberOr<T> const& field) {
+                       if (value->kind != Node::Kind::null) {
+                           into.*field.member = number_or_word(place, limits, field.word, known_.back().expected);
+                           warn_of_slips(place, limits, /*is_integer=*/false);
                        }
                    },
                    [](Elsewhere const&) {},

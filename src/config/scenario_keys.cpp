@@ -18,8 +18,10 @@ std::span<Key<Scenario> const> scenario_keys() {
         // Space.
         K{"arena_file", &Scenario::arena_file, any(), "",
           "Outline of the arena, CSV; looked for from the working directory, then in the installed data."},
-        K{"arena_surface", &Scenario::arena_surface_mm2, above(0).up_to(kMaxLength * kMaxLength).usually_from(100),
-          "mm2", "Area inside the outer wall less the holes; the outline is scaled to it."},
+        K{"arena_surface", NumberOr<Scenario>{&Scenario::arena_surface_mm2, "file"},
+          above(0).up_to(kMaxLength * kMaxLength).usually_from(100), "mm2",
+          "Area inside the outer wall less the holes; the outline is scaled to it. file: the numbers of the arena file "
+          "are millimetres, nothing is scaled."},
         K{"arena_stretch", &Scenario::arena_stretch, any(), "",
           "Stretch the outline so that its bounding box is a square; false: keep its proportions."},
         K{"boundary_condition",

@@ -21,15 +21,6 @@ double net_area(std::vector<Polygon> const& polygons) {
     return area;
 }
 
-/// Box around the corners of all polygons.
-Box bounding_box_of_all(std::vector<Polygon> const& polygons) {
-    Polygon corners;
-    for (Polygon const& polygon : polygons) {
-        corners.insert(corners.end(), polygon.begin(), polygon.end());
-    }
-    return bounding_box(corners);
-}
-
 double checked_net_area(std::vector<Polygon> const& polygons, std::string const& source) {
     double const area = net_area(polygons);
     if (!(area > 0.0 && std::isfinite(area))) {
@@ -42,6 +33,14 @@ double checked_net_area(std::vector<Polygon> const& polygons, std::string const&
 }
 
 }  // namespace
+
+Box bounding_box_of_all(std::vector<Polygon> const& polygons) {
+    Polygon corners;
+    for (Polygon const& polygon : polygons) {
+        corners.insert(corners.end(), polygon.begin(), polygon.end());
+    }
+    return bounding_box(corners);
+}
 
 bool Arena::contains(Vec2 point_mm) const {
     return pogosim::contains(outer(), point_mm) &&
@@ -72,15 +71,15 @@ Arena make_arena(std::vector<Polygon> polygons_mm) {
 
 Arena scale_arena(ArenaOutline const& outline, ArenaScaling const& scaling) {
     assert(!outline.polygons.empty());
-    assert(scaling.surface_mm2 > 0.0);
+    assert(!scaling.surface_mm2 || *scaling.surface_mm2 > 0.0);
     double const area = checked_net_area(outline.polygons, outline.source);
     Box const box = bounding_box_of_all(outline.polygons);
     double const width = static_cast<double>(box.max.x) - box.min.x;
     double const height = static_cast<double>(box.max.y) - box.min.y;
 
     // One factor per axis; the product of both turns the outline's area into the one asked for.
-    double const aspect = scaling.stretch ? height / width : 1.0;
-    double const scale_y = std::sqrt(scaling.surface_mm2 / area / aspect);
+    double const aspect = scaling.stretch && scaling.surface_mm2 ? height / width : 1.0;
+    double const scale_y = std::sqrt(scaling.surface_mm2.value_or(area) / area / aspect);
     double const scale_x = scale_y * aspect;
 
     std::vector<Polygon> scaled = outline.polygons;

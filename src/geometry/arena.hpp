@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ std::string arena_text(Arena const& arena);
 /// less the holes has no area.
 Arena make_arena(std::vector<Polygon> polygons_mm);
 
+/// Smallest box around the corners of all polygons; there is at least one.
+Box bounding_box_of_all(std::vector<Polygon> const& polygons);
+
 /// Polygons as they stand in an arena file, in the file's own unit.
 struct ArenaOutline {
     std::vector<Polygon> polygons;  // at least one
@@ -48,13 +52,13 @@ ArenaOutline read_arena_file(std::filesystem::path const& path);
 
 /// How an outline becomes millimetres.
 struct ArenaScaling {
-    double surface_mm2 = 1.0e6;  // net area asked for; > 0
-    bool stretch = false;        // map the bounding box to a square first (x and y scaled apart)
+    std::optional<double> surface_mm2{};  // net area asked for, > 0; absent: the outline is in mm
+    bool stretch = false;  // map the bounding box to a square first (x and y scaled apart); only with a surface
 };
 
-/// Scales the outline so that outer polygon less holes has the asked area, and moves the top-left corner of the
-/// bounding box of all polygons to (0, 0). The outline needs at least one polygon. Throws ConfigError when the net area
-/// is not positive.
+/// Scales the outline so that outer polygon less holes has the asked area, if one is asked for, and moves the top-left
+/// corner of the bounding box of all polygons to (0, 0). The outline needs at least one polygon. Throws ConfigError
+/// when the net area is not positive.
 Arena scale_arena(ArenaOutline const& outline, ArenaScaling const& scaling);
 
 }  // namespace pogosim

@@ -8,6 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "config/range.hpp"
+#include "config/shape_keys.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
 #include "sim/data_files.hpp"
@@ -18,6 +20,34 @@ namespace pogosim {
 
 namespace {
 
+std::string size_text(Box const& box) {
+    return fmt::format("{:.1f} x {:.1f}", box.size().x, box.size().y);
+}
+
+/// Sizes in a configuration are mm, so whoever draws an arena in mm has to know that it is scaled.
+void tell_scale(Scenario const& scenario, ArenaOutline const& outline, Arena const& arena) {
+    constexpr float kSameSize = 1e-4F;
+    Vec2 const drawn = bounding_box_of_all(outline.polygons).size();
+    Vec2 const size_mm = bounding_box_of_all(arena.polygons).size();
+    if (scenario.arena_surface_mm2 && length(size_mm - drawn) > kSameSize * length(drawn)) {
+        log().info(
+            "arena '{}': its outline of {} is scaled to {} mm, for an arena_surface of {} mm2 (arena_surface: "
+            "file keeps the millimetres of the file)",
+            scenario.arena_file, size_text(bounding_box_of_all(outline.polygons)), size_text(arena.bounds),
+            *scenario.arena_surface_mm2);
+    }
+}
+
+/// A file in millimetres has sizes of its own, which must be among those that a configuration can ask for.
+void check_size(Scenario const& scenario, Arena const& arena) {
+    Vec2 const size_mm = arena.bounds.size();
+    if (!scenario.arena_surface_mm2 && std::max(size_mm.x, size_mm.y) > kMaxLength) {
+        throw ConfigError(
+            fmt::format("{}: arena_surface: the arena '{}' is {} mm large; the largest size is {} mm. "
+                        "Give its area in mm2 instead of 'file'",
+                        where_at_top(scenario, "arena_surface"), scenario.arena_file, size_text(arena.bounds),
+                        number_text(kMaxLength)));
+    }
 }
 
 void build_arena(Scenario const& scenario, World& world) {
@@ -30,6 +60,8 @@ void build_arena(Scenario const& scenario, World& world) {
             boundary->where(), scenario.arena_file);
     }
     world.arena = scale_arena(outline, {.surface_mm2 = scenario.arena_surface_mm2, .stretch = scenario.arena_stretch});
+    check_size(scenario, world.arena);
+    tell_scale(scenario, outline, world.arena);
 }
 
 std::uint32_t add_body(Bodies& bodies, RingBody const& body, BodySpec const& spec) {

@@ -670,6 +670,20 @@ TEST(Scenario, OtherTypesHaveARadiusOfTenMillimetres) {
     }
 }
 
+TEST(Scenario, ArenaSurfaceMayBeThatOfTheFile) {
+    EXPECT_EQ(load(kRobots + "arena_surface: file\n").arena_surface_mm2, std::nullopt);
+    EXPECT_EQ(load(kRobots + "arena_surface: ~\n").arena_surface_mm2, 1.0e6);
+    EXPECT_EQ(load_error(kRobots + "arena_surface: 0\n"),
+              "x.yaml:6: arena_surface: expected a number above 0, at most 1000000000000 (mm2), or 'file', found 0");
+    EXPECT_EQ(load_error(kRobots + "arena_surface: files\n"),
+              "x.yaml:6: arena_surface: expected a number above 0, at most 1000000000000 (mm2), or 'file', found "
+              "'files'");
+    EXPECT_EQ(
+        load_error(kRobots + "arena_surface: file\narena_stretch: true\n"),
+        "x.yaml:7: arena_stretch: expected false where 'arena_surface: file' keeps the sizes of the file; give an "
+        "area in mm2 to stretch it");
+}
+
 TEST(Scenario, CategoryThatStandsSeveralTimesIsAsManyEntries) {
     std::string const text =
         "objects:\n"

@@ -26,6 +26,13 @@ TEST(Arena, ScalingGivesTheAreaAskedForAndKeepsTheAspectRatio) {
     EXPECT_FLOAT_EQ(arena.bounds.max.y, 1000.0F);
 }
 
+TEST(Arena, WithoutAnAreaTheOutlineIsInMillimetres) {
+    Arena const arena = scale_arena(kRectangle, {});
+    EXPECT_EQ(arena.area_mm2, 8.0);
+    EXPECT_EQ(arena.bounds.min, (Vec2{0, 0}));
+    EXPECT_EQ(arena.bounds.max, (Vec2{4, 2}));
+}
+
 TEST(Arena, StretchingMakesTheBoundingBoxASquareOfTheSameNetArea) {
     Arena const arena = scale_arena(kRectangle, {2.25e6, true});
     EXPECT_NEAR(arena.area_mm2, 2.25e6, 1.0);

@@ -226,13 +226,12 @@ TEST(MissingFiles, FilesBesideTheConfigurationAreFoundAfterThoseOfTheWorkingFold
     Folder const folder;
     Warnings const warnings;
     std::filesystem::create_directory("conf");
-    Folder::write("conf/x.yaml",
-                  "arena_file: own.csv\narena_surface: 250000\nobjects:\n  robots: {type: pogobot, geometry: disk}\n");
+    Folder::write("conf/x.yaml", "arena_file: own.csv\narena_surface: file\nobjects:\n  robots: {type: pogobot}\n");
     auto const width_mm = [] { return build_world(load_scenario("conf/x.yaml", {}), 1).arena.bounds.size().x; };
     Folder::write("conf/own.csv", "0,0\n500,0\n500,500\n0,500\n");
-    EXPECT_FLOAT_EQ(width_mm(), 500.0F);
-    Folder::write("own.csv", "0,0\n4,0\n4,1\n0,1\n");
-    EXPECT_FLOAT_EQ(width_mm(), 1000.0F);
+    EXPECT_EQ(width_mm(), 500.0F);
+    Folder::write("own.csv", "0,0\n700,0\n700,500\n0,500\n");
+    EXPECT_EQ(width_mm(), 700.0F);
 }
 
 TEST(MissingFiles, MessageSaysWhereWasLooked) {
@@ -253,6 +252,20 @@ TEST(MissingFiles, MessageSaysWhereWasLooked) {
     EXPECT_EQ(message("/none/at/all.csv"),
               "conf/x.yaml:3: arena_file: there is no file '/none/at/all.csv'. Bundled arenas: arenas/disk.csv, "
               "arenas/square.csv, ...");
+}
+
+TEST(ArenaScale, SizesOfTheFileAreKeptOnRequest) {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("hall.csv", "100,100\n2100,100\n2100,1300\n100,1300\n");
+    Folder::write("x.yaml", "arena_file: hall.csv\narena_surface: file\nobjects:\n  robots: {type: pogobot}\n");
+    Arena const arena = build_world(load_scenario("x.yaml", {}), 1).arena;
+    EXPECT_EQ(arena.bounds.min, (Vec2{0, 0}));
+    EXPECT_EQ(arena.bounds.max, (Vec2{2000, 1200}));
+    Folder::write("hall.csv", "0,0\n2e7,0\n2e7,1e3\n0,1e3\n");
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }),
+              "x.yaml:2: arena_surface: the arena 'hall.csv' is 20000000.0 x 1000.0 mm large; the largest size is "
+              "1000000 mm. Give its area in mm2 instead of 'file'");
 }
 
 TEST(Boundary, ArenaFileThatSaysSoIsPeriodic) {
