@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "config/option_keys.hpp"
 
 namespace pogosim {
 
@@ -121,10 +122,12 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     log().warn("{}: unknown key '{}' is ignored{}", value.where(), path, hint);
 }
 
-void MapReader::finish() const {
+void MapReader::finish(std::vector<std::string> const& ignored) const {
     refuse_missing_keys();
     for (auto const& [key, value] : map_.entries) {
-        if (std::ranges::find(known_, key, &KeyDescription::name) == known_.end()) {
+        bool const is_known = std::ranges::find(known_, key, &KeyDescription::name) != known_.end() ||
+                              key == kBatchChoices || std::ranges::find(ignored, key) != ignored.end();
+        if (!is_known) {
             report_unknown(key, value);
         }
     }

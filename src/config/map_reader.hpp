@@ -44,8 +44,9 @@ public:
     /// All keys of all tables read so far, with the defaults that stood in the structs before.
     std::vector<KeyDescription> const& known_keys() const { return known_; }
 
-    /// Call last: throws for a required key that is missing, warns for each unknown key (throws when strict).
-    void finish() const;
+    /// Call last: throws for a required key that is missing, warns for each unknown key (throws when strict) that is
+    /// not among the ignored ones.
+    void finish(std::vector<std::string> const& ignored = {}) const;
 
 private:
     /// Index of the name that stands at `place`; nothing, with a warning, where the default is used instead.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "config/batch_names.hpp"
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
 #include "config/scenario_keys.hpp"
@@ -10,9 +11,9 @@ namespace pogosim {
 
 namespace {
 
-Node resolved_tree(std::string const& path, std::vector<std::string> const& overrides) {
+Node resolved_tree(Node const& written, std::vector<std::string> const& overrides) {
     // What is set replaces what the file's options have come to, and may offer options itself.
-    Node root = resolve_options(read_yaml_file(path));
+    Node root = resolve_options(written);
     for (std::string const& assignment : overrides) {
         apply_override(root, assignment);
     }
@@ -82,13 +83,14 @@ std::string where_in_object(Scenario const& scenario, ObjectConfig const& object
 Scenario load_scenario(std::string const& path, LoadOptions const& options) {
     Scenario scenario;
     scenario.file = path;
-    scenario.resolved = resolved_tree(path, options.overrides);
+    Node const written = read_yaml_file(path);
+    scenario.resolved = resolved_tree(written, options.overrides);
     if (scenario.resolved.kind != Node::Kind::map) {
         fail_expected({scenario.resolved, "the top level"}, "a map of keys");
     }
     MapReader reader(scenario.resolved, "", options.strict);
     read_top_level(reader, scenario);
-    reader.finish();
+    reader.finish(batch_names(written));
     scenario.objects = read_objects(reader.find("objects"), options.strict);
     scenario.parameters = read_parameters(reader.find("parameters"));
     check_scenario(scenario);

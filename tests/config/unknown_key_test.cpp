@@ -69,3 +69,17 @@ TEST(UnknownKey, IsAnErrorWhenStrict) {
 TEST(UnknownKey, BracesAndPercentSignsInItAreShownAsTheyAre) {
     EXPECT_EQ(warnings_of(kRobots + "'{}%s': 3\n"), Lines{"x.yaml:6: unknown key '{}%s' is ignored"});
 }
+
+TEST(UnknownKey, NamesThatBatchToolsWriteAreKnown) {
+    EXPECT_EQ(warnings_of("_batch_choice_names: {objects.robots: size}\n" + kRobots), Lines{});
+    EXPECT_EQ(warnings_of("size: big\n_batch_choice_names: {objects.robots: size}\n" + kRobots), Lines{});
+    EXPECT_EQ(warnings_of("size: big\n_batch_choice_names: [size]\n" + kRobots), Lines{});
+    EXPECT_EQ(warnings_of("size: big\nresult_filename_format: 'result_{size}_{seed:02d}.feather'\n" + kRobots),
+              Lines{});
+    EXPECT_EQ(warnings_of("size: big\nresult_new_columns: [arena_file, size]\n" + kRobots), Lines{});
+    EXPECT_EQ(warnings_of("size: big\n" + kRobots +
+                          "    batch_hierarchical_options: {name: size, default: {radius: 20}, big: {radius: 40}}\n"),
+              Lines{});
+    EXPECT_EQ(warnings_of(kRobots + "    _batch_choice_names: [a]\n"), Lines{});
+    EXPECT_EQ(warnings_of("size: big\n" + kRobots).size(), 1U);
+}

@@ -1,0 +1,66 @@
+#include "config/batch_names.hpp"
+
+#include <string_view>
+
+#include "config/option_keys.hpp"
+
+namespace pogosim {
+
+namespace {
+
+void add_names_of_alternatives(Node const& node, std::vector<std::string>& names) {
+    if (Node const* alternatives = node.find(kHierarchicalOptions)) {
+        Node const* name = alternatives->find(kAlternativesName);
+        if (name != nullptr && name->kind == Node::Kind::scalar) {
+            names.push_back(name->scalar);
+        }
+    }
+    for (auto const& [key, value] : node.entries) {
+        add_names_of_alternatives(value, names);
+    }
+    for (Node const& item : node.items) {
+        add_names_of_alternatives(item, names);
+    }
+}
+
+/// All texts of a map, list or value, keys included.
+void add_texts(Node const& node, std::vector<std::string>& names) {
+    if (node.kind == Node::Kind::scalar) {
+        names.push_back(node.scalar);
+    }
+    for (auto const& [key, value] : node.entries) {
+        names.push_back(key);
+        add_texts(value, names);
+    }
+    for (Node const& item : node.items) {
+        add_texts(item, names);
+    }
+}
+
+/// The fields of a Python format: "result_{arena}_{size:02d}.feather" has arena and size.
+void add_fields(std::string_view format, std::vector<std::string>& names) {
+    for (std::size_t open = format.find('{'); open != std::string_view::npos; open = format.find('{', open + 1)) {
+        std::size_t const end = format.find_first_of("}:!", open);
+        if (end != std::string_view::npos) {
+            names.emplace_back(format.substr(open + 1, end - open - 1));
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> batch_names(Node const& root) {
+    std::vector<std::string> names;
+    add_names_of_alternatives(root, names);
+    for (char const* key : {kBatchChoices, "result_new_columns"}) {
+        if (Node const* node = root.find(key)) {
+            add_texts(*node, names);
+        }
+    }
+    if (Node const* format = root.find("result_filename_format")) {
+        add_fields(format->scalar, names);
+    }
+    return names;
+}
+
+}  // namespace pogosim
