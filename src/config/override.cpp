@@ -16,7 +16,7 @@ namespace pogosim {
 
 namespace {
 
-constexpr auto kSource = "--set";
+constexpr auto kSource = kSetSource;
 
 /// A value given on the command line has no line.
 void forget_lines(Node& node) {

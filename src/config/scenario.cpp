@@ -1,7 +1,9 @@
 #include "config/scenario.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "base/nearest_name.hpp"
 #include "config/batch_names.hpp"
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
@@ -20,6 +22,27 @@ Node resolved_tree(Node const& written, std::vector<std::string> const& override
     return resolve_options(root);
 }
 
+/// A `--set` with a slip in the category's name makes an entry that has no type.
+void require_category(Node const& objects, std::string const& category, Node const& node) {
+    bool const is_new = node.source == kSetSource && node.kind == Node::Kind::map && node.find("type") == nullptr;
+    if (!is_new) {
+        return;
+    }
+    std::vector<std::string> others;
+    for (auto const& [name, other] : objects.entries) {
+        if (other.source != kSetSource || other.find("type") != nullptr) {
+            others.push_back(name);
+        }
+    }
+    std::string const nearest = nearest_name(shown(category), others);
+    fail_at({node, "objects"},
+            fmt::format("there is no category '{}'{}{}; to add one, set its type, too", shown(category),
+                        others.empty()
+                            ? ""
+                            : fmt::format("; there {} {}", others.size() == 1 ? "is" : "are", fmt::join(others, ", ")),
+                        nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+}
+
 std::vector<ObjectConfig> read_objects(Node const* objects, bool strict) {
     std::vector<ObjectConfig> read;
     if (objects == nullptr) {
@@ -29,6 +52,7 @@ std::vector<ObjectConfig> read_objects(Node const* objects, bool strict) {
         fail_expected({*objects, "objects"}, "a map of categories");
     }
     for (auto const& [category, node] : objects->entries) {
+        require_category(*objects, category, node);
         if (node.kind != Node::Kind::sequence) {
             read.push_back(read_object({node, "objects." + category}, category, strict));
             continue;

@@ -17,7 +17,8 @@ std::span<Key<Scenario> const> scenario_keys() {
     static std::array const keys{
         // Space.
         K{"arena_file", &Scenario::arena_file, any(), "",
-          "Outline of the arena, CSV; looked for from the working directory, then in the installed data."},
+          "Outline of the arena, CSV; looked for from the working folder, beside the configuration, then in the folder "
+          "of Pogosim."},
         K{"arena_surface", NumberOr<Scenario>{&Scenario::arena_surface_mm2, "file"},
           above(0).up_to(kMaxLength * kMaxLength).usually_from(100), "mm2",
           "Area inside the outer wall less the holes; the outline is scaled to it. file: the numbers of the arena file "
@@ -108,7 +109,7 @@ std::span<Key<FormationSpec> const> formation_keys() {
         K{"formation_cluster_at_center", &FormationSpec::cluster_at_centre, any(), "",
           "chessboard: around the centre; false: spread over the arena."},
         K{"formation_filename", &FormationSpec::filename, any(), "",
-          "imported: CSV or Feather file with the columns x, y and maybe angle."},
+          "imported: CSV or Feather file with the columns x, y and maybe angle; looked for like arena_file."},
         K{"imported_formation_min_coords", &FormationSpec::imported_min, any().or_nan(), "unit of the file",
           "imported: corner of the file's box that is mapped onto the arena's bounding box; .nan: no mapping."}
             .only_if(is_imported),

@@ -9,6 +9,9 @@
 
 namespace pogosim {
 
+/// Source of the nodes that apply_override() makes.
+inline constexpr char const* kSetSource = "--set";
+
 /// One YAML node.
 struct Node {
     enum class Kind { null, scalar, sequence, map };

@@ -748,3 +748,12 @@ TEST(Scenario, KeyThatStandsTwiceElsewhereHasItsLastValue) {
     EXPECT_EQ(find_path(s.parameters, "objects.a")->scalar, "2");
     EXPECT_EQ(warnings.lines().size(), 2U);
 }
+
+TEST(Scenario, SettingAKeyOfACategoryThatIsNotThereNamesThoseThatAre) {
+    EXPECT_EQ(
+        load_error(kRobots + "  box: {type: passive_object, geometry: disk}\n", {.overrides = {"objects.robot.nb=5"}}),
+        "--set: objects: there is no category 'robot'; there are robots, box; did you mean 'robots'?; to add one, "
+        "set its type, too");
+    Scenario const s = load(kRobots, {.overrides = {"objects.lamp.type=static_light", "objects.lamp.geometry=global"}});
+    EXPECT_EQ(s.objects.at(1).type, "static_light");
+}
