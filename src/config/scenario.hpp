@@ -1,5 +1,5 @@
-// Everything a configuration file says, typed and checked. Defaults stand here (and in the specs of the world) and
-// nowhere else; the tables in *_keys.cpp bind them to their YAML keys.
+// Everything a configuration file says, typed and checked. Defaults stand here and in the structs of world/specs.hpp,
+// geometry/shape.hpp and geometry/formation.hpp; the tables in *_keys.cpp bind them to their YAML keys.
 #pragma once
 
 #include <cstdint>
