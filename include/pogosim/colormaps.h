@@ -1,5 +1,6 @@
 /// @file
 /// Colours for LEDs, 0 to 25 per channel unless stated otherwise: higher values dazzle on the real robots.
+/// A channel whose pointer is NULL is left out.
 #ifndef POGOSIM_COLORMAPS_H
 #define POGOSIM_COLORMAPS_H
 

@@ -89,9 +89,9 @@ void pogo_main_loop_step(void (*user_step)(void));
 // ---- Entry point ----
 
 /// `pogobot_start(user_init, user_step)` or `pogobot_start(user_init, user_step, "category")`: called by main() once
-/// per category of objects the program controls (default "robots"). user_init runs once, user_step in each tick; it may
-/// be NULL. On a real robot the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in the
-/// simulator all return, and objects of a category that no call names do nothing, with a warning.
+/// per category of objects the program controls (default "robots"). user_init runs once, user_step in each tick; both
+/// may be NULL. On a real robot the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in
+/// the simulator all return, and objects of a category that no call names do nothing, with a warning.
 #define pogobot_start(...) POGO_START_PICK(__VA_ARGS__, pogobot_start_3, pogobot_start_2, )(__VA_ARGS__)
 #define POGO_START_PICK(init, step, category, chosen, ...) chosen
 #define pogobot_start_2(init, step) pogobot_start_3(init, step, "robots")
@@ -123,7 +123,7 @@ void clear_IR_buffers(void);
 void _pogobot_start(void (*user_init)(void), void (*user_step)(void), char const* category);
 /// Category of the object that runs this code, as in the configuration; "__system" in callback_global_step.
 char const* get_current_robot_category(void);
-/// Whether that is its category. On a real robot a constant for the compiler, as get_current_robot_category().
+/// Whether that is its category; false for NULL. On a real robot a constant, as get_current_robot_category().
 bool current_robot_category_is(char const* category);
 
 #endif

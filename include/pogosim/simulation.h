@@ -117,6 +117,10 @@ POGO_END_API
     "init_from_configuration() reads variables of type bool, float, double, int8_t to int32_t and uint8_t to "     \
     "uint32_t; use init_array_from_configuration() for arrays of float, double or char (texts), and one call for " \
     "each member of a struct"
+#define POGO_CONFIGURABLE_ARRAYS                                                                                     \
+    "init_array_from_configuration() reads arrays of float, double or char (texts) whose size the compiler knows; "  \
+    "for a pointer, give the size to init_float_array_from_configuration(), init_double_array_from_configuration() " \
+    "or init_string_from_configuration()"
 #ifdef __cplusplus
 extern "C++" {
 template <class T>
@@ -150,14 +154,21 @@ inline void pogosim_init_variable(int8_t& v, char const* name) {
 inline void pogosim_init_variable(uint8_t& v, char const* name) {
     init_uint8_from_configuration(&v, name, v);
 }
-inline void pogosim_init_array(float* a, char const* name, size_t n) {
-    init_float_array_from_configuration(a, name, n);
+template <class T>
+inline void pogosim_init_array(T&, char const*) {
+    static_assert(sizeof(T) == 0, POGO_CONFIGURABLE_ARRAYS);
 }
-inline void pogosim_init_array(double* a, char const* name, size_t n) {
-    init_double_array_from_configuration(a, name, n);
+template <size_t N>
+inline void pogosim_init_array(float (&a)[N], char const* name) {
+    init_float_array_from_configuration(a, name, N);
 }
-inline void pogosim_init_array(char* a, char const* name, size_t n) {
-    init_string_from_configuration(a, name, n);
+template <size_t N>
+inline void pogosim_init_array(double (&a)[N], char const* name) {
+    init_double_array_from_configuration(a, name, N);
+}
+template <size_t N>
+inline void pogosim_init_array(char (&a)[N], char const* name) {
+    init_string_from_configuration(a, name, N);
 }
 }
 /// Sets a variable from `parameters` by its own name, as in `init_from_configuration(walk.speed)` for
@@ -165,14 +176,19 @@ inline void pogosim_init_array(char* a, char const* name, size_t n) {
 #define init_from_configuration(variable) \
     (POGO_NOTE_CONFIGURED(variable, ), pogosim_init_variable((variable), #variable))
 /// The same for arrays of float or double, and for texts (arrays of char).
-#define init_array_from_configuration(array) \
-    (POGO_NOTE_CONFIGURED(array, ), pogosim_init_array((array), #array, sizeof(array) / sizeof((array)[0])))
+#define init_array_from_configuration(array) (POGO_NOTE_CONFIGURED(array, ), pogosim_init_array((array), #array))
 #else
 // clang-format off
 #define POGO_CHECK_CONFIGURABLE(variable)                                                                       \
     __extension__({ _Static_assert(                                                                             \
         _Generic((variable), bool: 1, float: 1, double: 1, int32_t: 1, uint32_t: 1, int16_t: 1, uint16_t: 1,    \
                  int8_t: 1, uint8_t: 1, default: 0), POGO_CONFIGURABLE_TYPES); })
+// An array is of another type than a pointer to its first element.
+#define POGO_CHECK_CONFIGURABLE_ARRAY(array)                                                                    \
+    __extension__({ _Static_assert(                                                                             \
+        _Generic(&(array)[0], float *: 1, double *: 1, char *: 1, default: 0) &&                                \
+            !__builtin_types_compatible_p(__typeof__(array), __typeof__(&(array)[0])),                          \
+        POGO_CONFIGURABLE_ARRAYS); })
 // Never called: the assertion has said why.
 void pogosim_init_unsupported(void const* variable, char const* name, ...);
 /// Sets a variable from `parameters` by its own name, as in `init_from_configuration(walk.speed)` for
@@ -191,10 +207,11 @@ void pogosim_init_unsupported(void const* variable, char const* name, ...);
         default: pogosim_init_unsupported)(&(variable), #variable, (variable)))
 /// The same for arrays of float or double, and for texts (arrays of char).
 #define init_array_from_configuration(array)            \
-    (POGO_NOTE_CONFIGURED(array, ), _Generic(&(array)[0], \
+    (POGO_NOTE_CONFIGURED(array, ), POGO_CHECK_CONFIGURABLE_ARRAY(array), _Generic(&(array)[0], \
         float *: init_float_array_from_configuration,   \
         double *: init_double_array_from_configuration, \
-        char *: init_string_from_configuration)((array), #array, sizeof(array) / sizeof((array)[0])))
+        char *: init_string_from_configuration,         \
+        default: pogosim_init_unsupported)((array), #array, sizeof(array) / sizeof((array)[0])))
 // clang-format on
 #endif
 

@@ -1,13 +1,21 @@
 // Colours for LEDs: the same code on simulated and real robots.
 #include "pogosim/colormaps.h"
 
+#include <stddef.h>
+
+static void set_channel(uint8_t* channel, uint8_t value) {
+    if (channel != NULL) {
+        *channel = value;
+    }
+}
+
 void qualitative_colormap(uint8_t const value, uint8_t* r, uint8_t* g, uint8_t* b) {
     static uint8_t const colors[10][3] = {{25, 0, 0},  {0, 25, 0},  {0, 0, 25},  {25, 25, 0}, {25, 0, 25},
                                           {0, 25, 25}, {13, 0, 13}, {13, 13, 0}, {0, 13, 13}, {10, 10, 10}};
     uint8_t const* color = colors[value % 10];
-    *r = color[0];
-    *g = color[1];
-    *b = color[2];
+    set_channel(r, color[0]);
+    set_channel(g, color[1]);
+    set_channel(b, color[2]);
 }
 
 void rainbow_colormap(uint8_t const value, uint8_t* r, uint8_t* g, uint8_t* b) {
@@ -17,9 +25,9 @@ void rainbow_colormap(uint8_t const value, uint8_t* r, uint8_t* g, uint8_t* b) {
     uint8_t const fall = (uint8_t)(25 - rise);
     uint8_t const colors[6][3] = {{25, rise, 0}, {fall, 25, 0}, {0, 25, rise},
                                   {0, fall, 25}, {rise, 0, 25}, {25, 0, fall}};
-    *r = colors[segment][0];
-    *g = colors[segment][1];
-    *b = colors[segment][2];
+    set_channel(r, colors[segment][0]);
+    set_channel(g, colors[segment][1]);
+    set_channel(b, colors[segment][2]);
 }
 
 void hsv_to_rgb(float h_deg, float s, float v, uint8_t* r, uint8_t* g, uint8_t* b) {
@@ -30,7 +38,7 @@ void hsv_to_rgb(float h_deg, float s, float v, uint8_t* r, uint8_t* g, uint8_t* 
     float const q = v * (1.0f - s * along);
     float const t = v * (1.0f - s * (1.0f - along));
     float const colors[6][3] = {{v, t, p}, {q, v, p}, {p, v, t}, {p, q, v}, {t, p, v}, {v, p, q}};
-    *r = (uint8_t)(colors[sextant][0] * 255.0f);
-    *g = (uint8_t)(colors[sextant][1] * 255.0f);
-    *b = (uint8_t)(colors[sextant][2] * 255.0f);
+    set_channel(r, (uint8_t)(colors[sextant][0] * 255.0f));
+    set_channel(g, (uint8_t)(colors[sextant][1] * 255.0f));
+    set_channel(b, (uint8_t)(colors[sextant][2] * 255.0f));
 }

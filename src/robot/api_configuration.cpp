@@ -102,9 +102,14 @@ void init_string_from_configuration(char* text, char const* name, size_t const s
 }
 
 void refuse_parameter(char const* name, char const* expected) {
+    require_robot(__func__);
+    require_argument(name, __func__, "the name");
+    require_argument(expected, __func__, "the text of what was expected");
     without_exceptions([&] { context.services->parameters->refuse(name, expected); });
 }
 
 void check_parameter_range(char const* name, double value, double min, double max) {
+    require_robot(__func__);
+    require_argument(name, __func__, "the name");
     without_exceptions([&] { context.services->parameters->check_range(name, value, min, max); });
 }

@@ -88,7 +88,9 @@ void print(std::string_view text) {
 
 int pogosim_vprintf(char const* format, va_list arguments) {
     if (is_robot_printing()) {
-        pogosim::require_argument(format, "printf", "the format");
+        pogosim::require_argument(format, "vprintf", "the format");
+    } else if (format == nullptr) {
+        return -1;
     }
     int size = -1;
     pogosim::without_exceptions([&] {
@@ -110,6 +112,9 @@ int pogosim_vprintf(char const* format, va_list arguments) {
 }
 
 int pogosim_printf(char const* format, ...) {
+    if (is_robot_printing()) {
+        pogosim::require_argument(format, "printf", "the format");
+    }
     va_list arguments;
     va_start(arguments, format);
     int const size = pogosim_vprintf(format, arguments);
@@ -126,6 +131,8 @@ int pogosim_putchar(int character) {
 int pogosim_puts(char const* text) {
     if (is_robot_printing()) {
         pogosim::require_argument(text, "puts", "the text");
+    } else if (text == nullptr) {
+        return EOF;
     }
     print(text);
     print("\n");

@@ -231,3 +231,19 @@ def test_variable_that_cannot_be_read_from_the_configuration_does_not_compile_an
         AssertionError, match=r"init_from_configuration\(\) reads variables of type bool, float, double"
     ):
         compile_program(tmp_path / "program", source, flags=[])
+
+
+@pytest.mark.parametrize("suffix", [".c", ".cpp"])
+@pytest.mark.parametrize("variable", ["float* v", "char* v", "int v[3]", "float v[2][2]"])
+def test_array_that_cannot_be_read_from_the_configuration_does_not_compile_and_says_why(
+    suffix: str, variable: str, tmp_path: Path
+) -> None:
+    source = (tmp_path / "main").with_suffix(suffix)
+    source.write_text(
+        f'#include "pogobase.h"\nstatic {variable};\nint main(void) {{ init_array_from_configuration(v); return 0; }}\n'
+    )
+    with pytest.raises(
+        AssertionError,
+        match=r"init_array_from_configuration\(\) reads arrays of float, double or char \(texts\) whose size",
+    ):
+        compile_program(tmp_path / "program", source, flags=[])
