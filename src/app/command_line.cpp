@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/escaped.hpp"
 #include "base/nearest_name.hpp"
 #include "pogosim/version.h"
 #include "robot/user_guard.hpp"
@@ -53,8 +54,8 @@ std::string base_name(std::string const& path) {
 }
 
 int report_usage(CLI::App const& app, std::string const& problem) {
-    std::fprintf(stderr, "Error: %s\nUsage: %s -c FILE [options]; -h lists them\n", problem.c_str(),
-                 app.get_name().c_str());
+    std::fprintf(stderr, "Error: %s\nUsage: %s -c FILE [options]; -h lists them\n", escaped(problem).c_str(),
+                 escaped(app.get_name()).c_str());
     return static_cast<int>(ExitCode::usage);
 }
 

@@ -2,11 +2,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "app/command_line.hpp"
 #include "base/error.hpp"
+#include "base/escaped.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
 #include "config/scenario.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/last_words.hpp"
@@ -50,6 +54,20 @@ ExitCode simulate(CommandLine const& options) {
     return simulation.run();
 }
 
+/// Returns the exit code of a run that would have ended with `code`.
+ExitCode report(char const* error, ExitCode code) {
+    flush_logs();
+    std::fprintf(stderr, "Error: %s\n", error);
+    return code == ExitCode::done ? ExitCode::usage : code;
+}
+
+/// Destructors of libraries may crash for want of memory.
+[[noreturn]] void end_short_of_memory(char const* error) {
+    ExitCode const code = report(error, ExitCode::usage);
+    std::fflush(nullptr);
+    std::_Exit(static_cast<int>(code));
+}
+
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv) {
@@ -65,10 +83,14 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
     try {
         code = simulate(parsed.options);
         check_logs();
+    } catch (OutOfMemory const& error) {
+        end_short_of_memory(error.what());
+    } catch (std::bad_alloc const&) {
+        end_short_of_memory(kOutOfMemory);
+    } catch (std::length_error const&) {  // more than any machine has
+        end_short_of_memory(kOutOfMemory);
     } catch (std::exception const& error) {
-        flush_logs();
-        std::fprintf(stderr, "Error: %s\n", error.what());
-        code = code == ExitCode::done ? ExitCode::usage : code;
+        code = report(escaped(error.what()).c_str(), code);
     }
     flush_logs();
     if (code == ExitCode::user_program || was_left_by_force()) {

@@ -7,10 +7,12 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/escaped.hpp"
 #include "base/locked_file.hpp"
 
 namespace pogosim {
@@ -68,8 +70,23 @@ void keep_first_failure(std::string const& text) {
     }
 }
 
+/// One message, one line, whatever names it quotes.
+class OneLineLogger final : public spdlog::logger {
+public:
+    using logger::logger;
+
+private:
+    void sink_it_(spdlog::details::log_msg const& message) override {
+        std::string const text = escaped({message.payload.data(), message.payload.size()});
+        spdlog::details::log_msg line = message;
+        line.payload = text;
+        logger::sink_it_(line);
+    }
+};
+
+template <class Logger>
 std::shared_ptr<spdlog::logger> make_logger(char const* name, std::vector<spdlog::sink_ptr> const& sinks) {
-    auto logger = std::make_shared<spdlog::logger>(name, sinks.begin(), sinks.end());
+    auto logger = std::make_shared<Logger>(name, sinks.begin(), sinks.end());
     logger->set_level(spdlog::level::debug);
     logger->flush_on(spdlog::level::warn);
     logger->set_error_handler(keep_first_failure);
@@ -121,7 +138,8 @@ Loggers make_loggers(LogOptions const& options) {
         simulator_sinks.push_back(make_file(options, lock));
         robot_sinks.push_back(simulator_sinks.back());
     }
-    return {make_logger("pogosim", simulator_sinks), make_logger("robot", robot_sinks), std::move(lock)};
+    return {make_logger<OneLineLogger>("pogosim", simulator_sinks), make_logger<spdlog::logger>("robot", robot_sinks),
+            std::move(lock)};
 }
 
 Loggers& loggers() {

@@ -1,8 +1,13 @@
 #include "comms/visibility.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "base/memory.hpp"
 
 namespace pogosim {
 
@@ -56,8 +61,10 @@ void Visibility::update(World const& world) {
         }
     }
     float const reach_mm = longest_range_mm + 2.0F * largest_radius_mm_;
-    grid_.build(positions_, world.arena.bounds, std::max(reach_mm, 1.0F), world.periodic);
-    outlines_.update(world);
+    allocate_for([&] { return fmt::format("the neighbour grid of {} robots", positions_.size()); }, std::nullopt,
+                 [&] { grid_.build(positions_, world.arena.bounds, std::max(reach_mm, 1.0F), world.periodic); });
+    allocate_for([&] { return fmt::format("the outlines of {} walls and membranes", world.outlines.size()); },
+                 std::nullopt, [&] { outlines_.update(world); });
 }
 
 void Visibility::gather_candidates(World const& world, std::uint32_t robot, float range_mm) {

@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/escaped.hpp"
 #include "base/log.hpp"
 
 namespace pogosim {
@@ -181,9 +182,7 @@ std::string shown(std::string_view text) {
            (static_cast<unsigned char>(text[line.size()]) & 0xC0U) == 0x80U) {
         line.pop_back();
     }
-    std::ranges::replace_if(
-        line, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
-    return text.size() > kMaxLength ? line + "..." : line;
+    return escaped(line) + (text.size() > kMaxLength ? "..." : "");
 }
 
 void fail_at(Place const& place, std::string_view what) {

@@ -1,9 +1,25 @@
 #include "light/lighting.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <variant>
 
+#include "base/memory.hpp"
+
 namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kCellBytes = sizeof(std::int16_t);
+
+std::string cells_text(LightMap const& map) {
+    return fmt::format("{} x {} cells", map.columns, map.rows);
+}
+
+}  // namespace
 
 LightMap make_light_map(Arena const& arena, int columns, int rows) {
     Vec2 const size = arena.bounds.size();
@@ -12,14 +28,21 @@ LightMap make_light_map(Arena const& arena, int columns, int rows) {
                  .origin_mm = arena.bounds.min,
                  .cell_mm = {size.x / static_cast<float>(columns), size.y / static_cast<float>(rows)},
                  .level = {}};
-    map.level.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+    auto const cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    allocate_for([&] { return fmt::format("the light map: {} of {} bytes", cells_text(map), kCellBytes); },
+                 static_cast<double>(cells * kCellBytes), [&] { map.level.assign(cells, 0); });
     return map;
 }
 
 Lighting::Lighting(std::vector<LampSpec> const& lamps, World const& world) {
     for (LampSpec const& spec : lamps) {
         auto const make = [&](auto const& kind) { return make_lamp(kind, world.arena, world.light); };
-        lamps_.push_back({.lamp = std::visit(make, spec), .shown = {}});
+        auto const add = [&] { lamps_.push_back({.lamp = std::visit(make, spec), .shown = {}}); };
+        auto const purpose = [&] {
+            return fmt::format("the cells that lamp {} of {} lights, of the {} of the light map", lamps_.size() + 1,
+                               lamps.size(), cells_text(world.light));
+        };
+        allocate_for(purpose, std::nullopt, add);
     }
     std::ranges::stable_sort(lamps_, {}, [](Entry const& entry) { return entry.lamp->layer(); });
 }
@@ -67,7 +90,10 @@ void Lighting::sum_still_lamps(LightMap& map) {
             entry.lamp->paint(entry.shown, map, painted_);
         }
     }
-    base_ = map.level;
+    auto const purpose = [&] {
+        return fmt::format("the light of the lamps that stand still: {} of {} bytes", cells_text(map), kCellBytes);
+    };
+    allocate_for(purpose, static_cast<double>(map.level.size() * kCellBytes), [&] { base_ = map.level; });
 }
 
 }  // namespace pogosim

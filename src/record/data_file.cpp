@@ -31,6 +31,14 @@ namespace {
     throw OutputError("cannot write the data file '" + path + "' (data_filename): " + reason);
 }
 
+/// A failure of the system, which is in our words, or of the library.
+std::string reason_of(Status const& status) {
+    if (status.IsOutOfMemory()) {
+        return "there is not enough memory for its rows";
+    }
+    return status.IsIOError() ? status.message() : "the rows cannot be stored: " + status.message();
+}
+
 constexpr auto kNotAFile =
     "it is a device, a pipe or a socket, not a file; for a run without data: enable_data_logging: false";
 
@@ -150,7 +158,7 @@ struct DataFile::Impl {
         schema = arrow::schema(columns.fields(), make_metadata(options));
         auto started = UnfinishedFile::start(file.descriptor(), schema);
         if (!started.ok()) {
-            fail(path, started.status().message());
+            fail(path, reason_of(started.status()));
         }
         // A device such as /dev/null takes everything and keeps nothing.
         if (kind_of(path) == std::filesystem::file_type::character) {
@@ -222,7 +230,7 @@ struct DataFile::Impl {
         }
         open = false;
         complete.reset();  // makes room on a full disk
-        std::string const reason = status.message();
+        std::string const reason = reason_of(status);
         [[maybe_unused]] auto const last_try = save();
         if (saved_rows == 0) {
             fail(path, reason);
@@ -306,7 +314,7 @@ void DataFile::close() {
         log().warn("another program has removed the data file '{}' during the run; it is made again", impl_->path);
     }
     if (auto const status = impl_->complete->take_the_place_of(impl_->file); !status.ok()) {
-        impl_->fail_beside(status.message());
+        impl_->fail_beside(reason_of(status));
     }
 }
 

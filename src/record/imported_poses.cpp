@@ -3,13 +3,16 @@
 #include <arrow/api.h>
 #include <arrow/io/api.h>
 #include <arrow/ipc/api.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "base/error.hpp"
 
@@ -21,12 +24,23 @@ namespace {
     throw ConfigError(fmt::format("formation_filename: cannot take poses from '{}': {}", path.string(), reason));
 }
 
+/// What the system or the library found wrong, in our words.
 template <class Value>
 Value value_or_fail(std::filesystem::path const& path, arrow::Result<Value> result) {
     if (!result.ok()) {
-        fail(path, result.status().message());
+        fail(path, result.status().IsOutOfMemory() ? "there is not enough memory for its rows"
+                                                   : "it is not a complete Feather file (version 2, Arrow IPC)");
     }
     return std::move(result).ValueUnsafe();
+}
+
+std::shared_ptr<arrow::io::ReadableFile> open_file(std::filesystem::path const& path) {
+    // The library's own messages do not name the system's reason alone.
+    int const descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) {
+        fail(path, std::generic_category().message(errno));
+    }
+    return value_or_fail(path, arrow::io::ReadableFile::Open(descriptor));
 }
 
 /// One of the names' columns, or nullptr.
@@ -88,7 +102,7 @@ void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& b
 }  // namespace
 
 std::vector<ImportedPose> read_imported_feather(std::filesystem::path const& path) {
-    auto const file = value_or_fail(path, arrow::io::ReadableFile::Open(path.string()));
+    auto const file = open_file(path);
     auto const reader = value_or_fail(path, arrow::ipc::RecordBatchFileReader::Open(file));
     std::vector<ImportedPose> poses;
     for (int i = 0; i < reader->num_record_batches(); ++i) {

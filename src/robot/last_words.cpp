@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstring>
 
+#include "base/escaped.hpp"
 #include "base/scratch_file.hpp"
 #include "robot/context.hpp"
 
@@ -112,7 +113,7 @@ RunStage run_stage() {
 }
 
 void note_data_file(std::string const& path, DataFileState state) {
-    std::strncpy(data_file_path.data(), path.c_str(), data_file_path.size() - 1);
+    std::strncpy(data_file_path.data(), escaped(path).c_str(), data_file_path.size() - 1);
     data_file_state = state;
 }
 

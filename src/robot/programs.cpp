@@ -1,12 +1,18 @@
 #include "robot/programs.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <new>
 #include <string_view>
 
+#include "base/memory.hpp"
 #include "robot/drive.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
@@ -111,8 +117,12 @@ void call_main(char** arguments) {
 
 }  // namespace
 
-Programs::Programs(World& world, RunServices& services, std::uint64_t seed)
-    : world_(world), services_(services), computers_(world.robots.size()) {
+Programs::Programs(World& world, RunServices& services, std::uint64_t seed) : world_(world), services_(services) {
+    std::size_t const count = world.robots.size();
+    auto const purpose = [&] {
+        return fmt::format("the computers of {} robots, {} bytes each", count, sizeof(Computer));
+    };
+    allocate_for(purpose, static_cast<double>(count * sizeof(Computer)), [&] { computers_.resize(count); });
     allocate_user_data();
     draw_individual_differences(seed);
 }
@@ -128,7 +138,17 @@ std::size_t Programs::user_data_bytes() {
 void Programs::allocate_user_data() {
     // One block for all, the last place for the global step.
     std::size_t const stride = user_data_stride();
-    user_data_ = FencedMemory(stride * (computers_.size() + 1));
+    std::size_t const blocks = computers_.size() + 1;
+    auto const purpose = [&] {
+        return fmt::format("the user data (USERDATA) of {} robots and the global step, {} bytes each",
+                           computers_.size(), UserdataSize);
+    };
+    allocate_for(purpose, static_cast<double>(stride) * static_cast<double>(blocks), [&] {
+        if (stride > std::numeric_limits<std::ptrdiff_t>::max() / blocks) {
+            throw std::bad_alloc();
+        }
+        user_data_ = FencedMemory(stride * blocks);
+    });
     for (std::size_t i = 0; i < computers_.size(); ++i) {
         computers_[i].user_data = user_data_.data() + i * stride;
     }

@@ -76,9 +76,8 @@ UserFailure requested_failure(EndRequest const& request) {
 
 /// What went wrong in an exception that user code did not catch.
 std::string text_of(std::exception const& error) {
-    return dynamic_cast<std::bad_alloc const*>(&error) != nullptr
-               ? std::string("out of memory (C++ exception: ") + error.what() + ")"
-               : std::string("C++ exception: ") + error.what();
+    return dynamic_cast<std::bad_alloc const*>(&error) != nullptr ? std::string("C++ exception: ") + kOutOfMemory
+                                                                  : std::string("C++ exception: ") + error.what();
 }
 
 UserFailure exception_failure(std::string const& what) {

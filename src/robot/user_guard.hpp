@@ -19,6 +19,8 @@
 #include <optional>
 #include <string>
 
+#include "base/memory.hpp"
+
 namespace pogosim {
 
 /// Exit codes of a program; exit(n) in user code ends with n, whatever it is.
@@ -93,7 +95,7 @@ void without_exceptions(Body const& body) {
         body();
         return;
     } catch (std::bad_alloc const&) {
-        std::snprintf(what, sizeof(what), "out of memory");
+        std::snprintf(what, sizeof(what), "%s", kOutOfMemory);
     } catch (std::exception const& error) {
         std::snprintf(what, sizeof(what), "%s", error.what());
     }

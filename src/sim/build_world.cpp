@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
 #include "config/range.hpp"
 #include "config/shape_keys.hpp"
 #include "interface/pogobase_inside.hpp"
@@ -178,6 +182,14 @@ void add_objects(Scenario const& scenario, World& world, std::uint32_t seed) {
     }
 }
 
+std::string objects_text(Scenario const& scenario) {
+    std::int64_t all = 0;
+    for (ObjectConfig const& object : scenario.objects) {
+        all += object.nb;
+    }
+    return fmt::format("the objects and their initial positions: {} of them", all);
+}
+
 /// A membrane holds in what is larger than the gaps between its bodies.
 void warn_of_gaps(Scenario const& scenario) {
     for (ObjectConfig const& membrane : scenario.objects) {
@@ -202,7 +214,17 @@ void make_mailboxes(World& world) {
     for (std::size_t i = 0; i < world.robots.size(); ++i) {
         sizes.push_back(world.spec_of(i).ir.queue_size);
     }
-    world.mailboxes = Mailboxes(sizes, MAX_PAYLOAD_SIZE_BYTES);
+    double messages = 0.0;
+    for (int const size : sizes) {
+        messages += size;
+    }
+    constexpr std::size_t message_bytes = sizeof(FrameHeader) + MAX_PAYLOAD_SIZE_BYTES;
+    auto const purpose = [&] {
+        return fmt::format("the message queues (message_queue_size) of {} robots: {:.0f} messages of {} bytes",
+                           sizes.size(), messages, message_bytes);
+    };
+    allocate_for(purpose, messages * message_bytes,
+                 [&] { world.mailboxes = Mailboxes(sizes, MAX_PAYLOAD_SIZE_BYTES); });
 }
 
 }  // namespace
@@ -214,7 +236,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     world.temperature_c = static_cast<float>(scenario.arena_temperature_c);
     build_arena(scenario, world);
     warn_of_gaps(scenario);
-    add_objects(scenario, world, seed);
+    allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });
     make_mailboxes(world);
     world.light = make_light_map(world.arena, scenario.light_map_columns, scenario.light_map_rows);
     return world;

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <new>
+#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
 #include "sim/interrupt.hpp"
@@ -24,8 +27,9 @@ std::uint32_t seed_of(Scenario const& scenario) {
 }
 
 std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world) {
+    auto const purpose = [&] { return fmt::format("the physics of {} bodies", world.bodies.size()); };
     try {
-        return make_box2d_engine(world, scenario.walls);
+        return allocate_for(purpose, std::nullopt, [&] { return make_box2d_engine(world, scenario.walls); });
     } catch (ConfigError const& error) {
         throw ConfigError(fmt::format("{}: arena_surface: {}", where_at_top(scenario, "arena_surface"), error.what()));
     }
@@ -70,7 +74,20 @@ bool Simulation::is_over() const {
 ExitCode Simulation::run() {
     RunEnd const at_end;
     std::optional<UserFailure> failure;
-    std::optional<UserFailure> const crash = call_simulator_code([&] { failure = run_steps(); });
+    std::optional<std::string> shortage;  // of memory, outside user code
+    std::optional<UserFailure> const crash = call_simulator_code([&] {
+        try {
+            failure = run_steps();
+        } catch (OutOfMemory const& error) {
+            shortage = error.what();
+        } catch (std::bad_alloc const&) {
+            shortage = kOutOfMemory;
+        }
+    });
+    if (shortage) {
+        finish();
+        throw OutOfMemory(fmt::format("t = {:.4f} s: {}{}", world_.time_s(), *shortage, recorder_.note()));
+    }
     if (crash) {
         failure = crash;
     } else if (!failure) {

@@ -128,7 +128,7 @@ TEST(Values, ListsOfNamesHoldSingleValues) {
 }
 
 TEST(Values, LongAndStrangeTextsAreShownOnOneShortLine) {
-    EXPECT_EQ(shown("one\ntwo\tthree"), "one two three");
+    EXPECT_EQ(shown("one\ntwo\tthree"), "one\\ntwo\\tthree");
     EXPECT_EQ(shown(std::string(100, 'x')), std::string(60, 'x') + "...");
     EXPECT_EQ(shown(std::string(59, 'x') + "\xC3\xA9 and more"), std::string(59, 'x') + "...");
     EXPECT_EQ(shown(std::string(58, 'x') + "\xC3\xA9"), std::string(58, 'x') + "\xC3\xA9");

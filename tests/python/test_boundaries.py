@@ -118,8 +118,8 @@ def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that
     result = run(example("run_and_tumble"), tmp_path, {spin: 1e4})
     assert result.code == 2
     assert (
-        "objects.robots.max_angular_speed: at 10000 rad/s robots turn up to 400 rad in a time_step of 0.01 s, more than "
-        "the 156 rad that can be simulated; use at most 3880 rad/s, or a time_step of at most 0.00388 s"
+        "objects.robots.max_angular_speed: at 10000 rad/s robots turn up to 400 rad in a time_step of 0.01 s, more "
+        "than the 156 rad that can be simulated; use at most 3880 rad/s, or a time_step of at most 0.00388 s"
     ) in result.errors
     assert not (tmp_path / "data.feather").exists()
     for accepted in ({spin: 3.88e3}, {spin: 1e4, "time_step": 0.00388}):

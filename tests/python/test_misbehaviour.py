@@ -293,8 +293,8 @@ def test_first_interrupt_says_at_once_what_it_waits_for(program: Compile, tmp_pa
     assert process.stderr is not None
     told = process.stderr.readline()
     assert told == (
-        f"pogosim: Ctrl-C (SIGINT): the run ends when {WHERE.removeprefix('in ')}, returns. A second signal leaves it at "
-        "once; by itself it is left 30 s after its start (user_code_timeout).\n"
+        f"pogosim: Ctrl-C (SIGINT): the run ends when {WHERE.removeprefix('in ')}, returns. A second signal leaves it "
+        "at once; by itself it is left 30 s after its start (user_code_timeout).\n"
     )
     time.sleep(0.15)
     process.send_signal(signal.SIGINT)

@@ -1,4 +1,4 @@
-"""What a program does where no robot has the processor: before main(), after the run, in threads, in child processes."""
+"""What a program does where no robot has the processor: before main(), after the run, in threads, in children."""
 
 from __future__ import annotations
 

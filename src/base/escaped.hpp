@@ -1,0 +1,13 @@
+// Names of files and keys, quoted in messages, may hold any bytes. None of them may break a line or steer the terminal.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace pogosim {
+
+/// `text` with control characters and bytes that are not UTF-8 written as in C: "\n", "\t", "\x1b". A backslash stays
+/// as it is, so that escaping twice changes nothing.
+std::string escaped(std::string_view text);
+
+}  // namespace pogosim

@@ -1,0 +1,30 @@
+#include "base/memory.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+
+namespace pogosim {
+
+namespace {
+
+std::string size_text(double bytes) {
+    constexpr std::array kUnits{"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+    constexpr double kStep = 1024.0;
+    std::size_t unit = 0;
+    for (; bytes >= kStep && unit + 1 < kUnits.size(); ++unit) {
+        bytes /= kStep;
+    }
+    return fmt::format("{:.{}f} {}", bytes, unit == 0 ? 0 : 1, kUnits[unit]);
+}
+
+}  // namespace
+
+void fail_for_memory(std::string const& purpose, std::optional<double> bytes) {
+    throw OutOfMemory(fmt::format(
+        "not enough memory for {}{}; ask for less, or raise the limit of this run (ulimit -v, or the batch system's)",
+        purpose, bytes ? ", " + size_text(*bytes) : ""));
+}
+
+}  // namespace pogosim

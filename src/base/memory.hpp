@@ -1,0 +1,37 @@
+// Large allocations: when one fails, the message says what it was for and how large it was.
+#pragma once
+
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace pogosim {
+
+/// There is not enough memory: for what, and how much of it. The program ends with exit code 2.
+class OutOfMemory : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Throws OutOfMemory: "not enough memory for the light map: 10000 x 10000 cells of 2 bytes, 190.7 MiB; ...".
+[[noreturn]] void fail_for_memory(std::string const& purpose, std::optional<double> bytes);
+
+/// What is said when nobody knows which allocation failed.
+inline constexpr auto kOutOfMemory =
+    "not enough memory; free some, or raise the limit of this run (ulimit -v, or the batch system's)";
+
+/// Returns allocate(). When there is not enough memory for that, throws OutOfMemory with purpose(), a text such as "the
+/// light map: 10000 x 10000 cells of 2 bytes", and with the size, if it is known.
+template <class Purpose, class Allocate>
+decltype(auto) allocate_for(Purpose const& purpose, std::optional<double> bytes, Allocate const& allocate) {
+    try {
+        return allocate();
+    } catch (std::bad_alloc const&) {
+        fail_for_memory(purpose(), bytes);
+    } catch (std::length_error const&) {  // more than any machine has
+        fail_for_memory(purpose(), bytes);
+    }
+}
+
+}  // namespace pogosim
