@@ -32,30 +32,19 @@ def walk(folder: Path, **settings: object) -> Run:
 
 def polygons(result: Run) -> list[npt.NDArray[np.float64]]:
     text = result.table().schema.metadata[b"arena_polygons"].decode()
-    return [
-        np.array([[p["x"], p["y"]] for p in corners])
-        for corners in yaml.safe_load(text)
-    ]
+    return [np.array([[p["x"], p["y"]] for p in corners]) for corners in yaml.safe_load(text)]
 
 
-def distance_to_walls(
-    points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def distance_to_walls(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     nearest = np.full(len(points), np.inf)
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
         along = np.clip((points - a) @ (b - a) / np.dot(b - a, b - a), 0, 1)
-        nearest = np.minimum(
-            nearest, np.hypot(*(points - a - along[:, None] * (b - a)).T)
-        )
+        nearest = np.minimum(nearest, np.hypot(*(points - a - along[:, None] * (b - a)).T))
     return nearest
 
 
-@pytest.mark.parametrize(
-    "arena", ["square", "disk", "star", "annulus", "squarewithHole", "H", "arena8"]
-)
-def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(
-    tmp_path: Path, arena: str
-) -> None:
+@pytest.mark.parametrize("arena", ["square", "disk", "star", "annulus", "squarewithHole", "H", "arena8"])
+def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena: str) -> None:
     result = walk(tmp_path, arena_file=f"arenas/{arena}.csv", arena_surface=5.0e5)
     points = result.frame()[["x", "y"]].to_numpy(dtype=np.float64)
     outer, *holes = polygons(result)
@@ -68,9 +57,7 @@ def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(
 
 
 @pytest.mark.parametrize(("radius", "speed"), [(1.0, 3e3), (1.0, 1e4), (26.5, 1e6)])
-def test_nobody_leaves_however_small_and_fast(
-    tmp_path: Path, radius: float, speed: float
-) -> None:
+def test_nobody_leaves_however_small_and_fast(tmp_path: Path, radius: float, speed: float) -> None:
     # Robots among light bodies, heads and bars, and a membrane whose dots are small.
     solid = {"geometry": "disk", "radius": 10.0}
     soft = {
@@ -141,10 +128,7 @@ def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that
     result = run(example("coverage_neighbors_novelty"), tmp_path, slow)
     assert result.code == 2
     assert "scene.yaml:" in result.errors
-    assert (
-        "objects.robots.max_linear_speed: at 1000000 mm/s robots move up to 200000 mm in a"
-        in result.errors
-    )
+    assert "objects.robots.max_linear_speed: at 1000000 mm/s robots move up to 200000 mm in a" in result.errors
     assert "use at most 99000 mm/s, or a time_step of at most 0.0198 s" in result.errors
 
 
@@ -154,9 +138,7 @@ def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(
     frame = walk(tmp_path, boundary_condition="periodic").frame()
     crossings = 0
     for column in ("x", "y"):
-        path = frame.pivot(index="time", columns="robot_id", values=column).to_numpy(
-            dtype=np.float64
-        )
+        path = frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
         assert path.min() >= 0
         assert path.max() <= SIDE
         step = np.diff(path, axis=0)
@@ -185,17 +167,12 @@ def test_bundled_arena_empty_or_torus_is_a_periodic_square(tmp_path: Path, name:
     assert (result.code, result.errors) == (0, "")
     frame = result.frame()
     assert frame["x"].between(0, SIDE).all()
-    assert (
-        frame.groupby("robot_id")["x"].agg(lambda x: x.diff().abs().max()).max()
-        > SIDE / 2
-    )
+    assert frame.groupby("robot_id")["x"].agg(lambda x: x.diff().abs().max()).max() > SIDE / 2
 
 
 @pytest.mark.parametrize(("boundary", "heard"), [("solid", False), ("periodic", True)])
 @pytest.mark.parametrize("axis", [0, 1])
-def test_messages_pass_the_seam_of_a_periodic_arena_only(
-    tmp_path: Path, boundary: str, heard: bool, axis: int
-) -> None:
+def test_messages_pass_the_seam_of_a_periodic_arena_only(tmp_path: Path, boundary: str, heard: bool, axis: int) -> None:
     # Two robots 60 mm apart across the seam, 940 mm within the arena.
     positions = np.array([[30.0, 500.0], [970.0, 500.0]])
     if axis == 1:
