@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/grid.hpp"
+#include "geometry/arena.hpp"
 #include "support/scenes.hpp"
 #include "support/test_program.hpp"
 
@@ -23,10 +24,11 @@ constexpr int kRobots = 300;
 constexpr float kRadiusMm = 26.5F;
 constexpr float kToleranceMm = 1.0F;
 
+/// Those with walls.
 std::vector<std::string> arena_files() {
     std::vector<std::string> files;
     for (auto const& entry : std::filesystem::directory_iterator(POGOSIM_SOURCE_DIR "/arenas")) {
-        if (entry.path().extension() == ".csv" && entry.file_size() > 0) {
+        if (entry.path().extension() == ".csv" && !read_arena_file(entry.path()).periodic) {
             files.push_back(entry.path().stem().string());
         }
     }
