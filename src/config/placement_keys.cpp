@@ -21,7 +21,7 @@ std::span<Key<ObjectConfig> const> placement_keys() {
     using K = Key<ObjectConfig>;
     static std::array const keys{
         K{"poses", Elsewhere{kPoses}, any(), "",
-          "Where each object starts, in their order; instead of x and y. Without an angle: heading 0. nb may be absent."},
+          "Where each object starts, in order; instead of x and y. Without an angle: heading 0. nb may be absent."},
         K{"area", Elsewhere{kArea}, any(), "",
           "The formation places this category there, in what the arena has of it, before those without an area."},
     };

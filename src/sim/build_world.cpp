@@ -30,7 +30,7 @@ std::string size_text(Box const& box) {
 
 /// Sizes in a configuration are mm, so whoever draws an arena in mm has to know that it is scaled.
 void tell_scale(Scenario const& scenario, ArenaOutline const& outline, Arena const& arena) {
-    constexpr float kSameSize = 1e-4F;
+    constexpr float kSameSize = 5e-3F;  // less is the rounding of corners
     Vec2 const drawn = bounding_box_of_all(outline.polygons).size();
     Vec2 const size_mm = bounding_box_of_all(arena.polygons).size();
     if (scenario.arena_surface_mm2 && length(size_mm - drawn) > kSameSize * length(drawn)) {

@@ -77,7 +77,7 @@ def poses() -> npt.NDArray[np.float64]:
     ring = np.column_stack([450 + 120 * np.cos(turn), 450 + 120 * np.sin(turn)])
     box = np.array([[x, y] for x in (1430.0, 1570.0) for y in (380.0, 520.0)])
     grid = np.array([[x, y] for y in (1300.0, 1500.0, 1700.0, 1880.0) for x in np.linspace(130, 1870, 8)])
-    return np.concatenate([ring, box, grid])
+    return np.concatenate([ring, box, grid])[:41]  # one for each object
 
 
 def settings(**more: object) -> dict[str, object]:
