@@ -11,7 +11,9 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -101,6 +103,12 @@ struct Pieces {
     }
 };
 
+/// The rows of one time.
+struct Moment {
+    float time_s;
+    std::int64_t row_end;  // rows of the whole run up to and with these
+};
+
 /// When the unfinished file is due again.
 class SaveClock {
 public:
@@ -144,12 +152,12 @@ struct DataFile::Impl {
     std::unique_ptr<CompleteFile> complete;  // from the first full batch on
     Pieces unsaved;                          // not yet in the unfinished file
     Pieces uncompleted;                      // not yet in the complete file
+    std::vector<Moment> unsaved_moments;     // those of the unsaved rows and of the buffered ones
     SaveClock clock;
     std::int64_t row_count = 0;
     std::int64_t buffered_rows = 0;
-    float newest_time_s = 0.0F;
-    float saved_time_s = 0.0F;
     std::int64_t saved_rows = 0;
+    float saved_time_s = 0.0F;
     bool open = false;  // false from the first failure on, too: nothing good can follow it
 
     Impl(DataFileOptions const& options, LockedFile locked)
@@ -170,6 +178,15 @@ struct DataFile::Impl {
     }
 
     bool is_writable() const { return open && getpid() == owner; }
+
+    void count_row(float time_s) {
+        ++buffered_rows;
+        ++row_count;
+        if (unsaved_moments.empty() || unsaved_moments.back().time_s != time_s) {
+            unsaved_moments.push_back({time_s, row_count});
+        }
+        unsaved_moments.back().row_end = row_count;
+    }
 
     /// The rows in the builders become a piece.
     Status cut() {
@@ -196,12 +213,40 @@ struct DataFile::Impl {
             unsaved = kept;
             return status;
         }
-        saved_rows += batch->num_rows();
-        saved_time_s = newest_time_s;
+        note_saved(unsaved_moments.back());
+        unsaved_moments.clear();
         if (clock.run_is_long()) {
             unfinished->sync();
         }
         clock.saved(begin);
+        return Status::OK();
+    }
+
+    void note_saved(Moment const& last) {
+        saved_rows = last.row_end;
+        saved_time_s = last.time_s;
+    }
+
+    /// Where not all rows fit, those of the first moments do.
+    Status save_what_fits() {
+        ARROW_RETURN_NOT_OK(cut());
+        if (unsaved.row_count == 0) {
+            return Status::OK();
+        }
+        ARROW_ASSIGN_OR_RAISE(auto const batch, unsaved.take());
+        std::int64_t const first_row = saved_rows;
+        std::span<Moment const> left(unsaved_moments);
+        for (auto count = left.size(); count > 0;) {
+            Moment const& last = left[count - 1];
+            auto const rows = batch->Slice(saved_rows - first_row, last.row_end - saved_rows);
+            if (unfinished->append(*rows).ok()) {
+                note_saved(last);
+                left = left.subspan(count);
+                count = std::min(count, left.size());
+            } else {
+                count /= 2;
+            }
+        }
         return Status::OK();
     }
 
@@ -231,7 +276,7 @@ struct DataFile::Impl {
         open = false;
         complete.reset();  // makes room on a full disk
         std::string const reason = reason_of(status);
-        [[maybe_unused]] auto const last_try = save();
+        [[maybe_unused]] auto const last_try = save_what_fits();
         if (saved_rows == 0) {
             fail(path, reason);
         }
@@ -272,9 +317,7 @@ DataFile::~DataFile() {
 void DataFile::append(ObjectRow const& row, std::vector<CellValue> const& user) {
     assert(impl_->open);
     impl_->check(impl_->columns.append(row, user));
-    ++impl_->row_count;
-    ++impl_->buffered_rows;
-    impl_->newest_time_s = row.time_s;
+    impl_->count_row(row.time_s);
     if (impl_->buffered_rows + impl_->uncompleted.row_count == impl_->flush_row_count && impl_->is_writable()) {
         impl_->check(impl_->cut());
         impl_->check(impl_->add_to_complete());

@@ -1,4 +1,5 @@
 // What goes wrong between the simulator and the disk is said, with the path and the system's reason.
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -108,12 +109,25 @@ std::string fill_the_disk(DataFileOptions const& options) {
 
 TEST_F(OutputFailure, DiskThatFillsUpLeavesTheRowsUpToThereAndSaysHowToHaveThem) {
     FileSizeLimit const limit(100000);
-    expect_says(fill_the_disk({.path = path("a.feather")}),
-                {"File too large", "holds the rows up to t = ", "pogosim-recover '" + path("a.feather") + "'"});
-    auto const table = read_unfinished(path("a.feather"));
-    EXPECT_EQ(table->num_rows() % 1000, 0);
-    EXPECT_GT(table->num_rows(), 0);
+    std::string const message = fill_the_disk({.path = path("a.feather")});
+    auto const rows = read_unfinished(path("a.feather"))->num_rows();
+    EXPECT_GT(rows, 1000);
+    expect_says(message, {"File too large", fmt::format("holds the rows up to t = {}.0000 s", rows - 1),
+                          "pogosim-recover '" + path("a.feather") + "'"});
     EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
+}
+
+TEST_F(OutputFailure, DiskTooSmallForTheFirstRowsTogetherHoldsThoseOfTheFirstTimes) {
+    FileSizeLimit const limit(100000);
+    DataFile file({.path = path("a.feather")});
+    for (int i = 0; i < 100000; ++i) {
+        file.append({.time_s = static_cast<float>(i / 7), .category = "robots", .id = i % 977}, {});
+    }
+    std::string const message = output_error([&file] { file.save(); });
+    auto const table = read_unfinished(path("a.feather"));
+    EXPECT_GT(std::filesystem::file_size(path("a.feather")), 90000U);
+    EXPECT_EQ(table->num_rows() % 7, 0);  // rows of whole moments
+    expect_says(message, {"File too large", fmt::format("up to t = {}.0000 s", table->num_rows() / 7 - 1)});
 }
 
 TEST_F(OutputFailure, DiskThatFillsUpWithTheCompleteFileLeavesTheUnfinishedOne) {
