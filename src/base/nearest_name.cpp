@@ -44,4 +44,9 @@ std::string nearest_name(std::string_view typed, std::span<std::string const> kn
     return best;
 }
 
+std::string did_you_mean(std::string_view typed, std::span<std::string const> known) {
+    std::string const nearest = nearest_name(typed, known);
+    return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
 }  // namespace pogosim

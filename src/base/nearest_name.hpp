@@ -14,4 +14,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// longer name would have to change).
 std::string nearest_name(std::string_view typed, std::span<std::string const> known);
 
+/// "; did you mean 'x'?", or an empty text when nothing is close enough.
+std::string did_you_mean(std::string_view typed, std::span<std::string const> known);
+
 }  // namespace pogosim

@@ -1,6 +1,7 @@
 #include "config/check_scenario.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,8 +10,10 @@
 #include <regex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/log.hpp"
+#include "base/nearest_name.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -79,6 +82,42 @@ void check_file_names(Scenario const& scenario) {
     }
 }
 
+/// Categories whose objects have rows in the data file, each once.
+std::vector<std::string> categories_with_rows(Scenario const& scenario) {
+    std::vector<std::string> names;
+    for (ObjectConfig const& object : scenario.objects) {
+        bool const has_rows = object.spec.robot || object.spec.body;
+        if (has_rows && std::ranges::find(names, object.category) == names.end()) {
+            names.push_back(object.category);
+        }
+    }
+    return names;
+}
+
+/// The allow-list of categories has to leave one; what else it names is a slip.
+void check_recorded_categories(Scenario const& scenario) {
+    std::vector<std::string> const known = categories_with_rows(scenario);
+    auto const is_known = [&known](std::string const& name) { return std::ranges::find(known, name) != known.end(); };
+    auto const& wanted = scenario.output.categories;
+    if (!scenario.output.enable_data_logging || !wanted || known.empty()) {
+        return;
+    }
+    Place const place = place_of(scenario, "data_logger_category");
+    std::string const choice = fmt::format("{}", fmt::join(known, ", "));
+    if (std::ranges::none_of(*wanted, is_known)) {
+        std::string const found = wanted->empty() ? "" : shown(wanted->front());
+        fail_at(place, fmt::format("expected at least one of the categories with rows in the data file, {}; found {}{} "
+                                   "(without this key, all are recorded)",
+                                   choice, wanted->empty() ? "none" : "'" + found + "'", did_you_mean(found, known)));
+    }
+    for (std::string const& name : *wanted) {
+        if (!is_known(name)) {
+            log().warn("{}: {}: '{}' is ignored, the categories with rows in the data file are {}{}",
+                       place.node.where(), place.path, shown(name), choice, did_you_mean(shown(name), known));
+        }
+    }
+}
+
 /// The text between the only two braces of a name, or nothing when it has other braces or none.
 std::optional<std::string> only_field(std::string const& name) {
     std::size_t const open = name.find_first_of("{}");
@@ -134,6 +173,7 @@ void check_scenario(Scenario const& scenario) {
     check_counts(scenario);
     check_object_count(scenario);
     check_file_names(scenario);
+    check_recorded_categories(scenario);
     check_frames_name(scenario);
     check_arena(scenario);
     check_formation(scenario);

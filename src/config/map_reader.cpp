@@ -36,11 +36,6 @@ constexpr std::array kOldNames{
     OldName{"photo_start_duration", "objects.<light>.photo_start_duration"},
 };
 
-std::string suggestion(std::string const& typed, std::vector<std::string> const& known) {
-    std::string const nearest = nearest_name(shown(typed), known);
-    return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
-}
-
 std::string new_place(std::string_view path) {
     auto const old = std::ranges::find(kOldNames, path, &OldName::old_path);
     return old == kOldNames.end() ? "" : fmt::format("; it is now '{}'", old->new_path);
@@ -84,7 +79,7 @@ std::optional<std::size_t> MapReader::pick(Place const& place, std::vector<std::
     bool const only_warns = is_null || (rule.warns_only && node.kind == Node::Kind::scalar);
     std::string const complaint = fmt::format("expected {}, found {}", names_text(names), found_text(node));
     if (default_name.empty() || !only_warns) {
-        fail_at(place, complaint + suggestion(typed, names));
+        fail_at(place, complaint + did_you_mean(shown(typed), names));
     }
     log().warn("{}: {}: {}; '{}' is used", node.where(), place.path, complaint, default_name);
     return std::nullopt;
@@ -115,7 +110,7 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     std::ranges::transform(known_, std::back_inserter(names), &KeyDescription::name);
     std::string const path = shown(path_of(key));
     std::string const renamed = new_place(path);
-    std::string const hint = renamed.empty() ? suggestion(key, names) : renamed;
+    std::string const hint = renamed.empty() ? did_you_mean(shown(key), names) : renamed;
     if (strict_) {
         throw ConfigError(fmt::format("{}: unknown key '{}'{} (--strict)", value.where(), path, hint));
     }

@@ -39,9 +39,8 @@ ObjectType const& type_at(Place const& place) {
         return *type;
     }
     std::vector<std::string> const names = type_names();
-    std::string const nearest = nearest_name(shown(typed), names);
     fail_at(place, fmt::format("expected {}, found {}{}", names_text(names), found_text(place.node),
-                               nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+                               did_you_mean(shown(typed), names)));
 }
 
 }  // namespace

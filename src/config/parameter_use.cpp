@@ -44,9 +44,7 @@ void ParameterUse::collect(Node const& node, std::string const& path, std::vecto
         collect(value, path.empty() ? key : fmt::format("{}.{}", path, key), unread);
     }
     if (node.entries.empty() && &node != &parameters_) {
-        std::string const nearest = nearest_name(shown(path), missed_);
-        unread.push_back(fmt::format("{} ({}{})", shown(path), node.where(),
-                                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+        unread.push_back(fmt::format("{} ({}{})", shown(path), node.where(), did_you_mean(shown(path), missed_)));
     }
 }
 

@@ -34,13 +34,12 @@ void require_category(Node const& objects, std::string const& category, Node con
             others.push_back(name);
         }
     }
-    std::string const nearest = nearest_name(shown(category), others);
     fail_at({node, "objects"},
             fmt::format("there is no category '{}'{}{}; to add one, set its type, too", shown(category),
                         others.empty()
                             ? ""
                             : fmt::format("; there {} {}", others.size() == 1 ? "is" : "are", fmt::join(others, ", ")),
-                        nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+                        did_you_mean(shown(category), others)));
 }
 
 std::vector<ObjectConfig> read_objects(Node const* objects, bool strict) {

@@ -130,7 +130,8 @@ std::span<Key<OutputConfig> const> output_keys() {
           "Time between two sets of rows; 0 or less: only the rows of time 0."}
             .only_if(has_data),
         K{"data_logger_fields", &OutputConfig::fields, any(), "", "Columns to write; absent: all."},
-        K{"data_logger_category", &OutputConfig::categories, any(), "", "Categories to write; absent: all."},
+        K{"data_logger_category", &OutputConfig::categories, any(), "",
+          "Categories to write; absent: all. At least one must have objects other than lamps."},
         K{"data_logger_flush_row_count", &OutputConfig::flush_row_count, between(1, 1e9), "rows",
           "Rows of one record batch in the file."}
             .only_if(has_data),

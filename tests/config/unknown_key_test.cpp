@@ -83,3 +83,37 @@ TEST(UnknownKey, NamesThatBatchToolsWriteAreKnown) {
     EXPECT_EQ(warnings_of(kRobots + "    _batch_choice_names: [a]\n"), Lines{});
     EXPECT_EQ(warnings_of("size: big\n" + kRobots).size(), 1U);
 }
+
+namespace {
+
+std::string const kTwo =
+    kRobots + "  wall: {type: pogowall, geometry: arena}\n  lamp: {type: static_light, geometry: global}\n";
+
+}  // namespace
+
+TEST(UnknownCategoryToRecord, WarnsAndNamesTheNearest) {
+    std::string const known = "is ignored, the categories with rows in the data file are robots, wall";
+    EXPECT_EQ(warnings_of(kTwo + "data_logger_category: [robot, wall]\n"),
+              Lines{"x.yaml:8: data_logger_category: 'robot' " + known + "; did you mean 'robots'?"});
+    EXPECT_EQ(warnings_of(kTwo + "data_logger_category: [robots, lamp]\n"),
+              Lines{"x.yaml:8: data_logger_category: 'lamp' " + known});
+    EXPECT_EQ(warnings_of(kTwo + "data_logger_category: [wall]\n"), Lines{});
+}
+
+TEST(UnknownCategoryToRecord, AloneItIsAnErrorSinceNoRowsWouldBeLeft) {
+    std::string const expected =
+        "x.yaml:8: data_logger_category: expected at least one of the categories with rows in the data file, "
+        "robots, wall; found ";
+    std::string const all = " (without this key, all are recorded)";
+    EXPECT_EQ(load_error(kTwo + "data_logger_category: [robot]\n"), expected + "'robot'; did you mean 'robots'?" + all);
+    EXPECT_EQ(load_error(kTwo + "data_logger_category: [lamp, light]\n"), expected + "'lamp'" + all);
+    EXPECT_EQ(load_error(kTwo + "data_logger_category: []\n"), expected + "none" + all);
+}
+
+TEST(UnknownCategoryToRecord, DoesNotMatterWithoutADataFile) {
+    EXPECT_EQ(warnings_of(kTwo + "enable_data_logging: false\ndata_logger_category: [robot]\n"), Lines{});
+}
+
+TEST(UnknownCategoryToRecord, CategoryWithoutObjectsIsKnown) {
+    EXPECT_EQ(warnings_of(kTwo + "  others: {type: pogobot, nb: 0}\ndata_logger_category: [others]\n"), Lines{});
+}
