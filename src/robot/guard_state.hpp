@@ -26,6 +26,7 @@ struct Guard {
     SignalText<512> what;
     ExitCode code = ExitCode::user_program;
     bool refused = false;
+    bool too_long = false;
     std::atomic<bool> crashed = false;
     std::atomic<bool> left_by_force = false;
 };

@@ -153,11 +153,12 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
     if (sigsetjmp(guard.return_point, 0) != 0) {
         EndRequest const* const request = end_request();
         return request != nullptr ? requested_failure(*request)
-                                  : UserFailure{guard.what.c_str(), guard.code, guard.refused};
+                                  : UserFailure{guard.what.c_str(), guard.code, guard.refused, false, guard.too_long};
     }
     guard.entered_s.store(monotonic_s(), std::memory_order_relaxed);
     guard.inside = true;
     guard.refused = false;
+    guard.too_long = false;
     restart_watch();
     try {
         body();

@@ -32,6 +32,7 @@ struct UserFailure {
     ExitCode code = ExitCode::user_program;
     bool refused = false;          // a function of the interface said no: a wrong parameter, a column that is not there
     bool in_other_thread = false;  // in one that the program started
+    bool too_long = false;         // it had not returned after user_code_timeout
 };
 
 /// Begins the run: watches over processor time from now on. `timeout_s` is the processor time one call of user code may

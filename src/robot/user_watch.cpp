@@ -3,6 +3,7 @@
 #include <sys/time.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "robot/context.hpp"
 #include "robot/guard_state.hpp"
@@ -44,6 +45,14 @@ enum class RequestState { none, being_made, made };
 EndRequest request;
 std::atomic<RequestState> request_state = RequestState::none;
 
+/// A program for the SDK alone has its endless loop where the robot starts.
+bool is_at_robots_start() {
+    std::string_view const phase = context.phase;
+    return phase == "main" || phase == "user_init";
+}
+
+constexpr auto kMoveTheLoop = ": move the body of its endless loop into user_step (see docs/porting.md)";
+
 /// `which`: ITIMER_PROF or ITIMER_REAL; 0 s stops it.
 void set_timer(decltype(ITIMER_PROF) which, double period_s) {
     itimerval timer = {};
@@ -76,10 +85,12 @@ void on_watch(int signal, siginfo_t* /*info*/, void* signal_context) {
     }
     SignalText<512> what;
     what << "did not return within ";
-    what.number(busy.timeout_s, 6, /*kept=*/false) << " s of processor time (user_code_timeout); messages and sensors "
-                                                      "do not change while user code runs, so a step "
-                                                      "must not wait for them in a loop";
+    what.number(busy.timeout_s, 6, /*kept=*/false) << " s of processor time (user_code_timeout)";
+    what << (is_at_robots_start() ? kMoveTheLoop
+                                  : "; messages and sensors do not change while user code runs, so a step must not "
+                                    "wait for them in a loop");
     set_reason(what.c_str());
+    guard.too_long = true;
     expect_the_worst();
     jump_out(ExitCode::user_program);
 }
@@ -153,6 +164,7 @@ void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
         } else {
             what << " s after " << waiting.signal_name << " asked the run to end";
         }
+        what << (is_at_robots_start() ? kMoveTheLoop : "");
         request_end(what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
     }
 }
@@ -216,7 +228,9 @@ void hurry_user_code(char const* signal_name) {
 
 void abandon_user_code() {
     if (guard.inside) {
-        request_end("interrupted again before it returned", ExitCode::interrupted, /*in_other_thread=*/false);
+        SignalText<512> what;
+        what << "interrupted again before it returned" << (is_at_robots_start() ? kMoveTheLoop : "");
+        request_end(what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
     }
 }
 

@@ -209,8 +209,8 @@ void Simulation::report(UserFailure const& failure) const {
     }
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
     // C++ compilers let a function without its return run on into the next one; only a real main() is excused.
-    bool const may_lack_return =
-        failure.code == ExitCode::user_program && !failure.in_other_thread && std::string_view(context.phase) == "main";
+    bool const may_lack_return = failure.code == ExitCode::user_program && !failure.in_other_thread &&
+                                 !failure.too_long && std::string_view(context.phase) == "main";
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
               failed ? "failed" : "ended", where, failure.what,
               may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", recorder_.note());

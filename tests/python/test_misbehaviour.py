@@ -142,9 +142,38 @@ def test_failure_in_any_function_of_the_program_names_the_function(
     result = misbehave(program, tmp_path, kind, place)
     assert result.code == 3
     assert f"the user program failed in {place} of {who}: " in result.errors
-    assert ("main() must end with 'return 0;'" in result.errors) == (place == "main")
+    crashed_in_main = place == "main" and kind != "loop_for_ever"
+    assert ("main() must end with 'return 0;'" in result.errors) == crashed_in_main
     # A run that fails before its first row leaves a file without rows, so that an older one does not pass for its own.
     assert (len(result.frame()) > 0) == (place in ("export_data", "robot_end"))
+
+
+MOVE_THE_LOOP = "move the body of its endless loop into user_step (see docs/porting.md)"
+
+
+@pytest.mark.parametrize("place", ["main", "user_init"])
+def test_program_that_keeps_its_own_endless_loop_is_told_to_move_it(
+    program: Compile, tmp_path: Path, place: str
+) -> None:
+    result = misbehave(program, tmp_path, "loop_for_ever", place)
+    assert f"(user_code_timeout): {MOVE_THE_LOOP}\n" in result.errors
+    assert "a step must not wait" not in result.errors
+
+
+@pytest.mark.parametrize(("kind", "signals"), [("loop_for_ever", 2), ("sleep_for_ever", 1), ("sleep_for_ever", 2)])
+def test_interrupted_program_that_keeps_its_own_endless_loop_is_told_to_move_it(
+    program: Compile, tmp_path: Path, kind: str, signals: int
+) -> None:
+    settings = {"user_code_timeout": 2.0, "parameters.kind": kind, "parameters.place": "main"}
+    process = start(program("misbehave.c"), tmp_path, settings)
+    for _ in range(signals):
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+    result = end(process, tmp_path)
+    assert result.code == 130
+    assert "the run was interrupted in main of robot #1 of category 'robots', tick 0, " in result.errors
+    assert f": {MOVE_THE_LOOP}\n" in result.errors
+    assert "return 0" not in result.errors
 
 
 @pytest.mark.parametrize(
