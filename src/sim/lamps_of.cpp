@@ -1,9 +1,13 @@
 #include "sim/lamps_of.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <numbers>
 #include <string>
 #include <variant>
 
 #include "base/log.hpp"
+#include "light/lit_area.hpp"
 
 namespace pogosim {
 
@@ -26,30 +30,101 @@ void warn_outside(Scenario const& scenario, ObjectConfig const& object, std::str
         arena_text(arena));
 }
 
-void look_whether_in_arena(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot,
-                           Arena const& arena) {
+/// True when the centre of the spot is in the arena's bounding box; else it warns.
+bool is_in_arena(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot, Arena const& arena) {
     Box const& bounds = arena.bounds;
     if (!is_between(bounds.min.x, spot.centre_mm.x, bounds.max.x)) {
         warn_outside(scenario, object, "x", spot.centre_mm, arena);
-    } else if (!is_between(bounds.min.y, spot.centre_mm.y, bounds.max.y)) {
+        return false;
+    }
+    if (!is_between(bounds.min.y, spot.centre_mm.y, bounds.max.y)) {
         warn_outside(scenario, object, "y", spot.centre_mm, arena);
+        return false;
+    }
+    return true;
+}
+
+bool lights_a_cell(LampArea const& area, LightMap const& map) {
+    bool lights = false;
+    for_each_cell_in(area.shape, area.centre_mm, map, [&lights](std::uint32_t, Vec2) { lights = true; });
+    return lights;
+}
+
+/// Where a lamp has its area in the course of time; of an orbit, many places that are in the arena.
+std::vector<LampArea> areas_of(LampSpec const& lamp, Arena const& arena) {
+    LampArea const start = area_at_start(lamp);
+    auto const* const spot = std::get_if<SpotSpec>(&lamp);
+    if (spot == nullptr || spot->orbit.radius_mm == 0.0F || spot->orbit.angular_speed_rad_s == 0.0) {
+        return {start};
+    }
+    constexpr int kPlaces = 360;
+    std::vector<LampArea> areas;
+    for (int i = 0; i < kPlaces; ++i) {
+        constexpr float turn = 2.0F * std::numbers::pi_v<float>;
+        float const angle_rad = turn * static_cast<float>(i) / static_cast<float>(kPlaces);
+        Vec2 const centre_mm = spot->centre_mm + spot->orbit.radius_mm * direction(angle_rad);
+        bool const inside = is_between(arena.bounds.min.x, centre_mm.x, arena.bounds.max.x) &&
+                            is_between(arena.bounds.min.y, centre_mm.y, arena.bounds.max.y);
+        if (inside) {
+            areas.push_back({start.shape, centre_mm});
+        }
+    }
+    return areas;
+}
+
+/// The key that says how large a lamp is.
+std::string size_key(Shape const& shape) {
+    switch (shape.kind) {
+        case ShapeKind::rectangle:
+            return shape.width_mm < shape.height_mm ? "body_width" : "body_height";
+        case ShapeKind::triangle:
+            return "side_length";
+        default:
+            return "radius";
+    }
+}
+
+/// The centre of a cell decides what lights it, so a small lamp may stand between them.
+void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, World const& world) {
+    LampSpec const& lamp = *object.spec.lamp;
+    LightMap const& map = world.light;
+    Shape const shape = area_at_start(lamp).shape;
+    bool const reaches_a_centre = inner_radius(shape) >= 0.5F * length(map.cell_mm);
+    if (reaches_a_centre && std::holds_alternative<SpotSpec>(lamp)) {
+        return;
+    }
+    std::vector<LampArea> const areas = areas_of(lamp, world.arena);
+    auto const is_dark = [&map](LampArea const& area) { return !lights_a_cell(area, map); };
+    auto const dark = std::ranges::count_if(areas, is_dark);
+    if (dark > 0) {
+        log().warn(
+            "{}: the lamp lights no cell of the light map{}: it covers the centre of none, and they are {:.1f} mm x {:.1f} "
+            "mm large; enlarge the lamp, or use more cells (light_map_nb_bin_x, light_map_nb_bin_y)",
+            where_in_object(scenario, object, size_key(shape)),
+            dark < std::ssize(areas) ? " on parts of its orbit" : "", map.cell_mm.x, map.cell_mm.y);
+    }
+}
+
+void look_for_slips(Scenario const& scenario, ObjectConfig const& object, World const& world) {
+    LampSpec const& lamp = *object.spec.lamp;
+    if (object.nb == 0 || is_everywhere(area_at_start(lamp).shape)) {
+        return;
+    }
+    auto const* const spot = std::get_if<SpotSpec>(&lamp);
+    if (spot == nullptr || is_in_arena(scenario, object, *spot, world.arena)) {
+        warn_of_dark_lamp(scenario, object, world);
     }
 }
 
 }  // namespace
 
-std::vector<LampSpec> lamps_of(Scenario const& scenario, Arena const& arena) {
+std::vector<LampSpec> lamps_of(Scenario const& scenario, World const& world) {
     std::vector<LampSpec> lamps;
     for (ObjectConfig const& object : scenario.objects) {
-        if (!object.spec.lamp) {
-            continue;
+        if (object.spec.lamp) {
+            look_for_slips(scenario, object, world);
+            lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), *object.spec.lamp);
         }
-        LampSpec const& lamp = *object.spec.lamp;
-        auto const* const spot = std::get_if<SpotSpec>(&lamp);
-        if (object.nb > 0 && spot != nullptr && !is_everywhere(spot->shape)) {
-            look_whether_in_arena(scenario, object, *spot, arena);
-        }
-        lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), lamp);
     }
     return lamps;
 }

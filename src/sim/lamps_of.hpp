@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "config/scenario.hpp"
-#include "geometry/arena.hpp"
+#include "world/world.hpp"
 
 namespace pogosim {
 
-/// The lamps of the configuration, in its order. Throws ConfigError for a disk, rectangle or triangle of light whose
-/// centre is outside of the arena's bounding box.
-std::vector<LampSpec> lamps_of(Scenario const& scenario, Arena const& arena);
+/// The lamps of the configuration, in its order. Of the world, only the arena and the cells of the light map count. Warns
+/// of lamps that light nothing: their centre is outside of the arena's bounding box, or between the centres of cells.
+std::vector<LampSpec> lamps_of(Scenario const& scenario, World const& world);
 
 /// What a lamp can light at time 0.
 struct LampArea {

@@ -56,7 +56,7 @@ Simulation::Simulation(Scenario scenario, RunOptions options)
       parameters_(scenario_.parameters),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       programs_(world_, services_, seed_),
-      lighting_(lamps_of(scenario_, world_.arena), world_),
+      lighting_(lamps_of(scenario_, world_), world_),
       physics_(make_physics(scenario_, world_)),
       recorder_(scenario_, world_, programs_, services_.data, seed_),
       stages_(options.measure_stages) {}

@@ -8,12 +8,20 @@
 #include <vector>
 
 #include "config/config_file.hpp"
+#include "light/lighting.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
 namespace {
 
-/// What is said of a lamp with these keys in an arena of 1000 mm x 1000 mm; it is made all the same.
+/// An arena of 1000 mm x 1000 mm with cells of 10 mm x 20 mm.
+World world_of_cells() {
+    World world = testing::square_world();
+    world.light = make_light_map(world.arena, 100, 50);
+    return world;
+}
+
+/// What is said of a lamp with these keys in that world; it is made all the same.
 std::string warning_of_lamp(std::string const& type, std::string const& keys) {
     auto const load = [&] {
         config_file::Warnings const no_robots;
@@ -21,8 +29,7 @@ std::string warning_of_lamp(std::string const& type, std::string const& keys) {
     };
     Scenario const scenario = load();
     config_file::Warnings const warnings;
-    EXPECT_EQ(lamps_of(scenario, testing::square_world().arena).size(),
-              static_cast<std::size_t>(scenario.objects[0].nb));
+    EXPECT_EQ(lamps_of(scenario, world_of_cells()).size(), static_cast<std::size_t>(scenario.objects[0].nb));
     return warnings.text();
 }
 
@@ -46,14 +53,54 @@ TEST(LampsOf, CategoryWithoutLampsDoesNotWarn) {
 }
 
 TEST(LampsOf, SpotsOnTheWallsAndOrbitsThatLeadOutAreFine) {
-    EXPECT_EQ(warning_of_lamp("static_light", "    geometry: triangle\n    x: 1000\n    y: 0\n"), "");
-    EXPECT_EQ(warning_of_lamp("orbiting_static_light", "    geometry: disk\n    orbit_radius: 2000\n"), "");
+    EXPECT_EQ(warning_of_lamp("static_light", "    geometry: triangle\n    side_length: 60\n    x: 1000\n    y: 0\n"),
+              "");
+    EXPECT_EQ(
+        warning_of_lamp("orbiting_static_light", "    geometry: disk\n    orbit_radius: 2000\n    angular_speed: 1\n"),
+        "");
 }
 
 TEST(LampsOf, LampsWithoutAPlaceOfTheirOwnAndLighthousesMayStandOutside) {
     EXPECT_EQ(warning_of_lamp("static_light", "    geometry: global\n    light_mode: gradient\n    x: -500\n"), "");
     EXPECT_EQ(warning_of_lamp("static_light", "    geometry: arena\n    light_mode: plane\n    x: -500\n"), "");
     EXPECT_EQ(warning_of_lamp("rotating_ray_of_light", "    geometry: disk\n    radius: 800\n    x: -500\n"), "");
+}
+
+std::string dark(int line, std::string const& key, std::string const& when = "") {
+    return "x.yaml:" + std::to_string(line) + ": objects.lamp." + key + ": the lamp lights no cell of the light map" +
+           when +
+           ": it covers the centre of none, and they are 10.0 mm x 20.0 mm large; enlarge the lamp, or use more cells "
+           "(light_map_nb_bin_x, light_map_nb_bin_y)\n";
+}
+
+TEST(LampsOf, LampsThatFallBetweenTheCentresOfCellsWarnWithTheKeyOfTheirSize) {
+    std::string const corner = "    x: 500\n    y: 500\n";  // of four cells
+    for (std::string const type :
+         {"static_light", "orbiting_static_light", "rotating_ray_of_light", "alternating_rays_of_light"}) {
+        EXPECT_EQ(warning_of_lamp(type, corner + "    geometry: disk\n    radius: 11\n"), dark(7, "radius"));
+        EXPECT_EQ(warning_of_lamp(type, corner + "    geometry: disk\n"), dark(2, "radius")) << "the default";
+        EXPECT_EQ(warning_of_lamp(type, corner + "    geometry: rectangle\n    body_width: 9\n    body_height: 50\n"),
+                  dark(7, "body_width"));
+        EXPECT_EQ(warning_of_lamp(type, corner + "    geometry: triangle\n    side_length: 8\n"),
+                  dark(7, "side_length"));
+        EXPECT_EQ(warning_of_lamp(type, corner + "    geometry: disk\n    radius: 12\n"), "");
+    }
+}
+
+TEST(LampsOf, SmallLampOnTheCentreOfACellIsSeen) {
+    EXPECT_EQ(warning_of_lamp("static_light", "    geometry: disk\n    radius: 2\n    x: 505\n    y: 510\n"), "");
+}
+
+TEST(LampsOf, OrbitThatLeadsBetweenTheCentresOfCellsWarns) {
+    std::string const orbit =
+        "    geometry: disk\n    x: 505\n    y: 510\n    orbit_radius: 200\n    orbit_angular_speed: 1\n    radius: ";
+    EXPECT_EQ(warning_of_lamp("orbiting_static_light", orbit + "8\n"), dark(9, "radius", " on parts of its orbit"));
+    EXPECT_EQ(warning_of_lamp("orbiting_static_light", orbit + "12\n"), "");
+}
+
+TEST(LampsOf, LighthouseWhoseAreaIsOutsideOfTheArenaWarns) {
+    EXPECT_EQ(warning_of_lamp("rotating_ray_of_light", "    geometry: disk\n    radius: 400\n    x: -500\n    y: 5\n"),
+              dark(5, "radius"));
 }
 
 TEST(LampsOf, OrbitsStartAtTheirPhase) {
@@ -74,7 +121,7 @@ TEST(LampsOf, ThereAreAsManyAsTheFileSays) {
         "  a: {type: static_light, geometry: global, nb: 2, value: 7}\n"
         "  b: {type: rotating_ray_of_light, geometry: global}\n"
         "  c: {type: static_light, geometry: global, nb: 0}\n");
-    std::vector<LampSpec> const lamps = lamps_of(scenario, testing::square_world().arena);
+    std::vector<LampSpec> const lamps = lamps_of(scenario, world_of_cells());
     ASSERT_EQ(lamps.size(), 3U);
     EXPECT_EQ(std::get<SpotSpec>(lamps[1]).value, 7);
     EXPECT_TRUE(std::holds_alternative<RotatingRaySpec>(lamps[2]));
