@@ -75,6 +75,8 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
         The rows (one per object and save time; lengths in mm, times in s, angles in rad), and the
         metadata of the file. All metadata are texts, except:
         "configuration": a dictionary; empty if the file has none or it cannot be parsed.
+        "resolved_configuration": a dictionary of every key with its value in the run, defaults
+        included; not there if the file has none.
         "arena_polygons": a list of outlines, each an array of shape (corners, 2) with x and y in mm;
         it stays a text if it is no list of polygons.
 
@@ -88,6 +90,8 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
         for key, value in (table.schema.metadata or {}).items()
     }
     metadata["configuration"] = parse_configuration(metadata.get("configuration", ""))
+    if "resolved_configuration" in metadata:
+        metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])
     if "arena_polygons" in metadata:
         metadata["arena_polygons"] = parse_polygons(metadata["arena_polygons"])
     return table.to_pandas(), metadata

@@ -33,7 +33,7 @@ template <class T>
 struct Choice {
     std::vector<std::string> names;
     std::function<void(T&, std::size_t)> set;      // by index into names
-    std::function<std::string(T const&)> current;  // the name of the member's value
+    std::function<std::string(T const&)> current;  // the name of the member's value; empty: none
     ChoiceRule rule;
 };
 
@@ -83,12 +83,20 @@ struct Key {
     std::string_view doc;
     bool required = false;
     bool (*is_used)(T const&) = nullptr;  // absent: always; asked when the keys above it in the table have been read
+    std::string_view same_as{};           // the key that this is another name of; one of them may be given
 
     /// The same key, which means something only where this is true of the struct. Elsewhere any value of its type is
     /// accepted, and ignored.
     Key only_if(bool (*condition)(T const&)) const {
         Key key = *this;
         key.is_used = condition;
+        return key;
+    }
+
+    /// The same key, which is another name of the one that has this name.
+    Key other_name_of(std::string_view name_of_the_member) const {
+        Key key = *this;
+        key.same_as = name_of_the_member;
         return key;
     }
 };

@@ -53,6 +53,18 @@ MapReader::MapReader(Node const& map, std::string path, bool strict)
     if (map.kind != Node::Kind::map && map.kind != Node::Kind::null) {
         fail_expected(place(), "a map of keys");
     }
+    values_.kind = Node::Kind::map;
+}
+
+void MapReader::set_value(std::string_view key, Node value) {
+    if (value.kind == Node::Kind::null) {
+        return;
+    }
+    if (Node* const earlier = values_.find(key)) {
+        *earlier = std::move(value);
+    } else {
+        values_.entries.emplace_back(std::string(key), std::move(value));
+    }
 }
 
 Node const* MapReader::find(std::string_view key) const {
@@ -95,6 +107,13 @@ std::optional<double> MapReader::number_or_word(Place const& place, Limits const
         fail_expected(place, expected);
     }
     return number;
+}
+
+void MapReader::refuse_both_names(std::string_view name, std::string_view other_name) const {
+    Node const* const value = find(name);
+    if (!other_name.empty() && value != nullptr && find(other_name) != nullptr) {
+        fail_at({*value, path_of(name)}, fmt::format("is another name of {}; give one of them", other_name));
+    }
 }
 
 void MapReader::refuse_missing_keys() const {

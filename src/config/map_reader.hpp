@@ -44,6 +44,17 @@ public:
     /// All keys of all tables read so far, with the defaults that stood in the structs before.
     std::vector<KeyDescription> const& known_keys() const { return known_; }
 
+    /// The keys that have an effect, with their values, defaults included; reading this map again gives the same values.
+    /// A key that is read elsewhere has the node that was written, unless set_value() replaced it.
+    Node const& values() const { return values_; }
+
+    /// The value of a key that is read elsewhere.
+    void set_value(std::string_view key, Node value);
+
+    /// The values of a table whose keys the chosen mode sets, whatever is written.
+    template <class T>
+    void note_values(std::span<Key<T> const> keys, T const& from);
+
     /// Call last: throws for a required key that is missing, warns for each unknown key (throws when strict) that is
     /// not among the ignored ones.
     void finish(std::vector<std::string> const& ignored = {}) const;
@@ -59,6 +70,10 @@ private:
     template <class T>
     void read_one(Key<T> const& key, bool is_used, T& into);
 
+    template <class T>
+    Node value_of(Key<T> const& key, T const& from) const;
+
+    void refuse_both_names(std::string_view name, std::string_view other_name) const;
     void refuse_missing_keys() const;
     void report_unknown(std::string const& key, Node const& value) const;
 
@@ -66,12 +81,24 @@ private:
     std::string path_;
     bool strict_;
     std::vector<KeyDescription> known_;
+    Node values_;
 };
 
 template <class T>
 void MapReader::read(std::span<Key<T> const> keys, T& into) {
     for (Key<T> const& key : keys) {
+        refuse_both_names(key.name, key.same_as);
         read_one(key, key.is_used == nullptr || key.is_used(into), into);
+    }
+    note_values(keys, into);
+}
+
+template <class T>
+void MapReader::note_values(std::span<Key<T> const> keys, T const& from) {
+    for (Key<T> const& key : keys) {
+        if (key.same_as.empty() && (key.is_used == nullptr || key.is_used(from))) {
+            set_value(key.name, value_of(key, from));
+        }
     }
 }
 
@@ -134,6 +161,26 @@ void MapReader::read_one(Key<T> const& key, bool is_used, T& into) {
                    },
                },
                key.field);
+}
+
+template <class T>
+Node MapReader::value_of(Key<T> const& key, T const& from) const {
+    return std::visit(Overloaded{
+                          [&](Choice<T> const& choice) {
+                              std::string const name = choice.current(from);
+                              return name.empty() ? Node() : plain_node(name);
+                          },
+                          [&](NumberOr<T> const& field) {
+                              auto const& number = from.*field.member;
+                              return number ? value_node(*number) : plain_node(std::string(field.word));
+                          },
+                          [&](Elsewhere const&) {
+                              Node const* const written = find(key.name);
+                              return written == nullptr ? Node() : *written;
+                          },
+                          [&](auto T::*member) { return value_node(from.*member); },
+                      },
+                      key.field);
 }
 
 }  // namespace pogosim

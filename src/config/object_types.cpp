@@ -71,6 +71,9 @@ ObjectConfig read_object(Place const& place, std::string const& category, bool s
         type.read(reader, object);
     }
     reader.finish();
+    reader.set_value("type", plain_node(object.type));
+    reader.set_value("nb", value_node(object.nb));
+    object.values = reader.values();
     return object;
 }
 

@@ -41,15 +41,17 @@ std::span<Key<ReceptionSpec> const> parameter_keys() {
     };
     static std::array const docs{doc("alpha", older.alpha), doc("beta", older.beta), doc("gamma", older.gamma),
                                  doc("delta", older.delta)};
+    static constexpr auto has_parameters = [](ReceptionSpec const& spec) { return spec.law != ReceptionLaw::constant; };
+    static constexpr auto has_six = [](ReceptionSpec const& spec) { return spec.law == ReceptionLaw::article; };
     static std::array const keys{
         K{"rate", &ReceptionSpec::rate, between(0, 1), "", "static: the probability."}.only_if(
             [](ReceptionSpec const& spec) { return spec.law == ReceptionLaw::constant; }),
-        K{"alpha", &ReceptionSpec::alpha, any(), "", docs[0]},
-        K{"beta", &ReceptionSpec::beta, any(), "", docs[1]},
-        K{"gamma", &ReceptionSpec::gamma, any(), "", docs[2]},
-        K{"delta", &ReceptionSpec::delta, any(), "", docs[3]},
-        K{"zeta", &ReceptionSpec::zeta, any(), "1/byte", "dynamic: chooses the article's equation."},
-        K{"theta", &ReceptionSpec::theta, any(), "", "dynamic: chooses the article's equation."},
+        K{"alpha", &ReceptionSpec::alpha, any(), "", docs[0]}.only_if(has_parameters),
+        K{"beta", &ReceptionSpec::beta, any(), "", docs[1]}.only_if(has_parameters),
+        K{"gamma", &ReceptionSpec::gamma, any(), "", docs[2]}.only_if(has_parameters),
+        K{"delta", &ReceptionSpec::delta, any(), "", docs[3]}.only_if(has_parameters),
+        K{"zeta", &ReceptionSpec::zeta, any(), "1/byte", "dynamic: chooses the article's equation."}.only_if(has_six),
+        K{"theta", &ReceptionSpec::theta, any(), "", "dynamic: chooses the article's equation."}.only_if(has_six),
     };
     return keys;
 }
@@ -75,20 +77,22 @@ ReceptionSpec read_reception_map(MapReader& reader) {
     if (choice.model == Model::realistic) {
         ReceptionSpec ignored = spec;
         reader.read_unused(parameter_keys(), ignored);
+        reader.note_values(parameter_keys(), spec);
     } else {
         reader.read(parameter_keys(), spec);
     }
     return spec;
 }
 
-ReceptionSpec read_reception(MapReader const& robot) {
-    Node const* map = robot.find("msg_success_rate");
-    if (map == nullptr) {
-        return {};
-    }
-    MapReader reader(*map, robot.path_of("msg_success_rate"), robot.is_strict());
+ReceptionSpec read_reception(MapReader& robot) {
+    static Node const absent;
+    Node const* const map = robot.find("msg_success_rate");
+    MapReader reader(map == nullptr ? absent : *map, robot.path_of("msg_success_rate"), robot.is_strict());
     ReceptionSpec const spec = read_reception_map(reader);
-    reader.finish();
+    if (map != nullptr) {
+        reader.finish();
+    }
+    robot.set_value("msg_success_rate", reader.values());
     return spec;
 }
 

@@ -13,7 +13,7 @@ namespace pogosim {
 ///   realistic   the four-parameter law with its own defaults, whatever else the map holds
 ///   dynamic     with alpha, beta, gamma or delta, but neither zeta nor theta: the four-parameter law;
 ///               otherwise the article's equation. Parameters that are not given have the defaults of the law.
-ReceptionSpec read_reception(MapReader const& robot);
+ReceptionSpec read_reception(MapReader& robot);
 
 /// The same from the map `msg_success_rate` itself; the caller finishes the reader.
 ReceptionSpec read_reception_map(MapReader& reader);

@@ -65,6 +65,25 @@ std::vector<ObjectConfig> read_objects(Node const* objects, bool strict) {
     return read;
 }
 
+/// The map `objects` with the values of all entries.
+Node values_of(std::vector<ObjectConfig> const& objects) {
+    Node map;
+    map.kind = Node::Kind::map;
+    for (ObjectConfig const& object : objects) {
+        Node* category = map.find(object.category);
+        if (category == nullptr) {
+            category = &map.entries.emplace_back(object.category, Node{}).value;
+        }
+        if (!object.item) {
+            *category = object.values;
+        } else {
+            category->kind = Node::Kind::sequence;
+            category->items.push_back(object.values);
+        }
+    }
+    return map;
+}
+
 Node read_parameters(Node const* parameters) {
     if (parameters == nullptr) {
         return {};
@@ -116,6 +135,8 @@ Scenario load_scenario(std::string const& path, LoadOptions const& options) {
     reader.finish(batch_names(written));
     scenario.objects = read_objects(reader.find("objects"), options.strict);
     scenario.parameters = read_parameters(reader.find("parameters"));
+    reader.set_value("objects", values_of(scenario.objects));
+    scenario.values = reader.values();
     check_scenario(scenario);
     return scenario;
 }

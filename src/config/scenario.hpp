@@ -41,6 +41,7 @@ struct ObjectConfig {
     ObjectSpec spec;               // what the type makes them of
     std::string where;             // file:line, for messages
     std::optional<std::size_t> item{};  // the category is a list of entries, and this one has the place, from 0
+    Node values{};                      // of each key that means something, defaults included
 };
 
 /// Where the objects of the entry start, one pose for each; empty when the configuration does not say.
@@ -100,6 +101,7 @@ struct Scenario {
     std::vector<ObjectConfig> objects;  // in the order of the file
     Node parameters;                    // the map `parameters`, for user code
     Node resolved;                      // the whole resolved tree, unknown keys included
+    Node values;                        // of each key that means something, defaults included
 };
 
 /// "file:line" of a top-level key, for messages; of the whole map when the key is absent.

@@ -153,6 +153,22 @@ std::array<T, N> read_tuple(Place const& place, Limits const& limits, std::strin
     return values;
 }
 
+/// The fewest digits that are read back as the same number.
+template <class Real>
+std::string shortest_text(Real value) {
+    return std::isfinite(value) ? fmt::format("{}", value) : number_text(value);
+}
+
+template <class Values>
+Node sequence(Values const& values) {
+    Node node;
+    node.kind = Node::Kind::sequence;
+    for (auto const& value : values) {
+        node.items.push_back(value_node(value));
+    }
+    return node;
+}
+
 }  // namespace
 
 std::string lower_case(std::string text) {
@@ -360,6 +376,49 @@ std::string value_text(std::array<float, 3> const& value) {
 }
 std::string value_text(std::vector<std::string> const& value) {
     return fmt::format("[{}]", fmt::join(value, ", "));
+}
+
+Node plain_node(std::string text) {
+    Node node;
+    node.kind = Node::Kind::scalar;
+    node.scalar = std::move(text);
+    return node;
+}
+
+Node value_node(bool value) {
+    return plain_node(value_text(value));
+}
+Node value_node(int value) {
+    return plain_node(value_text(value));
+}
+Node value_node(std::int64_t value) {
+    return plain_node(value_text(value));
+}
+Node value_node(std::uint32_t value) {
+    return plain_node(value_text(value));
+}
+Node value_node(float value) {
+    return plain_node(shortest_text(value));
+}
+Node value_node(double value) {
+    return plain_node(shortest_text(value));
+}
+Node value_node(std::string const& value) {
+    Node node = plain_node(value);
+    node.quoted = true;
+    return node;
+}
+Node value_node(Vec2 value) {
+    return sequence(std::array{value.x, value.y});
+}
+Node value_node(IntRange value) {
+    return sequence(std::array{value.min, value.max});
+}
+Node value_node(std::array<float, 3> const& value) {
+    return sequence(value);
+}
+Node value_node(std::vector<std::string> const& value) {
+    return sequence(value);
 }
 
 }  // namespace pogosim

@@ -114,4 +114,25 @@ std::string value_text(std::optional<T> const& value) {
     return value ? value_text(*value) : "";
 }
 
+/// A word or number that needs no quotes.
+Node plain_node(std::string text);
+
+/// value_node: a value as a node that is read back as exactly this value; null for one that is absent.
+Node value_node(bool value);
+Node value_node(int value);
+Node value_node(std::int64_t value);
+Node value_node(std::uint32_t value);
+Node value_node(float value);
+Node value_node(double value);
+Node value_node(std::string const& value);
+Node value_node(Vec2 value);
+Node value_node(IntRange value);
+Node value_node(std::array<float, 3> const& value);
+Node value_node(std::vector<std::string> const& value);
+
+template <class T>
+Node value_node(std::optional<T> const& value) {
+    return value ? value_node(*value) : Node();
+}
+
 }  // namespace pogosim

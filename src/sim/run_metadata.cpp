@@ -51,15 +51,20 @@ std::string polygons_as_yaml(Arena const& arena) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& scenario, Arena const& arena,
-                                                              std::uint32_t seed) {
+                                                              RunValues const& run) {
     // Nothing from the command line but the seed: with or without window or progress bar, the bytes are the same.
-    Node configuration = scenario.resolved;
-    set(configuration, "seed", std::to_string(seed));
-    set(configuration, "GUI", scenario.view.gui ? "true" : "false");
-    set(configuration, "progress_bar", "false");
-    set(configuration, "mm_to_pixels", fmt::format("{}", fitted_mm_to_pixels(scenario.view, arena)));
+    Node written = scenario.resolved;
+    Node resolved = scenario.values;
+    for (Node* const configuration : {&written, &resolved}) {
+        set(*configuration, "seed", std::to_string(run.seed));
+        set(*configuration, "GUI", scenario.view.gui ? "true" : "false");
+        set(*configuration, "progress_bar", "false");
+        set(*configuration, "mm_to_pixels", fmt::format("{}", fitted_mm_to_pixels(scenario.view, arena)));
+    }
+    set(resolved, "time_step", fmt::format("{}", run.time_step_s));
     return {{"program_version", POGOSIM_VERSION_STRING},
-            {"configuration", to_yaml(configuration)},
+            {"configuration", to_yaml(written)},
+            {"resolved_configuration", to_yaml(resolved)},
             {"arena_polygons", polygons_as_yaml(arena)}};
 }
 

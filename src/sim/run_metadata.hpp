@@ -11,9 +11,16 @@
 
 namespace pogosim {
 
-/// Schema metadata: program_version, configuration (YAML text of the resolved configuration with the seed in use), and
+/// What a run has come to, whatever its configuration says.
+struct RunValues {
+    std::uint32_t seed = 0;
+    double time_step_s = 0.01;  // lowered where robots tick more often
+};
+
+/// Schema metadata: program_version, configuration (YAML text of what is written, with the seed in use),
+/// resolved_configuration (YAML text of every known key that means something in this run, defaults included), and
 /// arena_polygons (YAML list of lists of {x, y}, mm).
 std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& scenario, Arena const& arena,
-                                                              std::uint32_t seed);
+                                                              RunValues const& run);
 
 }  // namespace pogosim

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pandas as pd
 import pytest
 import yaml
+from pogosim.utils import load_dataframe
 from running import ROOT, example, run_command
 
 CONFIGURATIONS = sorted((ROOT / "conf").glob("*.yaml"))
@@ -40,6 +42,23 @@ NAMED = {program: named_configuration(program) for program in PROGRAMS}
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_example_runs_with_the_configuration_that_its_first_lines_name(program: str, tmp_path: Path) -> None:
     assert run_shortly(program, ROOT / NAMED[program], tmp_path, "--strict") == ""
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_resolved_configuration_gives_the_same_run(program: str, tmp_path: Path) -> None:
+    first, again = tmp_path / "first", tmp_path / "again"
+    first.mkdir()
+    again.mkdir()
+    run_shortly(program, ROOT / NAMED[program], first)
+    rows, metadata = load_dataframe(first / "data.feather")
+    resolved = tmp_path / "resolved.yaml"
+    resolved.write_text(yaml.safe_dump(metadata["resolved_configuration"], sort_keys=False))
+    assert run_shortly(program, resolved, again, "--strict") == ""
+    same_rows, same_metadata = load_dataframe(again / "data.feather")
+    pd.testing.assert_frame_equal(rows, same_rows)
+    for key in ("data_filename", "console_filename", "frames_name"):
+        same_metadata["resolved_configuration"][key] = metadata["resolved_configuration"][key]
+    assert same_metadata["resolved_configuration"] == metadata["resolved_configuration"]
 
 
 def test_every_configuration_is_named_by_an_example() -> None:

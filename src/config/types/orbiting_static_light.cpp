@@ -36,7 +36,8 @@ std::span<Key<Orbit> const> orbit_keys() {
           "Above 0: clockwise on the screen."}
             .only_if(goes_round),
         K{"angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s", "Another name of orbit_angular_speed."}
-            .only_if(goes_round),
+            .only_if(goes_round)
+            .other_name_of("orbit_angular_speed"),
         K{"orbit_phase", &Orbit::phase_rad, kAngle, "rad", "Where on the circle at time 0, clockwise from +x."}.only_if(
             goes_round),
     };
@@ -53,10 +54,6 @@ void read_orbiting_static_light(MapReader& reader, ObjectConfig& object) {
     reader.read(orbit_centre_keys(), centre);
     spec.centre_mm = {centre.x_mm.value_or(spec.centre_mm.x), centre.y_mm.value_or(spec.centre_mm.y)};
     reader.read(orbit_keys(), spec.orbit);
-    if (reader.find("orbit_angular_speed") != nullptr && reader.find("angular_speed") != nullptr) {
-        fail_at({*reader.find("angular_speed"), reader.path_of("angular_speed")},
-                "is another name of orbit_angular_speed; give one of them");
-    }
     object.spec.lamp = spec;
 }
 

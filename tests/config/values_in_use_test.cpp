@@ -1,0 +1,118 @@
+// The values that a configuration comes to, defaults included: what is in the data file as resolved_configuration.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/object_types.hpp"
+#include "config_file.hpp"
+
+using namespace pogosim;
+using namespace pogosim::config_file;
+
+namespace {
+
+std::vector<std::string> keys_of(Node const& map) {
+    std::vector<std::string> keys;
+    for (auto const& [key, value] : map.entries) {
+        keys.push_back(key);
+    }
+    return keys;
+}
+
+bool has(Node const& map, std::string const& key) {
+    return map.find(key) != nullptr;
+}
+
+Node robots_of(std::string const& keys) {
+    return *find_path(load(kRobots + keys).values, "objects.robots");
+}
+
+/// A configuration that holds all its values gives the same values, without a warning.
+void expect_complete(Scenario const& scenario) {
+    Warnings const warnings;
+    Folder const folder;
+    std::string const text = to_yaml(scenario.values);
+    Folder::write("values.yaml", text);
+    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}).values), text);
+    EXPECT_EQ(warnings.text(), "");
+}
+
+}  // namespace
+
+TEST(ValuesInUse, HoldEveryDefault) {
+    Scenario const scenario = load(kRobots);
+    EXPECT_EQ(scenario.values.find("simulation_time")->scalar, "100");
+    EXPECT_EQ(scenario.values.find("initial_formation")->scalar, "power_lloyd");
+    EXPECT_EQ(find_path(scenario.values, "objects.robots.type")->scalar, "pogobot");
+    EXPECT_EQ(find_path(scenario.values, "objects.robots.radius")->scalar, "26.5");
+    EXPECT_EQ(find_path(scenario.values, "objects.robots.msg_success_rate.alpha")->scalar, "1.03215183");
+}
+
+TEST(ValuesInUse, LeaveOutWhatMeansNothingInTheChosenMode) {
+    Node const disk = robots_of("    geometry: disk\n");
+    EXPECT_TRUE(has(disk, "radius"));
+    EXPECT_FALSE(has(disk, "body_width"));
+    EXPECT_TRUE(has(load("boundary_condition: solid\n").values, "wall_friction"));
+    EXPECT_FALSE(has(load("boundary_condition: periodic\nwall_friction: 0.5\n").values, "wall_friction"));
+}
+
+TEST(ValuesInUse, HoldTheParametersOfTheReceptionLawThatIsChosen) {
+    auto const keys = [](std::string const& map) {
+        return keys_of(*robots_of("    msg_success_rate: " + map + "\n").find("msg_success_rate"));
+    };
+    EXPECT_EQ(keys("{type: static, alpha: 3}"), (std::vector<std::string>{"type", "rate"}));
+    EXPECT_EQ(keys("{type: dynamic, alpha: 3}"), (std::vector<std::string>{"type", "alpha", "beta", "gamma", "delta"}));
+    EXPECT_EQ(keys("{type: realistic}"), (std::vector<std::string>{"type", "alpha", "beta", "gamma", "delta"}));
+    EXPECT_EQ(keys("{type: dynamic}"),
+              (std::vector<std::string>{"type", "alpha", "beta", "gamma", "delta", "zeta", "theta"}));
+}
+
+TEST(ValuesInUse, GiveTheSameValuesForEveryConfigurationOfTheProject) {
+    int count = 0;
+    for (auto const& file : std::filesystem::directory_iterator(POGOSIM_SOURCE_DIR "/conf")) {
+        if (file.path().extension() != ".yaml") {
+            continue;
+        }
+        SCOPED_TRACE(file.path());
+        expect_complete(load_scenario(file.path().string(), {.overrides = {}, .strict = false}));
+        ++count;
+    }
+    EXPECT_GT(count, 10);
+}
+
+TEST(ValuesInUse, GiveTheSameValuesForEveryTypeOfObject) {
+    for (ObjectType const& type : object_types()) {
+        SCOPED_TRACE(type.name);
+        expect_complete(load(kRobots + "  other:\n    geometry: disk\n    type: " + std::string(type.name) +
+                             "\n    x: 100.1\n    y: -1.0e-20\n"));
+    }
+}
+
+TEST(ValuesInUse, HoldAKeyOfTwoNamesOnce) {
+    Scenario const scenario = load(kRobots +
+                                   "    initial_formation: disk\n  lamp: {type: orbiting_static_light, "
+                                   "geometry: disk, radius: 100, orbit_radius: 3, angular_speed: 2.5}\n");
+    EXPECT_EQ(find_path(scenario.values, "objects.lamp.orbit_angular_speed")->scalar, "2.5");
+    EXPECT_EQ(find_path(scenario.values, "objects.lamp.angular_speed"), nullptr);
+    expect_complete(scenario);
+}
+
+TEST(ValuesInUse, GiveTheSameValuesForWhatIsNotOneNumber) {
+    expect_complete(
+        load("arena_surface: file\nseed: 7\ndata_filename: 'a \"b\": #c'\ndata_logger_category: [robots, '7']\n"
+             "parameters: {speed: [1, 2.50, three], name: '12'}\n"
+             "objects:\n"
+             "  robots:\n"
+             "    - {type: pogobot, poses: [[0, 0, 0.1], [100, 0, 1.0e-7]]}\n"
+             "    - {type: pogobot, nb: 3, area: {x: 200, y: 0, radius: 100}, initial_formation: disk}\n"
+             "  '7': {type: passive_object, geometry: disk, initial_formation: random}\n"
+             "  lamp: {type: static_light, geometry: global, photo_start_at: 3}\n"));
+}
+
+TEST(ValuesInUse, AreThoseThatSetHasSet) {
+    EXPECT_EQ(find_path(load(kRobots, {.overrides = {"objects.robots.nb=12"}}).values, "objects.robots.nb")->scalar,
+              "12");
+}
