@@ -1,7 +1,13 @@
 #include "config/lamp_keys.hpp"
 
-#include <array>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "base/log.hpp"
 #include "config/shape_keys.hpp"
 
 namespace pogosim {
@@ -54,6 +60,21 @@ std::span<Key<SpotSpec> const> spot_keys() {
     return keys;
 }
 
+/// Who writes keys of a gradient or a plane means one, and may not know that light_mode says so.
+void warn_without_mode(MapReader const& reader) {
+    std::vector<std::string_view> given;
+    for (std::string_view const key : {"edge_value", "gradient_radius", "plane_angle", "plane_half_span"}) {
+        if (reader.find(key) != nullptr) {
+            given.push_back(key);
+        }
+    }
+    if (reader.find("light_mode") == nullptr && !given.empty()) {
+        log().warn("{}: {}: {} no effect with light_mode static, the default; set light_mode to gradient or plane",
+                   reader.find(given.front())->where(), reader.place().path,
+                   fmt::format("{} {}", fmt::join(given, ", "), given.size() == 1 ? "has" : "have"));
+    }
+}
+
 }  // namespace
 
 std::span<Key<Vec2> const> lighthouse_centre_keys() {
@@ -66,8 +87,18 @@ std::span<Key<Vec2> const> lighthouse_centre_keys() {
     return keys;
 }
 
+void warn_of_lone_coordinate(MapReader const& reader, std::string_view x, std::string_view y, Vec2 centre_mm) {
+    bool const has_x = reader.find(x) != nullptr;
+    if (has_x != (reader.find(y) != nullptr)) {
+        std::string_view const given = has_x ? x : y;
+        log().warn("{}: {}: stands alone, so {} is {:g}; give both", reader.find(given)->where(), reader.path_of(given),
+                   has_x ? y : x, has_x ? centre_mm.y : centre_mm.x);
+    }
+}
+
 void read_spot(MapReader& reader, SpotSpec& spot) {
     reader.read(spot_keys(), spot);
+    warn_without_mode(reader);
     if (is_everywhere(spot.shape) && spot.mode == LightMode::uniform) {
         reader.read_unused(spot_centre_keys(), spot.centre_mm);
     } else {

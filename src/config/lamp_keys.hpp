@@ -23,4 +23,13 @@ std::span<Key<Vec2> const> lighthouse_centre_keys();
 /// How a spot shines, its photo start, and its `x` and `y`. Its shape has been read before.
 void read_spot(MapReader& reader, SpotSpec& spot);
 
+/// False for light that is the same wherever the lamp stands, or that one coordinate alone may place: a plane.
+inline bool has_place(SpotSpec const& spot) {
+    return !is_everywhere(spot.shape) || spot.mode == LightMode::gradient;
+}
+
+/// Warns when only one of two coordinates is given: the other one has its default. (For bodies it is an error; lamps have
+/// always taken 0.)
+void warn_of_lone_coordinate(MapReader const& reader, std::string_view x, std::string_view y, Vec2 centre_mm);
+
 }  // namespace pogosim

@@ -93,7 +93,8 @@ std::optional<std::size_t> MapReader::pick(Place const& place, std::vector<std::
     if (default_name.empty() || !only_warns) {
         fail_at(place, complaint + did_you_mean(shown(typed), names));
     }
-    log().warn("{}: {}: {}; '{}' is used", node.where(), place.path, complaint, default_name);
+    log().warn("{}: {}: {}; '{}' is used{}", node.where(), place.path, complaint, default_name,
+               did_you_mean(shown(typed), names));
     return std::nullopt;
 }
 

@@ -105,8 +105,18 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
     }
 }
 
+/// Nothing places lamps apart.
+void warn_of_copies(Scenario const& scenario, ObjectConfig const& object) {
+    if (object.nb > 1) {
+        bool const is_spot = std::holds_alternative<SpotSpec>(*object.spec.lamp);
+        log().warn("{}: {} lamps at the same place{}", where_in_object(scenario, object, "nb"), object.nb,
+                   is_spot ? "; their levels add up" : ", which look like one");
+    }
+}
+
 void look_for_slips(Scenario const& scenario, ObjectConfig const& object, World const& world) {
     LampSpec const& lamp = *object.spec.lamp;
+    warn_of_copies(scenario, object);
     if (object.nb == 0 || is_everywhere(area_at_start(lamp).shape)) {
         return;
     }

@@ -518,6 +518,14 @@ TEST(Scenario, UnknownLightModeWarnsAndIsStatic) {
               "used\n");
 }
 
+TEST(Scenario, MisspeltLightModeNamesTheNearest) {
+    Warnings const warnings;
+    EXPECT_EQ(lamp("    light_mode: gradiant\n").mode, LightMode::uniform);
+    EXPECT_EQ(warnings.text(),
+              "x.yaml:6: objects.lamp.light_mode: expected one of static, gradient, plane, found 'gradiant'; 'static' "
+              "is used; did you mean 'gradient'?\n");
+}
+
 TEST(Scenario, EveryFormationIsAccepted) {
     for (std::string const& name : formation_names()) {
         EXPECT_EQ(load(kRobots + "formation_filename: f.csv\ninitial_formation: " + name + "\n").formation.name, name);

@@ -112,3 +112,45 @@ TEST(UnusedKey, WallOfTheArenaNeedsNeitherOfXAndY) {
     Scenario const s = load(kThing + "type: pogowall\n    geometry: arena\n    x: 5\n");
     EXPECT_FALSE(s.objects.at(1).position_mm);
 }
+
+namespace {
+
+std::string warnings_of_lamp(std::string const& type, std::string const& keys) {
+    Warnings const warnings;
+    load(kThing + "type: " + type + "\n" + keys);
+    return warnings.text();
+}
+
+}  // namespace
+
+TEST(UnusedKey, KeysOfAGradientOrPlaneWithoutALightModeWarn) {
+    std::string const disk = "    geometry: disk\n";
+    std::string const rest = " no effect with light_mode static, the default; set light_mode to gradient or plane\n";
+    for (std::string const type : {"static_light", "orbiting_static_light"}) {
+        EXPECT_EQ(warnings_of_lamp(type, disk + "    edge_value: 0\n"), "x.yaml:6: objects.it: edge_value has" + rest);
+        EXPECT_EQ(warnings_of_lamp(type, disk + "    plane_angle: 1\n    edge_value: 0\n"),
+                  "x.yaml:7: objects.it: edge_value, plane_angle have" + rest);
+        EXPECT_EQ(warnings_of_lamp(type, disk + "    light_mode: static\n    edge_value: 0\n"), "");
+    }
+}
+
+TEST(UnusedKey, CoordinateOfALampThatStandsAloneWarns) {
+    std::string const disk = "    geometry: disk\n    x: 500\n";
+    for (std::string const type :
+         {"static_light", "orbiting_static_light", "rotating_ray_of_light", "alternating_rays_of_light"}) {
+        EXPECT_EQ(warnings_of_lamp(type, disk), "x.yaml:6: objects.it.x: stands alone, so y is 0; give both\n");
+        EXPECT_EQ(warnings_of_lamp(type, "    geometry: disk\n    y: 500\n"),
+                  "x.yaml:6: objects.it.y: stands alone, so x is 0; give both\n");
+        EXPECT_EQ(warnings_of_lamp(type, disk + "    y: 0\n"), "");
+        EXPECT_EQ(warnings_of_lamp(type, "    geometry: global\n    x: 500\n"), "") << "from the centre, or unused";
+    }
+    EXPECT_EQ(warnings_of_lamp("static_light", "    geometry: global\n    light_mode: gradient\n    x: 5\n"),
+              "x.yaml:7: objects.it.x: stands alone, so y is 0; give both\n");
+}
+
+TEST(UnusedKey, CoordinateOfAnOrbitThatStandsAloneWarns) {
+    std::string const orbit = "    geometry: disk\n    center_x: 500\n";
+    EXPECT_EQ(warnings_of_lamp("orbiting_static_light", orbit + "    x: 3\n    y: 4\n"),
+              "x.yaml:6: objects.it.center_x: stands alone, so center_y is 4; give both\n");
+    EXPECT_EQ(warnings_of_lamp("orbiting_static_light", orbit + "    center_y: 7\n    x: 3\n"), "");
+}

@@ -66,6 +66,14 @@ TEST(LampsOf, LampsWithoutAPlaceOfTheirOwnAndLighthousesMayStandOutside) {
     EXPECT_EQ(warning_of_lamp("rotating_ray_of_light", "    geometry: disk\n    radius: 800\n    x: -500\n"), "");
 }
 
+TEST(LampsOf, SeveralOfOneEntryStandAtTheSamePlaceAndWarn) {
+    std::string const nb = "    geometry: disk\n    radius: 50\n    x: 500\n    y: 500\n    nb: 5\n";
+    std::string const same = "x.yaml:8: objects.lamp.nb: 5 lamps at the same place";
+    EXPECT_EQ(warning_of_lamp("static_light", nb), same + "; their levels add up\n");
+    EXPECT_EQ(warning_of_lamp("rotating_ray_of_light", nb), same + ", which look like one\n");
+    EXPECT_EQ(warning_of_lamp("static_light", "    geometry: global\n    nb: 1\n"), "");
+}
+
 std::string dark(int line, std::string const& key, std::string const& when = "") {
     return "x.yaml:" + std::to_string(line) + ": objects.lamp." + key + ": the lamp lights no cell of the light map" +
            when +

@@ -53,6 +53,11 @@ void read_orbiting_static_light(MapReader& reader, ObjectConfig& object) {
     OrbitCentre centre;
     reader.read(orbit_centre_keys(), centre);
     spec.centre_mm = {centre.x_mm.value_or(spec.centre_mm.x), centre.y_mm.value_or(spec.centre_mm.y)};
+    if (has_place(spec)) {
+        bool const is_round_x_y = !centre.x_mm && !centre.y_mm;
+        warn_of_lone_coordinate(reader, is_round_x_y ? "x" : "center_x", is_round_x_y ? "y" : "center_y",
+                                spec.centre_mm);
+    }
     reader.read(orbit_keys(), spec.orbit);
     object.spec.lamp = spec;
 }

@@ -36,6 +36,9 @@ void read_rotating_ray_of_light(MapReader& reader, ObjectConfig& object) {
     RotatingRaySpec spec;
     read_shape(reader, any_geometry_keys(), spec.shape);
     reader.read(lighthouse_centre_keys(), spec.centre_mm);
+    if (!is_everywhere(spec.shape)) {
+        warn_of_lone_coordinate(reader, "x", "y", spec.centre_mm);
+    }
     reader.read(ray_keys(), spec);
     object.spec.lamp = spec;
 }
