@@ -8,11 +8,13 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/scratch_file.hpp"
+#include "record/leftover.hpp"
 
 namespace pogosim {
 
@@ -21,6 +23,8 @@ using arrow::Status;
 namespace {
 
 constexpr auto kSuffix = ".pogosim-new";
+constexpr auto kKeptSuffix = ".pogosim-kept";
+constexpr int kMostKept = 1000;
 constexpr std::size_t kCopiedAtOnce = 1U << 20U;
 constexpr mode_t kPermissions = 0777;
 
@@ -32,6 +36,23 @@ void sync_folder_of(std::filesystem::path const& path) {
     }
 }
 
+/// Makes a file that was not there; -1 with errno otherwise.
+int make_file(std::filesystem::path const& path) {
+    return open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+}
+
+/// Makes a file of a name of its own in the folder for temporary files. The descriptor, or -1 with errno.
+int make_temporary_file(std::filesystem::path& path) {
+    std::error_code error;
+    std::string name = std::filesystem::temp_directory_path(error) / "pogosim-XXXXXX";
+    int const descriptor = mkstemp(name.data());
+    if (descriptor >= 0) {
+        fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+    }
+    path = name;
+    return descriptor;
+}
+
 }  // namespace
 
 CompleteFile::CompleteFile(std::filesystem::path path, int descriptor)
@@ -39,11 +60,14 @@ CompleteFile::CompleteFile(std::filesystem::path path, int descriptor)
       descriptor_(descriptor),
       owner_(getpid()),
       stream_(std::make_shared<DescriptorStream>(descriptor)) {
-    remember_scratch_file(path_);
+    try_lock(descriptor);  // it will be the data file
+    if (!path_.empty()) {
+        remember_scratch_file(path_);
+    }
 }
 
 CompleteFile::~CompleteFile() {
-    if (temporary_) {
+    if (!path_.empty()) {
         remove_scratch_file();
     }
     if (getpid() == owner_) {
@@ -52,30 +76,37 @@ CompleteFile::~CompleteFile() {
     close(descriptor_);
 }
 
-arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::make(std::filesystem::path const& path) {
-    unlink(path.c_str());  // of a run that was killed
-    int const descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
-    if (descriptor < 0) {
-        return system_error(errno);
+std::filesystem::path CompleteFile::path_beside(std::filesystem::path const& unfinished) {
+    return real_path(unfinished).native() + kSuffix;
+}
+
+arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::make(LockedFile const& unfinished) {
+    auto const wrap = [](std::filesystem::path path, int descriptor) {
+        return std::unique_ptr<CompleteFile>(new CompleteFile(std::move(path), descriptor));
+    };
+    auto const usual = path_beside(unfinished.path());
+    if (is_leftover(usual)) {
+        unlink(usual.c_str());
     }
-    try_lock(descriptor);  // it will be the data file
-    return std::unique_ptr<CompleteFile>(new CompleteFile(path, descriptor));
+    std::filesystem::path const other = usual.native() + "-" + std::to_string(getpid());
+    for (auto const& path : {usual, other}) {
+        if (int const descriptor = make_file(path); descriptor >= 0) {
+            return wrap(path, descriptor);
+        }
+    }
+    int const reason = errno;
+    std::filesystem::path temporary;
+    int const descriptor = make_temporary_file(temporary);
+    if (descriptor < 0) {
+        return system_error(reason);
+    }
+    unlink(temporary.c_str());  // it will be copied, and must not outlive the run
+    return wrap("", descriptor);
 }
 
 arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::start(LockedFile const& unfinished,
                                                                  std::shared_ptr<arrow::Schema> const& schema) {
-    auto made = make(unfinished.path().native() + kSuffix);
-    if (!made.ok()) {
-        std::error_code error;
-        auto const elsewhere = std::filesystem::temp_directory_path(error);
-        auto const name = unfinished.path().filename().native() + "-" + std::to_string(getpid()) + kSuffix;
-        auto other = make(elsewhere / name);
-        if (error || !other.ok()) {
-            return made.status();
-        }
-        made = std::move(other);
-    }
-    auto file = std::move(made).ValueUnsafe();
+    ARROW_ASSIGN_OR_RAISE(auto file, make(unfinished));
     auto options = arrow::ipc::IpcWriteOptions::Defaults();
     ARROW_ASSIGN_OR_RAISE(options.codec, arrow::util::Codec::Create(arrow::Compression::ZSTD));
     options.use_threads = false;  // the process stays single-threaded
@@ -97,9 +128,9 @@ Status CompleteFile::finish(bool sync) {
 bool CompleteFile::can_be_renamed_to(LockedFile const& unfinished) const {
     struct stat mine = {};
     struct stat theirs = {};
-    return path_.parent_path() == unfinished.path().parent_path() && fstat(descriptor_, &mine) == 0 &&
-           fstat(unfinished.descriptor(), &theirs) == 0 && theirs.st_nlink <= 1 && mine.st_uid == theirs.st_uid &&
-           mine.st_gid == theirs.st_gid && fchmod(descriptor_, theirs.st_mode & kPermissions) == 0;
+    return !path_.empty() && fstat(descriptor_, &mine) == 0 && fstat(unfinished.descriptor(), &theirs) == 0 &&
+           theirs.st_nlink <= 1 && mine.st_uid == theirs.st_uid && mine.st_gid == theirs.st_gid &&
+           fchmod(descriptor_, theirs.st_mode & kPermissions) == 0;
 }
 
 Status CompleteFile::copy_to(int descriptor) const {
@@ -132,20 +163,50 @@ Status CompleteFile::take_the_place_of(LockedFile const& unfinished) {
     if (!unfinished.is_still_there() && std::filesystem::exists(unfinished.path(), error)) {
         return Status::IOError("another program has replaced it during the run");
     }
-    if (can_be_renamed_to(unfinished) && std::rename(path_.c_str(), unfinished.path().c_str()) == 0) {
-        keep();
-        if (synced_) {
-            sync_folder_of(unfinished.path());
+    int reason = ENOENT;
+    if (can_be_renamed_to(unfinished)) {
+        if (std::rename(path_.c_str(), unfinished.path().c_str()) == 0) {
+            forget_scratch_file();
+            if (synced_) {
+                sync_folder_of(unfinished.path());
+            }
+            return Status::OK();
         }
-        return Status::OK();
+        reason = errno;
     }
-    int const reason = errno;
-    return unfinished.is_still_there() ? copy_to(unfinished.descriptor()) : system_error(reason);
+    if (!unfinished.is_still_there()) {
+        return system_error(reason);
+    }
+    return copy_to(unfinished.descriptor());
 }
 
-void CompleteFile::keep() {
-    temporary_ = false;
-    forget_scratch_file();
+arrow::Result<std::filesystem::path> CompleteFile::keep_beside(LockedFile const& unfinished) {
+    for (int i = 1; i <= kMostKept; ++i) {
+        std::filesystem::path kept = unfinished.path().native() + kKeptSuffix + (i > 1 ? "-" + std::to_string(i) : "");
+        if (!path_.empty() && link(path_.c_str(), kept.c_str()) == 0) {
+            return kept;  // the other name goes with this object
+        }
+        if (int const descriptor = make_file(kept); descriptor >= 0) {
+            return copy_to_new(kept, descriptor);
+        }
+        if (errno != EEXIST) {
+            break;
+        }
+    }
+    std::filesystem::path kept;
+    int const descriptor = make_temporary_file(kept);
+    return descriptor >= 0 ? copy_to_new(kept, descriptor) : system_error(errno);
+}
+
+arrow::Result<std::filesystem::path> CompleteFile::copy_to_new(std::filesystem::path const& path,
+                                                               int descriptor) const {
+    auto const status = copy_to(descriptor);
+    close(descriptor);
+    if (!status.ok()) {
+        unlink(path.c_str());
+        return status;
+    }
+    return path;
 }
 
 }  // namespace pogosim

@@ -17,11 +17,15 @@ namespace pogosim {
 
 class CompleteFile {
 public:
-    /// Makes an empty file beside `unfinished`, else in the folder for temporary files.
+    /// Where the file is written, beside the unfinished one, if nothing else stands there.
+    static std::filesystem::path path_beside(std::filesystem::path const& unfinished);
+
+    /// Makes an empty file beside `unfinished`, else one without a name in the folder for temporary files. Removes what
+    /// a killed run has left at that place, and nothing else.
     static arrow::Result<std::unique_ptr<CompleteFile>> start(LockedFile const& unfinished,
                                                               std::shared_ptr<arrow::Schema> const& schema);
 
-    /// Removes the file, unless it has taken its place or is kept.
+    /// Removes the file, unless it has taken its place.
     ~CompleteFile();
 
     CompleteFile(CompleteFile const&) = delete;
@@ -36,22 +40,21 @@ public:
     /// copying its bytes. Fails when another file stands there now.
     arrow::Status take_the_place_of(LockedFile const& unfinished);
 
-    /// The file stays where it is.
-    void keep();
-
-    std::filesystem::path const& path() const { return path_; }
+    /// Gives the finished file a name that was free, and that no later run uses: beside the unfinished one, else in the
+    /// folder for temporary files. Returns its path.
+    arrow::Result<std::filesystem::path> keep_beside(LockedFile const& unfinished);
 
 private:
     CompleteFile(std::filesystem::path path, int descriptor);
 
-    static arrow::Result<std::unique_ptr<CompleteFile>> make(std::filesystem::path const& path);
+    static arrow::Result<std::unique_ptr<CompleteFile>> make(LockedFile const& unfinished);
     bool can_be_renamed_to(LockedFile const& unfinished) const;
     arrow::Status copy_to(int descriptor) const;
+    arrow::Result<std::filesystem::path> copy_to_new(std::filesystem::path const& path, int descriptor) const;
 
-    std::filesystem::path path_;
+    std::filesystem::path path_;  // beside the unfinished one; empty: it has no name
     int descriptor_;
     pid_t owner_;
-    bool temporary_ = true;
     bool synced_ = false;
     std::shared_ptr<DescriptorStream> stream_;
     std::shared_ptr<arrow::ipc::RecordBatchWriter> writer_;

@@ -286,12 +286,21 @@ struct DataFile::Impl {
                          reason, saved_time_s, path));
     }
 
-    /// The complete file stays beside the place that it cannot take.
-    [[noreturn]] void fail_beside(std::string const& reason) const {
-        complete->keep();
-        fail(path, fmt::format("{}. The rows of this run are in '{}'", reason, complete->path().string()));
+    /// The complete file stays beside the place that it cannot take, under a name of its own.
+    [[noreturn]] void fail_beside(std::string const& reason) {
+        auto const kept = complete->keep_beside(file);
+        complete.reset();
+        if (!kept.ok()) {
+            fail(path, fmt::format("{}. The rows of this run are lost: they cannot be written beside it: {}", reason,
+                                   reason_of(kept.status())));
+        }
+        fail(path, fmt::format("{}. The rows of this run are in '{}'", reason, kept->string()));
     }
 };
+
+std::filesystem::path DataFile::path_beside(std::string const& path) {
+    return CompleteFile::path_beside(path);
+}
 
 LockedFile DataFile::reserve(std::string const& path) {
     make_parent_folder(path);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,6 +55,9 @@ public:
     /// Opens and locks the file and makes its folder, so that an unwritable path, or another run that writes the same
     /// file, is known before the run. What the file holds stays until a DataFile is made of it. Throws OutputError.
     static LockedFile reserve(std::string const& path);
+
+    /// The file beside that of `path` in which a run puts the complete file together, if nothing else stands there.
+    static std::filesystem::path path_beside(std::string const& path);
 
     explicit DataFile(DataFileOptions const& options) : DataFile(options, reserve(options.path)) {}
 

@@ -6,13 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <string_view>
-
 namespace pogosim {
 
 namespace {
-
-constexpr std::string_view kMagic("ARROW1\0\0", 8);
 
 constexpr auto kIncomplete =
     "The run has not ended, or it was killed before its end. pogosim.utils.load_dataframe reads the rows; "
@@ -23,7 +19,7 @@ std::shared_ptr<arrow::Schema> marked(arrow::Schema const& schema) {
     if (auto const given = schema.metadata()) {
         metadata = given->Copy();
     }
-    metadata->Append("incomplete", kIncomplete);
+    metadata->Append(kIncompleteKey, kIncomplete);
     return schema.WithMetadata(metadata);
 }
 
@@ -35,7 +31,7 @@ arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descrip
     auto options = arrow::ipc::IpcWriteOptions::Defaults();
     ARROW_ASSIGN_OR_RAISE(options.codec, arrow::util::Codec::Create(arrow::Compression::LZ4_FRAME));
     options.use_threads = false;
-    ARROW_RETURN_NOT_OK(file->stream_->Write(kMagic.data(), kMagic.size()));
+    ARROW_RETURN_NOT_OK(file->stream_->Write(kFileMagic.data(), kFileMagic.size()));
     ARROW_ASSIGN_OR_RAISE(file->writer_, arrow::ipc::MakeStreamWriter(file->stream_, marked(*schema), options));
     // The schema goes out with the first batch only; a file without rows is to be readable, too.
     ARROW_ASSIGN_OR_RAISE(auto const nothing, arrow::RecordBatch::MakeEmpty(schema));

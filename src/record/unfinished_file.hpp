@@ -11,10 +11,17 @@
 #include <arrow/result.h>
 
 #include <memory>
+#include <string_view>
 
 #include "record/descriptor_stream.hpp"
 
 namespace pogosim {
+
+/// An Arrow file begins with this.
+inline constexpr std::string_view kFileMagic("ARROW1\0\0", 8);
+
+/// Metadata of unfinished files.
+inline constexpr auto kIncompleteKey = "incomplete";
 
 class UnfinishedFile {
 public:

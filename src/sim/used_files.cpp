@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/locked_file.hpp"
+#include "record/data_file.hpp"
 #include "sim/data_files.hpp"
 
 namespace pogosim {
@@ -18,6 +19,7 @@ struct UsedFile {
     std::string key;             // empty: the configuration
     std::filesystem::path path;  // as the run opens it
     bool is_output = false;
+    bool is_beside = false;  // the data file is put together there
 };
 
 /// What this run does not use is left out.
@@ -38,6 +40,10 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& co
     add_input("formation_filename", scenario.formation.filename, scenario.formation.name == kImportedFormation);
     add_output("data_filename", output.data_filename, output.enable_data_logging);
     add_output("console_filename", output.console_filename, output.enable_console_logging);
+    if (output.enable_data_logging && !output.data_filename.empty()) {
+        files.push_back(
+            {"data_filename", DataFile::path_beside(output.data_filename), /*is_output=*/true, /*is_beside=*/true});
+    }
     return files;
 }
 
@@ -65,10 +71,11 @@ void check_used_files(Scenario const& scenario, std::string const& configuration
         for (std::size_t j = 0; j < i; ++j) {
             UsedFile const& written = files[i];
             UsedFile const& other = files[j];
-            if (written.is_output && are_same(written.path, other.path)) {
+            if (written.is_output && written.key != other.key && are_same(written.path, other.path)) {
                 throw ConfigError(fmt::format(
-                    "{}: {}: '{}' is the same file as {}, {}; name another file", where_at_top(scenario, written.key),
-                    written.key, written.path.string(), described(scenario, other),
+                    "{}: {}: '{}'{} is the same file as {}, {}; name another file", where_at_top(scenario, written.key),
+                    written.key, written.path.string(),
+                    written.is_beside ? ", where the run puts the data file together," : "", described(scenario, other),
                     other.is_output ? "which the run writes, too" : "which the run would write over"));
             }
         }

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from running import Run, example, run, start, write_scene
+from running import Run, example, run, run_command, start, write_scene
 
 SQUARE = "0,0\n1000,0\n1000,1000\n0,1000\n"
 POSES = "x,y\n300,300\n500,500\n700,700\n"
@@ -65,6 +65,28 @@ def test_two_outputs_in_one_file_are_refused(tmp_path: Path, name: str) -> None:
     assert result.code == 2
     assert f"console_filename: '{name}' is the same file as data_filename 'both' (scene.yaml:" in result.errors
     assert not (tmp_path / "both").exists()
+
+
+@pytest.mark.parametrize("key", ["arena_file", "formation_filename", "console_filename", ""])
+@pytest.mark.parametrize("data", ["{}.feather", "link.feather"])
+def test_place_where_the_data_file_is_put_together_counts_as_an_output(tmp_path: Path, key: str, data: str) -> None:
+    (tmp_path / "link.feather").symlink_to("d.feather")
+    beside = "d.feather.pogosim-new"
+    contents = {"arena_file": SQUARE, "formation_filename": POSES}.get(key, "")
+    (tmp_path / beside).write_text(contents)
+    changes: dict[str, object] = {"data_filename": data.format("d"), **({key: beside} if key else {})}
+    if key:
+        result = scene(tmp_path, changes)
+    else:
+        scene(tmp_path, {"simulation_time": 0.1})
+        write_scene(tmp_path, {**SETTINGS, **changes}).rename(tmp_path / beside)
+        contents = (tmp_path / beside).read_text()
+        result = run_command(example("helloworld"), tmp_path, ["-c", beside, "-g"])
+    assert result.code == 2
+    (line,) = result.errors.splitlines()
+    assert f": data_filename: '{tmp_path / beside}', where the run puts the data file together, is the same" in line
+    assert (f"file as {key} '{beside}' (scene.yaml:" if key else f"the configuration file '{beside}'") in line
+    assert (tmp_path / beside).read_text() == contents
 
 
 @pytest.mark.parametrize(

@@ -157,8 +157,23 @@ TEST_F(OutputFailure, FileThatAnotherProgramWroteOverIsNoticedAndTheRowsAreBesid
     file.append({.category = "robots"}, {});
     std::ofstream(path("a.feather"), std::ios::app) << std::string(100000, 'x');
     expect_says(output_error([&file] { file.close(); }),
-                {path("a.feather"), "did another program change it?", "a.feather.pogosim-new"});
-    EXPECT_EQ(read_back(path("a.feather.pogosim-new")).table->num_rows(), 1);
+                {path("a.feather"), "did another program change it?", "'" + path("a.feather.pogosim-kept") + "'"});
+    EXPECT_EQ(read_back(path("a.feather.pogosim-kept")).table->num_rows(), 1);
+    EXPECT_EQ(files_in_folder(), (std::vector<std::string>{"a.feather", "a.feather.pogosim-kept"}));
+}
+
+TEST_F(OutputFailure, RowsThatStandBesideTheFileStayThereWhenOtherRunsWriteIt) {
+    for (int run = 0; run < 2; ++run) {
+        DataFile file({.path = path("a.feather"), .metadata = {{"program_version", "1"}}});
+        file.append({.category = "robots", .id = run}, {});
+        std::ofstream(path("a.feather"), std::ios::app) << std::string(100000, 'x');
+        EXPECT_NE(output_error([&file] { file.close(); }), "");
+    }
+    write_one_row(path("a.feather"));
+    EXPECT_EQ(files_in_folder(),
+              (std::vector<std::string>{"a.feather", "a.feather.pogosim-kept", "a.feather.pogosim-kept-2"}));
+    EXPECT_EQ(read_back(path("a.feather.pogosim-kept")).text("robot_id", 0), "0");
+    EXPECT_EQ(read_back(path("a.feather.pogosim-kept-2")).text("robot_id", 0), "1");
 }
 
 TEST_F(OutputFailure, FileThatAnotherProgramPutThereIsLeftAlone) {
@@ -166,9 +181,9 @@ TEST_F(OutputFailure, FileThatAnotherProgramPutThereIsLeftAlone) {
     file.append({.category = "robots"}, {});
     std::ofstream(path("b")) << "something else";
     std::filesystem::rename(path("b"), path("a.feather"));
-    expect_says(output_error([&file] { file.close(); }), {"another program has replaced it", "a.feather.pogosim-new"});
+    expect_says(output_error([&file] { file.close(); }), {"another program has replaced it", "a.feather.pogosim-kept"});
     EXPECT_EQ(bytes_of(path("a.feather")), "something else");
-    EXPECT_EQ(read_back(path("a.feather.pogosim-new")).table->num_rows(), 1);
+    EXPECT_EQ(read_back(path("a.feather.pogosim-kept")).table->num_rows(), 1);
 }
 
 TEST_F(OutputFailure, FileThatAnotherRunWritesIsRefusedUntilThatOneHasEnded) {

@@ -5,8 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,30 @@ std::vector<ColumnSpec> const kUserColumns{{"number", ColumnType::int64},
                                            {"text", ColumnType::text},
                                            {"yes", ColumnType::boolean},
                                            {"f16", ColumnType::float16}};
+
+/// An environment variable of this process, for as long as this object is there.
+class EnvironmentVariable {
+public:
+    EnvironmentVariable(char const* name, std::string const& value) : name_(name) {
+        if (char const* const before = std::getenv(name)) {
+            before_ = before;
+        }
+        setenv(name, value.c_str(), 1);
+    }
+    ~EnvironmentVariable() {
+        if (before_) {
+            setenv(name_, before_->c_str(), 1);
+        } else {
+            unsetenv(name_);
+        }
+    }
+    EnvironmentVariable(EnvironmentVariable const&) = delete;
+    EnvironmentVariable& operator=(EnvironmentVariable const&) = delete;
+
+private:
+    char const* name_;
+    std::optional<std::string> before_;
+};
 
 /// Rows with nulls here and there, in built-in and in user columns.
 void append_rows(DataFile& file, int first, int count) {
@@ -157,10 +183,73 @@ void write_rows(std::string const& path) {
     file.close();
 }
 
+/// Bytes of a data file with metadata such as a run gives it.
+std::string bytes_of_a_run(std::string const& path) {
+    {
+        DataFile file({.path = path, .user_columns = kUserColumns, .metadata = {{"program_version", "1"}}});
+        append_rows(file, 0, 50);
+        file.close();
+    }
+    auto bytes = bytes_of(path);
+    std::filesystem::remove(path);
+    return bytes;
+}
+
 TEST_F(CompletedDataFile, StandsAloneInItsFolder) {
-    std::ofstream(path("a.feather.pogosim-new")) << "of a run that was killed";
+    auto const bytes = bytes_of_a_run(path("b.feather"));
+    for (auto const size : {std::size_t{0}, bytes.size() - 1, bytes.size() - 8}) {  // of runs that were killed
+        std::ofstream(path("a.feather.pogosim-new"), std::ios::binary) << bytes.substr(0, size);
+        write_rows(path("a.feather"));
+        EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"}) << size;
+    }
+}
+
+TEST_F(CompletedDataFile, IsWrittenWithoutHarmToFilesOfTheNameThatItHasOnItsWay) {
+    auto const complete = bytes_of_a_run(path("b.feather"));
+    auto const of_no_run = [this] {
+        write_rows(path("b.feather"));  // no metadata of a run
+        auto const bytes = bytes_of(path("b.feather"));
+        std::filesystem::remove(path("b.feather"));
+        return bytes.substr(0, bytes.size() - 1);
+    }();
+    std::string const other = path("a.feather.pogosim-new");
+    for (auto const& bytes :
+         {std::string("seed: 1\n"), complete, of_no_run, std::string("ARROW1\0\0", 8), complete.substr(0, 40)}) {
+        std::ofstream(other, std::ios::binary) << bytes;
+        write_rows(path("a.feather"));
+        EXPECT_EQ(bytes_of(other), bytes);
+        EXPECT_EQ(files_in_folder(), (std::vector<std::string>{"a.feather", "a.feather.pogosim-new"}));
+        EXPECT_EQ(read_back(path("a.feather")).table->num_rows(), 50);
+    }
+}
+
+TEST_F(CompletedDataFile, IsWrittenWithoutHarmToTheFileOfAnotherRun) {
+    DataFile other({.path = path("a.feather.pogosim-new"), .metadata = {{"program_version", "1"}}});
     write_rows(path("a.feather"));
-    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
+    other.append({.category = "robots"}, {});
+    other.close();
+    EXPECT_EQ(read_back(path("a.feather.pogosim-new")).table->num_rows(), 1);
+}
+
+TEST_F(CompletedDataFile, IsWrittenWithoutHarmToTheFileOfARunThatWasKilled) {
+    {
+        DataFile other({.path = path("b"), .metadata = {{"program_version", "1"}}});
+        other.append({.category = "robots"}, {});
+        other.save();
+        std::filesystem::copy(path("b"), path("a.feather.pogosim-new"));
+    }
+    write_rows(path("a.feather"));
+    EXPECT_EQ(read_unfinished(path("a.feather.pogosim-new"))->num_rows(), 1);
+}
+
+TEST_F(CompletedDataFile, IsWrittenWithoutHarmToLinksOfTheNameThatItHasOnItsWay) {
+    std::ofstream(path("b")).close();
+    std::filesystem::create_symlink(path("b"), path("a.feather.pogosim-new"));
+    std::filesystem::create_hard_link(path("b"), path("c.feather.pogosim-new"));
+    write_rows(path("a.feather"));
+    write_rows(path("c.feather"));
+    EXPECT_TRUE(std::filesystem::is_symlink(path("a.feather.pogosim-new")));
+    EXPECT_TRUE(std::filesystem::equivalent(path("b"), path("c.feather.pogosim-new")));
 }
 
 TEST_F(CompletedDataFile, StandsWhereASymbolicLinkLeads) {
@@ -192,9 +281,15 @@ TEST_F(CompletedDataFile, KeepsThePermissionsOfTheFile) {
 }
 
 TEST_F(CompletedDataFile, IsWrittenEvenWhereNoOtherFileCanStandBesideIt) {
-    std::filesystem::create_directories(path("a.feather.pogosim-new/in the way"));
-    write_rows(path("a.feather"));
-    EXPECT_EQ(read_back(path("a.feather")).table->num_rows(), 50);
+    std::string const name = path(std::string(250, 'a'));  // all names beside it are too long
+    EnvironmentVariable const temporary("TMPDIR", path("tmp"));
+    std::filesystem::create_directory(path("tmp"));
+    DataFile file({.path = name, .user_columns = kUserColumns, .flush_row_count = 20});
+    append_rows(file, 0, 50);
+    EXPECT_TRUE(std::filesystem::is_empty(path("tmp")));  // nothing that a killed run could leave there
+    file.close();
+    EXPECT_EQ(read_back(name).table->num_rows(), 50);
+    EXPECT_TRUE(std::filesystem::is_empty(path("tmp")));
 }
 
 }  // namespace
