@@ -51,6 +51,7 @@ void add_column(char const* function, char const* name, ColumnType type) {
                 fmt::format("{}(\"{}\"): the data file already has a column of this name", function, name));
         }
         data.columns.push_back({.name = name, .type = type});
+        data.was_set.push_back(false);
     });
 }
 
@@ -85,6 +86,7 @@ void set_value(char const* function, char const* name, ColumnType type, CellValu
                                           name_of(data.columns[column].type)));
         }
         data.row.values[column] = std::move(value);
+        data.was_set[column] = true;
     });
 }
 

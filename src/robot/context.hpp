@@ -38,6 +38,8 @@ public:
 /// The user's columns and the row being filled.
 struct DataExport {
     std::vector<ColumnSpec> columns;
+    std::vector<bool> was_set;     // by column, in any row
+    std::int64_t filled_rows = 0;  // exported rows for which the program's callback ran
     DataRow row;
     bool declaring = false;       // inside callback_create_data_schema
     bool filling = false;         // inside callback_export_data

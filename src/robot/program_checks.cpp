@@ -1,5 +1,8 @@
 #include "robot/program_checks.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <functional>
 #include <string>
@@ -77,6 +80,25 @@ void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Comput
             "the column '{}'{} of the data file will be empty: the program sets no callback_export_data "
             "(SET_CALLBACK in main())",
             columns.front().name, columns.size() > 1 ? " and the program's other ones" : "");
+    }
+}
+
+void warn_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields) {
+    if (data.filled_rows == 0) {
+        return;
+    }
+    std::vector<std::string> unset;
+    for (std::size_t i = 0; i < data.columns.size(); ++i) {
+        std::string const& name = data.columns[i].name;
+        bool const is_in_file = !fields || std::ranges::find(*fields, name) != fields->end();
+        if (!data.was_set[i] && is_in_file) {
+            unset.push_back("'" + name + "'");
+        }
+    }
+    if (!unset.empty()) {
+        bool const one = unset.size() == 1;
+        log().warn("the column{} {} of the data file {} empty: callback_export_data never set {} (data_set_value_*)",
+                   one ? "" : "s", fmt::join(unset, ", "), one ? "is" : "are", one ? "it" : "them");
     }
 }
 

@@ -5,9 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "robot/computer.hpp"
+#include "robot/context.hpp"
 #include "world/data_table.hpp"
 #include "world/world.hpp"
 
@@ -24,6 +28,10 @@ void warn_of_missing_init(std::span<Computer const> computers);
 
 /// Columns of the data file that nobody can fill.
 void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Computer const> computers);
+
+/// Columns that the program's callback left empty in all of its rows. `fields`: the columns that the data file has;
+/// absent: all.
+void warn_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields);
 
 /// Messages dropped because the queue of a robot that reads messages was full, by category.
 void warn_of_lost_messages(World const& world, std::span<Computer const> computers);

@@ -315,6 +315,7 @@ void Programs::export_row(std::size_t robot) {
     data.next_column = 0;
     call(static_cast<std::uint32_t>(robot), "export_data", computers_[robot].program.export_data);
     data.filling = false;
+    data.filled_rows += data.row.exported && computers_[robot].program.export_data != nullptr ? 1 : 0;
 }
 
 void Programs::end() {
@@ -338,6 +339,10 @@ void Programs::print_unfinished_lines() {
 void Programs::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, computers_);
     warn_of_unused_messages(world_, computers_, arrivals);
+}
+
+void Programs::warn_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
+    pogosim::warn_of_unset_columns(services_.data, fields);
 }
 
 int Programs::highest_loop_hz() const {

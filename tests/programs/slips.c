@@ -62,9 +62,17 @@ static void global_setup(void) {
 }
 
 static void create_data_schema(void) {
-    if (is("empty_column")) {
+    if (is("empty_column") || is("unset_columns")) {
         data_add_column_int8("age");
     }
+    if (is("unset_columns")) {
+        data_add_column_int8("size");
+        data_add_column_string("name");
+    }
+}
+
+static void export_data(void) {
+    data_set_value_int8("size", 3);
 }
 
 int main(void) {
@@ -81,5 +89,8 @@ int main(void) {
     }
     SET_CALLBACK(callback_global_setup, global_setup);
     SET_CALLBACK(callback_create_data_schema, create_data_schema);
+    if (is("unset_columns")) {
+        SET_CALLBACK(callback_export_data, export_data);
+    }
     return 0;
 }

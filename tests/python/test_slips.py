@@ -115,6 +115,33 @@ def test_user_data_beyond_a_real_robots_memory_are_warned_of(tmp_path: Path) -> 
     )
 
 
+def test_columns_that_the_callback_never_sets_are_named_at_the_end(program: Compile, tmp_path: Path) -> None:
+    result = slip(program, tmp_path, "unset_columns")
+    assert warnings(result) == [
+        "the columns 'age', 'name' of the data file are empty: callback_export_data never set them (data_set_value_*)"
+    ]
+    assert result.frame()["age"].isna().all()
+    assert (result.frame()["size"] == 3).all()
+
+
+@pytest.mark.parametrize(
+    ("settings", "named"),
+    [
+        ({"data_logger_fields": ["time", "age"]}, "the column 'age' of the data file is empty: "),
+        ({"data_logger_fields": ["time", "size"]}, None),
+        ({"enable_data_logging": False}, None),
+        ({"objects": {"wall": {"type": "passive_object", "geometry": "disk", "radius": 20}}}, None),
+    ],
+    ids=["one", "not in the file", "no file", "no robots"],
+)
+def test_columns_that_no_row_could_have_are_not_named(
+    program: Compile, tmp_path: Path, settings: Settings, named: str | None
+) -> None:
+    told = [line for line in warnings(slip(program, tmp_path, "unset_columns", settings)) if "column" in line]
+    assert len(told) == (named is not None)
+    assert named is None or told[0].startswith(named)
+
+
 # ---- Parameters ----
 
 
