@@ -51,6 +51,12 @@ void warn_of_large_user_data(std::size_t bytes) {
     }
 }
 
+void warn_of_user_data_in_setup(std::uint16_t id) {
+    log().warn(
+        "callback_global_setup changed USERDATA (mydata), which is robot #{}'s alone there: initialise it in user_init",
+        id);
+}
+
 void warn_of_idle_categories(World const& world, std::span<Computer const> computers) {
     std::vector<bool> warned(world.categories.size());
     for (std::size_t i = 0; i < computers.size(); ++i) {

@@ -20,6 +20,9 @@ namespace pogosim {
 /// User data that no real robot has room for. `bytes`: of one robot.
 void warn_of_large_user_data(std::size_t bytes);
 
+/// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
+void warn_of_user_data_in_setup(std::uint16_t id);
+
 /// Categories that no pogobot_start() names.
 void warn_of_idle_categories(World const& world, std::span<Computer const> computers);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <new>
 #include <string_view>
@@ -243,6 +244,20 @@ void Programs::run_main(std::uint32_t robot) {
     program.click = callback_robot_click;
 }
 
+/// Its mydata is that of the last robot, as long as programs are known to read it there.
+void Programs::run_global_setup() {
+    auto const count = static_cast<std::uint32_t>(computers_.size());
+    std::uint32_t const robot = count == 0 ? kNone : count - 1;
+    auto const digest = [this, robot] {
+        return std::hash<std::string_view>()({reinterpret_cast<char const*>(computer(robot).user_data), UserdataSize});
+    };
+    std::size_t const before = digest();
+    call_as_system(robot, "callback_global_setup", callback_global_setup);
+    if (count > 1 && digest() != before) {
+        warn_of_user_data_in_setup(world_.robots.id[robot]);
+    }
+}
+
 void Programs::start() {
     auto const count = static_cast<std::uint32_t>(computers_.size());
     warn_of_large_user_data(UserdataSize);
@@ -258,7 +273,7 @@ void Programs::start() {
         run_main(i);
     }
     warn_of_idle_categories(world_, computers_);
-    call_as_system(count == 0 ? kNone : count - 1, "callback_global_setup", callback_global_setup);
+    run_global_setup();
     for (std::uint32_t i = 0; i < count; ++i) {
         call(i, "user_init", computers_[i].program.init);
     }

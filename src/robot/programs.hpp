@@ -65,6 +65,7 @@ private:
     static void leave();
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
+    void run_global_setup();
     void call(std::uint32_t robot, char const* phase, void (*function)());
     void call_as_system(std::uint32_t robot, char const* phase, void (*function)());
     void tick(std::uint32_t robot);

@@ -59,6 +59,9 @@ void user_step(void) {
 static void global_setup(void) {
     init_from_configuration(turn_duration);
     init_array_from_configuration(vector);
+    if (is("setup_of_userdata")) {
+        mydata->received = 7;
+    }
 }
 
 static void create_data_schema(void) {

@@ -59,6 +59,11 @@ def warnings(result: Run) -> list[str]:
             "two_starts",
             "robot #0 of category 'robots', tick 0: pogobot_start() is called again for the category ",
         ),
+        (
+            "setup_of_userdata",
+            "callback_global_setup changed USERDATA (mydata), which is robot #2's alone there: initialise it in "
+            "user_init",
+        ),
         ("empty_column", "the column 'age' of the data file will be empty: "),
         ("sends_never", "no robot of category 'robots' sent a message: "),
         ("reads_none", "no robot of category 'robots' read a message: "),
@@ -113,6 +118,23 @@ def test_user_data_beyond_a_real_robots_memory_are_warned_of(tmp_path: Path) -> 
     assert warning.startswith(
         "USERDATA has 131073 bytes, more than the 131072 bytes (128 KiB) of a real robot's memory"
     )
+
+
+def test_user_data_of_the_only_robot_may_be_set_for_the_whole_run(program: Compile, tmp_path: Path) -> None:
+    assert warnings(slip(program, tmp_path, "setup_of_userdata", {"objects.robots.nb": 1})) == []
+
+
+def test_setup_that_leaves_constructed_user_data_alone_is_not_warned_of(tmp_path: Path) -> None:
+    source = tmp_path / "main.cpp"
+    source.write_text(
+        '#include <string>\n#include "pogobase.h"\n'
+        'struct data { char padded = 1; double number = 2.0; std::string text = "long enough to be on the heap"; };\n'
+        "DECLARE_USERDATA(data);\nREGISTER_USERDATA(data);\nuint32_t length = 0;\n"
+        "static void setup() { length = mydata->text.size(); }\nstatic void nothing() {}\n"
+        "int main() { pogobot_init(); pogobot_start(nothing, nothing); "
+        "SET_CALLBACK(callback_global_setup, setup); return 0; }\n"
+    )
+    assert warnings(run(compile_program(tmp_path / "main", source), tmp_path)) == []
 
 
 def test_columns_that_the_callback_never_sets_are_named_at_the_end(program: Compile, tmp_path: Path) -> None:
