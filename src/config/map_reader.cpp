@@ -41,6 +41,24 @@ std::string new_place(std::string_view path) {
     return old == kOldNames.end() ? "" : fmt::format("; it is now '{}'", old->new_path);
 }
 
+/// ".robots.nb" of a value that is a chain of maps down to it, as --set makes them.
+std::string path_inside(Node const& value) {
+    bool const is_chain = value.kind == Node::Kind::map && value.entries.size() == 1;
+    return is_chain ? "." + value.entries.front().key + path_inside(value.entries.front().value) : "";
+}
+
+/// For a key at the top level whose place is one level further in.
+std::string inner_place(Node const& root, std::string const& key, Node const& value) {
+    for (char const* const outer : {"objects", "parameters"}) {
+        Node const* const map = root.find(outer);
+        if (map != nullptr && map->find(key) != nullptr) {
+            return fmt::format("; did you mean '{}.{}'?", outer, shown(key + path_inside(value)));
+        }
+    }
+    bool const is_category = value.kind == Node::Kind::map && value.find("type") != nullptr;
+    return is_category ? fmt::format("; did you mean 'objects.{}'?", shown(key)) : "";
+}
+
 }  // namespace
 
 std::string names_text(std::vector<std::string> const& names) {
@@ -129,8 +147,13 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     std::vector<std::string> names;
     std::ranges::transform(known_, std::back_inserter(names), &KeyDescription::name);
     std::string const path = shown(path_of(key));
-    std::string const renamed = new_place(path);
-    std::string const hint = renamed.empty() ? did_you_mean(shown(key), names) : renamed;
+    std::string hint = new_place(path);
+    if (hint.empty() && path_.empty()) {
+        hint = inner_place(map_, key, value);
+    }
+    if (hint.empty()) {
+        hint = did_you_mean(shown(key), names);
+    }
     if (strict_) {
         throw ConfigError(fmt::format("{}: unknown key '{}'{} (--strict)", value.where(), path, hint));
     }

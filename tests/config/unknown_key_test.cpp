@@ -66,6 +66,28 @@ TEST(UnknownKey, IsAnErrorWhenStrict) {
               "--set: unknown key 'objects.robots.radus'; did you mean 'radius'? (--strict)");
 }
 
+TEST(UnknownKey, PlaceOneLevelFurtherInIsNamed) {
+    std::string const text = kRobots + "parameters: {turn_duration: 300, walk: {speed: 1}}\n";
+    auto const warnings_of_set = [&text](std::string const& assignment) {
+        Warnings const warnings;
+        load(text, {.overrides = {assignment}});
+        return warnings.text();
+    };
+    auto const expected = [](std::string const& key, std::string const& place) {
+        return "--set: unknown key '" + key + "' is ignored; did you mean '" + place + "'?\n";
+    };
+    EXPECT_EQ(warnings_of_set("robots.nb=5"), expected("robots", "objects.robots.nb"));
+    EXPECT_EQ(warnings_of_set("robots.msg_success_rate.rate=1"),
+              expected("robots", "objects.robots.msg_success_rate.rate"));
+    EXPECT_EQ(warnings_of_set("robots={nb: 5, radius: 30}"), expected("robots", "objects.robots"));
+    EXPECT_EQ(warnings_of_set("turn_duration=400"), expected("turn_duration", "parameters.turn_duration"));
+    EXPECT_EQ(warnings_of_set("walk.speed=2"), expected("walk", "parameters.walk.speed"));
+    EXPECT_EQ(load_error(text, {.overrides = {"robots.nb=5"}, .strict = true}),
+              "--set: unknown key 'robots'; did you mean 'objects.robots.nb'? (--strict)");
+    EXPECT_EQ(warnings_of(kRobots + "others: {type: pogobot, nb: 3}\n"),
+              Lines{"x.yaml:6: unknown key 'others' is ignored; did you mean 'objects.others'?"});
+}
+
 TEST(UnknownKey, BracesAndPercentSignsInItAreShownAsTheyAre) {
     EXPECT_EQ(warnings_of(kRobots + "'{}%s': 3\n"), Lines{"x.yaml:6: unknown key '{}%s' is ignored"});
 }
