@@ -10,7 +10,7 @@ namespace pogosim {
 
 class IrChannel {
 public:
-    /// Delivers every emission on the air, in the order in which they were made, and clears the air. Each robot in
+    /// Delivers every transmission on the air, in the order in which they were made, and clears the air. Each robot in
     /// reach gets the message with the sender's reception probability, drawn from the sender's stream: one copy for
     /// each of its faces that sees the emitter.
     void deliver(World& world);
@@ -20,7 +20,7 @@ public:
     std::uint64_t receptions() const { return receptions_; }
 
 private:
-    void deliver(World& world, Emission const& emission);
+    void deliver(World& world, Transmission const& transmission);
 
     Visibility visibility_;
     std::uint64_t attempts_ = 0;

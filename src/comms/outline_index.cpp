@@ -68,7 +68,7 @@ std::span<OutlineIndex::Piece const> OutlineIndex::near(World const& world, Vec2
     found_.clear();
     float const reach_mm = radius_mm + longest_half_mm_;
     grid_.for_each_near(centre, reach_mm, [&](std::uint32_t i, Vec2 middle) {
-        Vec2 const offset = shortest_vector(world, centre, middle);
+        Vec2 const offset = minimum_image(world, centre, middle);
         if (squared_length(offset) <= reach_mm * reach_mm) {
             Piece const& piece = pieces_[i];
             found_.push_back({offset + (piece.from - middle), offset + (piece.to - middle), piece.outline});

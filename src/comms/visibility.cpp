@@ -75,7 +75,7 @@ void Visibility::gather_candidates(World const& world, std::uint32_t robot, floa
     candidates_.clear();
     float const farthest_mm = reach_mm + largest_radius_mm_;
     grid_.for_each_near(centre, farthest_mm, [&](std::uint32_t k, Vec2 position) {
-        Vec2 const offset = shortest_vector(world, centre, position);
+        Vec2 const offset = minimum_image(world, centre, position);
         float const distance_mm2 = squared_length(offset);
         std::uint32_t const other = robots_[k];
         if (distance_mm2 > farthest_mm * farthest_mm || other == robot) {
@@ -199,7 +199,7 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
         // A robot hears an outline no further than it reaches it itself.
         float const reach_mm = std::min(range_mm, world.spec_of(robots_[k]).ir.range_mm);
         float const margin_mm = reach_mm + largest_radius_mm_;
-        Vec2 const offset = shortest_vector(world, middle, positions_[k]);
+        Vec2 const offset = minimum_image(world, middle, positions_[k]);
         if (std::abs(offset.x) > half.x + margin_mm || std::abs(offset.y) > half.y + margin_mm) {
             continue;
         }

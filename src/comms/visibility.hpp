@@ -27,7 +27,7 @@
 
 namespace pogosim {
 
-/// One robot that an emission reaches.
+/// One robot that a transmission reaches.
 struct Receiver {
     std::uint32_t robot = 0;
     Vec2 from_emitter_mm;  // from the emitter (the nearest one that sees it) to the receiver's centre

@@ -36,7 +36,7 @@ void wrap_with_contents(World const& world, EngineBodies const& bodies, Object c
         line.push_back(from_box2d(bodies[ring.body + k]->GetPosition()));
     }
     Box const box = bounding_box(line);
-    Vec2 const way = way_into_bounds(world, centre_of(bodies, ring));
+    Vec2 const way = offset_into_bounds(world, centre_of(bodies, ring));
     shift(bodies, ring, way);
     std::erase_if(rest, [&](Object const* object) {
         Vec2 const place = from_box2d(bodies[object->body]->GetPosition());
@@ -63,7 +63,7 @@ void wrap_objects(World const& world, EngineBodies const& bodies) {
         }
     }
     for (Object const* object : rigid) {
-        shift(bodies, *object, way_into_bounds(world, centre_of(bodies, *object)));
+        shift(bodies, *object, offset_into_bounds(world, centre_of(bodies, *object)));
     }
 }
 

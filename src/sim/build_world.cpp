@@ -16,7 +16,7 @@
 #include "config/shape_keys.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
-#include "sim/data_files.hpp"
+#include "sim/find_file.hpp"
 #include "sim/make_ring.hpp"
 #include "sim/place_objects.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "record/imported_poses.hpp"
-#include "sim/data_files.hpp"
+#include "sim/find_file.hpp"
 #include "sim/fixed_objects.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/make_ring.hpp"

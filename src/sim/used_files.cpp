@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/locked_file.hpp"
 #include "record/data_file.hpp"
-#include "sim/data_files.hpp"
+#include "sim/find_file.hpp"
 
 namespace pogosim {
 

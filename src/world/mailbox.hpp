@@ -24,7 +24,7 @@ inline constexpr int kFaceCount = 4;            // front, right, back, left
 inline constexpr std::uint8_t kAllFaces = 0xF;  // bit d: emitter d
 
 /// One transmission of one robot during this step.
-struct Emission {
+struct Transmission {
     std::uint32_t robot = 0;          // index of the sender
     std::uint8_t emitters = 0;        // bit d: emitter d radiates
     std::uint16_t message_bytes = 0;  // header and payload as the reception law counts them
@@ -36,14 +36,14 @@ struct Emission {
 
 /// All transmissions of the current step, in the order in which the robots made them.
 struct Air {
-    std::vector<Emission> emissions;
+    std::vector<Transmission> transmissions;
     std::vector<std::byte> payloads;
 
-    std::span<std::byte const> payload_of(Emission const& emission) const {
-        return std::span(payloads).subspan(emission.payload_offset, emission.header.payload_length);
+    std::span<std::byte const> payload_of(Transmission const& transmission) const {
+        return std::span(payloads).subspan(transmission.payload_offset, transmission.header.payload_length);
     }
     void clear() {
-        emissions.clear();
+        transmissions.clear();
         payloads.clear();
     }
 };

@@ -12,7 +12,7 @@ std::int16_t LightMap::at(Vec2 point_mm) const {
     return level[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
 }
 
-Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b) {
+Vec2 minimum_image(World const& world, Vec2 a, Vec2 b) {
     Vec2 d = b - a;
     if (world.periodic) {
         Vec2 const size = world.arena.bounds.size();
@@ -22,7 +22,7 @@ Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b) {
     return d;
 }
 
-Vec2 way_into_bounds(World const& world, Vec2 point_mm) {
+Vec2 offset_into_bounds(World const& world, Vec2 point_mm) {
     Box const& bounds = world.arena.bounds;
     Vec2 const size = bounds.size();
     return {-size.x * std::floor((point_mm.x - bounds.min.x) / size.x),
@@ -30,7 +30,7 @@ Vec2 way_into_bounds(World const& world, Vec2 point_mm) {
 }
 
 Vec2 wrapped(World const& world, Vec2 point_mm) {
-    return world.periodic ? point_mm + way_into_bounds(world, point_mm) : point_mm;
+    return world.periodic ? point_mm + offset_into_bounds(world, point_mm) : point_mm;
 }
 
 }  // namespace pogosim

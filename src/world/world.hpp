@@ -156,10 +156,10 @@ struct World {
 };
 
 /// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.
-Vec2 shortest_vector(World const& world, Vec2 a, Vec2 b);
+Vec2 minimum_image(World const& world, Vec2 a, Vec2 b);
 
 /// What has to be added to a point of a periodic world to bring it into the arena's bounding box; 0 inside.
-Vec2 way_into_bounds(World const& world, Vec2 point_mm);
+Vec2 offset_into_bounds(World const& world, Vec2 point_mm);
 
 /// The same point inside the arena's bounding box when the world is periodic; else the point itself.
 Vec2 wrapped(World const& world, Vec2 point_mm);

@@ -24,19 +24,19 @@ ObjectSpec perfect_link() {
 
 void send(World& world, std::uint32_t robot, std::vector<std::uint8_t> const& payload,
           std::uint8_t emitters = kAllFaces) {
-    Emission emission;
-    emission.robot = robot;
-    emission.emitters = emitters;
-    emission.send_probability = 1.0F;
-    emission.range_mm = world.spec_of(robot).ir.range_mm;
-    emission.header.sender_id = static_cast<std::uint16_t>(robot);
-    emission.header.payload_length = static_cast<std::uint16_t>(payload.size());
-    emission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);
-    emission.payload_offset = static_cast<std::uint32_t>(world.air.payloads.size());
+    Transmission transmission;
+    transmission.robot = robot;
+    transmission.emitters = emitters;
+    transmission.send_probability = 1.0F;
+    transmission.range_mm = world.spec_of(robot).ir.range_mm;
+    transmission.header.sender_id = static_cast<std::uint16_t>(robot);
+    transmission.header.payload_length = static_cast<std::uint16_t>(payload.size());
+    transmission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);
+    transmission.payload_offset = static_cast<std::uint32_t>(world.air.payloads.size());
     for (std::uint8_t const byte : payload) {
         world.air.payloads.push_back(std::byte{byte});
     }
-    world.air.emissions.push_back(emission);
+    world.air.transmissions.push_back(transmission);
 }
 
 struct Received {
@@ -66,7 +66,7 @@ TEST(IrChannel, MessageArrivesWithItsPayloadAndFace) {
     EXPECT_EQ(messages[0].header.payload_length, 3);
     EXPECT_EQ(messages[0].payload[2], std::byte{3});
     EXPECT_TRUE(take_all(world, 0).empty());
-    EXPECT_TRUE(world.air.emissions.empty());
+    EXPECT_TRUE(world.air.transmissions.empty());
 }
 
 TEST(IrChannel, MessagesArriveInTheOrderInWhichTheyWereSent) {

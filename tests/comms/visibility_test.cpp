@@ -98,7 +98,7 @@ TEST(Visibility, TwoShadowsThatTouchHideWhatNeitherHidesAlone) {
     EXPECT_EQ(reached(world, 0, kFront), (Robots{1, 2}));
 }
 
-TEST(Visibility, OmnidirectionalEmissionComesFromTheNearestEmitterThatSees) {
+TEST(Visibility, OmnidirectionalTransmissionComesFromTheNearestEmitterThatSees) {
     World world = square_world();
     add_robot(world, {500, 500});
     add_robot(world, {580, 540});
@@ -146,7 +146,7 @@ TEST(Visibility, WithoutOcclusionsTheGridFindsWhatAllPairsFind) {
                 for (int emitter = 0; emitter < kFaceCount; ++emitter) {
                     float const angle = world.bodies.heading_rad[i] + static_cast<float>(emitter) * kPi / 2.0F;
                     Vec2 const point = world.bodies.position_mm[i] + kRadius * direction(angle);
-                    Vec2 const d = shortest_vector(world, point, world.bodies.position_mm[j]);
+                    Vec2 const d = minimum_image(world, point, world.bodies.position_mm[j]);
                     in_reach = in_reach || length(d) <= 80.0F + kRadius;
                 }
                 if (j != i && in_reach) {

@@ -1,4 +1,4 @@
-#include "sim/data_files.hpp"
+#include "sim/find_file.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

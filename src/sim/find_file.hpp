@@ -1,4 +1,4 @@
-// Files that a configuration names.
+// Looks for a file that a configuration mentions.
 #pragma once
 
 #include <filesystem>
