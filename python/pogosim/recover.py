@@ -10,17 +10,22 @@ files look for. The rows that are there are kept, and the metadata, with an entr
 from __future__ import annotations
 
 import argparse
+import contextlib
+import math
+import os
+import shutil
 import sys
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Union
+from typing import IO
 
 import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import ipc
 
-PathLike = Union[str, "Path"]
+from pogosim.outputs import OutputError, PathLike, leads_to, real_output, say
 
 # An Arrow file begins with this; behind it stands a stream of record batches.
 MAGIC = b"ARROW1\0\0"
@@ -29,6 +34,10 @@ MAGIC = b"ARROW1\0\0"
 INCOMPLETE = b"incomplete"
 OURS = (INCOMPLETE, b"program_version", b"configuration")
 RECOVERED = b"recovered"
+
+
+# What reading damaged bytes can raise: lengths in them may ask for any amount of memory, names may be no UTF-8.
+DAMAGED = (pa.ArrowException, OSError, MemoryError, ValueError, OverflowError)
 
 
 class RecoverError(Exception):
@@ -46,22 +55,89 @@ class Unfinished:
     def up_to(self) -> str:
         """How far the rows go: "37 rows, up to t = 1.5 s"."""
         rows = f"{self.table.num_rows} row{'' if self.table.num_rows == 1 else 's'}"
-        if self.table.num_rows == 0 or "time" not in self.table.column_names:
-            return rows
-        return f"{rows}, up to t = {pc.max(self.table['time']).as_py():g} s"
+        time_s = self.last_time_s
+        return rows if time_s is None else f"{rows}, up to t = {time_s:g} s"
+
+    @property
+    def last_time_s(self) -> float | None:
+        """The largest time; None where there is none, or not one column of times."""
+        columns = self.table.schema.get_all_field_indices("time")
+        if len(columns) != 1 or self.table.schema.field(columns[0]).type not in (pa.float32(), pa.float64()):
+            return None
+        time_s = pc.max(self.table.column(columns[0])).as_py()
+        return time_s if time_s is not None and math.isfinite(time_s) else None
+
+
+def reraise_system_error(error: BaseException) -> None:
+    """Raise what the system says about a file; what Arrow says about its content has no number."""
+    if isinstance(error, OSError) and error.errno is not None:
+        raise error
 
 
 def is_complete(path: Path) -> bool:
-    """Tell whether Feather readers can open the file."""
+    """Tell whether Feather readers can open the file: it has its footer."""
+    with path.open("rb") as file:
+        try:
+            ipc.open_file(file)
+        except DAMAGED as error:
+            reraise_system_error(error)
+            return False
+        return True
+
+
+def is_whole(path: Path) -> bool:
+    """Tell whether all rows of a file with a footer can be read."""
+    with path.open("rb") as file:
+        try:
+            with ipc.open_file(file) as reader:
+                for i in range(reader.num_record_batches):
+                    reader.get_batch(i).validate(full=True)
+        except DAMAGED as error:
+            reraise_system_error(error)
+            return False
+        return True
+
+
+def open_rows(path: PathLike, file: IO[bytes]) -> ipc.RecordBatchStreamReader:
+    """Open the rows of a data file of the simulator, complete or not.
+
+    Raises:
+        RecoverError: The file is none of the simulator's, or ends before its first row could.
+    """
+    if file.read(len(MAGIC)) != MAGIC:
+        raise RecoverError(f"{path} is not a data file of the simulator")
     try:
-        with ipc.open_file(path):
-            return True
-    except pa.ArrowInvalid:
-        return False
+        reader = ipc.open_stream(file)
+    except DAMAGED as error:
+        reraise_system_error(error)
+        raise RecoverError(f"{path} was cut off before its first row") from error
+    metadata = reader.schema.metadata or {}
+    if not any(key in metadata for key in OURS):
+        raise RecoverError(f"{path} is not a data file of the simulator: its metadata have no configuration")
+    return reader
+
+
+def with_readable_names(schema: pa.Schema) -> pa.Schema:
+    """Give columns whose names were damaged, so that they are no UTF-8, the names column_0, column_1, ... by place."""
+
+    def readable(place: int) -> pa.Field:
+        field = schema.field(place)
+        try:
+            return pa.field(field.name, field.type, field.nullable, field.metadata)
+        except UnicodeDecodeError:
+            return pa.field(f"column_{place}", field.type, field.nullable, field.metadata)
+
+    return pa.schema([readable(place) for place in range(len(schema))], schema.metadata)
+
+
+def check_is_file(path: Path) -> None:
+    """Raise RecoverError for what is no file: a pipe, for instance, would be waited for."""
+    if path.exists() and not path.is_file():
+        raise RecoverError(f"{path} is not a file")
 
 
 def read_unfinished(path: PathLike) -> Unfinished:
-    """Read a data file whose run has not ended, or was killed, up to the first batch of rows that is cut off.
+    """Read a data file whose run has not ended, or was killed, up to the first damaged batch of rows.
 
     Args:
         path: File that the simulator began to write.
@@ -73,40 +149,40 @@ def read_unfinished(path: PathLike) -> Unfinished:
         FileNotFoundError: There is no such file.
         RecoverError: The file is none of the simulator's, or ends before its first row could.
     """
+    check_is_file(Path(path))
     with Path(path).open("rb") as file:
-        if file.read(len(MAGIC)) != MAGIC:
-            raise RecoverError(f"{path} is not a data file of the simulator")
-        try:
-            reader = ipc.open_stream(file)
-        except (pa.ArrowInvalid, OSError) as error:
-            raise RecoverError(f"{path} was cut off before its first row") from error
-        metadata = reader.schema.metadata or {}
-        if not any(key in metadata for key in OURS):
-            raise RecoverError(f"{path} is not a data file of the simulator: its metadata have no configuration")
+        reader = open_rows(path, file)
+        schema = with_readable_names(reader.schema)
         batches = []
         try:
             for batch in reader:
                 batch.validate(full=True)
-                batches.append(batch)
-        except (pa.ArrowInvalid, OSError):
-            pass  # the batch that was being written
-        return Unfinished(pa.Table.from_batches(batches, reader.schema), INCOMPLETE in metadata)
+                batches.append(batch.rename_columns(schema.names))
+        except DAMAGED as error:  # the batch that was being written
+            reraise_system_error(error)
+        return Unfinished(pa.Table.from_batches(batches, schema), INCOMPLETE in (schema.metadata or {}))
 
 
-def is_being_written(path: Path) -> bool:
-    """Tell whether a run has the file locked. False where there are no locks."""
+@contextlib.contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Keep runs from writing a file meanwhile, where there are locks.
+
+    Raises:
+        RecoverError: A run is writing it.
+    """
     try:
         import fcntl
     except ImportError:
-        return False
+        yield
+        return
     with path.open("rb") as file:
         try:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            return True
+            raise RecoverError(f"a run is still writing {path}; name another file with -o") from None
         except OSError:
-            return False
-    return False
+            pass  # no locks on this file system
+        yield
 
 
 def recovered_schema(unfinished: Unfinished) -> pa.Schema:
@@ -119,48 +195,99 @@ def recovered_schema(unfinished: Unfinished) -> pa.Schema:
     return schema.with_metadata(metadata)
 
 
+def check_replaceable(target: Path) -> None:
+    """Raise RecoverError for a file that is none of the simulator's: it is not ours to write over."""
+    with target.open("rb") as file:
+        try:
+            open_rows(target, file)
+        except RecoverError as error:
+            raise RecoverError(f"{error}; it is not written over: name another file with -o") from None
+
+
 def recover(path: PathLike, output: PathLike | None = None) -> Unfinished:
     """Make a complete Feather file of an unfinished data file.
 
     Args:
         path: Data file of a run that was killed.
-        output: Where to write; None: in place of `path`. Nothing there is touched before all is written.
+        output: Where to write; None: in place of `path`. Nothing there is touched before all is written. Symbolic and
+            hard links stay links. A file that is there must be a data file of the simulator.
 
     Returns:
         What was read, and is now complete.
 
     Raises:
         RecoverError: The file needs no recovery, belongs to a run that goes on, or is none of the simulator's.
+        OutputError: The output is not a file, or has no folder.
         OSError: A file cannot be read or written; `path` is as it was.
     """
     source = Path(path)
-    target = source.resolve() if output is None else Path(output)
-    unfinished = read_unfinished(source)
-    if is_complete(source):
-        raise RecoverError(f"{source} is complete: there is nothing to recover")
-    if target.exists() and is_being_written(target):
-        raise RecoverError(f"a run is still writing {target}; name another file with -o")
+    check_is_file(source)
+    in_place = output is None or leads_to(output, source)
+    target = real_output(source if output is None else output)
+    exists = target.exists()
+    if exists and not in_place:
+        check_replaceable(target)
+    with locked(target) if exists else contextlib.nullcontext():
+        unfinished = read_unfinished(source)
+        if is_complete(source):
+            if is_whole(source):
+                raise RecoverError(f"{source} is complete: there is nothing to recover")
+            if in_place:
+                raise RecoverError(f"{source} is damaged; to save the rows before that, name another file with -o")
+        write_recovered(unfinished, target, target.stat() if exists else source.stat())
+    return unfinished
+
+
+def write_recovered(unfinished: Unfinished, target: Path, like: os.stat_result) -> None:
+    """Write the complete file, with the permissions in `like`, and put it in its place when all is written."""
     table = unfinished.table.replace_schema_metadata(recovered_schema(unfinished).metadata).combine_chunks()
-    with tempfile.NamedTemporaryFile(dir=target.parent, prefix=f"{target.name}.", delete=False) as file:
+    with tempfile.NamedTemporaryFile(dir=target.parent, prefix=".pogosim-recover-", delete=False) as file:
         scratch = Path(file.name)
         try:
             options = ipc.IpcWriteOptions(compression="zstd")
             with ipc.new_file(file, table.schema, options=options) as writer:
                 writer.write_table(table)
             file.flush()
-            if target.exists():
-                scratch.chmod(target.stat().st_mode & 0o777)
+            os.fsync(file.fileno())
+            if must_be_written_in_place(target, scratch):
+                copy_over(scratch, target)
+                scratch.unlink()
             else:
-                scratch.chmod(source.stat().st_mode & 0o777)
-            scratch.replace(target)
+                scratch.chmod(like.st_mode & 0o777)
+                scratch.replace(target)
+        except RecoverError:
+            raise
         except BaseException:
             scratch.unlink(missing_ok=True)
             raise
-    return unfinished
+
+
+def must_be_written_in_place(target: Path, scratch: Path) -> bool:
+    """Tell whether a file in the place of another would not be the same: of another owner, or not under all names."""
+    if not target.exists():
+        return False
+    there, here = target.stat(), scratch.stat()
+    return there.st_nlink > 1 or (there.st_uid, there.st_gid) != (here.st_uid, here.st_gid)
+
+
+def copy_over(scratch: Path, target: Path) -> None:
+    """Write the bytes of a file over those of another one. When that fails, the first is what there is.
+
+    Raises:
+        RecoverError: It fails; says where the rows are.
+    """
+    try:
+        with scratch.open("rb") as source, target.open("r+b") as file:
+            shutil.copyfileobj(source, file)
+            file.truncate()
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise RecoverError(f"{target} cannot be written over: {error.strerror}. All rows are in {scratch}") from error
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command. Returns its exit code: 0 done, 2 nothing could be done."""
+    """Run the command. Returns its exit code: 0 done, 2 nothing could be done, or nothing be said of it."""
     parser = argparse.ArgumentParser(
         prog="pogosim-recover", description="Makes a complete Feather file of a data file whose run was killed."
     )
@@ -169,10 +296,26 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         unfinished = recover(options.file, options.output)
-    except (RecoverError, OSError) as error:
+    except (RecoverError, OutputError) as error:
         print(f"pogosim-recover: {error}", file=sys.stderr)
         return 2
-    print(f"{options.output or options.file}: {unfinished.up_to}")
+    except OSError as error:
+        reason = os.strerror(error.errno) if error.errno else error
+        print(f"pogosim-recover: {error.filename or options.file}: {reason}", file=sys.stderr)
+        return 2
+    except (pa.ArrowException, MemoryError) as error:
+        reason = "there is not enough memory for its rows" if isinstance(error, MemoryError) else error
+        print(f"pogosim-recover: {options.file} cannot be recovered: {reason}", file=sys.stderr)
+        return 2
+    target = options.output or options.file
+    try:
+        say(f"{target}: {unfinished.up_to}")
+    except OSError as error:
+        print(
+            f"pogosim-recover: {target} is complete, but the standard output cannot be written: {error.strerror}",
+            file=sys.stderr,
+        )
+        return 2
     return 0
 
 

@@ -26,6 +26,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
+from pogosim.outputs import PathLike
 from pogosim.scene import (
     MEMBRANES,
     POGOBOT_RADIUS_MM,
@@ -39,7 +40,7 @@ from pogosim.scene import (
     read_categories,
     read_lamps,
 )
-from pogosim.utils import PathLike, load_dataframe
+from pogosim.utils import load_dataframe
 
 # Robots of the real swarm, where a file does not say.
 UNKNOWN = Category("robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM))

@@ -8,7 +8,7 @@ import logging
 import re
 import warnings
 from pathlib import Path
-from typing import Any, Union
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,9 +18,8 @@ import pyarrow
 import yaml
 from pyarrow import feather
 
-from pogosim.recover import RecoverError, read_unfinished
-
-PathLike = Union[str, "Path"]
+from pogosim.outputs import PathLike
+from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
 
 INTEGER = "tag:yaml.org,2002:int"
 FLOAT = "tag:yaml.org,2002:float"
@@ -82,9 +81,13 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: The file is not a complete Feather file, nor an unfinished one of the simulator.
+        ValueError: The file is not a complete Feather file, nor an unfinished one of the simulator; or it is damaged.
     """
     table = read_table(Path(path))
+    try:
+        rows = table.to_pandas()
+    except DAMAGED as error:
+        raise ValueError(f"{path} is damaged: its rows cannot be read: {error}") from error
     metadata: dict[str, Any] = {
         key.decode("utf-8", "replace"): value.decode("utf-8", "replace")
         for key, value in (table.schema.metadata or {}).items()
@@ -94,21 +97,29 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
         metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])
     if "arena_polygons" in metadata:
         metadata["arena_polygons"] = parse_polygons(metadata["arena_polygons"])
-    return table.to_pandas(), metadata
+    return rows, metadata
 
 
 def read_table(path: Path) -> pyarrow.Table:
     """Read a data file as load_dataframe does, with its types and metadata as they stand in the file."""
-    try:
-        return feather.read_table(path, memory_map=False)
-    except pyarrow.ArrowInvalid as error:
+    with path.open("rb") as file:
         try:
-            unfinished = read_unfinished(path)
-        except RecoverError:
-            raise ValueError(f"{path} is not a complete Feather file: {error}") from error
-        hint = f"to make a complete file of it: pogosim-recover {path}"
-        if not unfinished.says_so:
-            raise ValueError(f"{path} is not a complete Feather file: it was cut off; {hint}") from error
+            return feather.read_table(file, memory_map=False)
+        except DAMAGED as error:
+            reraise_system_error(error)
+            reason = error
+    try:
+        unfinished = read_unfinished(path)
+    except RecoverError:
+        raise ValueError(f"{path} is not a complete Feather file: {reason}") from reason
+    hint = f"to make a complete file of it: pogosim-recover {path}"
+    if is_complete(path):
+        raise ValueError(
+            f"{path} is damaged: {reason}; to save its first rows ({unfinished.up_to}): "
+            f"pogosim-recover {path} -o another_file.feather"
+        ) from reason
+    if not unfinished.says_so:
+        raise ValueError(f"{path} is not a complete Feather file: it was cut off; {hint}") from reason
     warnings.warn(
         f"{path} is incomplete: its run has not ended, or it was killed. Read: {unfinished.up_to}; {hint}",
         RuntimeWarning,

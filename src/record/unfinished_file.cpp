@@ -36,7 +36,8 @@ arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descrip
     // The schema goes out with the first batch only; a file without rows is to be readable, too.
     ARROW_ASSIGN_OR_RAISE(auto const nothing, arrow::RecordBatch::MakeEmpty(schema));
     ARROW_RETURN_NOT_OK(file->writer_->WriteRecordBatch(*nothing));
-    // At once, and before what stands there is cut off: at no moment is there a file without its head.
+    // Before what stands there is cut off: once the head is written, the file never lacks it. A reader that comes just
+    // then may find a part of it, or rows of the older file behind it, which it takes for torn ones.
     ARROW_RETURN_NOT_OK(file->stream_->Flush());
     ARROW_ASSIGN_OR_RAISE(file->size_bytes_, file->stream_->Tell());
     file->stream_->go_back_to(file->size_bytes_);

@@ -1,0 +1,76 @@
+"""What the tools check before they write a file, and how they report."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from pathlib import Path
+from typing import Union
+
+PathLike = Union[str, "Path"]
+
+KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+    (stat.S_ISFIFO, "a pipe"),
+    (stat.S_ISSOCK, "a socket"),
+)
+
+
+class OutputError(Exception):
+    """A file cannot be written there; says why."""
+
+
+def leads_to(path: PathLike, other: PathLike) -> bool:
+    """Tell whether two paths lead to one file, by whatever name, symbolic or hard link; there may be none yet."""
+    try:
+        return Path(path).samefile(other)
+    except OSError:
+        return os.path.realpath(path) == os.path.realpath(other)
+
+
+def real_output(path: PathLike) -> Path:
+    """Return where an output path leads, without symbolic links.
+
+    Raises:
+        OutputError: There is something that is not a regular file, or no folder for it.
+        OSError: It cannot be looked at.
+    """
+    if not str(path):
+        raise OutputError("the name of the output file is empty")
+    real = Path(os.path.realpath(path))
+    try:
+        mode = real.stat().st_mode
+    except FileNotFoundError:
+        if str(path).endswith("/"):
+            raise OutputError(f"{path} is the name of a folder, not of a file") from None
+        if not real.parent.is_dir():
+            raise OutputError(f"{path} cannot be written: there is no folder {real.parent}") from None
+        return real
+    except NotADirectoryError:
+        raise OutputError(f"{path} cannot be written: {real.parent} is not a folder") from None
+    if stat.S_ISREG(mode):
+        return real
+    kind = next((words for is_kind, words in KINDS if is_kind(mode)), "something else")
+    raise OutputError(f"{path} is {kind}, not a file; name another output")
+
+
+def say(text: str) -> None:
+    """Print a line; what the terminal cannot show is escaped.
+
+    Raises:
+        OSError: The standard output cannot be written. Nothing more is written to it, then.
+    """
+    if sys.stdout is None:
+        return
+    encoding = sys.stdout.encoding or "utf-8"
+    try:
+        print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+    except OSError:
+        # Python would try again at its end.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+        raise
