@@ -52,7 +52,8 @@ struct RunServices {
     std::uint32_t seed = 0;  // of the run
     DataExport data;
     bool stop_requested = false;
-    std::vector<std::string_view> warned;  // formats of warn_once
+    std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once
+    std::vector<std::string_view> warned;           // formats of warn_once
 
     /// Logs a warning that names the running robot and its tick, the first time in the run that this format (a literal)
     /// is used.

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "base/log.hpp"
+#include "base/nearest_name.hpp"
 
 namespace pogosim {
 
@@ -57,14 +59,23 @@ void warn_of_user_data_in_setup(std::uint16_t id) {
         id);
 }
 
-void warn_of_idle_categories(World const& world, std::span<Computer const> computers) {
+void warn_of_idle_categories(World const& world, std::span<Computer const> computers,
+                             std::span<std::string const> started) {
+    // A name that is another category's is no slip.
+    std::vector<std::string> strange;
+    std::ranges::copy_if(started, std::back_inserter(strange), [&world](std::string const& name) {
+        return std::ranges::find(world.categories, name, &Category::name) == world.categories.end();
+    });
+    std::string const calls =
+        started.empty() ? "there is no call" : fmt::format("the calls name {}", fmt::join(started, ", "));
     std::vector<bool> warned(world.categories.size());
     for (std::size_t i = 0; i < computers.size(); ++i) {
         std::uint16_t const category = world.robots.category[i];
         if (!computers[i].program.registered && !warned[category]) {
             warned[category] = true;
-            log().warn("no pogobot_start() of the program names the category '{}': its robots do nothing",
-                       world.categories[category].name);
+            std::string const& name = world.categories[category].name;
+            log().warn("no pogobot_start() of the program names the category '{}': its robots do nothing; {}{}", name,
+                       calls, did_you_mean(name, strange));
         }
     }
 }
@@ -148,6 +159,20 @@ void warn_of_unused_messages(World const& world, std::span<Computer const> compu
             "{} messages arrived, but no robot reads messages: set msg_rx_fn in user_init, or call "
             "pogobot_infrared_message_available() in user_step",
             arrivals);
+    }
+}
+
+void warn_of_send_percent(World const& world, std::span<Computer const> computers) {
+    constexpr int most_percent = 100;
+    std::vector<bool> warned(world.categories.size());
+    for (std::size_t i = 0; i < computers.size(); ++i) {
+        std::uint16_t const category = world.robots.category[i];
+        int const percent = computers[i].loop.send_percent;
+        if (percent > most_percent && !warned[category]) {
+            warned[category] = true;
+            log().warn("percent_msgs_sent_per_ticks is {} in category '{}': values above 100 count as 100", percent,
+                       world.categories[category].name);
+        }
     }
 }
 

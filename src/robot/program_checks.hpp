@@ -23,8 +23,9 @@ void warn_of_large_user_data(std::size_t bytes);
 /// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
 void warn_of_user_data_in_setup(std::uint16_t id);
 
-/// Categories that no pogobot_start() names.
-void warn_of_idle_categories(World const& world, std::span<Computer const> computers);
+/// Categories that no pogobot_start() names. `started`: those that the program's calls do name.
+void warn_of_idle_categories(World const& world, std::span<Computer const> computers,
+                             std::span<std::string const> started);
 
 /// A program that has never called pogobot_init(), not even in user_init.
 void warn_of_missing_init(std::span<Computer const> computers);
@@ -42,5 +43,8 @@ void warn_of_lost_messages(World const& world, std::span<Computer const> compute
 /// Messages that nobody reads, or that a program means to send and read but cannot. `arrivals`: messages that reached
 /// robots in the whole run.
 void warn_of_unused_messages(World const& world, std::span<Computer const> computers, std::uint64_t arrivals);
+
+/// A percent_msgs_sent_per_ticks above 100, by category.
+void warn_of_send_percent(World const& world, std::span<Computer const> computers);
 
 }  // namespace pogosim

@@ -272,7 +272,7 @@ void Programs::start() {
     for (std::uint32_t i = 0; i < count; ++i) {
         run_main(i);
     }
-    warn_of_idle_categories(world_, computers_);
+    warn_of_idle_categories(world_, computers_, services_.started_categories);
     run_global_setup();
     for (std::uint32_t i = 0; i < count; ++i) {
         call(i, "user_init", computers_[i].program.init);
@@ -354,6 +354,7 @@ void Programs::print_unfinished_lines() {
 void Programs::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, computers_);
     warn_of_unused_messages(world_, computers_, arrivals);
+    warn_of_send_percent(world_, computers_);
 }
 
 void Programs::warn_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
@@ -390,6 +391,10 @@ bool current_robot_category_is(char const* category) {
 void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* category) {
     require_robot("pogobot_start");
     require_argument(category, "pogobot_start", "the category");
+    std::vector<std::string>& started = context.services->started_categories;
+    if (std::ranges::find(started, category) == started.end()) {
+        started.emplace_back(category);
+    }
     if (!current_robot_category_is(category)) {
         return;
     }

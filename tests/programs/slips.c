@@ -28,7 +28,7 @@ static void receive(message_t* message) {
 
 void user_init(void) {
     max_nb_processed_msg_per_tick = is("reads_none") ? 0 : 20;
-    percent_msgs_sent_per_ticks = is("sends_never") ? 0 : 100;
+    percent_msgs_sent_per_ticks = is("sends_never") ? 0 : is("sends_too_often") ? 150 : 100;
     msg_tx_fn = send;
     msg_rx_fn = is("deaf") || is("polls") ? NULL : receive;
     main_loop_hz = is("slow") && pogobot_helper_getid() % 2 == 0 ? 1 : 60;
@@ -83,7 +83,12 @@ int main(void) {
     if (!is("no_init") && !is("late_init")) {
         pogobot_init();
     }
-    pogobot_start(user_init, user_step);
+    if (is("wrong_category")) {
+        pogobot_start(user_init, user_step, "robot");
+        pogobot_start(user_init, user_step, "predators");
+    } else if (!is("no_start")) {
+        pogobot_start(user_init, user_step);
+    }
     if (is("late_init")) {
         pogobot_init();
     }

@@ -66,6 +66,19 @@ def warnings(result: Run) -> list[str]:
         ),
         ("empty_column", "the column 'age' of the data file will be empty: "),
         ("sends_never", "no robot of category 'robots' sent a message: "),
+        (
+            "sends_too_often",
+            "percent_msgs_sent_per_ticks is 150 in category 'robots': values above 100 count as 100",
+        ),
+        (
+            "wrong_category",
+            "no pogobot_start() of the program names the category 'robots': its robots do nothing; the calls name "
+            "robot, predators; did you mean 'robot'?",
+        ),
+        (
+            "no_start",
+            "no pogobot_start() of the program names the category 'robots': its robots do nothing; there is no call",
+        ),
         ("reads_none", "no robot of category 'robots' read a message: "),
     ],
 )

@@ -99,7 +99,9 @@ TEST(Categories, WithoutAControllerWarnOnceAndTick) {
     ASSERT_FALSE(simulation.start());
     std::vector<std::string> const lines = warnings.lines();
     ASSERT_EQ(lines.size(), kCategories.size() - 1);
-    EXPECT_EQ(lines[0], "no pogobot_start() of the program names the category 'walls': its robots do nothing");
+    EXPECT_EQ(lines[0],
+              "no pogobot_start() of the program names the category 'walls': its robots do nothing; the "
+              "calls name robots");
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
 }
 
