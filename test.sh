@@ -5,8 +5,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 usage="Usage: ./test.sh [--quick] [--tidy]
 
-Builds Release and runs the C++ tests (CTest) and the Python tests (pytest); builds Debug with sanitizers and runs the
-C++ tests again; checks formatting (clang-format, ruff), Python style (ruff) and types (mypy).
+Builds Release with the system's compiler and runs the C++ tests (CTest) and the Python tests (pytest); builds Debug
+with clang and sanitizers and runs the C++ tests again; checks formatting (clang-format, ruff), Python style (ruff) and
+types (mypy).
   --quick      the Release build and its tests only
   --tidy       clang-tidy over the C++ sources, too (slow)
   -h, --help   this text"
@@ -94,23 +95,33 @@ python_tests() {
         tests/python --junitxml "$reports/python.xml"
 }
 
-# Whether leaks can be looked for: that needs ptrace, which many containers forbid.
-leak_sanitizer_works() {
+# sanitizes COMPILER: whether a program can be built with its sanitizers; it is left in $reports/leak.
+sanitizes() {
     echo 'int main() { return 0; }' >"$reports/leak.cpp"
-    c++ -fsanitize=address "$reports/leak.cpp" -o "$reports/leak" && ASAN_OPTIONS=detect_leaks=1 "$reports/leak" 2>/dev/null
+    "$1" -fsanitize=address,undefined "$reports/leak.cpp" -o "$reports/leak" 2>/dev/null
 }
 
+# Whether leaks can be looked for: that needs ptrace, which many containers forbid.
+leak_sanitizer_works() { ASAN_OPTIONS=detect_leaks=1 "$reports/leak" 2>/dev/null; }
+
 sanitized_tests() {
-    local leaks=1
+    local leaks=1 c=clang cpp=clang++
+    if ! sanitizes clang++; then
+        echo "Not tested with clang: it is not installed with its sanitizers. The system's compiler is taken instead."
+        c=cc cpp=c++
+        sanitizes c++ || true
+    fi
     if ! leak_sanitizer_works; then
         echo "Leaks are not looked for: LeakSanitizer needs ptrace, which this machine or container forbids."
         leaks=0
     fi
     # The build runs the test programs too: it asks them for the names of their tests.
     export ASAN_OPTIONS=detect_leaks=$leaks UBSAN_OPTIONS=print_stacktrace=1
-    check "Debug build with sanitizers" build_tree build/sanitized Debug -DPOGOSIM_SANITIZE=ON -DPOGOSIM_WERROR=ON \
+    # The second compiler: Release is built with the system's, gcc on Linux.
+    check "Debug build with sanitizers ($cpp)" build_tree "build/sanitized-$c" Debug \
+        -DCMAKE_C_COMPILER=$c -DCMAKE_CXX_COMPILER=$cpp -DPOGOSIM_SANITIZE=ON -DPOGOSIM_WERROR=ON \
         -DPOGOSIM_BUILD_EXAMPLES=OFF -DPOGOSIM_BUILD_TESTS=ON -DPOGOSIM_BUILD_BENCH=OFF || return 0
-    suite "C++ tests (sanitizers)" "$reports/sanitized.xml" run_ctest build/sanitized "$reports/sanitized.xml"
+    suite "C++ tests (sanitizers, $cpp)" "$reports/sanitized.xml" run_ctest "build/sanitized-$c" "$reports/sanitized.xml"
 }
 
 # cpp_files: everything that clang-format looks after, separated by zero bytes.

@@ -11,7 +11,9 @@
 apt_packages="build-essential cmake ninja-build ccache pkg-config
     libbox2d-dev libyaml-cpp-dev libspdlog-dev libfmt-dev libcli11-dev libgtest-dev libbenchmark-dev libdw-dev
     python3 python3-venv ca-certificates"
-apt_test_packages="doxygen gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf"
+# libclang-rt-dev: the sanitizers of clang.
+apt_test_packages="clang libclang-rt-dev doxygen
+    gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf"
 apt_tidy_packages="clang-tidy"
 brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark python3"
 brew_test_packages="doxygen"
