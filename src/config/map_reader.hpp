@@ -44,8 +44,8 @@ public:
     /// All keys of all tables read so far, with the defaults that stood in the structs before.
     std::vector<KeyDescription> const& known_keys() const { return known_; }
 
-    /// The keys that have an effect, with their values, defaults included; reading this map again gives the same values.
-    /// A key that is read elsewhere has the node that was written, unless set_value() replaced it.
+    /// The keys that have an effect, with their values, defaults included; reading this map again gives the same
+    /// values. A key that is read elsewhere has the node that was written, unless set_value() replaced it.
     Node const& values() const { return values_; }
 
     /// The value of a key that is read elsewhere.
