@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -190,11 +189,9 @@ TEST_P(EveryFormation, OneObjectLargerThanTheArenaIsRefused) {
     EXPECT_NE(error_of(named(GetParam()), too_wide_for_the_ring, shipped("annulus")), "");
 }
 
-TEST_P(EveryFormation, HopelessRequestsEndSoon) {
-    auto const start = std::chrono::steady_clock::now();
+TEST_P(EveryFormation, HopelessRequestsEndInAnError) {
     // Robots that cover 86 % of the arena: less than the densest packing, more than any of these reach.
     EXPECT_NE(error_of(named(GetParam()), robots(1000), shipped("H", 2.6e6)), "");
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));  // with sanitizers and debugging
 }
 
 TEST_P(EveryFormation, ArenaMayBeAnywhereInThePlane) {
@@ -516,13 +513,11 @@ TEST(LloydFormation, PowerDiagramGivesLargeObjectsMoreRoomThanVoronoi) {
     EXPECT_GT(gap("power_lloyd"), gap("lloyd") + 10.0F);
 }
 
-TEST(LloydFormation, TenThousandRobotsArePlacedInSeconds) {
+TEST(LloydFormation, TenThousandRobotsArePlaced) {
     Arena const arena = shipped("disk", 1.0e8);
     std::vector<float> const radii = robots(10000);
     for (char const* const name : {"power_lloyd", "lloyd", "random", "disk", "random_near_walls"}) {
-        auto const start = std::chrono::steady_clock::now();
         EXPECT_EQ(place_seeded(named(name), radii, arena, 1).size(), 10000U);
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30)) << name;  // with sanitizers
     }
 }
 
