@@ -41,7 +41,8 @@ std::vector<Obstacle> outside_of(Arena const& arena) {
     if (signed_area(frame) < 0.0) {
         std::ranges::reverse(frame);
     }
-    std::ranges::rotate(frame, std::ranges::min_element(frame, {}, [](Vec2 corner) { return corner.x + corner.y; }));
+    auto const first = std::ranges::min_element(frame, {}, [](Vec2 corner) { return corner.x + corner.y; });
+    std::rotate(frame.begin(), first, frame.end());
     frame.push_back(frame.front());
     Vec2 const size = arena.bounds.size();
     Vec2 const low = arena.bounds.min - size;
