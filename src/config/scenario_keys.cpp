@@ -39,7 +39,8 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"time_step", &Scenario::time_step_s, above(0).up_to(1), "s", "Step of the simulation."},
         K{"seed", &Scenario::seed, any(), "", "Seed of all random numbers; absent: a new one each run."},
         K{"user_code_timeout", &Scenario::user_code_timeout_s, between(0, 1e6), "s",
-          "Processor time one call of user code may take, and wall-clock time once a signal has asked the run to "
+          "Processor time one call of user code may take, without that of other threads of the program, and wall-clock "
+          "time once a signal has asked the run to "
           "end; 0: no limit."},
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "", "What is in the arena, by category; own tables."},

@@ -17,6 +17,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/save_progress.hpp"
 #include "base/utf8.hpp"
 #include "record/columns.hpp"
 #include "record/complete_file.hpp"
@@ -137,6 +138,7 @@ private:
     Clock::time_point next_ = start_ + kFirst;
 };
 
+constexpr std::uint64_t kBytesPerCell = 8;
 constexpr std::int64_t kMostUnsavedRows = 1 << 20;  // a bound on memory
 
 }  // namespace
@@ -178,6 +180,11 @@ struct DataFile::Impl {
     }
 
     bool is_writable() const { return open && getpid() == owner; }
+
+    /// About, and not compressed.
+    std::uint64_t byte_count() const {
+        return static_cast<std::uint64_t>(row_count) * static_cast<std::uint64_t>(schema->num_fields()) * kBytesPerCell;
+    }
 
     void count_row(float time_s) {
         ++buffered_rows;
@@ -353,6 +360,7 @@ void DataFile::close() {
     if (!impl_->is_writable()) {
         return;
     }
+    save_progress().bytes = impl_->byte_count();
     bool const is_ours = !impl_->unfinished->somebody_changed_it();
     if (is_ours) {
         impl_->check(impl_->save());

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/save_progress.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -42,6 +44,7 @@ arrow::Status DescriptorStream::write_out(char const* bytes, int64_t size) {
         if (written <= 0) {
             return system_error(written < 0 ? errno : EIO);
         }
+        ++save_progress().writes;
         bytes += written;
         size -= written;
         position_ += written;

@@ -4,11 +4,10 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 
 #include "base/log.hpp"
-#include "robot/crash_name.hpp"
+#include "robot/caught_signals.hpp"
 
 namespace pogosim {
 
@@ -24,12 +23,7 @@ void before_fork() {
 void in_child() {
     forked = true;
     silence_logs();
-    for (int const signal : kCrashSignals) {
-        std::signal(signal, SIG_DFL);
-    }
-    for (int const signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGPROF, SIGALRM, SIGPIPE, SIGXFSZ}) {
-        std::signal(signal, SIG_DFL);
-    }
+    release_caught_signals();
 }
 
 }  // namespace

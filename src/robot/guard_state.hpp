@@ -37,12 +37,14 @@ bool on_simulator_thread();
 
 void set_reason(char const* text);
 
-/// What follows may crash or hang for ever; after a while the program ends with its last words.
-void expect_the_worst();
+/// User code is left in the middle, or the simulator has crashed. What follows, until the data file is complete, may
+/// crash or hang for ever: then the program ends with its last words, which are composed here. For signal handlers.
+void begin_rescue(char const* what, ExitCode code, bool in_other_thread);
+
+/// The rescue has failed: memory is destroyed, or a lock held, beyond what the run needs to end well.
+[[noreturn]] void give_up_rescue();
 
 [[noreturn]] void jump_out(ExitCode code);
-
-void install_handler(int signal, int flags, void (*handler)(int, siginfo_t*, void*));
 
 /// False in the middle of a library function, such as malloc(): it may hold a lock, which nobody would release.
 bool is_in_user_program(void const* signal_context);
@@ -62,7 +64,14 @@ struct EndRequest {
 /// Null while there is none.
 EndRequest const* end_request();
 
+/// It has been met: what remains is to save the data.
+void drop_end_request();
+
 void start_watch(double timeout_s);
+
+/// From now on the only thing that is watched is that the data file gets on.
+void watch_rescue();
+
 void stop_watch();
 
 }  // namespace pogosim

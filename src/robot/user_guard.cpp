@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "interface/pogobase_inside.hpp"
+#include "robot/caught_signals.hpp"
 #include "robot/crash_name.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/guard_state.hpp"
@@ -19,13 +20,7 @@ Guard guard;
 
 namespace {
 
-constexpr unsigned kRescueSeconds = 10;
 constexpr double kNsPerS = 1e9;
-
-/// Memory is destroyed, or a lock held, beyond what the run needs to end well.
-void on_hopeless_rescue(int /*signal*/) {
-    end_with_last_words(static_cast<int>(guard.code));
-}
 
 /// For good, without ending the program.
 [[noreturn]] void stop_this_thread() {
@@ -43,19 +38,16 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
         end_run_from_thread(what.c_str(), ExitCode::user_program);
     }
     if (guard.crashed.exchange(true)) {
-        on_hopeless_rescue(signal);
+        give_up_rescue();
     }
-    set_reason(what.c_str());
-    guard.code = ExitCode::user_program;
-    guard.left_by_force = true;
-    expect_the_worst();
+    begin_rescue(what.c_str(), ExitCode::user_program, !on_simulator_thread());
     if (guard.inside) {
         jump_out(ExitCode::user_program);
     }
-    if (guard.rescuable.exchange(false)) {
+    if (on_simulator_thread() && guard.rescuable.exchange(false)) {
         siglongjmp(guard.rescue_point, 1);
     }
-    on_hopeless_rescue(signal);
+    give_up_rescue();
 }
 
 /// Before the constructors of the program, whose crashes are to be named, too: this library is initialised first.
@@ -63,15 +55,18 @@ __attribute__((constructor)) void install_crash_handlers() {
     guard.thread = pthread_self();
     prepare_main_thread_for_crashes();
     for (int const signal : kCrashSignals) {
-        install_handler(signal, SA_ONSTACK, on_crash);
+        catch_signal(signal, SA_ONSTACK, on_crash);
     }
     watch_for_forks();
 }
 
 UserFailure requested_failure(EndRequest const& request) {
-    guard.code = request.code;
-    guard.left_by_force = true;
-    return {request.what.c_str(), request.code, false, request.in_other_thread};
+    if (!guard.left_by_force) {
+        begin_rescue(request.what.c_str(), request.code, request.in_other_thread);
+    }
+    UserFailure failure{request.what.c_str(), request.code, false, request.in_other_thread};
+    drop_end_request();
+    return failure;
 }
 
 /// What went wrong in an exception that user code did not catch.
@@ -105,25 +100,22 @@ void set_reason(char const* text) {
     guard.what << text;
 }
 
-void expect_the_worst() {
-    std::signal(SIGALRM, on_hopeless_rescue);
-    alarm(kRescueSeconds);
-    prepare_last_words(guard.what.c_str(), !on_simulator_thread());
+void begin_rescue(char const* what, ExitCode code, bool in_other_thread) {
+    set_reason(what);
+    guard.code = code;
+    guard.left_by_force = true;
+    watch_rescue();
+    prepare_last_words(what, in_other_thread);
+}
+
+void give_up_rescue() {
+    end_with_last_words(static_cast<int>(guard.code));
 }
 
 void jump_out(ExitCode code) {
     guard.code = code;
     guard.inside = false;
     siglongjmp(guard.return_point, 1);
-}
-
-void install_handler(int signal, int flags, void (*handler)(int, siginfo_t*, void*)) {
-    struct sigaction action = {};
-    sigemptyset(&action.sa_mask);
-    // A handler leaves by a jump, so its signal must not stay blocked.
-    action.sa_flags = flags | SA_NODEFER | SA_SIGINFO;
-    action.sa_sigaction = handler;
-    sigaction(signal, &action, nullptr);
 }
 
 bool is_in_user_program(void const* signal_context) {

@@ -1,10 +1,14 @@
-// The watch over user code that does not return: by processor time (SIGPROF), which a program on a busy machine does
-// not use up by waiting; and, once the run was asked to end, by wall-clock time (SIGALRM), which runs in sleep(), too.
+// The watch over user code that does not return: by the processor time of its thread (SIGPROF), which a program on a busy
+// machine does not use up by waiting; and, once the run was asked to end, by wall-clock time (SIGALRM), which runs in
+// sleep(), too. After user code was left by force, SIGALRM watches over the data file alone.
 #include <sys/time.h>
 
 #include <algorithm>
+#include <ctime>
 #include <string_view>
 
+#include "base/save_progress.hpp"
+#include "robot/caught_signals.hpp"
 #include "robot/context.hpp"
 #include "robot/guard_state.hpp"
 #include "robot/last_words.hpp"
@@ -16,18 +20,20 @@ namespace {
 
 constexpr double kWatchPeriodS = 0.25;   // of processor time
 constexpr double kRetryPeriodS = 0.001;  // in which user code is looked for outside of libraries
-constexpr int kMaxRetries = 250;
+constexpr double kLongestRetryS = 0.25;
 constexpr double kLookPeriodS = 0.05;   // of wall-clock time
 constexpr double kPromptReturnS = 0.1;  // nobody need be told to wait for less
 constexpr double kPromptEndS = 1.0;     // of a step of the simulator's own, and of the data file
 constexpr double kPatienceS = 10.0;     // for user code without a limit, and for the simulator's own
+constexpr double kRescueLookPeriodS = 0.25;
+constexpr double kSlowestDiskBytesPerS = 1e7;
 
 struct ProcessorWatch {
     double timeout_s = 0.0;
     double period_s = kWatchPeriodS;
-    double seen_busy_s = 0.0;
-    int retries = 0;
     unsigned long calls_seen = 0;
+    double seen_at_s = 0.0;  // processor time of the thread when the present call was first seen
+    bool retrying = false;
 };
 
 /// Since the run was asked to end.
@@ -38,8 +44,15 @@ struct WallClockWatch {
     bool told = false;
 };
 
+/// Over the data file, after user code was left by force.
+struct RescueWatch {
+    std::uint64_t writes_seen = 0;
+    double last_write_s = 0.0;
+};
+
 ProcessorWatch busy;
 WallClockWatch waiting;
+RescueWatch rescue;
 
 enum class RequestState { none, being_made, made };
 EndRequest request;
@@ -61,26 +74,36 @@ void set_timer(decltype(ITIMER_PROF) which, double period_s) {
     setitimer(which, &timer, nullptr);
 }
 
+double thread_processor_time_s() {
+    timespec now = {};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+/// The timer counts the processor time of all threads, and so only says when to look.
 void on_watch(int signal, siginfo_t* /*info*/, void* signal_context) {
     if (!is_signal_for_this_thread(signal)) {
         return;
     }
+    double const now_s = thread_processor_time_s();
     if (!guard.inside || guard.calls != busy.calls_seen) {
         busy.calls_seen = guard.calls;
-        busy.seen_busy_s = 0.0;
-        if (busy.retries > 0) {
-            busy.retries = 0;
+        busy.seen_at_s = now_s;
+        if (busy.retrying) {
+            busy.retrying = false;
             set_timer(ITIMER_PROF, busy.period_s);
         }
         return;
     }
-    busy.seen_busy_s += busy.retries > 0 ? kRetryPeriodS : busy.period_s;
-    if (busy.seen_busy_s < busy.timeout_s) {
+    double const too_long_s = now_s - busy.seen_at_s - busy.timeout_s;
+    if (too_long_s < 0.0) {
         return;
     }
-    if (!is_in_user_program(signal_context) && busy.retries < kMaxRetries) {
-        ++busy.retries;
-        set_timer(ITIMER_PROF, kRetryPeriodS);
+    if (!is_in_user_program(signal_context) && too_long_s < kLongestRetryS) {
+        if (!busy.retrying) {
+            busy.retrying = true;
+            set_timer(ITIMER_PROF, kRetryPeriodS);
+        }
         return;
     }
     SignalText<512> what;
@@ -89,9 +112,8 @@ void on_watch(int signal, siginfo_t* /*info*/, void* signal_context) {
     what << (is_at_robots_start() ? kMoveTheLoop
                                   : "; messages and sensors do not change while user code runs, so a step must not "
                                     "wait for them in a loop");
-    set_reason(what.c_str());
     guard.too_long = true;
-    expect_the_worst();
+    begin_rescue(what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
     jump_out(ExitCode::user_program);
 }
 
@@ -122,26 +144,40 @@ void look_after_request(void const* signal_context, double now_s) {
     if (!guard.inside) {
         // call_user_code() sees the request, unless the simulator waits for a lock that is gone.
         if (asked_since_s > kPatienceS) {
-            guard.code = request.code;
-            prepare_last_words(request.what.c_str(), request.in_other_thread);
-            end_with_last_words(static_cast<int>(request.code));
+            begin_rescue(request.what.c_str(), request.code, request.in_other_thread);
+            give_up_rescue();
         }
         return;
     }
-    if (is_in_user_program(signal_context) || asked_since_s > kMaxRetries * kRetryPeriodS) {
-        set_reason(request.what.c_str());
-        guard.code = request.code;
-        guard.left_by_force = true;
-        expect_the_worst();
+    if (is_in_user_program(signal_context) || asked_since_s > kLongestRetryS) {
+        begin_rescue(request.what.c_str(), request.code, request.in_other_thread);
         jump_out(request.code);
     }
 }
 
+/// A large file, or a slow disk, takes its time.
+void look_after_rescue(double now_s) {
+    SaveProgress const& progress = save_progress();
+    std::uint64_t const writes = progress.writes;
+    if (writes != rescue.writes_seen) {
+        rescue.writes_seen = writes;
+        rescue.last_write_s = now_s;
+    }
+    double const limit_s = kPatienceS + static_cast<double>(progress.bytes) / kSlowestDiskBytesPerS;
+    if (now_s - rescue.last_write_s > limit_s) {
+        give_up_rescue();
+    }
+}
+
 void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
+    double const now_s = monotonic_s();
+    if (guard.left_by_force) {
+        look_after_rescue(now_s);
+        return;
+    }
     if (!is_signal_for_this_thread(signal)) {
         return;
     }
-    double const now_s = monotonic_s();
     if (end_request() != nullptr) {
         look_after_request(signal_context, now_s);
         return;
@@ -173,7 +209,7 @@ void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
 
 void request_end(char const* what, ExitCode code, bool in_other_thread) {
     RequestState expected = RequestState::none;
-    if (!request_state.compare_exchange_strong(expected, RequestState::being_made)) {
+    if (guard.left_by_force || !request_state.compare_exchange_strong(expected, RequestState::being_made)) {
         return;
     }
     request.what = {};
@@ -185,6 +221,10 @@ void request_end(char const* what, ExitCode code, bool in_other_thread) {
     set_timer(ITIMER_REAL, kRetryPeriodS);
 }
 
+void drop_end_request() {
+    request_state = RequestState::none;
+}
+
 EndRequest const* end_request() {
     return request_state.load(std::memory_order_acquire) == RequestState::made ? &request : nullptr;
 }
@@ -192,12 +232,18 @@ EndRequest const* end_request() {
 void start_watch(double timeout_s) {
     request_state = RequestState::none;
     busy = {.timeout_s = timeout_s};
-    install_handler(SIGALRM, SA_RESTART, on_look);
+    catch_signal(SIGALRM, SA_RESTART, on_look);
     if (timeout_s > 0.0) {
         busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
-        install_handler(SIGPROF, SA_RESTART, on_watch);
+        catch_signal(SIGPROF, SA_RESTART, on_watch);
         set_timer(ITIMER_PROF, busy.period_s);
     }
+}
+
+void watch_rescue() {
+    rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s()};
+    catch_signal(SIGALRM, SA_RESTART, on_look);
+    set_timer(ITIMER_REAL, kRescueLookPeriodS);
 }
 
 void stop_watch() {
@@ -214,6 +260,9 @@ bool is_signal_for_this_thread(int signal) {
 }
 
 void hurry_user_code(char const* signal_name) {
+    if (guard.left_by_force) {
+        return;  // the run is ending, and the timer watches over the data file
+    }
     double const now_s = monotonic_s();
     double const entered_s = guard.entered_s.load(std::memory_order_relaxed);
     bool const has_limit = busy.timeout_s > 0.0;
