@@ -49,7 +49,6 @@ ExitCode simulate(CommandLine const& options) {
         log().info("this version draws no frames yet (save_video_period)");
     }
 
-    catch_interrupts();
     Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar, .strict = options.strict});
     return simulation.run();
 }
@@ -69,6 +68,11 @@ ExitCode report(char const* error, ExitCode code) {
 }
 
 }  // namespace
+
+/// Before the constructors of the program, which may take for ever, or set handlers of their own.
+__attribute__((constructor)) static void catch_interrupts_from_the_start() {
+    catch_interrupts();
+}
 
 extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv) {
     if (is_forked_child()) {

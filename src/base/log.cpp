@@ -1,8 +1,11 @@
 #include "base/log.hpp"
 
+#include <fcntl.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -115,9 +118,34 @@ LockedFile lock_file(std::filesystem::path const& path) {
     return lock;
 }
 
+/// A reader of a named pipe, who must be there: opening the pipe would wait for one, and end of file comes to the reader
+/// when the last writer has gone.
+class PipeReader {
+public:
+    explicit PipeReader(std::filesystem::path const& path) {
+        if (std::filesystem::is_fifo(path)) {
+            descriptor_ = open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+            if (descriptor_ < 0 && errno == ENXIO) {
+                throw FileError("it is a pipe that nobody reads; start its reader first, or name a file");
+            }
+        }
+    }
+    ~PipeReader() {
+        if (descriptor_ >= 0) {
+            close(descriptor_);
+        }
+    }
+    PipeReader(PipeReader const&) = delete;
+    PipeReader& operator=(PipeReader const&) = delete;
+
+private:
+    int descriptor_ = -1;
+};
+
 spdlog::sink_ptr make_file(LogOptions const& options, LockedFile& lock) {
     try {
         lock = lock_file(options.file);
+        PipeReader const reader(options.file);
         auto file = std::make_shared<spdlog::sinks::basic_file_sink_st>(options.file, /*truncate=*/true);
         file->set_pattern(kDatedPattern);
         file->set_level(options.verbose ? spdlog::level::debug : spdlog::level::info);

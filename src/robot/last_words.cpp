@@ -157,6 +157,25 @@ void prepare_plain_last_words(char const* what) {
     append_data_file(last_words);
 }
 
+void prepare_last_words_of_interrupt(char const* signal_name) {
+    last_words = {};
+    last_words << "pogosim: " << signal_name;
+    switch (stage) {
+        case RunStage::before_main:
+            last_words
+                << " before main(), where constructors of static objects run: there is no data file of this run.";
+            break;
+        case RunStage::preparing:
+        case RunStage::running:
+            last_words << " before the first robot ran: there is no data file of this run.";
+            break;
+        case RunStage::finished:
+            last_words << " after the run, while destructors of static objects and exit handlers ran.";
+            append_data_file(last_words);
+            break;
+    }
+}
+
 void end_with_last_words(int code) {
     last_words << "\n";
     last_words.write_to_stderr();

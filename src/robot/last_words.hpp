@@ -35,6 +35,9 @@ void prepare_last_words(char const* what, bool in_other_thread);
 /// The same for a program that ends although nothing has failed.
 void prepare_plain_last_words(char const* what);
 
+/// The same for a program that a signal ends outside of the run.
+void prepare_last_words_of_interrupt(char const* signal_name);
+
 /// Says it and ends the program. For signal handlers.
 [[noreturn]] void end_with_last_words(int code);
 

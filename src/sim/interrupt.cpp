@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 
+#include "robot/caught_signals.hpp"
 #include "robot/last_words.hpp"
 #include "robot/user_guard.hpp"
 
@@ -24,6 +25,9 @@ constexpr std::array kInterrupts{
     SignalName{SIGTERM, "SIGTERM"},
     SignalName{SIGHUP, "SIGHUP (the terminal was closed)"},
     SignalName{SIGXCPU, "SIGXCPU (the limit of processor time)"},
+    SignalName{SIGUSR1, "SIGUSR1"},  // batch systems send these two some time before they kill
+    SignalName{SIGUSR2, "SIGUSR2"},
+    SignalName{SIGQUIT, "Ctrl-\\ (SIGQUIT)"},
 };
 
 // timeout(1) and batch systems send a signal to the process and to its group: it may come twice at once.
@@ -41,20 +45,18 @@ char const* name_of(int signal) {
     return "a signal";
 }
 
-/// Before the first robot runs nothing is lost.
-[[noreturn]] void end_before_the_run(int signal) {
-    SignalText<256> text;
-    text << "pogosim: " << name_of(signal) << " before the first robot ran: there is no data file of this run.\n";
-    text.write_to_stderr();
-    _exit(static_cast<int>(ExitCode::interrupted));
+/// Nothing is lost where no robot runs.
+[[noreturn]] void end_outside_of_the_run(int signal) {
+    prepare_last_words_of_interrupt(name_of(signal));
+    end_with_last_words(static_cast<int>(ExitCode::interrupted));
 }
 
-void on_interrupt(int signal) {
+void on_interrupt(int signal, siginfo_t* /*info*/, void* /*context*/) {
+    if (run_stage() != RunStage::running) {
+        end_outside_of_the_run(signal);
+    }
     if (!is_signal_for_this_thread(signal)) {
         return;
-    }
-    if (run_stage() == RunStage::preparing) {
-        end_before_the_run(signal);
     }
     double const now_s = monotonic_s();
     bool const same = interrupts_seen > 0 && now_s - last_seen_s < kSameRequestS;
@@ -75,7 +77,12 @@ void on_interrupt(int signal) {
 }
 
 /// Ignores a signal in this program, but not in those that it starts.
-void on_ignored_signal(int /*signal*/) {}
+void on_ignored_signal(int /*signal*/, siginfo_t* /*info*/, void* /*context*/) {}
+
+/// Whoever started the program may have it ignore some (nohup, a shell without job control).
+bool may_be_ignored(int signal) {
+    return signal != SIGINT && signal != SIGTERM && signal != SIGXCPU;
+}
 
 }  // namespace
 
@@ -87,38 +94,23 @@ void ignore_broken_outputs() {
     }
     // A reader of the console that has gone away is no reason to lose the data file, and a file that may not grow
     // further (ulimit -f) is an error of writing it.
-    struct sigaction action = {};
-    sigemptyset(&action.sa_mask);
-    action.sa_flags = SA_RESTART | SA_NODEFER;
-    action.sa_handler = on_ignored_signal;
     for (int const signal : {SIGPIPE, SIGXFSZ}) {
-        sigaction(signal, &action, nullptr);
+        catch_signal(signal, SA_RESTART, on_ignored_signal);
     }
 }
 
 void catch_interrupts() {
-    struct sigaction action = {};
-    sigemptyset(&action.sa_mask);
-    action.sa_flags = SA_RESTART | SA_NODEFER;
-    action.sa_handler = on_interrupt;
     for (SignalName const& interrupt : kInterrupts) {
         struct sigaction before = {};
         sigaction(interrupt.signal, nullptr, &before);
-        // Under nohup the run goes on when the terminal is closed.
-        if (interrupt.signal != SIGHUP || before.sa_handler != SIG_IGN) {
-            sigaction(interrupt.signal, &action, nullptr);
+        if (before.sa_handler != SIG_IGN || !may_be_ignored(interrupt.signal)) {
+            catch_signal(interrupt.signal, SA_RESTART, on_interrupt);
         }
     }
 }
 
-void release_interrupts() {
-    for (SignalName const& interrupt : kInterrupts) {
-        struct sigaction now = {};
-        sigaction(interrupt.signal, nullptr, &now);
-        if (now.sa_handler == on_interrupt) {
-            std::signal(interrupt.signal, SIG_DFL);
-        }
-    }
+void forget_interrupts() {
+    interrupts_seen = 0;
 }
 
 bool interrupted() {

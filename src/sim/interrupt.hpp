@@ -1,5 +1,5 @@
-// Ctrl-C and its relatives (SIGINT, SIGTERM, SIGHUP, SIGXCPU): the run ends after the present step, with a complete
-// data file. Before the first robot runs, the program ends at once.
+// Ctrl-C and its relatives (SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2, SIGQUIT): the run ends after the present
+// step, with a complete data file. Before the first robot runs, and after the run, the program ends at once.
 #pragma once
 
 namespace pogosim {
@@ -8,12 +8,12 @@ namespace pogosim {
 /// 0 to 2 that are closed lead to /dev/null, so that no file of the run gets one of these numbers and what is printed.
 void ignore_broken_outputs();
 
-/// Catches the signals from now on. The first one asks the run to end and hurries user code that does not return; a
-/// second one leaves it; a third one ends the program, complete or not.
+/// Catches the signals from now on, as long as the program sets no handler of its own. The first one asks the run to
+/// end and hurries user code that does not return; a second one leaves it; a third one ends the program, complete or not.
 void catch_interrupts();
 
-/// The run is over: the signals end the program again.
-void release_interrupts();
+/// Those so far asked an earlier run to end.
+void forget_interrupts();
 
 /// True once one of them has come.
 bool interrupted();

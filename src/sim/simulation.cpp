@@ -40,10 +40,7 @@ struct RunEnd {
     RunEnd() = default;
     RunEnd(RunEnd const&) = delete;
     RunEnd& operator=(RunEnd const&) = delete;
-    ~RunEnd() {
-        remove_user_guard();
-        release_interrupts();
-    }
+    ~RunEnd() { remove_user_guard(); }
 };
 
 }  // namespace
@@ -148,6 +145,7 @@ std::optional<UserFailure> Simulation::run_steps() {
 std::optional<UserFailure> Simulation::start() {
     log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s", seed_, world_.robots.size(),
                 Programs::user_data_bytes(), step_count(), world_.time_step_s);
+    forget_interrupts();
     install_user_guard(scenario_.user_code_timeout_s);
     lighting_.update(world_);
     if (auto failure = call_user_code([this] { programs_.start(); })) {

@@ -85,7 +85,7 @@ def test_rows_are_on_the_disk_every_few_seconds(tmp_path: Path) -> None:
     assert after > before
 
 
-@pytest.mark.parametrize("end", ["_exit(0);", "_exit(5);", "raise(SIGKILL);", "raise(SIGQUIT);"])
+@pytest.mark.parametrize("end", ["_exit(0);", "_exit(5);", "raise(SIGKILL);", "raise(SIGVTALRM);"])
 def test_program_that_ends_at_once_leaves_a_readable_file(tmp_path: Path, end: str) -> None:
     source = tmp_path / "main.c"
     source.write_text("#include <signal.h>\n" + PROGRAM % end)
