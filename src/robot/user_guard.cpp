@@ -129,6 +129,10 @@ bool is_in_user_program(void const* signal_context) {
 
 void install_user_guard(double timeout_s) {
     guard.thread = pthread_self();
+    guard.inside = false;
+    guard.crashed = false;
+    guard.left_by_force = false;
+    note_data_file("", DataFileState::none);
     enter_stage(RunStage::running);
     start_watch(timeout_s);
 }
