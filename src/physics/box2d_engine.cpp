@@ -6,12 +6,14 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/shape.hpp"
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
 #include "physics/containment.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/ring_area.hpp"
 #include "physics/ring_filter.hpp"
+#include "physics/ring_sides.hpp"
 #include "physics/wrap_objects.hpp"
 
 namespace pogosim {
@@ -33,6 +35,10 @@ constexpr int kMaxSubsteps = 8;
 constexpr int kMostSubsteps = 100;
 constexpr float kMostMotionMm = 0.99F * b2_maxTranslation * kMmPerUnit;
 constexpr float kMostTurnRad = 0.99F * b2_maxRotation;
+// The joints of a ring yield to bodies that hit it hard. It holds those that move by up to this share of half its
+// thickness per sub-step (found by trial with robots of 5 to 40 mm), or as far as in the sub-steps of slow robots.
+constexpr float kRingShare = 0.2F;
+constexpr float kLeastRingMotionMm = 0.5F * kApproachMm;
 // Box2D calls slower collisions inelastic; its own limit of 1 unit/s is the full speed of a robot.
 constexpr float kRestitutionThreshold = 0.05F;  // units/s
 // A spring that swings more often than this per step cannot be followed and would shake; it is taken for one that
@@ -44,9 +50,19 @@ constexpr float kMostMassRatio = 30.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
 
-/// Sub-steps of one step: see kApproachMm and kMostMotionMm. Counts what the motors ask for; collisions make few bodies
-/// a little faster.
-int substeps_for(World const& world) {
+/// What a body may move in a sub-step: see kMostMotionMm and kRingShare.
+float most_motion_mm(World const& world) {
+    float most_mm = kMostMotionMm;
+    for (Ring const& ring : world.rings) {
+        float const half_thickness_mm = inner_radius(world.bodies.shape[ring.body]);
+        most_mm = std::min(most_mm, std::max(kRingShare * half_thickness_mm, kLeastRingMotionMm));
+    }
+    return most_mm;
+}
+
+/// Sub-steps of one step: see kApproachMm and most_motion_mm(). Counts what the motors ask for; collisions make few
+/// bodies a little faster.
+int substeps_for(World const& world, float most_motion_mm) {
     float fastest_mm2_s2 = 0.0F;
     float fastest_rad_s = 0.0F;
     for (Drive const& drive : world.robots.drive) {
@@ -58,14 +74,15 @@ int substeps_for(World const& world) {
     // Speeds are round numbers, give or take a rounding.
     constexpr float tolerance = 1e-3F;
     float const fine = std::ceil(2.0F * motion_mm / kApproachMm - tolerance);
-    float const needed = std::ceil(std::max(motion_mm / kMostMotionMm, fastest_rad_s * step_s / kMostTurnRad));
+    float const needed = std::ceil(std::max(motion_mm / most_motion_mm, fastest_rad_s * step_s / kMostTurnRad));
     float const substeps = std::max(std::clamp(fine, 1.0F, static_cast<float>(kMaxSubsteps)), needed);
     return static_cast<int>(std::min(substeps, static_cast<float>(kMostSubsteps)));
 }
 
 class Box2dEngine final : public PhysicsEngine {
 public:
-    Box2dEngine(World const& world, WallSpec const& walls) : filter_(world), engine_(b2Vec2_zero) {
+    Box2dEngine(World const& world, WallSpec const& walls)
+        : filter_(world), engine_(b2Vec2_zero), most_motion_mm_(most_motion_mm(world)) {
         engine_.SetContinuousPhysics(false);
         engine_.SetAutoClearForces(false);  // there are none
         engine_.SetContactFilter(&filter_);
@@ -83,6 +100,9 @@ public:
         for (Ring const& ring : world.rings) {
             areas_.emplace_back(ring, bodies_);
         }
+        if (!world.rings.empty()) {
+            sides_.emplace(world, bodies_);
+        }
     }
 
     void advance(World& world) override {
@@ -90,7 +110,7 @@ public:
         if (!any_awake_) {
             return;  // nothing moves, as in a swarm that only talks
         }
-        int const substeps = substeps_for(world);
+        int const substeps = substeps_for(world, most_motion_mm_);
         Iterations const iterations = world.joints.empty() ? kForContacts : kForJoints;
         auto const dt_s = static_cast<float>(world.time_step_s / substeps);
         for (int i = 0; i < substeps; ++i) {
@@ -102,8 +122,14 @@ public:
         if (containment_) {
             containment_->hold(bodies_);
         }
+        if (sides_ && sides_->hold(bodies_) && containment_) {
+            containment_->start_from(bodies_);
+        }
         if (world.periodic) {
             wrap_objects(world, bodies_);
+            if (sides_) {
+                sides_->look_again(bodies_);
+            }
         }
         any_awake_ = false;
         for (Object const& object : world.objects) {
@@ -233,7 +259,9 @@ private:
 
     RingFilter filter_;
     b2World engine_;
+    float most_motion_mm_;                    // in a sub-step
     std::optional<Containment> containment_;  // nobody leaves a periodic world
+    std::optional<RingSides> sides_;          // when there are rings
     bool any_awake_ = true;
     std::vector<RingArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
@@ -241,8 +269,10 @@ private:
 
 }  // namespace
 
-MotionLimits box2d_motion_limits() {
-    return {.motion_mm = kMostSubsteps * kMostMotionMm, .turn_rad = kMostSubsteps * kMostTurnRad};
+MotionLimits box2d_motion_limits(World const& world) {
+    return {.motion_mm = kMostSubsteps * most_motion_mm(world),
+            .turn_rad = kMostSubsteps * kMostTurnRad,
+            .is_of_rings = most_motion_mm(world) < kMostMotionMm};
 }
 
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls) {

@@ -54,6 +54,13 @@ void Containment::hold(std::vector<b2Body*> const& bodies) {
     }
 }
 
+void Containment::start_from(std::vector<b2Body*> const& bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        leashes_[i].last_mm = from_box2d(bodies[i]->GetPosition());
+        leashes_[i].free_mm = 0.0F;
+    }
+}
+
 void Containment::look_at_walls(b2Body& body, Leash& leash, Vec2 motion_mm) const {
     float const least_mm = kSunkShare * leash.radius_mm;
     if (!is_finite(body.GetPosition()) || !std::isfinite(body.GetAngle())) {

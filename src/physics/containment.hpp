@@ -32,6 +32,9 @@ public:
     /// and the engine's next step throws it back. A pose that is not finite becomes the last one, at rest.
     void hold(std::vector<b2Body*> const& bodies);
 
+    /// Takes the bodies where they are now, as the constructor does.
+    void start_from(std::vector<b2Body*> const& bodies);
+
 private:
     /// Of one body.
     struct Leash {

@@ -15,12 +15,13 @@ public:
     virtual void advance(World& world) = 0;
 };
 
-/// What the engine can follow in one time step: some 20 m and 25 turns.
+/// What the engine can follow in one time step: some 20 m and 25 turns, and no more than its soft rings can hold back.
 struct MotionLimits {
     float motion_mm;
     float turn_rad;
+    bool is_of_rings;  // motion_mm
 };
-MotionLimits box2d_motion_limits();
+MotionLimits box2d_motion_limits(World const& world);
 
 /// Box2D behind the interface. Takes the arena and the bodies, with poses and velocities, as they are in the world now.
 /// Throws ConfigError when the arena is too small to build walls.

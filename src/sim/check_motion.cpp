@@ -19,6 +19,7 @@ struct Motion {
     double per_key;          // largest speed of the robot for each unit of the key
     double most;             // in one step
     char const* unit;        // of what is done in a step
+    char const* reason;      // of `most`
     char const* speed_unit;  // of the key
 };
 
@@ -38,30 +39,33 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
         return;
     }
     throw ConfigError(fmt::format(
-        "{}: at {} {} robots {} up to {} {} in a time_step of {} s, more than the {} {} that can be simulated; use at "
-        "most {} {}, or a time_step of at most {} s",
+        "{}: at {} {} robots {} up to {} {} in a time_step of {} s, more than the {} {} that {}; use at most {} "
+        "{}, or a time_step of at most {} s",
         where_in_object(scenario, object, motion.key), text(motion.speed), motion.speed_unit, motion.verb,
-        text(in_a_step), motion.unit, text(time_step_s), text(motion.most), motion.unit,
+        text(in_a_step), motion.unit, text(time_step_s), text(motion.most), motion.unit, motion.reason,
         text(rounded_down(motion.most / motion.per_key / time_step_s)), motion.speed_unit,
         text(rounded_down(motion.most / motion.per_key / motion.speed))));
 }
 
 }  // namespace
 
-void check_motion(Scenario const& scenario, double time_step_s) {
-    MotionLimits const limits = box2d_motion_limits();
+void check_motion(Scenario const& scenario, World const& world) {
+    MotionLimits const limits = box2d_motion_limits(world);
+    char const* const can_simulate = "can be simulated";
+    char const* const can_move = limits.is_of_rings ? "a membrane can hold back" : can_simulate;
     for (ObjectConfig const& object : scenario.objects) {
         if (object.nb == 0 || !object.spec.body || !object.spec.robot || !object.spec.robot->has_wheels) {
             continue;
         }
         RobotSpec const& robot = *object.spec.robot;
         check(scenario, object,
-              {"max_linear_speed", "move", robot.max_linear_speed_mm_s, 1.0, limits.motion_mm, "mm", "mm/s"},
-              time_step_s);
+              {"max_linear_speed", "move", robot.max_linear_speed_mm_s, 1.0, limits.motion_mm, "mm", can_move, "mm/s"},
+              world.time_step_s);
         // Motors at full power against each other turn at four times max_angular_speed.
         check(scenario, object,
-              {"max_angular_speed", "turn", robot.max_angular_speed_rad_s, 4.0, limits.turn_rad, "rad", "rad/s"},
-              time_step_s);
+              {"max_angular_speed", "turn", robot.max_angular_speed_rad_s, 4.0, limits.turn_rad, "rad", can_simulate,
+               "rad/s"},
+              world.time_step_s);
     }
 }
 

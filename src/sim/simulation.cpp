@@ -152,7 +152,7 @@ std::optional<UserFailure> Simulation::start() {
         return failure;
     }
     fit_time_step();
-    check_motion(scenario_, world_.time_step_s);
+    check_motion(scenario_, world_);
     if (auto failure = recorder_.open()) {
         return failure;
     }

@@ -58,7 +58,7 @@ def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena:
 
 @pytest.mark.parametrize(("radius", "speed"), [(1.0, 3e3), (1.0, 1e4), (26.5, 1e6)])
 def test_nobody_leaves_however_small_and_fast(tmp_path: Path, radius: float, speed: float) -> None:
-    # Robots among light bodies, heads and bars, and a membrane whose dots are small.
+    # Robots among light bodies, heads and bars, and a membrane with small dots unless they are too fast for it.
     solid = {"geometry": "disk", "radius": 10.0}
     soft = {
         "type": "membrane",
@@ -85,13 +85,13 @@ def test_nobody_leaves_however_small_and_fast(tmp_path: Path, radius: float, spe
         "objects.bars": {"type": "passive_object", "nb": 3, "geometry": "rectangle"},
         "objects.bars.body_width": 60.0,
         "objects.bars.body_height": 4.0,
-        "objects.soft": {**soft, "serialize_dot_pose": True},
+        "objects.soft": {**soft, "nb": 1 if speed <= 3e3 else 0, "serialize_dot_pose": True},
     }
     result = run(example("run_and_tumble"), tmp_path, settings)
     assert result.code == 0, result.text
     rows = result.frame().query("robot_category != 'soft' or subpart_id >= 0")
     points = rows[["x", "y"]].to_numpy(dtype=np.float64)
-    assert len(points) > 5000
+    assert len(points) > 2000
     outer, *holes = polygons(result)
     assert Outline(outer).contains_points(points).all()
     for hole in holes:
@@ -130,6 +130,37 @@ def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that
     assert "scene.yaml:" in result.errors
     assert "objects.robots.max_linear_speed: at 1000000 mm/s robots move up to 200000 mm in a" in result.errors
     assert "use at most 99000 mm/s, or a time_step of at most 0.0198 s" in result.errors
+
+
+def test_speeds_that_a_membrane_cannot_hold_back_are_refused_with_the_largest_that_it_can(tmp_path: Path) -> None:
+    speed = "objects.robots.max_linear_speed"
+    settings = {
+        speed: 3e4,
+        "simulation_time": 0.5,
+        "objects.robots.nb": 5,
+        "objects.robots.area": {"x": 500, "y": 500, "radius": 150},
+        "objects.soft": {
+            "type": "membrane",
+            "geometry": "disk",
+            "radius": 250,
+            "x": 500,
+            "y": 500,
+            "num_dots": 120,
+            "serialize_dot_pose": True,
+        },
+    }
+    result = run(example("run_and_tumble"), tmp_path, settings)
+    assert result.code == 2
+    assert (
+        "objects.robots.max_linear_speed: at 30000 mm/s robots move up to 300 mm in a time_step of 0.01 s, more than "
+        "the 200 mm that a membrane can hold back; use at most 20000 mm/s, or a time_step of at most 0.00666 s"
+    ) in result.errors
+    for accepted in ({speed: 2e4}, {"time_step": 0.00666}):
+        result = run(example("run_and_tumble"), tmp_path, {**settings, **accepted})
+        assert result.code == 0, result.text
+        for _, rows in result.frame().groupby("time"):
+            ring = Outline(rows.query("subpart_id >= 0")[["x", "y"]].to_numpy(dtype=np.float64))
+            assert ring.contains_points(rows.query("robot_category == 'robots'")[["x", "y"]]).all()
 
 
 def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "support/objects.hpp"
 #include "support/test_program.hpp"
 
@@ -225,6 +226,65 @@ TEST(Membrane, HoldsInEveryShapeAndMake) {
             watch.run_for(6.0);
             expect_kept_area(watch);
         }
+    }
+}
+
+/// Ten robots of this make in a membrane of 250 mm, all full ahead, each to a side of its own.
+Scenario fast_scene(bool segments, float radius_mm, float speed_mm_s, double time_step_s) {
+    ObjectConfig ring = membrane(segments);
+    ring.spec.shape.radius_mm = 250.0F;
+    ring.spec.ring->body_count = 120;
+    std::vector<ObjectConfig> robots = robots_around({500, 500}, 9, 140.0F);
+    robots.push_back(testing::robot_at({500, 500}));
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+        robots[i].spec.shape.radius_mm = radius_mm;
+        robots[i].spec.robot->max_linear_speed_mm_s = speed_mm_s;
+        robots[i].heading_rad = 1.7F * static_cast<float>(i);
+    }
+    Scenario scenario = scene({ring}, robots);
+    scenario.time_step_s = time_step_s;
+    return scenario;
+}
+
+TEST(Membrane, HoldsAtEverySpeedSizeAndStepOrRefusesToStart) {
+    int held = 0;
+    int refused = 0;
+    push_to_the_right();
+    for (bool const segments : {false, true}) {
+        for (float const radius_mm : {5.0F, 40.0F}) {
+            for (float const speed_mm_s : {100.0F, 3000.0F, 1e4F, 1e5F}) {
+                for (double const time_step_s : {0.001, 0.01, 0.05}) {
+                    SCOPED_TRACE(::testing::Message() << (segments ? "segments, " : "dots, ") << radius_mm << " mm, "
+                                                      << speed_mm_s << " mm/s, " << time_step_s << " s");
+                    try {
+                        Watch watch(fast_scene(segments, radius_mm, speed_mm_s, time_step_s));
+                        ASSERT_EQ(watch.inside_at_first(), 10U);
+                        watch.run_for(time_step_s < 0.01 ? 0.1 : 0.4);
+                        ++held;
+                    } catch (ConfigError const& error) {
+                        std::string const message = error.what();
+                        EXPECT_NE(message.find("that a membrane can hold back; use at most "), std::string::npos)
+                            << message;
+                        ++refused;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GE(held, 24);
+    EXPECT_GE(refused, 8);
+}
+
+TEST(Membrane, HoldsRobotsThatNoiseMakesFasterThanAnyMotor) {
+    // Some 100 m/s, more than sub-steps can follow.
+    push_to_the_right();
+    for (bool const segments : {false, true}) {
+        Scenario scenario = fast_scene(segments, 40.0F, 1000.0F, 0.01);
+        for (ObjectConfig& object : scenario.objects) {
+            object.spec.robot->linear_noise_stddev = 1000.0F;  // times 100 mm/s
+        }
+        Watch watch(std::move(scenario));
+        watch.run_for(0.3);
     }
 }
 

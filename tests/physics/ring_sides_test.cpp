@@ -1,0 +1,115 @@
+// What the engine lets through a soft ring comes back.
+#include "physics/ring_sides.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+/// A robot in the middle of a ring of 4 or more disks, another one outside; the engine's bodies are moved by hand.
+class RingOfDisks : public ::testing::Test {
+protected:
+    void make(int count, float radius_mm, float spring_mm = 0.0F) {
+        ring_.body_count = static_cast<std::uint32_t>(count);
+        for (int i = 0; i < count; ++i) {
+            ObjectSpec spec = testing::pogobot_spec();
+            spec.shape.radius_mm = radius_mm;
+            testing::add_robot(
+                world_, centre_mm_ + 100.0F * direction(6.2831853F * static_cast<float>(i) / static_cast<float>(count)),
+                0.0F, spec);
+        }
+        if (spring_mm > 0.0F) {
+            Joint& joint = world_.joints.emplace_back();
+            joint.b = 1;
+            joint.length_mm = spring_mm;
+            joint.max_stretch = 0.05F;
+        }
+        inside_ = testing::add_robot(world_, centre_mm_);
+        outside_ = testing::add_robot(world_, {900, 500});
+        world_.rings.push_back(ring_);
+        for (Vec2 const position_mm : world_.bodies.position_mm) {
+            b2BodyDef definition;
+            definition.type = b2_dynamicBody;
+            definition.position = to_box2d(position_mm);
+            definition.linearVelocity = {1.0F, 2.0F};
+            bodies_.push_back(engine_.CreateBody(&definition));
+        }
+        sides_.emplace(world_, bodies_);
+    }
+
+    void move(std::uint32_t body, Vec2 to_mm) { bodies_[body]->SetTransform(to_box2d(to_mm), 0.5F); }
+    Vec2 place(std::uint32_t body) const { return from_box2d(bodies_[body]->GetPosition()); }
+
+    Vec2 centre_mm_{500, 500};
+    Ring ring_;
+    World world_ = testing::square_world();
+    std::uint32_t inside_ = 0;
+    std::uint32_t outside_ = 0;
+    b2World engine_{b2Vec2_zero};
+    std::vector<b2Body*> bodies_;
+    std::optional<RingSides> sides_;
+};
+
+TEST_F(RingOfDisks, LeavesThoseAloneWhoStayOnTheirSide) {
+    make(12, 10.0F);
+    move(inside_, {550, 520});
+    move(outside_, {620, 500});
+    EXPECT_FALSE(sides_->hold(bodies_));
+    EXPECT_EQ(place(inside_), (Vec2{550, 520}));
+    EXPECT_EQ(place(outside_), (Vec2{620, 500}));
+    EXPECT_EQ(bodies_[inside_]->GetLinearVelocity().y, 2.0F);
+}
+
+TEST_F(RingOfDisks, PutsBackAtRestWhoeverJumpsOutOrIn) {
+    make(12, 10.0F);
+    move(inside_, {560, 500});
+    move(outside_, {700, 500});
+    ASSERT_FALSE(sides_->hold(bodies_));
+    move(inside_, {650, 500});
+    move(outside_, {690, 500});
+    EXPECT_TRUE(sides_->hold(bodies_));
+    EXPECT_EQ(place(inside_), (Vec2{560, 500}));
+    EXPECT_EQ(bodies_[inside_]->GetLinearVelocity().Length(), 0.0F);
+    // The other one goes on.
+    EXPECT_EQ(place(outside_), (Vec2{690, 500}));
+    EXPECT_EQ(bodies_[outside_]->GetLinearVelocity().y, 2.0F);
+
+    move(outside_, {520, 500});
+    EXPECT_TRUE(sides_->hold(bodies_));
+    EXPECT_EQ(place(outside_), (Vec2{690, 500}));
+}
+
+TEST_F(RingOfDisks, ComesBackWithEverybodyWhenItMovedOverSomebody) {
+    make(12, 10.0F);
+    for (std::uint32_t i = 0; i < ring_.body_count; ++i) {
+        move(i, place(i) + Vec2{200, 0});
+    }
+    move(outside_, {910, 500});
+    EXPECT_TRUE(sides_->hold(bodies_));
+    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+        EXPECT_EQ(place(i), from_box2d(to_box2d(world_.bodies.position_mm[i])));
+        EXPECT_EQ(bodies_[i]->GetAngle(), 0.0F);
+        EXPECT_EQ(bodies_[i]->GetLinearVelocity().Length(), 0.0F);
+    }
+}
+
+TEST_F(RingOfDisks, LetsThroughWhatFitsBetweenItsDisks) {
+    make(6, 10.0F, /*spring_mm=*/80.0F);  // 64 mm remain when it is stretched
+    move(inside_, {700, 500});
+    EXPECT_FALSE(sides_->hold(bodies_));
+    EXPECT_EQ(place(inside_), (Vec2{700, 500}));
+}
+
+TEST_F(RingOfDisks, StopsWhatDoesNotFitBetweenItsDisks) {
+    make(6, 10.0F, /*spring_mm=*/65.0F);  // 48 mm
+    move(inside_, {700, 500});
+    EXPECT_TRUE(sides_->hold(bodies_));
+    EXPECT_EQ(place(inside_), centre_mm_);
+}
+
+}  // namespace
+}  // namespace pogosim
