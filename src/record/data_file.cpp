@@ -85,22 +85,21 @@ struct Pieces {
         row_count += batch->num_rows();
     }
 
-    /// All rows in one batch, and none left here.
-    arrow::Result<std::shared_ptr<arrow::RecordBatch>> take() {
-        auto const taken = std::exchange(*this, {});
-        if (taken.batches.size() == 1) {
-            return taken.batches.front();
+    /// All rows in one batch.
+    arrow::Result<std::shared_ptr<arrow::RecordBatch>> joined() const {
+        if (batches.size() == 1) {
+            return batches.front();
         }
-        auto const& schema = taken.batches.front()->schema();
+        auto const& schema = batches.front()->schema();
         arrow::ArrayVector columns;
         for (int i = 0; i < schema->num_fields(); ++i) {
             arrow::ArrayVector parts;
-            for (auto const& batch : taken.batches) {
+            for (auto const& batch : batches) {
                 parts.push_back(batch->column(i));
             }
             ARROW_ASSIGN_OR_RAISE(columns.emplace_back(), arrow::Concatenate(parts));
         }
-        return arrow::RecordBatch::Make(schema, taken.row_count, std::move(columns));
+        return arrow::RecordBatch::Make(schema, row_count, std::move(columns));
     }
 };
 
@@ -200,9 +199,12 @@ struct DataFile::Impl {
         if (buffered_rows == 0) {
             return Status::OK();
         }
+        auto const rows = std::exchange(buffered_rows, 0);
         ARROW_ASSIGN_OR_RAISE(auto arrays, columns.take());
-        auto const batch = arrow::RecordBatch::Make(schema, buffered_rows, std::move(arrays));
-        buffered_rows = 0;
+        for (auto& array : arrays) {
+            array = array->Slice(0, rows);  // a row that found no memory has only some of its cells
+        }
+        auto const batch = arrow::RecordBatch::Make(schema, rows, std::move(arrays));
         unsaved.add(batch);
         uncompleted.add(batch);
         return Status::OK();
@@ -214,12 +216,9 @@ struct DataFile::Impl {
             return Status::OK();
         }
         auto const begin = SaveClock::Clock::now();
-        auto const kept = unsaved;
-        ARROW_ASSIGN_OR_RAISE(auto const batch, unsaved.take());
-        if (auto const status = unfinished->append(*batch); !status.ok()) {
-            unsaved = kept;
-            return status;
-        }
+        ARROW_ASSIGN_OR_RAISE(auto const batch, unsaved.joined());
+        ARROW_RETURN_NOT_OK(unfinished->append(*batch));
+        unsaved = {};
         note_saved(unsaved_moments.back());
         unsaved_moments.clear();
         if (clock.run_is_long()) {
@@ -234,27 +233,41 @@ struct DataFile::Impl {
         saved_time_s = last.time_s;
     }
 
-    /// Where not all rows fit, those of the first moments do.
+    /// Where not all rows fit, on the disk or in memory together, those of the first moments do.
     Status save_what_fits() {
         ARROW_RETURN_NOT_OK(cut());
-        if (unsaved.row_count == 0) {
-            return Status::OK();
+        std::int64_t first_row = saved_rows;  // of the piece
+        for (auto const& piece : unsaved.batches) {
+            if (!save_what_fits(*piece, first_row)) {
+                break;
+            }
+            first_row += piece->num_rows();
         }
-        ARROW_ASSIGN_OR_RAISE(auto const batch, unsaved.take());
-        std::int64_t const first_row = saved_rows;
+        return Status::OK();
+    }
+
+    /// The same for the rows from `first_row` of the run on. True when all of them fitted.
+    bool save_what_fits(arrow::RecordBatch const& piece, std::int64_t first_row) {
+        std::int64_t const row_end = first_row + piece.num_rows();
+        std::int64_t written_end = first_row;
         std::span<Moment const> left(unsaved_moments);
+        while (!left.empty() && left.front().row_end <= first_row) {
+            left = left.subspan(1);
+        }
         for (auto count = left.size(); count > 0;) {
             Moment const& last = left[count - 1];
-            auto const rows = batch->Slice(saved_rows - first_row, last.row_end - saved_rows);
+            auto const end = std::min(last.row_end, row_end);
+            auto const rows = piece.Slice(written_end - first_row, end - written_end);
             if (unfinished->append(*rows).ok()) {
-                note_saved(last);
+                written_end = end;
+                note_saved({end == last.row_end ? last.time_s : saved_time_s, end});
                 left = left.subspan(count);
-                count = std::min(count, left.size());
+                count = end < row_end ? std::min(count, left.size()) : 0;
             } else {
                 count /= 2;
             }
         }
-        return Status::OK();
+        return written_end == row_end;
     }
 
     /// Moves rows to the complete file.
@@ -265,8 +278,10 @@ struct DataFile::Impl {
         if (uncompleted.row_count == 0) {
             return Status::OK();
         }
-        ARROW_ASSIGN_OR_RAISE(auto const batch, uncompleted.take());
-        return complete->append(*batch);
+        ARROW_ASSIGN_OR_RAISE(auto const batch, uncompleted.joined());
+        ARROW_RETURN_NOT_OK(complete->append(*batch));
+        uncompleted = {};
+        return Status::OK();
     }
 
     Status finish() {

@@ -82,6 +82,7 @@ std::optional<UserFailure> Recorder::open() {
         return failure;
     }
     make_data_file();
+    is_opened_ = true;
     return std::nullopt;
 }
 
@@ -165,12 +166,15 @@ void Recorder::save_if_due() {
 void Recorder::close() {
     if (data_file_) {
         data_file_->close();
+        is_complete_ = true;
         note_data_file(output().data_filename, DataFileState::complete);
     }
 }
 
 std::string Recorder::note() const {
-    return data_file_ ? fmt::format(". The data file '{}' is complete up to there", output().data_filename) : "";
+    return is_opened_ && is_complete_
+               ? fmt::format(". The data file '{}' is complete up to there", output().data_filename)
+               : "";
 }
 
 }  // namespace pogosim

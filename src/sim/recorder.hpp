@@ -38,7 +38,7 @@ public:
     /// Completes the file. Throws OutputError.
     void close();
 
-    /// Behind a message about a run that ended early: where its data is. Empty without a data file.
+    /// Behind a message about a run that ended early: where its data is. Empty before close() has completed the file.
     std::string note() const;
 
 private:
@@ -55,6 +55,8 @@ private:
     std::vector<bool> category_is_recorded_;
     LockedFile reserved_;  // until there is a data file
     std::unique_ptr<DataFile> data_file_;
+    bool is_opened_ = false;  // by open(): rows come into it
+    bool is_complete_ = false;
     DataRow empty_row_;               // user columns of what runs no user code
     std::int64_t next_row_time_ = 0;  // in save periods
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <exception>
 #include <new>
 #include <optional>
 #include <random>
@@ -82,21 +83,33 @@ ExitCode Simulation::run() {
         }
     });
     if (shortage) {
-        finish();
-        throw OutOfMemory(fmt::format("t = {:.4f} s: {}{}", world_.time_s(), *shortage, recorder_.note()));
+        std::string const message = fmt::format("t = {:.4f} s: {}", world_.time_s(), *shortage);
+        try {
+            finish();
+        } catch (std::exception const&) {
+            log().error("{}", message);
+            throw;
+        }
+        throw OutOfMemory(message + recorder_.note());
     }
     if (crash) {
         failure = crash;
     } else if (!failure) {
         failure = call_user_code([] {});  // a thread of the program may have failed meanwhile
     }
-    // The message first: completing the file may fail after a crash that destroyed memory.
     if (failure) {
-        report(*failure);
-        if (!failure->refused) {
-            recorder_.open_without_rows();  // the file of an earlier run must not pass for this one's
+        // The message last, since it says what has become of the data file. When completing that crashes, because memory
+        // is destroyed, the last words of the first crash are said.
+        try {
+            if (!failure->refused) {
+                recorder_.open_without_rows();  // the file of an earlier run must not pass for this one's
+            }
+            finish();
+        } catch (std::exception const&) {
+            report(*failure);
+            throw;
         }
-        finish();
+        report(*failure);
         call_user_code([this] { programs_.print_unfinished_lines(); });
         return failure->code;
     }

@@ -270,3 +270,32 @@ def test_missing_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_command_is_installed() -> None:
     command = Path(sys.executable).parent / "pogosim-recover"
     assert "usage: pogosim-recover" in run_command(command, Path.cwd(), ["-h"]).output
+
+
+# ---- what the message of a crash says of the data file ----
+
+
+DISK_FULL = "struct rlimit limit = {.rlim_cur = 100, .rlim_max = 100}; setrlimit(RLIMIT_FSIZE, &limit);"
+
+
+@pytest.mark.parametrize("end", ["abort();", "*(volatile int *) 8 = 1;", "exit(4);", "pogobot_ticks = 0; exit(0);"])
+def test_message_of_an_end_calls_no_file_complete_that_could_not_be_completed(tmp_path: Path, end: str) -> None:
+    source = tmp_path / "main.c"
+    for full in (False, True):
+        source.write_text(
+            "#include <stdlib.h>\n#include <sys/resource.h>\n" + PROGRAM % ((DISK_FULL if full else "") + end)
+        )
+        program = compile_program(tmp_path / "main", source, flags=["-D_GNU_SOURCE"])
+        result = run(program, tmp_path, LONG)
+        first, *others = result.errors.splitlines()
+        assert "the user program " in first
+        assert " in user_step of robot #0 " in first
+        assert ("The data file 'data.feather' is complete up to there" in first) == (not full)
+        if full:
+            (reason,) = others
+            assert "cannot write the data file 'data.feather' (data_filename): File too large" in reason
+            assert "complete up to" not in result.errors
+            assert result.code == 2
+        else:
+            assert others == []
+            assert len(result.frame()) > 0

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -56,6 +57,33 @@ private:
     void (*handler_before_)(int);
     rlimit before_{};
 };
+
+#if defined(__linux__) && !defined(POGOSIM_SANITIZED)
+
+/// Arrow's other allocators keep what was freed, and get along without new memory for long.
+[[maybe_unused]] int const plain_allocator = setenv("ARROW_DEFAULT_MEMORY_POOL", "system", 1);
+
+/// This process gets no more than `bytes` of memory from now on.
+class AddressSpaceLimit {
+public:
+    explicit AddressSpaceLimit(std::size_t bytes) {
+        std::ifstream sizes("/proc/self/statm");
+        std::size_t pages = 0;
+        sizes >> pages;
+        getrlimit(RLIMIT_AS, &before_);
+        rlimit const limit{.rlim_cur = pages * static_cast<std::size_t>(getpagesize()) + bytes,
+                           .rlim_max = before_.rlim_max};
+        setrlimit(RLIMIT_AS, &limit);
+    }
+    ~AddressSpaceLimit() { setrlimit(RLIMIT_AS, &before_); }
+    AddressSpaceLimit(AddressSpaceLimit const&) = delete;
+    AddressSpaceLimit& operator=(AddressSpaceLimit const&) = delete;
+
+private:
+    rlimit before_{};
+};
+
+#endif
 
 void expect_says(std::string const& message, std::vector<std::string> const& parts) {
     for (auto const& part : parts) {
@@ -128,6 +156,20 @@ TEST_F(OutputFailure, DiskTooSmallForTheFirstRowsTogetherHoldsThoseOfTheFirstTim
     EXPECT_GT(std::filesystem::file_size(path("a.feather")), 90000U);
     EXPECT_EQ(table->num_rows() % 7, 0);  // rows of whole moments
     expect_says(message, {"File too large", fmt::format("up to t = {}.0000 s", table->num_rows() / 7 - 1)});
+}
+
+TEST_F(OutputFailure, DiskTooSmallForTheRowsOfManyBatchesHoldsThoseOfTheFirstTimes) {
+    FileSizeLimit const limit(100000);
+    DataFile file({.path = path("a.feather"), .flush_row_count = 1000});
+    std::string const message = output_error([&file] {
+        for (int i = 0; i < 100000; ++i) {
+            file.append({.time_s = static_cast<float>(i / 7), .category = "robots", .id = i % 977}, {});
+        }
+        file.save();
+    });
+    auto const rows = read_unfinished(path("a.feather"))->num_rows();
+    EXPECT_GT(rows, 1000);
+    expect_says(message, {"File too large", fmt::format("up to t = {}.0000 s", rows / 7 - 1)});
 }
 
 TEST_F(OutputFailure, DiskThatFillsUpWithTheCompleteFileLeavesTheUnfinishedOne) {
@@ -203,6 +245,30 @@ TEST_F(OutputFailure, FileThatAnotherRunWritesIsRefusedUntilThatOneHasEnded) {
     }
     EXPECT_EQ(open_error(path("a.feather")), "");
 }
+
+#if defined(__linux__) && !defined(POGOSIM_SANITIZED)
+
+TEST_F(OutputFailure, RowsThatFindNoMemoryTogetherAreSavedInParts) {
+    constexpr int kRows = 3 * 100000;
+    DataFileOptions options{.path = path("a.feather"), .flush_row_count = kRows / 3};
+    for (int i = 0; i < 40; ++i) {
+        options.user_columns.push_back({fmt::format("column {}", i), ColumnType::float64});
+    }
+    DataFile file(options);
+    std::vector<CellValue> const cells(options.user_columns.size(), 0.5);
+    for (int i = 0; i < kRows; ++i) {
+        file.append({.time_s = static_cast<float>(i), .category = "robots", .id = i}, cells);
+    }
+    std::string message;
+    {
+        AddressSpaceLimit const limit(30U << 20U);
+        message = output_error([&file] { file.save(); });
+    }
+    expect_says(message, {"there is not enough memory for its rows", "up to t = 299999.0000 s"});
+    EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), kRows);
+}
+
+#endif
 
 }  // namespace
 }  // namespace pogosim
