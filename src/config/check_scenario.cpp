@@ -73,7 +73,9 @@ void require_name(Scenario const& scenario, char const* key, std::string const& 
 }
 
 void check_file_names(Scenario const& scenario) {
-    require_name(scenario, "arena_file", scenario.arena_file, "arena_surface");
+    if (scenario.resolved.find("arena_file") != nullptr) {
+        require_name(scenario, "arena_file", scenario.arena_file, "arena_surface");
+    }
     if (scenario.output.enable_data_logging) {
         require_name(scenario, "data_filename", scenario.output.data_filename, "enable_data_logging");
     }

@@ -40,7 +40,7 @@ std::span<Key<IrSpec> const> ir_keys() {
           "of them. Power 0 sends nothing."},
         K{"message_queue_size", &IrSpec::queue_size, between(1, 1000), "messages",
           "What a robot's queue of received messages holds; the newest is dropped when it is full."},
-        K{"msg_success_rate", Elsewhere{"a map of keys"}, any(), "",
+        K{"msg_success_rate", Elsewhere{kReceptionMap}, any(), "",
           "Probability that a message in reach is received, see its own table."},
     };
     return keys;

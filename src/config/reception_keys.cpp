@@ -87,6 +87,9 @@ ReceptionSpec read_reception_map(MapReader& reader) {
 ReceptionSpec read_reception(MapReader& robot) {
     static Node const absent;
     Node const* const map = robot.find("msg_success_rate");
+    if (map != nullptr && map->kind != Node::Kind::map) {
+        fail_expected({*map, robot.path_of("msg_success_rate")}, kReceptionMap);
+    }
     MapReader reader(map == nullptr ? absent : *map, robot.path_of("msg_success_rate"), robot.is_strict());
     ReceptionSpec const spec = read_reception_map(reader);
     if (map != nullptr) {

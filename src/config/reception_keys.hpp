@@ -1,10 +1,14 @@
 // `msg_success_rate`: the probability that a message is received.
 #pragma once
 
+#include <string_view>
+
 #include "config/map_reader.hpp"
 #include "world/specs.hpp"
 
 namespace pogosim {
+
+inline constexpr std::string_view kReceptionMap = "a map of keys, such as {type: static, rate: 0.9}";
 
 /// The law a robot's `msg_success_rate` asks for; `robot` reads the map it stands in.
 ///

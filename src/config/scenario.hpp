@@ -81,8 +81,8 @@ struct OutputConfig {
 };
 
 struct Scenario {
-    std::filesystem::path file;  // the configuration; relative names are also looked for beside it
-    std::string arena_file = "test.csv";
+    std::filesystem::path file;                       // the configuration; relative names are also looked for beside it
+    std::string arena_file;                           // needed
     std::optional<double> arena_surface_mm2 = 1.0e6;  // absent: the arena file is in mm
     bool arena_stretch = false;
     BoundaryCondition boundary = BoundaryCondition::solid;

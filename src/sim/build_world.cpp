@@ -55,6 +55,10 @@ void check_size(Scenario const& scenario, Arena const& arena) {
 }
 
 void build_arena(Scenario const& scenario, World& world) {
+    if (scenario.arena_file.empty()) {
+        throw ConfigError(fmt::format("{}: the key 'arena_file' is missing; give an outline, such as arenas/disk.csv",
+                                      where_at_top(scenario, "arena_file")));
+    }
     ArenaOutline const outline = read_arena_file(find_file(scenario, "arena_file", scenario.arena_file));
     world.periodic = scenario.boundary == BoundaryCondition::periodic || outline.periodic;
     Node const* const boundary = scenario.resolved.find("boundary_condition");

@@ -38,7 +38,7 @@ ReceptionSpec reception(std::string const& map) {
 TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     Warnings const warnings;
     Scenario const s = load("unrelated: 1\n");
-    EXPECT_EQ(s.arena_file, "test.csv");
+    EXPECT_EQ(s.arena_file, "");
     EXPECT_EQ(s.arena_surface_mm2, 1.0e6);
     EXPECT_FALSE(s.arena_stretch);
     EXPECT_EQ(s.boundary, BoundaryCondition::solid);

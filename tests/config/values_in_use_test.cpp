@@ -86,13 +86,13 @@ TEST(ValuesInUse, GiveTheSameValuesForEveryConfigurationOfTheProject) {
 TEST(ValuesInUse, GiveTheSameValuesForEveryTypeOfObject) {
     for (ObjectType const& type : object_types()) {
         SCOPED_TRACE(type.name);
-        expect_complete(load(kRobots + "  other:\n    geometry: disk\n    type: " + std::string(type.name) +
-                             "\n    x: 100.1\n    y: -1.0e-20\n"));
+        expect_complete(load("arena_file: a.csv\n" + kRobots + "  other:\n    geometry: disk\n    type: " +
+                             std::string(type.name) + "\n    x: 100.1\n    y: -1.0e-20\n"));
     }
 }
 
 TEST(ValuesInUse, HoldAKeyOfTwoNamesOnce) {
-    Scenario const scenario = load(kRobots +
+    Scenario const scenario = load("arena_file: a.csv\n" + kRobots +
                                    "    initial_formation: disk\n  lamp: {type: orbiting_static_light, "
                                    "geometry: disk, radius: 100, orbit_radius: 3, angular_speed: 2.5}\n");
     EXPECT_EQ(find_path(scenario.values, "objects.lamp.orbit_angular_speed")->scalar, "2.5");
@@ -101,15 +101,15 @@ TEST(ValuesInUse, HoldAKeyOfTwoNamesOnce) {
 }
 
 TEST(ValuesInUse, GiveTheSameValuesForWhatIsNotOneNumber) {
-    expect_complete(
-        load("arena_surface: file\nseed: 7\ndata_filename: 'a \"b\": #c'\ndata_logger_category: [robots, '7']\n"
-             "parameters: {speed: [1, 2.50, three], name: '12'}\n"
-             "objects:\n"
-             "  robots:\n"
-             "    - {type: pogobot, poses: [[0, 0, 0.1], [100, 0, 1.0e-7]]}\n"
-             "    - {type: pogobot, nb: 3, area: {x: 200, y: 0, radius: 100}, initial_formation: disk}\n"
-             "  '7': {type: passive_object, geometry: disk, initial_formation: random}\n"
-             "  lamp: {type: static_light, geometry: global, photo_start_at: 3}\n"));
+    expect_complete(load(
+        "arena_file: a.csv\narena_surface: file\nseed: 7\ndata_filename: 'a \"b\": #c'\ndata_logger_category: [robots, '7']\n"
+        "parameters: {speed: [1, 2.50, three], name: '12'}\n"
+        "objects:\n"
+        "  robots:\n"
+        "    - {type: pogobot, poses: [[0, 0, 0.1], [100, 0, 1.0e-7]]}\n"
+        "    - {type: pogobot, nb: 3, area: {x: 200, y: 0, radius: 100}, initial_formation: disk}\n"
+        "  '7': {type: passive_object, geometry: disk, initial_formation: random}\n"
+        "  lamp: {type: static_light, geometry: global, photo_start_at: 3}\n"));
 }
 
 TEST(ValuesInUse, AreThoseThatSetHasSet) {

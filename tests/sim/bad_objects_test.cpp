@@ -213,6 +213,15 @@ TEST(BadObjects, NothingStartsOutsideOfTheArenaThoughALampReachesOut) {
     }
 }
 
+TEST(MissingFiles, ConfigurationWithoutAnArenaIsToldTheKey) {
+    Folder const folder;
+    Warnings const warnings;
+    Folder::write("test.csv", "0,0\n1,0\n1,1\n0,1\n");
+    Folder::write("x.yaml", "objects:\n  robots: {type: pogobot}\n");
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }),
+              "x.yaml:1: the key 'arena_file' is missing; give an outline, such as arenas/disk.csv");
+}
+
 TEST(MissingFiles, FilesOfOtherFormationsAreNotLookedFor) {
     Folder const folder;
     Warnings const warnings;
