@@ -10,10 +10,12 @@ the floor the light, that the configuration in the file's metadata says; membran
 from __future__ import annotations
 
 import argparse
+import io
 import math
 import sys
 import textwrap
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -26,7 +28,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
-from pogosim.outputs import PathLike
+from pogosim.outputs import OutputError, PathLike, leads_to, real_output
 from pogosim.scene import (
     MEMBRANES,
     POGOBOT_RADIUS_MM,
@@ -62,6 +64,15 @@ MAX_LAMPLIGHT = 0.28  # opacity over the floor where it is brightest
 LIGHT_CELLS = 240  # along either side of the arena
 
 
+# Columns of the file that the picture uses, by what they hold.
+NUMBERS = ("time", "x", "y", "angle")
+INTEGERS = ("led_rgb", "subpart_id")
+USED = {*NUMBERS, *INTEGERS, "robot_category", "robot_id", "run"}
+
+PICTURES = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "svgz", "tif", "tiff", "webp")
+MAX_PIXELS = 2e8
+
+
 @dataclass
 class Swarm:
     """One run, ready to be drawn. Lengths in mm, y downwards; times in s."""
@@ -81,7 +92,7 @@ class Swarm:
 
 
 class PictureError(Exception):
-    """The file holds nothing that can be drawn."""
+    """The file holds nothing that can be drawn, or the picture cannot be made; says why."""
 
 
 def led_brightness(led: npt.ArrayLike) -> Floats:
@@ -130,7 +141,8 @@ def read_swarm(path: PathLike) -> Swarm:
     missing = {"time", "x", "y"} - set(rows.columns)
     if missing:
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
-    if "run" in rows:
+    rows = checked(rows)
+    if tells_runs_apart(rows, metadata):
         rows = rows[rows["run"] == rows["run"].min()]
     categories = read_categories(metadata["configuration"])
     rows = coloured(completed(rows), categories)
@@ -154,6 +166,40 @@ def read_swarm(path: PathLike) -> Swarm:
         rays=ray_names(metadata["configuration"]),
         end_s=end_s,
     )
+
+
+def checked(rows: pd.DataFrame) -> pd.DataFrame:
+    """Leave out columns that have the name of one of the simulator's, but other values.
+
+    Raises:
+        PictureError: A column that the picture needs does not hold what it should, or stands there several times.
+    """
+    twice = sorted({str(name) for name in rows.columns[rows.columns.duplicated()]} & USED)
+    if twice:
+        raise PictureError(f"it has several columns {', '.join(twice)}")
+    for name in NUMBERS:
+        if name in rows and not pd.api.types.is_float_dtype(rows[name]) | pd.api.types.is_integer_dtype(rows[name]):
+            raise PictureError(f"its column {name} does not hold numbers")
+    for name in ("robot_category", "robot_id"):
+        kinds = {"string", "categorical", "integer", "floating", "integer-na", "empty"}
+        if name in rows and pd.api.types.infer_dtype(rows[name], skipna=True) not in kinds:
+            raise PictureError(f"its column {name} does not hold {'names' if name == 'robot_category' else 'numbers'}")
+    strange = [name for name in INTEGERS if name in rows and not pd.api.types.is_integer_dtype(rows[name])]
+    rows = rows.drop(columns=strange)
+    if "robot_category" in rows:
+        rows = rows.assign(robot_category=rows["robot_category"].astype(object).fillna("unnamed").astype(str))
+    return rows
+
+
+def tells_runs_apart(rows: pd.DataFrame, metadata: dict[str, Any]) -> bool:
+    """Tell whether there is a column run that numbers runs, as batches of runs write it, and is not the program's own.
+
+    What a single run writes says its version, and has each object once at each time.
+    """
+    if "run" not in rows or not pd.api.types.is_integer_dtype(rows["run"]):
+        return False
+    names = [name for name in ("time", "robot_category", "robot_id", "subpart_id") if name in rows]
+    return "program_version" not in metadata or bool(rows.duplicated(names).any())
 
 
 def completed(rows: pd.DataFrame) -> pd.DataFrame:
@@ -511,21 +557,72 @@ def positive(text: str) -> float:
     return value
 
 
+def picture_file(name: str, data: str) -> Path:
+    """Return where the picture is to be written.
+
+    Raises:
+        OutputError: It is no name of a picture, no file, or that of the data.
+    """
+    suffix = Path(name).suffix[1:].lower()
+    if name and leads_to(name, data):
+        raise OutputError(f"the picture {name} would take the place of the data file {data}; name another picture")
+    path = real_output(name)
+    if suffix not in PICTURES:
+        raise OutputError(f"{name} is no name of a picture; let it end in .{', .'.join(PICTURES)}")
+    return path
+
+
+def rendered(figure: Figure, picture: str, dpi: float) -> bytes:
+    """Return the bytes of the picture, in the format of its name.
+
+    Raises:
+        PictureError: It would be too large or too small.
+    """
+    width, height = (float(inches) * dpi for inches in figure.get_size_inches())
+    if width * height > MAX_PIXELS or min(width, height) < 1:
+        raise PictureError(
+            f"with --dpi {dpi:g} the picture has {width:.3g} x {height:.3g} pixels; at least 1, and at most "
+            f"{MAX_PIXELS:.0e} together, are possible"
+        )
+    content = io.BytesIO()
+    try:
+        figure.savefig(content, format=Path(picture).suffix[1:].lower(), dpi=dpi)
+    except (MemoryError, OverflowError, RuntimeError, SystemError, ValueError) as error:
+        raise PictureError(f"matplotlib cannot make {picture} with --dpi {dpi:g}: {error}") from error
+    return content.getvalue()
+
+
+def make_picture(data: str, picture: str, dpi: float, tail_s: float | None) -> None:
+    """Draw a data file into a picture. A picture that is there stays until the new one is drawn.
+
+    Raises:
+        PictureError, OutputError, OSError, ValueError: Says which file, and why.
+    """
+    path = picture_file(picture, data)
+    try:
+        swarm = read_swarm(data)
+        figure = draw(swarm, tail_s)
+    except PictureError as error:
+        raise PictureError(f"cannot draw {data}: {error}") from error
+    except (TypeError, KeyError, IndexError, OverflowError, MemoryError, np.linalg.LinAlgError) as error:
+        raise PictureError(f"cannot draw {data}: its columns or metadata are not those of a run: {error}") from error
+    except ValueError as error:
+        named = str(data) in str(error)
+        raise PictureError(str(error) if named else f"cannot draw {data}: {error}") from error
+    path.write_bytes(rendered(figure, picture, dpi))
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; returns the exit code: 0, or 2 if the picture could not be made."""
     parser = argparse.ArgumentParser(prog="swarm_picture", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("data", metavar="DATA.feather", help="data file of a run")
-    parser.add_argument("picture", metavar="OUT.png", help="picture to write (png, pdf, svg)")
+    parser.add_argument("picture", metavar="OUT.png", help=f"picture to write ({', '.join(PICTURES)})")
     parser.add_argument("--dpi", type=positive, default=150.0, help="dots per inch (150)")
     parser.add_argument("--tail", type=positive, metavar="SECONDS", help="length of the trails (whole run)")
     options = parser.parse_args(arguments)
     try:
-        figure = draw(read_swarm(options.data), options.tail)
-        figure.savefig(options.picture, dpi=options.dpi)
-    except PictureError as error:
-        print(f"swarm_picture: cannot draw {options.data}: {error}", file=sys.stderr)
-        return 2
-    except (OSError, ValueError) as error:
+        make_picture(options.data, options.picture, options.dpi, options.tail)
+    except (PictureError, OutputError, OSError) as error:
         print(f"swarm_picture: {error}", file=sys.stderr)
         return 2
     return 0

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +90,21 @@ def test_walls_without_a_pose_and_parts_of_membranes_are_left_out(tmp_path: Path
 def test_only_the_first_of_several_runs_is_drawn(tmp_path: Path) -> None:
     swarm = read_swarm(write(tmp_path, rows(run=[3, 3, 2, 2])))
     assert swarm.rows["run"].tolist() == [2, 2]
+
+
+@pytest.mark.parametrize("own", [[True, False, True, False], [0.5, 1.5, 0.5, 1.5], ["a", "b", "a", "b"]])
+def test_column_of_a_program_that_is_called_run_hides_no_robot(tmp_path: Path, own: list[object]) -> None:
+    swarm = read_swarm(write(tmp_path, rows(run=own)))
+    assert len(swarm.rows) == 4
+
+
+@pytest.mark.parametrize("several", [False, True])
+def test_column_run_in_the_file_of_one_run_hides_no_robot(tmp_path: Path, several: bool) -> None:
+    frame = pd.concat([rows(run=[7] * 4), rows(run=[8] * 4)]) if several else rows(run=[7, 8, 7, 8])
+    data = write(tmp_path, frame)
+    table = feather.read_table(data)
+    feather.write_feather(table.replace_schema_metadata({**table.schema.metadata, "program_version": "1"}), data)
+    assert len(read_swarm(data).rows) == 4
 
 
 def test_same_id_in_two_categories_means_two_objects(tmp_path: Path) -> None:
@@ -330,8 +346,11 @@ def test_dpi_scales_the_picture(tmp_path: Path) -> None:
         rows().iloc[:1],
         rows(x=np.array([100, np.nan, np.nan, 300], np.float32)),
         rows(led_rgb=np.array([0] * 4, np.int32)),
+        rows(own=[{"a": 1}] * 4),
+        rows(led_rgb=["red"] * 4, subpart_id=[0.5] * 4),
+        rows(robot_category=["robots", None, "robots", None]),
     ],
-    ids=["no leds", "places only", "no angles", "one row", "gaps", "dark"],
+    ids=["no leds", "places only", "no angles", "one row", "gaps", "dark", "maps", "own columns", "no names"],
 )
 def test_what_is_missing_in_a_file_does_not_stop_the_picture(tmp_path: Path, frame: pd.DataFrame) -> None:
     assert picture(tmp_path, write(tmp_path, frame), "--dpi", "40").size > 0
@@ -346,6 +365,10 @@ def test_what_is_missing_in_a_file_does_not_stop_the_picture(tmp_path: Path, fra
         (rows().drop(columns=["x", "time"]), None, "it has no column time, x"),
         (rows().iloc[:0], None, "no object with a position"),
         (rows(x=np.array([np.nan] * 4, np.float32)), None, "no object with a position"),
+        (rows(x=[{"a": 1}] * 4), None, "its column x does not hold numbers"),
+        (rows(time=["0", "0", "1", "1"]), None, "its column time does not hold numbers"),
+        (rows(robot_category=[{"a": 1}] * 4), None, "its column robot_category does not hold names"),
+        (rows(robot_id=[{"a": 1}] * 4), None, "its column robot_id does not hold numbers"),
         (rows(), "[1, 2]", "'arena_polygons'"),
         (rows(), "[[{x: 1}]]", "'arena_polygons'"),
         (rows(), "[[", "'arena_polygons'"),
@@ -371,6 +394,67 @@ def test_missing_file_and_unwritable_picture_end_with_code_2(
     assert "no folder" in capsys.readouterr().err
     assert main([str(data), str(tmp_path / "out.xyz")]) == 2
     assert "xyz" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["data.png", "./data.png", "symbolic.png", "hard.png"])
+def test_picture_in_the_place_of_its_data_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    data = write(tmp_path, rows()).rename("data.png")
+    Path("symbolic.png").symlink_to(data)
+    Path("hard.png").hardlink_to(data)
+    before = data.read_bytes()
+    assert main(["data.png", name]) == 2
+    assert f"the picture {name} would take the place of the data file data.png" in capsys.readouterr().err
+    assert data.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("", "the name of the output file is empty"),
+        (".", ". is a folder, not a file"),
+        ("folder.png", "folder.png is a folder, not a file"),
+        ("pipe.png", "pipe.png is a pipe, not a file"),
+        (".png", ".png is no name of a picture; let it end in .eps, "),
+        ("out", "out is no name of a picture; let it end in .eps, "),
+        ("out.feather", ".pdf, .png, .ps, .svg"),
+        ("out.", "out. is no name of a picture"),
+        ("new/", "new/ is the name of a folder"),
+        ("none/out.png", "there is no folder "),
+    ],
+)
+def test_output_that_is_no_picture_is_refused_and_nothing_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, name: str, message: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    data = write(tmp_path, rows())
+    Path("folder.png").mkdir()
+    os.mkfifo("pipe.png")
+    before = sorted(tmp_path.iterdir())
+    assert main([str(data), name]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("dpi", ["1e9", "1e300", "1e-9", "0.01"])
+def test_resolution_that_makes_no_picture_is_refused_and_the_older_picture_stays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], dpi: str
+) -> None:
+    (tmp_path / "out.png").write_bytes(b"older")
+    assert main([str(write(tmp_path, rows())), str(tmp_path / "out.png"), "--dpi", dpi]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"with --dpi {float(dpi):g} the picture has " in line
+    assert (tmp_path / "out.png").read_bytes() == b"older"
+
+
+@pytest.mark.parametrize("suffix", ["pdf", "svg", "PNG", "jpg"])
+def test_name_of_the_picture_says_its_format(tmp_path: Path, suffix: str) -> None:
+    assert main([str(write(tmp_path, rows())), str(tmp_path / f"out.{suffix}"), "--dpi", "40"]) == 0
+    start = {"pdf": b"%PDF", "svg": b"<?xml", "PNG": b"\x89PNG", "jpg": b"\xff\xd8"}[suffix]
+    assert (tmp_path / f"out.{suffix}").read_bytes().startswith(start)
 
 
 @pytest.mark.parametrize("options", [[], ["a"], ["a", "b", "c"], ["a", "b", "--dpi", "0"], ["a", "b", "--tail", "nan"]])
