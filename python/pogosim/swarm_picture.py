@@ -622,8 +622,15 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         make_picture(options.data, options.picture, options.dpi, options.tail)
-    except (PictureError, OutputError, OSError) as error:
+    except (PictureError, OutputError) as error:
         print(f"swarm_picture: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        is_data = str(error.filename) == options.data
+        task = f"read '{options.data}'" if is_data else f"write '{options.picture}'"
+        is_missing = is_data and isinstance(error, FileNotFoundError)
+        reason = "no such file" if is_missing else (error.strerror or str(error)).lower()
+        print(f"swarm_picture: cannot {task}: {reason}", file=sys.stderr)
         return 2
     return 0
 

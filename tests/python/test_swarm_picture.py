@@ -387,10 +387,14 @@ def test_file_that_cannot_be_drawn_ends_with_its_reason_and_code_2(
 def test_missing_file_and_unwritable_picture_end_with_code_2(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main([str(tmp_path / "none.feather"), str(tmp_path / "out.png")]) == 2
-    assert "none.feather" in capsys.readouterr().err
+    none = tmp_path / "none.feather"
+    assert main([str(none), str(tmp_path / "out.png")]) == 2
+    assert capsys.readouterr().err == f"swarm_picture: cannot read '{none}': no such file\n"
+    assert main([str(tmp_path), str(tmp_path / "out.png")]) == 2
+    assert capsys.readouterr().err == f"swarm_picture: cannot read '{tmp_path}': is a directory\n"
     data = write(tmp_path, rows())
-    assert main([str(data), str(tmp_path / "no folder" / "out.png")]) == 2
+    picture = tmp_path / "no folder" / "out.png"
+    assert main([str(data), str(picture)]) == 2
     assert "no folder" in capsys.readouterr().err
     assert main([str(data), str(tmp_path / "out.xyz")]) == 2
     assert "xyz" in capsys.readouterr().err
