@@ -31,6 +31,7 @@ from pogosim.utils import load_dataframe
 ROOT = Path(__file__).resolve().parents[1]
 PROBES = ROOT / "examples" / "probes" / "probes"
 CONFIG = ROOT / "conf" / "probes.yaml"
+FORMATION = ROOT / "conf" / "probes_formation.csv"
 MEASUREMENTS = ROOT / "bench" / "ir_reception_profile.csv"
 
 SHORT_HEADER_BYTES = 3
@@ -93,7 +94,8 @@ def equation(setting: Setting, parameters: Mapping[str, float]) -> float:
 
 def simulate(setting: Setting, seed: int, simulation_time_s: float = 60.0, program: Path = PROBES) -> Count:
     """Run one simulation and count. Raises CalledProcessError if the program fails."""
-    settings = {
+    poses = FORMATION.read_text().splitlines()[: 1 + setting.neighbors + 1]  # the header, and one line per robot
+    settings: dict[str, object] = {
         "objects.robots.nb": setting.neighbors + 1,
         "parameters.payload_size": setting.payload_size,
         "parameters.send_percent": setting.send_percent,
@@ -102,6 +104,9 @@ def simulate(setting: Setting, seed: int, simulation_time_s: float = 60.0, progr
     }
     with tempfile.TemporaryDirectory() as folder:
         data = Path(folder) / "data.feather"
+        formation = Path(folder) / "formation.csv"
+        formation.write_text("\n".join(poses) + "\n")
+        settings["formation_filename"] = formation
         command = [str(program), "-c", str(CONFIG), "-g", "-q", "-s", str(seed), "--set", f"data_filename={data}"]
         for key, value in settings.items():
             command += ["--set", f"{key}={value}"]

@@ -78,3 +78,9 @@ def test_count_repeats_with_the_seed_and_changes_with_another() -> None:
     setting = Setting(20, 6, 80)
     assert simulate(setting, 1, 10.0) == simulate(setting, 1, 10.0)
     assert simulate(setting, 1, 10.0) != simulate(setting, 2, 10.0)
+
+
+def test_runs_of_the_table_have_nothing_to_warn_of(capfd: pytest.CaptureFixture[str]) -> None:
+    for setting in SETTINGS[::15]:
+        simulate(setting, 1, 1.0)
+    assert capfd.readouterr().err == ""
