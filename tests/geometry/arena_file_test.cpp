@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "geometry/arena.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace pogosim {
 namespace {
@@ -21,11 +22,6 @@ std::string const kSquare = "0,0\n10,0\n10,10\n0,10\n";
 /// A file of the given text, in a folder of its own that goes away with it.
 class ArenaFile : public testing::Test {
 protected:
-    ArenaFile() : folder_(fs::path(testing::TempDir()) / ("arena_file_" + test_name())), path_(folder_ / "arena.csv") {
-        fs::create_directories(folder_);
-    }
-    ~ArenaFile() override { fs::remove_all(folder_); }
-
     ArenaOutline read(std::string const& text) {
         std::ofstream(path_, std::ios::binary) << text;
         return read_arena_file(path_);
@@ -42,17 +38,14 @@ protected:
             read_arena_file(path);
         } catch (ConfigError const& error) {
             std::string const message = error.what();
-            std::string const prefix = folder_.string() + "/";
+            std::string const prefix = folder_.path().string() + "/";
             return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
         }
         return "";
     }
 
-    fs::path folder_;
-    fs::path path_;
-
-private:
-    static std::string test_name() { return testing::UnitTest::GetInstance()->current_test_info()->name(); }
+    TemporaryFolder folder_;
+    fs::path path_{folder_ / "arena.csv"};
 };
 
 Polygon const kSquareCorners{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
@@ -196,7 +189,7 @@ TEST_F(ArenaFile, HoleOutsideOrInsideAnotherHoleIsRefused) {
 
 TEST_F(ArenaFile, MissingFileFolderAndDeviceAreRefused) {
     EXPECT_NE(error_of_path(folder_ / "none.csv").find("no such file"), std::string::npos);
-    EXPECT_NE(error_of_path(folder_).find("found a folder"), std::string::npos);
+    EXPECT_NE(error_of_path(folder_.path()).find("found a folder"), std::string::npos);
     EXPECT_NE(error_of_path("/dev/zero").find("special file"), std::string::npos);
     EXPECT_NE(error_of_path("").find("no such file"), std::string::npos);
 }

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "geometry/formation.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace pogosim {
 namespace {
@@ -21,14 +22,10 @@ Arena const kRoom =
 
 class ImportedFormation : public testing::Test {
 protected:
-    ImportedFormation()
-        : folder_(fs::path(testing::TempDir()) /
-                  ("imported_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-        fs::create_directories(folder_);
+    ImportedFormation() {
         spec_.name = "imported";
-        spec_.filename = (folder_ / "poses.csv").string();
+        spec_.filename = folder_ / "poses.csv";
     }
-    ~ImportedFormation() override { fs::remove_all(folder_); }
 
     std::vector<Placement> place_from(std::string const& text, std::size_t count) {
         std::ofstream(spec_.filename, std::ios::binary) << text;
@@ -46,13 +43,13 @@ protected:
             place_from(text, count);
         } catch (ConfigError const& error) {
             std::string const message = error.what();
-            std::string const prefix = folder_.string() + "/";
+            std::string const prefix = folder_.path().string() + "/";
             return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
         }
         return "";
     }
 
-    fs::path folder_;
+    TemporaryFolder folder_;
     FormationSpec spec_;
     PoseReader reader_;
 };
@@ -141,7 +138,7 @@ TEST_F(ImportedFormation, BadRowsAreRefusedWithTheirLine) {
 
 TEST_F(ImportedFormation, MissingFileOrNameIsRefused) {
     EXPECT_THROW(place_now(1), ConfigError);
-    spec_.filename = folder_.string();
+    spec_.filename = folder_.path().string();
     EXPECT_THROW(place_now(1), ConfigError);
     spec_.filename = "";
     EXPECT_THROW(place_now(1), ConfigError);

@@ -6,9 +6,7 @@
 #include <arrow/ipc/reader.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -16,33 +14,18 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_folder.hpp"
+
 namespace pogosim {
 
 /// Tests that write files: `path("a")` lies in a folder of this test's own, which is removed afterwards.
 class FileTest : public testing::Test {
 protected:
-    FileTest() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "pogosim_record_XXXXXX").string();
-        if (mkdtemp(pattern.data()) == nullptr) {
-            throw std::runtime_error("cannot make a folder like " + pattern);
-        }
-        folder_ = pattern;
-    }
-    ~FileTest() override { std::filesystem::remove_all(folder_); }
-
-    std::string path(std::string const& name) const { return (folder_ / name).string(); }
-
-    std::vector<std::string> files_in_folder() const {
-        std::vector<std::string> names;
-        for (auto const& entry : std::filesystem::directory_iterator(folder_)) {
-            names.push_back(entry.path().filename().string());
-        }
-        std::sort(names.begin(), names.end());
-        return names;
-    }
+    std::string path(std::string const& name) const { return folder_ / name; }
+    std::vector<std::string> files_in_folder() const { return folder_.names(); }
 
 private:
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 /// What a data file holds.
