@@ -27,17 +27,15 @@ std::string ParameterUse::unread() const {
     return fmt::format("{}", fmt::join(unread, ", "));
 }
 
-bool ParameterUse::any_item_was_read(Node const& list) const {
-    return std::ranges::any_of(list.items, [this](Node const& item) {
-        return was_read(item) || any_item_was_read(item) ||
-               std::ranges::any_of(item.entries, [this](auto const& entry) {
-                   return was_read(entry.value) || any_item_was_read(entry.value);
-               });
-    });
+bool ParameterUse::any_part_was_read(Node const& node) const {
+    auto const is_read = [this](Node const& part) { return any_part_was_read(part); };
+    return was_read(node) || std::ranges::any_of(node.items, is_read) ||
+           std::ranges::any_of(node.entries, [&](auto const& entry) { return is_read(entry.value); });
 }
 
 void ParameterUse::collect(Node const& node, std::string const& path, std::vector<std::string>& unread) const {
-    if (was_read(node) || any_item_was_read(node)) {
+    bool const is_list = !node.items.empty();  // read as a whole
+    if (was_read(node) || (is_list && any_part_was_read(node))) {
         return;
     }
     for (auto const& [key, value] : node.entries) {

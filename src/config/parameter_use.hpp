@@ -24,7 +24,7 @@ public:
 
 private:
     bool was_read(Node const& node) const { return read_.contains(&node); }
-    bool any_item_was_read(Node const& list) const;
+    bool any_part_was_read(Node const& node) const;
     void collect(Node const& node, std::string const& path, std::vector<std::string>& unread) const;
 
     Node const& parameters_;

@@ -109,6 +109,11 @@ def test_messages_that_nobody_reads_are_counted(program: Compile, tmp_path: Path
     assert rest.startswith("messages arrived, but no robot reads messages: set msg_rx_fn ")
 
 
+def test_messages_that_a_limit_of_0_keeps_from_being_read_are_warned_of_once(program: Compile, tmp_path: Path) -> None:
+    (warning,) = warnings(slip(program, tmp_path, "reads_none", CROWD))
+    assert warning.startswith("no robot of category 'robots' read a message: ")
+
+
 def test_full_queues_are_counted_by_category_of_those_who_read(program: Compile, tmp_path: Path) -> None:
     second = {"type": "pogobot", "nb": 2, "geometry": "disk", "radius": 26.5}
     settings = {**CROWD, "arena_surface": 3.0e5, "objects.strangers": second}
