@@ -25,6 +25,7 @@ struct Guard {
     // What ended the call; plain memory, as a signal handler writes it.
     SignalText<512> what;
     ExitCode code = ExitCode::user_program;
+    bool in_other_thread = false;
     bool refused = false;
     bool too_long = false;
     std::atomic<bool> crashed = false;

@@ -117,6 +117,10 @@ void note_data_file(std::string const& path, DataFileState state) {
     data_file_state = state;
 }
 
+bool data_file_is_complete() {
+    return data_file_state == DataFileState::complete;
+}
+
 PlaceText running_place() {
     PlaceText text;
     text << context.phase;

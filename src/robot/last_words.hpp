@@ -23,6 +23,8 @@ RunStage run_stage();
 /// For the message: what has become of the data file.
 void note_data_file(std::string const& path, DataFileState state);
 
+bool data_file_is_complete();
+
 using PlaceText = SignalText<512>;
 
 /// "user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s": which user code runs. For signal handlers.

@@ -103,12 +103,17 @@ void set_reason(char const* text) {
 void begin_rescue(char const* what, ExitCode code, bool in_other_thread) {
     set_reason(what);
     guard.code = code;
+    guard.in_other_thread = in_other_thread;
     guard.left_by_force = true;
     watch_rescue();
     prepare_last_words(what, in_other_thread);
 }
 
 void give_up_rescue() {
+    static std::atomic<bool> composed = false;  // looking at destroyed memory again may lead here again
+    if (data_file_is_complete() && !composed.exchange(true)) {
+        prepare_last_words(guard.what.c_str(), guard.in_other_thread);
+    }
     end_with_last_words(static_cast<int>(guard.code));
 }
 
