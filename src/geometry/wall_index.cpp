@@ -29,7 +29,7 @@ double dot(Vec2d a, Vec2d b) {
     return a.x * b.x + a.y * b.y;
 }
 double length(Vec2d a) {
-    return std::hypot(a.x, a.y);
+    return std::sqrt(dot(a, a));
 }
 
 /// An edge as a disk meets it. The distance from a segment is convex along a straight line.
