@@ -28,8 +28,8 @@ inline bool has_place(SpotSpec const& spot) {
     return !is_everywhere(spot.shape) || spot.mode == LightMode::gradient;
 }
 
-/// Warns when only one of two coordinates is given: the other one has its default. (For bodies it is an error; lamps have
-/// always taken 0.)
+/// Warns when only one of two coordinates is given: the other one has its default. (For bodies it is an error; lamps
+/// have always taken 0.)
 void warn_of_lone_coordinate(MapReader const& reader, std::string_view x, std::string_view y, Vec2 centre_mm);
 
 }  // namespace pogosim

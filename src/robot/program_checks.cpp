@@ -100,7 +100,7 @@ void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Comput
     }
 }
 
-void warn_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields) {
+void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields) {
     if (data.filled_rows == 0) {
         return;
     }
@@ -114,7 +114,7 @@ void warn_of_unset_columns(DataExport const& data, std::optional<std::vector<std
     }
     if (!unset.empty()) {
         bool const one = unset.size() == 1;
-        log().warn("the column{} {} of the data file {} empty: callback_export_data never set {} (data_set_value_*)",
+        log().info("the column{} {} of the data file {} empty: callback_export_data never set {} (data_set_value_*)",
                    one ? "" : "s", fmt::join(unset, ", "), one ? "is" : "are", one ? "it" : "them");
     }
 }

@@ -35,7 +35,7 @@ void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Comput
 
 /// Columns that the program's callback left empty in all of its rows. `fields`: the columns that the data file has;
 /// absent: all.
-void warn_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields);
+void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields);
 
 /// Messages dropped because the queue of a robot that reads messages was full, by category.
 void warn_of_lost_messages(World const& world, std::span<Computer const> computers);

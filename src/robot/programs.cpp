@@ -361,8 +361,8 @@ void Programs::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_send_percent(world_, computers_);
 }
 
-void Programs::warn_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
-    pogosim::warn_of_unset_columns(services_.data, fields);
+void Programs::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
+    pogosim::tell_of_unset_columns(services_.data, fields);
 }
 
 int Programs::highest_loop_hz() const {

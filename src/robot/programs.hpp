@@ -42,8 +42,8 @@ public:
     /// Warns of messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
     void warn_of_messages(std::uint64_t arrivals) const;
 
-    /// Warns of columns that the program has declared and never set. `fields`: those of the data file; absent: all.
-    void warn_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const;
+    /// Tells of columns that the program has declared and never set. `fields`: those of the data file; absent: all.
+    void tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const;
 
     /// Logs what robots have printed and not ended with a newline. Called after the last call of user code.
     void print_unfinished_lines();

@@ -116,7 +116,7 @@ ExitCode Simulation::run() {
     finish();
     programs_.warn_of_messages(channel_.receptions());
     if (!scenario_.output.categories) {  // else a column may be that of a category without rows
-        programs_.warn_of_unset_columns(scenario_.output.fields);
+        programs_.tell_of_unset_columns(scenario_.output.fields);
     }
     report_unread_parameters();
     if (interrupted()) {

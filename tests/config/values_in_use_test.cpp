@@ -102,7 +102,8 @@ TEST(ValuesInUse, HoldAKeyOfTwoNamesOnce) {
 
 TEST(ValuesInUse, GiveTheSameValuesForWhatIsNotOneNumber) {
     expect_complete(load(
-        "arena_file: a.csv\narena_surface: file\nseed: 7\ndata_filename: 'a \"b\": #c'\ndata_logger_category: [robots, '7']\n"
+        "arena_file: a.csv\n"
+        "arena_surface: file\nseed: 7\ndata_filename: 'a \"b\": #c'\ndata_logger_category: [robots, '7']\n"
         "parameters: {speed: [1, 2.50, three], name: '12'}\n"
         "objects:\n"
         "  robots:\n"
