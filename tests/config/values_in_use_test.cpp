@@ -101,16 +101,16 @@ TEST(ValuesInUse, HoldAKeyOfTwoNamesOnce) {
 }
 
 TEST(ValuesInUse, GiveTheSameValuesForWhatIsNotOneNumber) {
-    expect_complete(load(
-        "arena_file: a.csv\n"
-        "arena_surface: file\nseed: 7\ndata_filename: 'a \"b\": #c'\ndata_logger_category: [robots, '7']\n"
-        "parameters: {speed: [1, 2.50, three], name: '12'}\n"
-        "objects:\n"
-        "  robots:\n"
-        "    - {type: pogobot, poses: [[0, 0, 0.1], [100, 0, 1.0e-7]]}\n"
-        "    - {type: pogobot, nb: 3, area: {x: 200, y: 0, radius: 100}, initial_formation: disk}\n"
-        "  '7': {type: passive_object, geometry: disk, initial_formation: random}\n"
-        "  lamp: {type: static_light, geometry: global, photo_start_at: 3}\n"));
+    expect_complete(
+        load("arena_file: a.csv\n"
+             "arena_surface: file\nseed: 7\ndata_filename: 'a \"b\": #c'\ndata_logger_category: [robots, '7']\n"
+             "parameters: {speed: [1, 2.50, three], name: '12'}\n"
+             "objects:\n"
+             "  robots:\n"
+             "    - {type: pogobot, poses: [[0, 0, 0.1], [100, 0, 1.0e-7]]}\n"
+             "    - {type: pogobot, nb: 3, area: {x: 200, y: 0, radius: 100}, initial_formation: disk}\n"
+             "  '7': {type: passive_object, geometry: disk, initial_formation: random}\n"
+             "  lamp: {type: static_light, geometry: global, photo_start_at: 3}\n"));
 }
 
 TEST(ValuesInUse, AreThoseThatSetHasSet) {
