@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import time
 from pathlib import Path
@@ -101,6 +102,18 @@ def test_files_that_a_run_does_not_use_may_have_any_name(tmp_path: Path, changes
     result = scene(tmp_path, changes)
     assert (result.code, result.errors) == (0, "")
     assert (tmp_path / "arena.csv").read_text() == SQUARE
+
+
+def test_one_terminal_may_be_read_and_written(tmp_path: Path) -> None:
+    ours, theirs = os.openpty()
+    terminal = os.ttyname(theirs)
+    os.write(ours, b"\x04")  # the end of what is typed: no arena
+    result = scene(tmp_path, {"arena_file": terminal, "console_filename": terminal})
+    os.close(ours)
+    os.close(theirs)
+    assert result.code == 2
+    assert "the same file" not in result.errors
+    assert f"{terminal}:" in result.errors
 
 
 def test_second_run_that_writes_the_same_console_file_is_refused(tmp_path: Path) -> None:

@@ -40,24 +40,6 @@ void write_one_row(std::string const& path) {
     file.close();
 }
 
-/// No file of this process can grow beyond this, as on a full disk.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t bytes) : handler_before_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &before_);
-        rlimit const limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FileSizeLimit() {
-        setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_before_);
-    }
-
-private:
-    void (*handler_before_)(int);
-    rlimit before_{};
-};
-
 #if defined(__linux__) && !defined(POGOSIM_SANITIZED)
 
 /// Arrow's other allocators keep what was freed, and get along without new memory for long.
@@ -170,6 +152,7 @@ TEST_F(OutputFailure, DiskTooSmallForTheRowsOfManyBatchesHoldsThoseOfTheFirstTim
     auto const rows = read_unfinished(path("a.feather"))->num_rows();
     EXPECT_GT(rows, 1000);
     expect_says(message, {"File too large", fmt::format("up to t = {}.0000 s", rows / 7 - 1)});
+    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});  // the room of the complete file is free again
 }
 
 TEST_F(OutputFailure, DiskThatFillsUpWithTheCompleteFileLeavesTheUnfinishedOne) {

@@ -10,9 +10,11 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "record/data_file.hpp"
+#include "record/unfinished_file.hpp"
 #include "scratch.hpp"
 
 namespace pogosim {
@@ -144,6 +146,38 @@ TEST_F(UnfinishedDataFile, CanBeReadUpToAnyByteWhereItIsCutOff) {
     EXPECT_EQ(rows_before, 50);
 }
 
+TEST_F(UnfinishedDataFile, IsSavedByItselfBeforeTooManyRowsWait) {
+    DataFile file({.path = path("a.feather"), .flush_row_count = 1 << 18});
+    for (int i = 0; i < 1 << 20; ++i) {
+        file.append({.category = "robots", .id = i}, {});
+    }
+    EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), 1 << 20);
+}
+
+TEST_F(UnfinishedDataFile, IsAsBeforeAfterRowsThatDidNotFitAndGoesOnFromThere) {
+    auto const schema = arrow::schema({arrow::field("number", arrow::int64())});
+    auto const rows = [&schema](std::int64_t count) {
+        arrow::Int64Builder numbers;
+        for (std::int64_t i = 0; i < count; ++i) {
+            EXPECT_TRUE(numbers.Append(i * i * 7919).ok());
+        }
+        return arrow::RecordBatch::Make(schema, count, {numbers.Finish().ValueOrDie()});
+    };
+    LockedFile locked(path("a.feather"));
+    locked.keep();
+    auto const file = UnfinishedFile::start(locked.descriptor(), schema).ValueOrDie();
+    ASSERT_TRUE(file->append(*rows(10)).ok());
+    auto const before = bytes_of(path("a.feather"));
+    {
+        FileSizeLimit const limit(before.size() + 1000);
+        EXPECT_FALSE(file->append(*rows(100000)).ok());
+    }
+    EXPECT_EQ(bytes_of(path("a.feather")), before);
+    EXPECT_FALSE(file->somebody_changed_it());
+    ASSERT_TRUE(file->append(*rows(5)).ok());
+    EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), 15);
+}
+
 TEST_F(UnfinishedDataFile, IsNotTouchedByAChildOfTheProcess) {
     DataFile file({.path = path("a.feather"), .user_columns = kUserColumns, .flush_row_count = 20});
     append_rows(file, 0, 10);
@@ -231,6 +265,17 @@ TEST_F(CompletedDataFile, IsWrittenWithoutHarmToTheFileOfAnotherRun) {
     EXPECT_EQ(read_back(path("a.feather.pogosim-new")).table->num_rows(), 1);
 }
 
+TEST_F(CompletedDataFile, IsWrittenWithoutHarmToOneThatAnotherRunHasOnItsWay) {
+    auto const bytes = bytes_of_a_run(path("b.feather"));
+    for (auto const size : {std::size_t{0}, bytes.size() - 1}) {
+        std::ofstream(path("a.feather.pogosim-new"), std::ios::binary) << bytes.substr(0, size);
+        auto const of_another_run = DataFile::reserve(path("a.feather.pogosim-new"));
+        write_rows(path("a.feather"));
+        EXPECT_TRUE(of_another_run.is_still_there());
+        EXPECT_EQ(bytes_of(path("a.feather.pogosim-new")), bytes.substr(0, size));
+    }
+}
+
 TEST_F(CompletedDataFile, IsWrittenWithoutHarmToTheFileOfARunThatWasKilled) {
     {
         DataFile other({.path = path("b"), .metadata = {{"program_version", "1"}}});
@@ -269,6 +314,39 @@ TEST_F(CompletedDataFile, StandsUnderAllNamesOfTheFile) {
     EXPECT_EQ(read_back(path("b.feather")).table->num_rows(), 50);
     EXPECT_TRUE(std::filesystem::equivalent(path("a.feather"), path("b.feather")));
     EXPECT_EQ(files_in_folder(), (std::vector<std::string>{"a.feather", "b.feather"}));
+}
+
+TEST_F(CompletedDataFile, EndsWhereItsRowsDoUnderAllNamesOfTheFile) {
+    auto const write = [this](std::string const& name) {
+        DataFile file({.path = path(name)});
+        for (int i = 0; i < 200; ++i) {
+            file.append({.category = "robots", .id = i}, {});
+            file.save();  // the unfinished file becomes larger than the complete one
+        }
+        file.close();
+    };
+    write("alone.feather");
+    std::ofstream(path("a.feather")).close();
+    std::filesystem::create_hard_link(path("a.feather"), path("b.feather"));
+    write("a.feather");
+    EXPECT_EQ(bytes_of(path("b.feather")), bytes_of(path("alone.feather")));
+}
+
+TEST_F(CompletedDataFile, KeepsTheOwnerAndTheGroupOfTheFile) {
+    bool const is_root = geteuid() == 0;  // nobody else can give files away
+    for (auto const& [owner, group] : {std::pair<uid_t, gid_t>{12345, 0}, {0, 12345}}) {
+        std::ofstream(path("a.feather")) << "older data";
+        if (is_root) {
+            ASSERT_EQ(chown(path("a.feather").c_str(), owner, group), 0);
+        }
+        write_rows(path("a.feather"));
+        struct stat after = {};
+        ASSERT_EQ(stat(path("a.feather").c_str(), &after), 0);
+        EXPECT_EQ(after.st_uid, is_root ? owner : geteuid());
+        EXPECT_EQ(after.st_gid, is_root ? group : getegid());
+        EXPECT_EQ(read_back(path("a.feather")).table->num_rows(), 50);
+        std::filesystem::remove(path("a.feather"));
+    }
 }
 
 TEST_F(CompletedDataFile, KeepsThePermissionsOfTheFile) {
