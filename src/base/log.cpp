@@ -118,8 +118,8 @@ LockedFile lock_file(std::filesystem::path const& path) {
     return lock;
 }
 
-/// A reader of a named pipe, who must be there: opening the pipe would wait for one, and end of file comes to the reader
-/// when the last writer has gone.
+/// A reader of a named pipe, who must be there: opening the pipe would wait for one, and end of file comes to the
+/// reader when the last writer has gone.
 class PipeReader {
 public:
     explicit PipeReader(std::filesystem::path const& path) {

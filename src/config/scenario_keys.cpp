@@ -17,8 +17,8 @@ std::span<Key<Scenario> const> scenario_keys() {
     static std::array const keys{
         // Space.
         K{"arena_file", &Scenario::arena_file, any(), "",
-          "Needed. Outline of the arena, CSV; looked for from the working folder, beside the configuration, then in the "
-          "folder of Pogosim."},
+          "Needed. Outline of the arena, CSV; looked for from the working folder, beside the configuration, then in "
+          "the folder of Pogosim."},
         K{"arena_surface", NumberOr<Scenario>{&Scenario::arena_surface_mm2, "file"},
           above(0).up_to(kMaxLength * kMaxLength).usually_from(100), "mm2",
           "Area inside the outer wall less the holes; the outline is scaled to it. file: the numbers of the arena file "

@@ -1,6 +1,6 @@
-// The watch over user code that does not return: by the processor time of its thread (SIGPROF), which a program on a busy
-// machine does not use up by waiting; and, once the run was asked to end, by wall-clock time (SIGALRM), which runs in
-// sleep(), too. After user code was left by force, SIGALRM watches over the data file alone.
+// The watch over user code that does not return: by the processor time of its thread (SIGPROF), which a program on a
+// busy machine does not use up by waiting; and, once the run was asked to end, by wall-clock time (SIGALRM), which runs
+// in sleep(), too. After user code was left by force, SIGALRM watches over the data file alone.
 #include <sys/time.h>
 
 #include <algorithm>

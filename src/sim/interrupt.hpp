@@ -1,5 +1,5 @@
-// Ctrl-C and its relatives (SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2, SIGQUIT): the run ends after the present
-// step, with a complete data file. Before the first robot runs, and after the run, the program ends at once.
+// Ctrl-C and its relatives (SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2, SIGQUIT): the run ends after the
+// present step, with a complete data file. Before the first robot runs, and after the run, the program ends at once.
 #pragma once
 
 namespace pogosim {
@@ -9,7 +9,8 @@ namespace pogosim {
 void ignore_broken_outputs();
 
 /// Catches the signals from now on, as long as the program sets no handler of its own. The first one asks the run to
-/// end and hurries user code that does not return; a second one leaves it; a third one ends the program, complete or not.
+/// end and hurries user code that does not return; a second one leaves it; a third one ends the program, complete or
+/// not.
 void catch_interrupts();
 
 /// Those so far asked an earlier run to end.

@@ -8,8 +8,8 @@
 
 namespace pogosim {
 
-/// The lamps of the configuration, in its order. Uses only the arena and the cells of the light map. Warns of lamps that
-/// light nothing: their centre is outside the arena's bounding box, or they lie between the centres of cells.
+/// The lamps of the configuration, in its order. Uses only the arena and the cells of the light map. Warns of lamps
+/// that light nothing: their centre is outside the arena's bounding box, or they lie between the centres of cells.
 std::vector<LampSpec> lamps_of(Scenario const& scenario, World const& world);
 
 /// What a lamp can light at time 0.

@@ -98,8 +98,8 @@ ExitCode Simulation::run() {
         failure = call_user_code([] {});  // a thread of the program may have failed meanwhile
     }
     if (failure) {
-        // The message last, since it says what has become of the data file. When completing that crashes, because memory
-        // is destroyed, the last words of the first crash are said.
+        // The message last, since it says what has become of the data file. When completing that crashes, because
+        // memory is destroyed, the last words of the first crash are said.
         try {
             if (!failure->refused) {
                 recorder_.open_without_rows();  // the file of an earlier run must not pass for this one's
