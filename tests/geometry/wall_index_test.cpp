@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "base/random.hpp"
 
@@ -78,6 +80,48 @@ TEST(WallIndex, DiskThatAlreadyTouchesMayLeaveAndGoAlongButNoDeeper) {
     // On the wall itself, inwards is free.
     EXPECT_FALSE(walls.first_touch({500, 0}, {0, 1}, 10.0F));
     EXPECT_TRUE(walls.first_touch({500, 0}, {0, -1}, 10.0F));
+}
+
+TEST(WallIndex, FindsWallsThatADiskTouchesToTheLastBit) {
+    // Oblique walls at whole millimetres, and disks of whole millimetres that touch them, give or take a rounding.
+    struct Triple {
+        float a;
+        float b;
+        float c;
+    };
+    std::array const triples{Triple{3, 4, 5}, Triple{5, 12, 13}, Triple{8, 15, 17}, Triple{20, 21, 29}};
+    RandomStream random(4, 0);
+    for (int i = 0; i < 20000; ++i) {
+        Triple const& triple = triples[static_cast<std::size_t>(i) % triples.size()];
+        Vec2 const along{triple.b, triple.a};
+        Vec2 const across{-triple.a, triple.b};
+        Vec2 const start{std::round(random.uniform(0.0F, 2000.0F)), std::round(random.uniform(0.0F, 2000.0F))};
+        float const length = std::round(random.uniform(50.0F, 80.0F));
+        Polygon const square{start, start + length * along, start + length * along + length * across,
+                             start + length * across};
+        float const radii = std::round(random.uniform(1.0F, 10.0F));
+        Vec2 const from = start + std::round(random.uniform(10.0F, 40.0F)) * along + radii * across;
+        EXPECT_TRUE(WallIndex(make_arena({square})).first_touch(from, -20.0F * across, radii * triple.c))
+            << from.x << ", " << from.y;
+    }
+}
+
+TEST(WallIndex, FindsWallsThatRunAlongTheBordersOfItsCellsWhereNumbersAreCoarse) {
+    // A float has steps of 1/16 mm here. Eight cells along each side; a wall sinks by 1/2 mm from one row to the next.
+    constexpr float kUlp = 0.0625F;
+    RandomStream random(5, 0);
+    for (int i = 0; i < 2000; ++i) {
+        Vec2 const corner{std::round(random.uniform(6e5F, 1e6F)), std::round(random.uniform(6e5F, 1e6F))};
+        float const side = std::round(random.uniform(2300.0F, 2900.0F) / kUlp) * kUlp;
+        auto const row = static_cast<float>(1 + i % 7);
+        Vec2 const from = corner + Vec2{100, std::round((row * side / 8.0F - 0.25F) / kUlp) * kUlp};
+        Polygon const box{corner, corner + Vec2{side, 0}, corner + Vec2{side, side}, corner + Vec2{0, side}};
+        WallIndex const walls(make_arena({box, {from, from + Vec2{2048, 0.5F}, from + Vec2{1024, 30}}}));
+        for (int k = 0; k <= 8; ++k) {
+            Vec2 const on_the_wall = from + static_cast<float>(k) * Vec2{256, kUlp};
+            EXPECT_LT(walls.distance(on_the_wall, 0.01F), 0.01F) << on_the_wall.x << ", " << on_the_wall.y;
+        }
+    }
 }
 
 }  // namespace

@@ -1,0 +1,113 @@
+// Walls hold bodies that are moved by hand, without an engine that pushes them out.
+#include "physics/containment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/random.hpp"
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+/// A disk in an arena, without walls for Box2D.
+class Held {
+public:
+    Held(Arena arena, Vec2 place_mm, float radius_mm) {
+        world_.arena = std::move(arena);
+        ObjectSpec spec = testing::pogobot_spec();
+        spec.shape.radius_mm = radius_mm;
+        testing::add_robot(world_, place_mm, 0.0F, spec);
+        b2BodyDef definition;
+        definition.type = b2_dynamicBody;
+        definition.position = to_box2d(place_mm);
+        bodies_.push_back(engine_.CreateBody(&definition));
+        containment_.emplace(world_);
+    }
+
+    /// Moves it and returns where it is then.
+    Vec2 move(Vec2 by_mm) {
+        bodies_[0]->SetTransform(to_box2d(place() + by_mm), 0.25F);
+        containment_->hold(bodies_);
+        return place();
+    }
+
+    Vec2 place() const { return from_box2d(bodies_[0]->GetPosition()); }
+    b2Body& body() { return *bodies_[0]; }
+
+private:
+    World world_;
+    b2World engine_{b2Vec2_zero};
+    std::vector<b2Body*> bodies_;
+    std::optional<Containment> containment_;
+};
+
+Arena square() {
+    return make_arena({{{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}}});
+}
+
+void expect_at(Vec2 place, Vec2 expected_mm) {
+    EXPECT_NEAR(place.x, expected_mm.x, 0.01F);
+    EXPECT_NEAR(place.y, expected_mm.y, 0.01F);
+}
+
+TEST(Containment, LeavesBodiesAloneThatDoNotSinkIntoAWall) {
+    Held disk(square(), {500, 500}, 20.0F);
+    expect_at(disk.move({300, -100}), {800, 400});
+    expect_at(disk.move({185, 0}), {985, 400});  // by a quarter of its radius
+}
+
+TEST(Containment, PutsBackWhatJumpsAWall) {
+    Held disk(square(), {500, 500}, 20.0F);
+    expect_at(disk.move({5000, 0}), {980, 500});
+    EXPECT_EQ(disk.body().GetAngle(), 0.25F);
+}
+
+TEST(Containment, HoldsWhatCreepsThroughAWallInStepsMuchSmallerThanItself) {
+    Held disk(square(), {500, 500}, 20.0F);
+    for (int i = 0; i < 2000; ++i) {
+        Vec2 const place = disk.move({0.5F, 0});
+        ASSERT_LT(place.x, 990.5F) << "step " << i;
+    }
+    EXPECT_GT(disk.place().x, 975.0F);
+}
+
+TEST(Containment, LetsWhatHitsAWallAtAnAngleGoOnAlongIt) {
+    Held disk(square(), {500, 900}, 20.0F);
+    expect_at(disk.move({300, 400}), {800, 980});
+}
+
+TEST(Containment, StopsInACornerWhatSlidesAlongOneWallToTheNext) {
+    Held disk(square(), {500, 900}, 20.0F);
+    expect_at(disk.move({2000, 400}), {980, 980});
+}
+
+TEST(Containment, HoldsSpecksInAnArenaWhereNumbersAreCoarse) {
+    // A float has steps of 0.06 mm here, and the walls are oblique.
+    constexpr float kSide = 1e6F;
+    Arena const arena =
+        make_arena({{{0, 0.31F * kSide}, {0.57F * kSide, 0}, {kSide, 0.43F * kSide}, {0.29F * kSide, kSide}}});
+    RandomStream random(3, 0);
+    Held speck(arena, {0.5F * kSide, 0.5F * kSide}, 1e-6F);
+    for (int i = 0; i < 3000; ++i) {
+        Vec2 const place = speck.move({kSide * random.normal(), kSide * random.normal()});
+        ASSERT_TRUE(arena.contains(place)) << i;
+        // 8e-6 of the largest coordinate, at least half of it.
+        ASSERT_GT(arena.distance_to_walls(place), 3.5F) << i;
+    }
+}
+
+TEST(Containment, PutsAPoseThatIsNoNumberBackToTheLastOneAtRest) {
+    Held disk(square(), {500, 500}, 20.0F);
+    disk.move({100, 0});
+    disk.body().SetLinearVelocity({3.0F, 0.0F});
+    expect_at(disk.move({std::nanf(""), 0}), {600, 500});
+    EXPECT_EQ(disk.body().GetLinearVelocity().Length(), 0.0F);
+}
+
+}  // namespace
+}  // namespace pogosim
