@@ -60,7 +60,8 @@ std::span<Key<Disk> const> disk_keys() {
 }
 
 /// The numbers of a list, at least `least` and at most `most` of them.
-std::vector<float> read_numbers(Place const& place, std::size_t least, std::size_t most, std::string_view expected) {
+std::vector<float> read_numbers(Place const& place, std::size_t least, std::size_t most, std::string_view expected,
+                                UnitSlips& slips) {
     std::size_t const count = place.node.items.size();
     if (place.node.kind != Node::Kind::sequence || count < least || count > most) {
         fail_expected(place, expected);
@@ -70,7 +71,7 @@ std::vector<float> read_numbers(Place const& place, std::size_t least, std::size
         Limits const limits = i < 2 ? Limits{kCoordinate, "mm"} : Limits{kAngle, "rad"};
         Place const number{place.node.items[i], fmt::format("{}.{}", place.path, i)};
         read_value(number, limits, numbers[i]);
-        warn_of_slips(number, limits, false);
+        slips.look_at(number, limits);
     }
     return numbers;
 }
@@ -83,11 +84,13 @@ std::vector<Placement> read_poses(Place const& place) {
         fail_at(place, "the list is empty; give a pose for each object, or leave it out");
     }
     std::vector<Placement> poses;
+    UnitSlips slips;
     for (Node const& item : place.node.items) {
         std::vector<float> const numbers =
-            read_numbers({item, fmt::format("{}.{}", place.path, poses.size())}, 2, 3, kPose);
+            read_numbers({item, fmt::format("{}.{}", place.path, poses.size())}, 2, 3, kPose, slips);
         poses.push_back({{numbers[0], numbers[1]}, numbers.size() == 3 ? wrap_angle(numbers[2]) : 0.0F});
     }
+    slips.warn();
     return poses;
 }
 
@@ -96,11 +99,13 @@ Polygon read_polygon_area(Place const& place) {
         fail_expected(place, kArea);
     }
     Polygon corners;
+    UnitSlips slips;
     for (Node const& item : place.node.items) {
         std::vector<float> const numbers =
-            read_numbers({item, fmt::format("{}.{}", place.path, corners.size())}, 2, 2, "a corner [x, y] (mm)");
+            read_numbers({item, fmt::format("{}.{}", place.path, corners.size())}, 2, 2, "a corner [x, y] (mm)", slips);
         corners.push_back({numbers[0], numbers[1]});
     }
+    slips.warn();
     if (signed_area(corners) == 0.0) {
         fail_at(place, "these corners enclose no area");
     }

@@ -128,15 +128,6 @@ constexpr std::array kSimilarUnits{
     SimilarUnit{"rad/s", "degrees per second", kDegree},
 };
 
-void warn_of_unit(std::string const& where, std::string const& found, double number, std::string_view unit) {
-    auto const similar = std::ranges::find(kSimilarUnits, unit, &SimilarUnit::expected);
-    if (similar != kSimilarUnits.end()) {
-        double const meant = std::stod(fmt::format("{:.6g}", number * similar->factor));
-        log().warn("{}: the unit is {}, in which {} is unusually {}; if {} are meant, write {}", where, unit, found,
-                   similar->factor > 1.0 ? "small" : "large", similar->taken, number_text(meant));
-    }
-}
-
 /// Reads a list of exactly N values.
 template <class T, std::size_t N>
 std::array<T, N> read_tuple(Place const& place, Limits const& limits, std::string const& expected) {
@@ -293,21 +284,56 @@ void read_value(Place const& place, Limits const& limits, std::vector<std::strin
     }
 }
 
-void warn_of_slips(Place const& place, Limits const& limits, bool is_integer) {
+void UnitSlips::look_at(Place const& place, Limits const& limits) {
     for (std::size_t i = 0; i < place.node.items.size(); ++i) {
-        warn_of_slips({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits, is_integer);
+        look_at({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits);
     }
     std::optional<double> const number = number_of(place.node);
-    if (!number) {
+    if (!number || !(limits.range.is_unusually_small(*number) || limits.range.is_unusually_large(*number))) {
         return;
     }
-    std::string const where = fmt::format("{}: {}", place.node.where(), shown(place.path));
-    if (is_integer && std::trunc(*number) != *number) {
-        log().warn("{}: expected an integer, found {}; {} is used", where, place.node.scalar,
-                   number_text(std::trunc(*number)));
-    } else if (limits.range.is_unusually_small(*number) || limits.range.is_unusually_large(*number)) {
-        warn_of_unit(where, place.node.scalar, *number, limits.unit);
+    auto const known = std::ranges::find(slips_, limits.unit, &Slip::unit);
+    if (known != slips_.end()) {
+        ++known->count;
+    } else {
+        std::string const where = fmt::format("{}: {}", place.node.where(), shown(place.path));
+        slips_.push_back({.unit = limits.unit, .where = where, .text = place.node.scalar, .number = *number});
     }
+}
+
+void UnitSlips::warn() const {
+    for (Slip const& slip : slips_) {
+        auto const similar = std::ranges::find(kSimilarUnits, slip.unit, &SimilarUnit::expected);
+        if (similar == kSimilarUnits.end()) {
+            continue;
+        }
+        std::string const others = slip.count == 1 ? ""
+                                   : slip.count == 2
+                                       ? ", as is another number of this list"
+                                       : fmt::format(", as are {} other numbers of this list", slip.count - 1);
+        double const meant = std::stod(fmt::format("{:.6g}", slip.number * similar->factor));
+        log().warn("{}: the unit is {}, in which {} is unusually {}{}; if {} are meant, write {}", slip.where,
+                   slip.unit, slip.text, similar->factor > 1.0 ? "small" : "large", others, similar->taken,
+                   number_text(meant));
+    }
+}
+
+void warn_of_slips(Place const& place, Limits const& limits, bool is_integer) {
+    std::optional<double> const number = number_of(place.node);
+    if (is_integer && number && std::trunc(*number) != *number) {
+        log().warn("{}: {}: expected an integer, found {}; {} is used", place.node.where(), shown(place.path),
+                   place.node.scalar, number_text(std::trunc(*number)));
+        return;
+    }
+    if (is_integer && place.node.kind == Node::Kind::sequence) {
+        for (std::size_t i = 0; i < place.node.items.size(); ++i) {
+            warn_of_slips({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits, is_integer);
+        }
+        return;
+    }
+    UnitSlips slips;
+    slips.look_at(place, limits);
+    slips.warn();
 }
 
 std::string expected_text(Limits const& /*limits*/, bool) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -68,8 +69,27 @@ void read_value(Place const& place, Limits const& limits, std::optional<T>& valu
     read_value(place, limits, value.emplace());
 }
 
+/// Numbers that look like another unit than that of their limits (Range::usual_min, usual_max). However many there are
+/// in a list: one warning for each unit, with the first place.
+class UnitSlips {
+public:
+    /// Takes the number, or the numbers of a list.
+    void look_at(Place const& place, Limits const& limits);
+    void warn() const;
+
+private:
+    struct Slip {
+        std::string_view unit;
+        std::string where;  // of the first one
+        std::string text;
+        double number = 0.0;
+        std::size_t count = 1;
+    };
+    std::vector<Slip> slips_;
+};
+
 /// Warns of numbers at a node that has been read which stand for others than they say: fractions that are cut
-/// (`is_integer`), and what looks like another unit than that of the limits (Range::usual_min, usual_max).
+/// (`is_integer`), and what looks like another unit.
 void warn_of_slips(Place const& place, Limits const& limits, bool is_integer);
 
 /// Whether numbers are read into T as integers.

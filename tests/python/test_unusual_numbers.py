@@ -62,8 +62,34 @@ def test_number_in_another_unit_is_warned_of_with_the_one_that_was_meant(
     tmp_path: Path, key: str, value: float, unit: str, hint: str
 ) -> None:
     settings = {"objects.body": dict(BODY), "objects.lamp": dict(LAMP), f"objects.{key}": value}
-    (warning,) = warnings(greet(tmp_path, settings))
+    # A lamp of half a millimetre also lights no cell.
+    (warning,) = [text for text in warnings(greet(tmp_path, settings)) if "lights no cell" not in text]
     assert warning.endswith(f": objects.{key}: the unit is {unit}, in which {value} is unusually {hint}")
+
+
+def test_list_in_another_unit_is_warned_of_once_for_each_unit(tmp_path: Path) -> None:
+    # 60 obstacles in metres and degrees: 119 coordinates (one is 0), 59 angles.
+    poses = [[0.01 * i, 0.5 + 0.002 * i, 10.0 * (i % 36) + 7.0] for i in range(60)]
+    corner = {"type": "passive_object", "geometry": "disk", "radius": 1, "body_fixed": True, "poses": poses}
+    units = [text for text in warnings(greet(tmp_path, {"objects.corner": corner})) if ": the unit is " in text]
+    assert [warning.partition(": objects.")[2] for warning in units] == [
+        "corner.poses.0.1: the unit is mm, in which 0.5 is unusually small, as are 118 other numbers of this list; "
+        "if metres are meant, write 500",
+        "corner.poses.0.2: the unit is rad, in which 7.0 is unusually large, as are 59 other numbers of this list; "
+        "if degrees are meant, write 0.122173",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("first", "text"),
+    [
+        (0.1, "area.0.0: the unit is mm, in which 0.1 is unusually small, as are 2 other numbers of this list; if"),
+        (0, "area.0.1: the unit is mm, in which 0.1 is unusually small, as is another number of this list; if"),
+    ],
+)
+def test_area_in_another_unit_is_warned_of_once(tmp_path: Path, first: float, text: str) -> None:
+    (warning,) = warnings(greet(tmp_path, {"objects.robots.area": [[first, 0.1], [900, 0.1], [900, 900]]}))
+    assert text in warning
 
 
 def test_arena_of_a_square_metre_is_warned_of_before_it_has_no_room(tmp_path: Path) -> None:
