@@ -1,5 +1,6 @@
 #include "robot/forked_child.hpp"
 
+#include <dlfcn.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 
 #include "base/log.hpp"
 #include "robot/caught_signals.hpp"
+#include "robot/last_words.hpp"
 
 namespace pogosim {
 
@@ -22,7 +24,9 @@ void before_fork() {
 
 void in_child() {
     forked = true;
-    silence_logs();
+    if (run_stage() != RunStage::finished) {  // else the logs may be gone
+        silence_logs();
+    }
     release_caught_signals();
 }
 
@@ -42,3 +46,26 @@ void end_forked_child(int status) {
 }
 
 }  // namespace pogosim
+
+#ifdef __GLIBC__
+#if __GLIBC_PREREQ(2, 34)
+
+/// As the C library's, which it calls: this library stands before libc in the search order. After the run, handlers that
+/// libraries have registered with pthread_atfork() may wait for ever for locks that their destructors have destroyed
+/// (Arrow's do), so the child is made without them.
+extern "C" __attribute__((visibility("default"))) pid_t fork() noexcept {
+    using namespace pogosim;
+    if (run_stage() != RunStage::finished) {
+        static auto const usual_fork = reinterpret_cast<pid_t (*)()>(dlsym(RTLD_NEXT, "fork"));
+        return usual_fork();
+    }
+    before_fork();
+    pid_t const child = _Fork();
+    if (child == 0) {
+        in_child();
+    }
+    return child;
+}
+
+#endif
+#endif

@@ -7,9 +7,11 @@
 #include <array>
 #include <csignal>
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
 
 #include "robot/crash_name.hpp"
+#include "robot/user_guard.hpp"
 
 namespace pogosim {
 
@@ -94,6 +96,14 @@ __attribute__((visibility("default"))) int pthread_create(pthread_t* thread, pth
         [[maybe_unused]] Start const* const owned_by_thread = start.release();
     }
     return error;
+}
+
+/// As the C library's, which it calls.
+__attribute__((visibility("default"))) void pthread_exit(void* result) {
+    pogosim::check_end_of_thread();
+    static auto const end_thread = reinterpret_cast<void (*)(void*)>(dlsym(RTLD_NEXT, "pthread_exit"));
+    end_thread(result);
+    std::abort();  // not reached
 }
 }
 

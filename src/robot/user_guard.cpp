@@ -233,6 +233,19 @@ void end_run_from_thread(char const* what, ExitCode code) {
     stop_this_thread();
 }
 
+void check_end_of_thread() {
+    constexpr auto kWhat = "called pthread_exit(), which ends the only thread that can run the simulator";
+    if (!on_simulator_thread() || is_forked_child()) {
+        return;
+    }
+    if (inside_user_code()) {
+        leave_user_code(kWhat, ExitCode::user_program);
+    }
+    std::fflush(nullptr);
+    prepare_last_words(kWhat, /*in_other_thread=*/false);
+    end_with_last_words(static_cast<int>(ExitCode::user_program));
+}
+
 void called_without_robot(char const* function) {
     CrashText what;
     what << function << "() was called ";

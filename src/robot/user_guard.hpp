@@ -74,6 +74,10 @@ bool is_other_thread_of_run();
 /// that the program started. Ends the program with a message and exit code 3.
 [[noreturn]] void called_without_robot(char const* function);
 
+/// The thread that calls this is about to end. Returns in a thread that the program started; the simulator's own cannot
+/// be spared: user code is left with a failure, and elsewhere the program ends with a message, with exit code 3.
+void check_end_of_thread();
+
 /// The run was asked to end by this signal, for the first time: says what it waits for when user code does not return
 /// soon, and leaves it when it has run for `user_code_timeout` of wall-clock time. For signal handlers.
 void hurry_user_code(char const* signal_name);

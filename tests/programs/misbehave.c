@@ -128,6 +128,10 @@ static void write_beyond_userdata(void) {
     }
 }
 
+static void end_the_thread(void) {
+    pthread_exit(NULL);
+}
+
 static void exit_with_7(void) {
     exit(7);
 }
@@ -176,6 +180,7 @@ static struct {
     {"overflow_the_stack", overflow_the_stack},
     {"write_beyond_userdata", write_beyond_userdata},
     {"abort", abort},
+    {"end_the_thread", end_the_thread},
     {"exit_with_7", exit_with_7},
     {"exit_with_2", exit_with_2},
     {"exit_with_0", exit_with_0},

@@ -1,5 +1,6 @@
 // A program that does something on demand where no robot has the processor: before main(), after the run, in a thread
 // or in a child process. The environment says what, as main() is not there to read a configuration.
+#include <pthread.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -28,6 +29,8 @@ int sum_on_the_stack(int depth) {
     return depth == zero ? 0 : sum_on_the_stack(depth + 1) + frame[0];
 }
 
+void fork_and_wait();
+
 void misbehave(char const* place) {
     if (asked_for(place, "crash")) {
         *nowhere = 1;
@@ -41,6 +44,10 @@ void misbehave(char const* place) {
         zero = sum_on_the_stack(1);
     } else if (asked_for(place, "exit")) {
         std::exit(5);
+    } else if (asked_for(place, "pthread_exit")) {
+        pthread_exit(nullptr);
+    } else if (asked_for(place, "fork")) {
+        fork_and_wait();
     } else if (asked_for(place, "print")) {
         printf("printed %lu times\n", 1UL);
     } else if (asked_for(place, "seed")) {

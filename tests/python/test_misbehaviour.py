@@ -41,6 +41,7 @@ def test_program_that_behaves_ends_with_0_and_says_nothing(program: Compile, tmp
         ("write_to_null", "segmentation fault at address"),
         ("divide_by_zero", "integer division by zero"),
         ("abort", r"abort\(\)"),
+        ("end_the_thread", r"called pthread_exit\(\), which ends the only thread that can run the simulator"),
         ("overflow_the_stack", r"stack overflow: the \d+ KiB of the stack are full \(ulimit -s\)"),
         ("write_beyond_userdata", "segmentation fault at address"),
         ("free_what_is_not_allocated", r"abort\(\)"),

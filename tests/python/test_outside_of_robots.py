@@ -138,6 +138,27 @@ def test_child_process_touches_neither_the_data_nor_the_messages_of_the_run(
     assert "the child prints" not in console
 
 
+@pytest.mark.parametrize("place", BEFORE + AFTER)
+def test_fork_works_outside_of_the_run(program: Compile, tmp_path: Path, place: str) -> None:
+    result = outside(program, tmp_path, place, "fork")
+    assert (result.code, result.errors) == (0, "")
+    assert result.output.splitlines().count("the child ended with 6") == 1
+    np.testing.assert_allclose(saved_times(result), np.arange(21) * 0.1, atol=1e-6)
+
+
+@pytest.mark.parametrize("place", BEFORE + AFTER)
+def test_end_of_the_main_thread_outside_of_the_run_is_named(program: Compile, tmp_path: Path, place: str) -> None:
+    result = outside(program, tmp_path, place, "pthread_exit")
+    assert result.code == 3
+    assert "called pthread_exit(), which ends the only thread that can run the simulator" in result.errors
+    assert ("before main()" in result.errors) == (place in BEFORE)
+
+
+def test_thread_of_the_program_may_end_by_pthread_exit(program: Compile, tmp_path: Path) -> None:
+    result = outside(program, tmp_path, "thread", "pthread_exit")
+    assert (result.code, result.errors) == (0, "")
+
+
 def test_program_under_the_address_sanitizer_names_calls_before_main(tmp_path: Path) -> None:
     flags = ("-fsanitize=address", "-Wno-unused")
     compiled = compile_program(tmp_path / "outside", PROGRAMS / "outside.cpp", flags=flags)
