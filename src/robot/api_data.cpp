@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -24,11 +23,28 @@ using pogosim::without_exceptions;
 namespace {
 
 /// As in the names of the functions.
-constexpr std::array<std::string_view, 9> kTypeNames{"int8",   "int16", "int32",   "int64", "double",
-                                                     "string", "bool",  "float16", "float"};
-
-std::string_view name_of(ColumnType type) {
-    return kTypeNames[static_cast<std::size_t>(type)];
+constexpr std::string_view name_of(ColumnType type) {
+    switch (type) {
+        case ColumnType::int8:
+            return "int8";
+        case ColumnType::int16:
+            return "int16";
+        case ColumnType::int32:
+            return "int32";
+        case ColumnType::int64:
+            return "int64";
+        case ColumnType::float64:
+            return "double";
+        case ColumnType::text:
+            return "string";
+        case ColumnType::boolean:
+            return "bool";
+        case ColumnType::float16:
+            return "float16";
+        case ColumnType::float32:
+            return "float";
+    }
+    return "";  // not reached: compilers warn of a type that has no name
 }
 
 void check_call(char const* function, char const* name) {
