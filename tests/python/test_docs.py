@@ -287,7 +287,7 @@ def test_api_reference_has_all_functions_and_variables_of_the_library(tmp_path: 
     command = ["nm", "-D", "--defined-only", str(build_folder() / "src" / LIBRARY)]
     listing = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     exported = {line.split()[-1] for line in listing.splitlines()}
-    of_libc = {"main", "rand", "srand", "exit", "pthread_create"}
+    of_libc = {"main", "rand", "srand", "exit", "fork", "pthread_create", "pthread_exit"}
     behind_macros = {name for name in exported if name.startswith("pogosim_")} | {
         "_pogobot_start",
         "UserdataConstruct",
