@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -44,8 +45,8 @@ int make_file(std::filesystem::path const& path) {
 /// Makes a file of a name of its own in the folder for temporary files. The descriptor, or -1 with errno.
 int make_temporary_file(std::filesystem::path& path) {
     std::error_code error;
-    std::string name = std::filesystem::temp_directory_path(error) / "pogosim-XXXXXX";
-    int const descriptor = mkstemp(name.data());
+    std::string name = std::filesystem::temp_directory_path(error) / "pogosim-XXXXXX.feather";
+    int const descriptor = mkstemps(name.data(), static_cast<int>(std::string_view(".feather").size()));
     if (descriptor >= 0) {
         fcntl(descriptor, F_SETFD, FD_CLOEXEC);
     }

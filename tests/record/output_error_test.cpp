@@ -171,10 +171,16 @@ TEST_F(OutputFailure, FileRemovedDuringTheRunIsMadeAgain) {
     EXPECT_EQ(read_back(path("a.feather")).table->num_rows(), 1);
 }
 
-TEST_F(OutputFailure, FolderRemovedDuringTheRunIsAnError) {
+TEST_F(OutputFailure, FolderRemovedDuringTheRunIsAnErrorAndTheRowsAreInTheFolderForTemporaryFiles) {
+    EnvironmentVariable const temporary("TMPDIR", path("tmp"));
+    std::filesystem::create_directory(path("tmp"));
     DataFile file({.path = path("folder/a.feather")});
+    file.append({.category = "robots"}, {});
     std::filesystem::remove_all(path("folder"));
-    expect_says(output_error([&file] { file.close(); }), {path("folder/a.feather"), "No such file or directory"});
+    expect_says(output_error([&file] { file.close(); }), {path("folder/a.feather"), "No such file or directory",
+                                                          "The rows of this run are in '" + path("tmp/")});
+    std::filesystem::directory_iterator const kept(path("tmp"));
+    EXPECT_EQ(read_back(kept->path()).table->num_rows(), 1);
 }
 
 TEST_F(OutputFailure, FileThatAnotherProgramWroteOverIsNoticedAndTheRowsAreBesideIt) {

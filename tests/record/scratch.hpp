@@ -9,9 +9,11 @@
 
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,6 +50,30 @@ public:
 private:
     void (*handler_before_)(int);
     rlimit before_{};
+};
+
+/// An environment variable of this process, for as long as this object is there.
+class EnvironmentVariable {
+public:
+    EnvironmentVariable(char const* name, std::string const& value) : name_(name) {
+        if (char const* const before = std::getenv(name)) {
+            before_ = before;
+        }
+        setenv(name, value.c_str(), 1);
+    }
+    ~EnvironmentVariable() {
+        if (before_) {
+            setenv(name_, before_->c_str(), 1);
+        } else {
+            unsetenv(name_);
+        }
+    }
+    EnvironmentVariable(EnvironmentVariable const&) = delete;
+    EnvironmentVariable& operator=(EnvironmentVariable const&) = delete;
+
+private:
+    char const* name_;
+    std::optional<std::string> before_;
 };
 
 /// What a data file holds.

@@ -5,10 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,30 +25,6 @@ std::vector<ColumnSpec> const kUserColumns{{"number", ColumnType::int64},
                                            {"text", ColumnType::text},
                                            {"yes", ColumnType::boolean},
                                            {"f16", ColumnType::float16}};
-
-/// An environment variable of this process, for as long as this object is there.
-class EnvironmentVariable {
-public:
-    EnvironmentVariable(char const* name, std::string const& value) : name_(name) {
-        if (char const* const before = std::getenv(name)) {
-            before_ = before;
-        }
-        setenv(name, value.c_str(), 1);
-    }
-    ~EnvironmentVariable() {
-        if (before_) {
-            setenv(name_, before_->c_str(), 1);
-        } else {
-            unsetenv(name_);
-        }
-    }
-    EnvironmentVariable(EnvironmentVariable const&) = delete;
-    EnvironmentVariable& operator=(EnvironmentVariable const&) = delete;
-
-private:
-    char const* name_;
-    std::optional<std::string> before_;
-};
 
 /// Rows with nulls here and there, in built-in and in user columns.
 void append_rows(DataFile& file, int first, int count) {
