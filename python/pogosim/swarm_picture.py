@@ -127,6 +127,10 @@ def arena_of(metadata: dict[str, Any]) -> list[Floats]:
     polygons: list[Floats] | str = metadata.get("arena_polygons", [])
     if isinstance(polygons, str):
         raise PictureError("its metadata 'arena_polygons' is not a list of polygons")
+    if not all(np.isfinite(polygon).all() for polygon in polygons):
+        raise PictureError("its metadata 'arena_polygons' has corners that are not finite numbers")
+    if polygons and (np.ptp(polygons[0], axis=0) <= 0).any():
+        raise PictureError("its metadata 'arena_polygons' has an outer wall without width or height")
     return polygons
 
 

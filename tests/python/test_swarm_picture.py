@@ -372,6 +372,8 @@ def test_what_is_missing_in_a_file_does_not_stop_the_picture(tmp_path: Path, fra
         (rows(), "[1, 2]", "'arena_polygons'"),
         (rows(), "[[{x: 1}]]", "'arena_polygons'"),
         (rows(), "[[", "'arena_polygons'"),
+        (rows(), "[[{x: 0, y: 0}, {x: .nan, y: 1}, {x: 1, y: 1}]]", "'arena_polygons' has corners that are not finite"),
+        (rows(), "[[{x: 0, y: 0}, {x: 0, y: 1}, {x: 0, y: 2}]]", "'arena_polygons' has an outer wall without width"),
     ],
 )
 def test_file_that_cannot_be_drawn_ends_with_its_reason_and_code_2(
