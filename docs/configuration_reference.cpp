@@ -47,10 +47,10 @@ void print(KeyGroup const& group) {
 int main() {
     fmt::print(
         "# Configuration reference\n\n"
-        "Every key that {} reads. This page is printed from the tables the loader checks by\n"
-        "([configuration_reference.cpp](configuration_reference.cpp)), and a test holds it to them.\n"
-        "[configuration.md](configuration.md) explains. A number may be written as `1.0e6`; keys without a default "
-        "are\nabsent if not given.\n",
+        "Every configuration key of {}, generated from the tables that the loader checks against\n"
+        "([configuration_reference.cpp](configuration_reference.cpp)). For explanations, see\n"
+        "[configuration.md](configuration.md). Numbers may be written as `1.0e6`. Keys with an empty default are\n"
+        "optional and unset.\n",
         POGOSIM_VERSION_STRING);
     for (KeyGroup const& group : configuration_reference()) {
         print(group);

@@ -54,7 +54,7 @@ def real_output(path: PathLike) -> Path:
     if stat.S_ISREG(mode):
         return real
     kind = next((words for is_kind, words in KINDS if is_kind(mode)), "something else")
-    raise OutputError(f"{path} is {kind}, not a file; name another output")
+    raise OutputError(f"{path} is {kind}, not a file; choose another output")
 
 
 def say(text: str) -> None:

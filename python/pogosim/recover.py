@@ -110,7 +110,7 @@ def open_rows(path: PathLike, file: IO[bytes]) -> ipc.RecordBatchStreamReader:
         reader = ipc.open_stream(file)
     except DAMAGED as error:
         reraise_system_error(error)
-        raise RecoverError(f"{path} was cut off before its first row") from error
+        raise RecoverError(f"{path} is truncated before its first row") from error
     metadata = reader.schema.metadata or {}
     if not any(key in metadata for key in OURS):
         raise RecoverError(f"{path} is not a data file of the simulator: its metadata have no configuration")
@@ -179,7 +179,7 @@ def locked(path: Path) -> Iterator[None]:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise RecoverError(f"a run is still writing {path}; name another file with -o") from None
+            raise RecoverError(f"{path} is in use by a run; choose another file with -o") from None
         except OSError:
             pass  # no locks on this file system
         yield
@@ -201,7 +201,7 @@ def check_replaceable(target: Path) -> None:
         try:
             open_rows(target, file)
         except RecoverError as error:
-            raise RecoverError(f"{error}; it is not written over: name another file with -o") from None
+            raise RecoverError(f"{error}; it will not be overwritten: choose another file with -o") from None
 
 
 def recover(path: PathLike, output: PathLike | None = None) -> Unfinished:
@@ -231,9 +231,11 @@ def recover(path: PathLike, output: PathLike | None = None) -> Unfinished:
         unfinished = read_unfinished(source)
         if is_complete(source):
             if is_whole(source):
-                raise RecoverError(f"{source} is complete: there is nothing to recover")
+                raise RecoverError(f"{source} is already complete; nothing to recover")
             if in_place:
-                raise RecoverError(f"{source} is damaged; to save the rows before that, name another file with -o")
+                raise RecoverError(
+                    f"{source} is damaged; to save the rows before the damage, choose another file with -o"
+                )
         write_recovered(unfinished, target, target.stat() if exists else source.stat())
     return unfinished
 
@@ -283,7 +285,7 @@ def copy_over(scratch: Path, target: Path) -> None:
             file.flush()
             os.fsync(file.fileno())
     except OSError as error:
-        raise RecoverError(f"{target} cannot be written over: {error.strerror}. All rows are in {scratch}") from error
+        raise RecoverError(f"{target} cannot be overwritten: {error.strerror}. All rows are in {scratch}") from error
 
 
 def main(arguments: list[str] | None = None) -> int:

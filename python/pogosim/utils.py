@@ -1,4 +1,4 @@
-"""Reading the data file of a run, and what the other tools share."""
+"""Reading the data file of a run, and helpers shared by the other tools."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished,
 INTEGER = "tag:yaml.org,2002:int"
 FLOAT = "tag:yaml.org,2002:float"
 
-# Texts of YAML 1.1 that PyYAML would read as something else, and the simulator as texts.
+# Tags that PyYAML (YAML 1.1) resolves and the simulator does not.
 ONLY_IN_YAML_1_1 = (INTEGER, FLOAT, "tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
 
 
@@ -65,23 +65,23 @@ ConfigurationLoader.add_constructor(INTEGER, construct_integer)
 def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Read a data file.
 
-    A file whose run goes on or was killed is read as far as it goes, with a warning (RuntimeWarning).
+    The file of an active or killed run is read up to its last complete rows, with a warning (RuntimeWarning).
 
     Args:
         path: Feather file, written by the simulator or by a batch of runs.
 
     Returns:
         The rows (one per object and save time; lengths in mm, times in s, angles in rad), and the
-        metadata of the file. All metadata are texts, except:
+        metadata of the file. All metadata are strings, except:
         "configuration": a dictionary; empty if the file has none or it cannot be parsed.
         "resolved_configuration": a dictionary of every key with its value in the run, defaults
         included; not there if the file has none.
         "arena_polygons": a list of outlines, each an array of shape (corners, 2) with x and y in mm;
-        it stays a text if it is no list of polygons.
+        it remains a string if it is not a list of polygons.
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: The file is not a complete Feather file, nor an unfinished one of the simulator; or it is damaged.
+        ValueError: The file is damaged, or neither a complete Feather file nor an unfinished one of the simulator.
     """
     table = read_table(Path(path))
     try:
@@ -101,7 +101,7 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
 
 
 def read_table(path: Path) -> pyarrow.Table:
-    """Read a data file as load_dataframe does, with its types and metadata as they stand in the file."""
+    """Read a data file as load_dataframe does, keeping the types and metadata of the file."""
     with path.open("rb") as file:
         try:
             return feather.read_table(file, memory_map=False)
@@ -112,16 +112,16 @@ def read_table(path: Path) -> pyarrow.Table:
         unfinished = read_unfinished(path)
     except RecoverError:
         raise ValueError(f"{path} is not a complete Feather file: {reason}") from reason
-    hint = f"to make a complete file of it: pogosim-recover {path}"
+    hint = f"to recover it: pogosim-recover {path}"
     if is_complete(path):
         raise ValueError(
             f"{path} is damaged: {reason}; to save its first rows ({unfinished.up_to}): "
             f"pogosim-recover {path} -o another_file.feather"
         ) from reason
     if not unfinished.says_so:
-        raise ValueError(f"{path} is not a complete Feather file: it was cut off; {hint}") from reason
+        raise ValueError(f"{path} is not a complete Feather file: it is truncated; {hint}") from reason
     warnings.warn(
-        f"{path} is incomplete: its run has not ended, or it was killed. Read: {unfinished.up_to}; {hint}",
+        f"{path} is incomplete: its run is still going on, or was killed. Read {unfinished.up_to}; {hint}",
         RuntimeWarning,
         stacklevel=3,
     )
@@ -134,10 +134,10 @@ def parse_yaml(text: str) -> Any:
 
 
 def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
-    """Parse polygons kept in a data file: YAML, a sequence of sequences of {x, y}.
+    """Parse the polygons stored in a data file: YAML, a sequence of sequences of {x, y}.
 
     Returns:
-        Arrays of shape (corners, 2) in the unit of the file (mm); the text itself if it is something else.
+        Arrays of shape (corners, 2) in the unit of the file (mm); the text itself if it cannot be parsed.
     """
     try:
         polygons = parse_yaml(text) or []
@@ -148,10 +148,10 @@ def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
 
 
 def parse_configuration(text: str) -> dict[str, Any]:
-    """Parse a configuration kept in a data file: YAML, else JSON, else a Python literal.
+    """Parse the configuration stored in a data file: YAML, JSON or a Python literal.
 
     Returns:
-        The configuration; empty if the text is no map in any of the three.
+        The configuration; empty if the text is not a map in any of the three.
     """
     for parse in (parse_yaml, json.loads, ast.literal_eval):
         try:
@@ -164,7 +164,7 @@ def parse_configuration(text: str) -> dict[str, Any]:
 
 
 def init_logging(verbose: bool = False) -> None:
-    """Log to the standard error, from information upwards; from debug upwards if verbose."""
+    """Log to standard error at level INFO, or DEBUG if verbose."""
     logging.basicConfig(
         level=logging.DEBUG if verbose else logging.INFO,
         format="[%(asctime)s] [%(levelname)s] %(message)s",

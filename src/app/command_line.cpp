@@ -30,23 +30,23 @@ std::vector<std::string> normalised_arguments(int argc, char const* const* argv)
 }
 
 void declare_options(CLI::App& app, CommandLine& options) {
-    app.add_option("-c,--config", options.config, "YAML file that describes the run")->required()->type_name("FILE");
+    app.add_option("-c,--config", options.config, "configuration file (YAML)")->required()->type_name("FILE");
     app.add_flag("-g,--no-GUI", options.no_gui, "run without a window");
     app.add_flag("-v,--verbose", options.verbose, "show debug messages");
-    app.add_flag("-q,--quiet", options.quiet, "show warnings and errors only; wins over -v");
+    app.add_flag("-q,--quiet", options.quiet, "show warnings and errors only; takes precedence over -v");
     app.add_flag("--do-not-show-robot-msg", options.hide_robot_lines,
-                 "(also -nr) keep what robots print off the console; the console file still has it");
-    app.add_option("-s,--seed", options.seed, "seed of the random numbers, 0 to 4294967295; overrides the file's")
+                 "(also -nr) hide robot output on the console; it still goes to the console file");
+    app.add_option("-s,--seed", options.seed, "random seed, 0 to 4294967295; overrides the configuration")
         ->type_name("N")
         ->check(is_seed);
     app.add_flag("-P,--progress", options.progress_bar, "show a progress bar");
     app.add_option("--set", options.overrides,
-                   "override an entry of the configuration, such as objects.robots.nb=50; may be repeated")
+                   "override a configuration entry, such as objects.robots.nb=50; may be repeated")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
-    app.add_flag("--strict", options.strict, "treat unknown keys of the configuration as errors");
-    app.set_version_flag("-V,--version", "pogosim " POGOSIM_VERSION_STRING, "print the version and end");
-    app.set_help_flag("-h,--help", "print this help and end");
+    app.add_flag("--strict", options.strict, "treat unknown configuration keys as errors");
+    app.set_version_flag("-V,--version", "pogosim " POGOSIM_VERSION_STRING, "print the version and exit");
+    app.set_help_flag("-h,--help", "print this help and exit");
 }
 
 std::string base_name(std::string const& path) {
@@ -93,8 +93,8 @@ std::string problem_of(CLI::App const& app, CLI::ParseError const& error) {
 
 ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
     ParsedCommandLine parsed;
-    CLI::App app{"Simulates a swarm of Pogobots that run this program.", argc > 0 ? base_name(argv[0]) : "pogosim"};
-    app.footer("Exit codes: 0 done, 2 wrong usage or configuration, 3 the program failed, 130 interrupted.");
+    CLI::App app{"Simulates a swarm of Pogobots running this program.", argc > 0 ? base_name(argv[0]) : "pogosim"};
+    app.footer("Exit codes: 0 success, 2 usage, configuration or file error, 3 the program failed, 130 interrupted.");
     declare_options(app, parsed.options);
     try {
         app.parse(normalised_arguments(argc, argv));

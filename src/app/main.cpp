@@ -43,10 +43,10 @@ ExitCode simulate(CommandLine const& options) {
     start_logging(logging);
 
     if (scenario.view.gui && !options.no_gui) {
-        log().info("this version has no window yet; the run goes on without one");
+        log().info("this version has no window yet; running without one");
     }
     if (scenario.view.save_video_period_s > 0.0) {
-        log().info("this version draws no frames yet (save_video_period)");
+        log().info("this version does not draw frames yet (save_video_period)");
     }
 
     Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar, .strict = options.strict});

@@ -59,7 +59,7 @@ LockedFile::LockedFile(std::filesystem::path const& path)
         if (!try_lock(descriptor_)) {
             made_here_ = false;
             close_file();
-            throw FileError("another run is writing it; wait for its end, or give each run a file of its own");
+            throw FileError("in use by another run; wait for it to finish, or give each run its own file");
         }
         if (is_still_there()) {
             return;
@@ -67,7 +67,7 @@ LockedFile::LockedFile(std::filesystem::path const& path)
         made_here_ = false;  // replaced or removed by the run that had it
         close_file();
     }
-    throw FileError("other programs replace it all the time");
+    throw FileError("other programs keep replacing it");
 }
 
 bool LockedFile::open_once() {

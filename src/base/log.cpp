@@ -126,7 +126,7 @@ public:
         if (std::filesystem::is_fifo(path)) {
             descriptor_ = open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
             if (descriptor_ < 0 && errno == ENXIO) {
-                throw FileError("it is a pipe that nobody reads; start its reader first, or name a file");
+                throw FileError("it is a pipe without a reader; start its reader first, or choose a file");
             }
         }
     }

@@ -23,7 +23,7 @@ std::string size_text(double bytes) {
 
 void fail_for_memory(std::string const& purpose, std::optional<double> bytes) {
     throw OutOfMemory(fmt::format(
-        "not enough memory for {}{}; ask for less, or raise the limit of this run (ulimit -v, or the batch system's)",
+        "not enough memory for {}{}; reduce it, or raise this run's memory limit (ulimit -v, or the batch system's)",
         purpose, bytes ? ", " + size_text(*bytes) : ""));
 }
 

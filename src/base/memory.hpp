@@ -19,7 +19,7 @@ public:
 
 /// What is said when nobody knows which allocation failed.
 inline constexpr auto kOutOfMemory =
-    "not enough memory; free some, or raise the limit of this run (ulimit -v, or the batch system's)";
+    "not enough memory; free some, or raise this run's memory limit (ulimit -v, or the batch system's)";
 
 /// Returns allocate(). When there is not enough memory for that, throws OutOfMemory with purpose(), a text such as "the
 /// light map: 10000 x 10000 cells of 2 bytes", and with the size, if it is known.

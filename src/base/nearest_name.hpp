@@ -10,11 +10,11 @@ namespace pogosim {
 /// Levenshtein distance between two texts (insertions, deletions, substitutions), ASCII case ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The closest of `known`, or an empty text when nothing is close enough to be a misspelling (more than a third of the
+/// The closest of `known`, or an empty string when nothing is close enough to be a misspelling (more than a third of the
 /// longer name would have to change).
 std::string nearest_name(std::string_view typed, std::span<std::string const> known);
 
-/// "; did you mean 'x'?", or an empty text when nothing is close enough.
+/// "; did you mean 'x'?", or an empty string when nothing is close enough.
 std::string did_you_mean(std::string_view typed, std::span<std::string const> known);
 
 }  // namespace pogosim

@@ -58,7 +58,7 @@ void check_object_count(Scenario const& scenario) {
                 fmt::format("expected at most {} objects in all categories, found {}", kMaxObjects, all));
     }
     if (robots == 0) {
-        log().warn("{}: objects: there is no robot in this configuration; nothing will move",
+        log().warn("{}: objects: there are no robots in this configuration; nothing will move",
                    place_of(scenario, "objects").node.where());
     }
 }
@@ -114,7 +114,7 @@ void check_recorded_categories(Scenario const& scenario) {
     }
     for (std::string const& name : *wanted) {
         if (!is_known(name)) {
-            log().warn("{}: {}: '{}' is ignored, the categories with rows in the data file are {}{}",
+            log().warn("{}: {}: '{}' is ignored; the categories with rows in the data file are {}{}",
                        place.node.where(), place.path, shown(name), choice, did_you_mean(shown(name), known));
         }
     }
@@ -151,8 +151,8 @@ void check_frames_name(Scenario const& scenario) {
 void check_arena(Scenario const& scenario) {
     if (scenario.arena_stretch && !scenario.arena_surface_mm2) {
         fail_at(place_of(scenario, "arena_stretch"),
-                "expected false where 'arena_surface: file' keeps the sizes of the file; give an area in mm2 to "
-                "stretch it");
+                "expected false, because 'arena_surface: file' keeps the size of the file; specify an area in mm2 "
+                "to stretch it");
     }
 }
 

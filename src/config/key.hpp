@@ -83,7 +83,7 @@ struct Key {
     std::string_view doc;
     bool required = false;
     bool (*is_used)(T const&) = nullptr;  // absent: always; asked when the keys above it in the table have been read
-    std::string_view same_as{};           // the key that this is another name of; one of them may be given
+    std::string_view same_as{};           // the key that this is an alias of; only one of them may be set
 
     /// The same key, which means something only where this is true of the struct. Elsewhere any value of its type is
     /// accepted, and ignored.
@@ -93,7 +93,7 @@ struct Key {
         return key;
     }
 
-    /// The same key, which is another name of the one that has this name.
+    /// The same key, as an alias of the one with this name.
     Key other_name_of(std::string_view name_of_the_member) const {
         Key key = *this;
         key.same_as = name_of_the_member;

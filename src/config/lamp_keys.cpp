@@ -37,12 +37,13 @@ std::span<Key<SpotSpec> const> spot_keys() {
           any(), "",
           "static: `value` everywhere. gradient: linear from `value` at the centre to `edge_value` at "
           "`gradient_radius`. plane: linear along `plane_angle`, from `value` to `edge_value`."},
-        K{"value", &SpotSpec::value, kLightLevel, "sensor counts", "Light level; levels of several lamps add up."},
+        K{"value", &SpotSpec::value, kLightLevel, "sensor counts", "Light level; the levels of several lamps add up."},
         K{"edge_value", &SpotSpec::edge_value, kLightLevel, "sensor counts",
           "gradient and plane: level at the far side."}
             .only_if(has_edge),
         K{"gradient_radius", &SpotSpec::gradient_radius_mm, kCoordinate, "mm",
-          "gradient: where `edge_value` is reached; 0 or less: the largest distance inside the shape."}
+          "gradient: distance from the centre at which `edge_value` is reached; 0 or less: the largest distance inside the "
+          "shape."}
             .only_if(is_gradient),
         K{"plane_angle", &SpotSpec::plane_angle_rad, kAngle, "rad",
           "plane: direction of the normal, clockwise on the screen from +x."}
@@ -51,8 +52,8 @@ std::span<Key<SpotSpec> const> spot_keys() {
           "plane: distance from the centre at which `value` (behind) and `edge_value` (ahead) are reached."}
             .only_if(is_plane),
         K{"photo_start_at", &SpotSpec::photo_start_at_s, kStartTime, "s",
-          "At 0 or later: dark before, then a flash, then the normal light. Negative: no flash."},
-        K{"photo_start_duration", &SpotSpec::photo_start_duration_s, kSeconds, "s", "Length of the flash."}.only_if(
+          "Time of a flash; dark before it, normal light after it. Negative: no flash."},
+        K{"photo_start_duration", &SpotSpec::photo_start_duration_s, kSeconds, "s", "Duration of the flash."}.only_if(
             has_photo_start),
         K{"photo_start_value", &SpotSpec::photo_start_value, kLightLevel, "sensor counts", "Level of the flash."}
             .only_if(has_photo_start),
@@ -81,7 +82,7 @@ std::span<Key<Vec2> const> lighthouse_centre_keys() {
     using K = Key<Vec2>;
     static std::array const keys{
         K{"x", &Vec2::x, kCoordinate, "mm",
-          "Centre; with `geometry` global or arena it counts from the centre of the arena's bounding box."},
+          "Centre; with `geometry` global or arena, relative to the centre of the arena's bounding box."},
         K{"y", &Vec2::y, kCoordinate, "mm", "See x."},
     };
     return keys;
@@ -91,8 +92,9 @@ void warn_of_lone_coordinate(MapReader const& reader, std::string_view x, std::s
     bool const has_x = reader.find(x) != nullptr;
     if (has_x != (reader.find(y) != nullptr)) {
         std::string_view const given = has_x ? x : y;
-        log().warn("{}: {}: stands alone, so {} is {:g}; give both", reader.find(given)->where(), reader.path_of(given),
-                   has_x ? y : x, has_x ? centre_mm.y : centre_mm.x);
+        std::string_view const missing = has_x ? y : x;
+        log().warn("{}: {}: {} without {}; {} is {:g}. Specify both", reader.find(given)->where(),
+                   reader.path_of(given), given, missing, missing, has_x ? centre_mm.y : centre_mm.x);
     }
 }
 

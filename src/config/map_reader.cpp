@@ -131,7 +131,7 @@ std::optional<double> MapReader::number_or_word(Place const& place, Limits const
 void MapReader::refuse_both_names(std::string_view name, std::string_view other_name) const {
     Node const* const value = find(name);
     if (!other_name.empty() && value != nullptr && find(other_name) != nullptr) {
-        fail_at({*value, path_of(name)}, fmt::format("is another name of {}; give one of them", other_name));
+        fail_at({*value, path_of(name)}, fmt::format("is an alias of {}; use one or the other", other_name));
     }
 }
 

@@ -1,8 +1,11 @@
 #include "config/object_parts.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "config/lamp_keys.hpp"
 #include "config/reception_keys.hpp"
@@ -16,16 +19,16 @@ std::span<Key<BodySpec> const> body_keys() {
     using K = Key<BodySpec>;
     static std::array const keys{
         K{"body_linear_damping", &BodySpec::linear_damping, at_least(0).up_to(1e12), "1/s",
-          "Rate at which the speed of a free body decays."},
+          "Rate at which the speed of a free body decays; 0: it slides on without slowing down."},
         K{"body_angular_damping", &BodySpec::angular_damping, at_least(0).up_to(1e12), "1/s",
-          "Rate at which the spin of a free body decays."},
+          "Rate at which the angular velocity of a free body decays; 0: it spins on without slowing down."},
         K{"body_density", &BodySpec::density, above(0).up_to(1e15), "per (100 mm)^2", "Mass per area."},
         K{"body_friction", &BodySpec::friction, between(0, 1000), "",
-          "Coulomb friction coefficient; two touching bodies have the geometric mean."},
+          "Coulomb friction coefficient; a contact uses the geometric mean of both bodies'."},
         K{"body_restitution", &BodySpec::restitution, between(0, 1), "",
-          "Part of the approach speed kept after an impact; two touching bodies have the larger one."},
+          "Coefficient of restitution; a contact uses the larger of both bodies'."},
         K{"body_fixed", &BodySpec::fixed, any(), "",
-          "An obstacle that never moves, whatever pushes it; not for robots with wheels and membranes."},
+          "Makes the object an immovable obstacle; not allowed for robots with wheels and membranes."},
     };
     return keys;
 }
@@ -34,14 +37,14 @@ std::span<Key<IrSpec> const> ir_keys() {
     using K = Key<IrSpec>;
     static std::array const keys{
         K{"communication_radius", &IrSpec::range_mm, kLengthOrZero, "mm",
-          "Infrared reach, from an emitter to the border of the receiver; 0: mute."},
+          "Infrared range, from an emitter to the edge of the receiver; 0: mute."},
         K{"communication_radius_by_power", &IrSpec::range_by_power_mm, kLengthOrZero, "mm",
-          "Reach at the emitter powers 1, 2 and 3 of pogobot_infrared_set_power; absent: communication_radius at all "
+          "Range at the emitter powers 1, 2 and 3 of pogobot_infrared_set_power; default: communication_radius at all "
           "of them. Power 0 sends nothing."},
         K{"message_queue_size", &IrSpec::queue_size, between(1, 1000), "messages",
-          "What a robot's queue of received messages holds; the newest is dropped when it is full."},
+          "Capacity of a robot's queue of received messages; when it is full, new messages are dropped."},
         K{"msg_success_rate", Elsewhere{kReceptionMap}, any(), "",
-          "Probability that a message in reach is received, see its own table."},
+          "Probability that a message in range is received; see its own table."},
     };
     return keys;
 }
@@ -54,24 +57,25 @@ std::span<Key<RobotSpec> const> robot_keys() {
           "Speed with both motors at full power."}
             .only_if(has_wheels),
         K{"max_angular_speed", &RobotSpec::max_angular_speed_rad_s, between(0, 1e4).usually_up_to(50), "rad/s",
-          "Turning scale: one motor at full power and the other stopped turn at twice this."}
+          "Turning scale: with one motor at full power and the other stopped, the robot turns at twice this."}
             .only_if(has_wheels),
         K{"linear_noise_stddev", &RobotSpec::linear_noise_stddev, between(0, 1e4), "100 mm/s",
-          "Gaussian noise of each velocity component, drawn at every control tick."}
+          "Standard deviation of Gaussian noise on each velocity component, drawn at every control tick."}
             .only_if(has_wheels),
         K{"angular_noise_stddev", &RobotSpec::angular_noise_stddev, between(0, 1e4), "rad/s",
-          "Gaussian noise of the spin, drawn at every control tick."}
+          "Standard deviation of Gaussian noise on the angular velocity, drawn at every control tick."}
             .only_if(has_wheels),
         K{"angular_systematic_bias_domain", &RobotSpec::motor_bias, between(-1023, 1023), "motor power units",
-          "A robot draws b from here once; its left motor runs at power + b, its right one at power - b."}
+          "Each robot draws b from this range once; its left motor runs at power + b, its right motor at power - b."}
             .only_if(has_wheels),
         K{"photosensors_systematic_bias_domain", &RobotSpec::photosensor_bias, between(-32767, 32767), "sensor counts",
-          "Each light sensor draws a constant offset from here once."},
+          "Each light sensor draws a constant offset from this range once."},
         K{"photosensors_noise_stddev", &RobotSpec::photosensor_noise_stddev, between(0, 32767), "sensor counts",
-          "Gaussian noise of each light reading."},
+          "Standard deviation of Gaussian noise on each light reading."},
         K{"temporal_noise_stddev", &RobotSpec::clock_drift_stddev_us, between(0, 1e6), "us per tick",
-          "Constant drift of a robot's clock, drawn once per robot."},
-        K{"rotate_LEDs_45_deg", &RobotSpec::rotate_leds_45_deg, any(), "", "Drawing only: LEDs between the axes."},
+          "Standard deviation of the constant clock drift, drawn once per robot."},
+        K{"rotate_LEDs_45_deg", &RobotSpec::rotate_leds_45_deg, any(), "",
+          "Drawing only: rotate the LEDs by 45 degrees."},
     };
     return keys;
 }
@@ -96,10 +100,10 @@ std::span<Key<Position> const> position_keys() {
     using K = Key<Position>;
     static std::array const keys{
         K{"x", &Position::x, kCoordinate, "mm",
-          "With y: all objects of the category start there. Without: the formation places them."},
+          "With y: initial position of all objects of the category; otherwise the formation places them."},
         K{"y", &Position::y, kCoordinate, "mm", "See x."},
         K{"angle", &Position::angle, kAngle, "rad",
-          "With x and y: the heading of all objects at the start, clockwise on the screen from +x; absent: 0."},
+          "With x and y: initial heading of all objects, clockwise on the screen from +x; default: 0."},
     };
     return keys;
 }
@@ -126,15 +130,16 @@ void read_position(MapReader& reader, ObjectConfig& object) {
     Position position;
     reader.read(position_keys(), position);
     if (position.x.has_value() != position.y.has_value()) {
-        std::string_view const given = position.x ? "x" : "y";
-        fail_at({*reader.find(given), reader.path_of(given)}, "stands alone; give both x and y, or neither");
+        auto const [given, missing] = position.x ? std::pair{"x", "y"} : std::pair{"y", "x"};
+        fail_at({*reader.find(given), reader.path_of(given)},
+                fmt::format("{} without {}; specify both or neither", given, missing));
     }
     if (position.x) {
         object.position_mm = Vec2{*position.x, *position.y};
         object.heading_rad = wrap_angle(position.angle.value_or(0.0F));
     } else if (position.angle) {
         fail_at({*reader.find("angle"), reader.path_of("angle")},
-                "stands alone; it is the heading of objects at x and y");
+                "angle without x and y; it is the heading of objects placed at x and y");
     }
 }
 

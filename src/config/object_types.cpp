@@ -52,9 +52,9 @@ std::span<ObjectType const> object_types() {
 std::span<Key<ObjectConfig> const> object_keys() {
     static std::string const expected = names_text(type_names());
     static std::array const keys{
-        Key<ObjectConfig>{"type", Elsewhere{expected}, any(), "", "What the objects are; capitals do not matter.",
+        Key<ObjectConfig>{"type", Elsewhere{expected}, any(), "", "Type of the objects; case-insensitive.",
                           /*required=*/true},
-        Key<ObjectConfig>{"nb", &ObjectConfig::nb, between(0, kMaxObjects), "", "How many objects."},
+        Key<ObjectConfig>{"nb", &ObjectConfig::nb, between(0, kMaxObjects), "", "Number of objects."},
     };
     return keys;
 }

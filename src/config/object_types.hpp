@@ -14,13 +14,13 @@
     TYPE(pogobject, "Head of a robot on a large body without motors.")                         \
     TYPE(pogowall, "Wall that runs user code and sends along its whole length.")               \
     TYPE(membrane, "Soft ring of disks that runs user code and sends along its whole length.") \
-    TYPE(rectmembrane, "The same of rectangular segments.")                                    \
-    TYPE(active_object, "Body that can be pushed, with a program and infrared.")               \
-    TYPE(passive_object, "Body that can be pushed.")                                           \
-    TYPE(static_light, "Lamp that stands still.")                                              \
-    TYPE(orbiting_static_light, "Lamp that goes round on a circle.")                           \
+    TYPE(rectmembrane, "Like membrane, but made of rectangular segments.")                     \
+    TYPE(active_object, "Pushable body with a program and infrared.")                          \
+    TYPE(passive_object, "Pushable body.")                                                     \
+    TYPE(static_light, "Stationary lamp.")                                                     \
+    TYPE(orbiting_static_light, "Lamp that moves along a circle.")                             \
     TYPE(rotating_ray_of_light, "Lighthouse with one beam.")                                   \
-    TYPE(alternating_rays_of_light, "Two lighthouses in turn, in two corners.")
+    TYPE(alternating_rays_of_light, "Two lighthouses in two corners, active in turn.")
 
 namespace pogosim {
 

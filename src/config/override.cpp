@@ -35,8 +35,8 @@ Node& step_into(Node& parent, std::string const& key, std::string const& assignm
     }
     if (parent.kind == Node::Kind::sequence) {
         throw ConfigError(
-            fmt::format("{} '{}': '{}' is not one of the {} places of the list at {} (from 0); the first one is '0'",
-                        kSource, assignment, key, parent.items.size(), parent.where()));
+            fmt::format("{} '{}': '{}' is not an index of the list of length {} at {}; the first one is 0", kSource,
+                        assignment, key, parent.items.size(), parent.where()));
     }
     if (parent.kind == Node::Kind::scalar) {
         throw ConfigError(fmt::format("{} '{}': '{}' would be inside the single value '{}' ({})", kSource, assignment,

@@ -21,9 +21,9 @@ std::span<Key<ObjectConfig> const> placement_keys() {
     using K = Key<ObjectConfig>;
     static std::array const keys{
         K{"poses", Elsewhere{kPoses}, any(), "",
-          "Where each object starts, in order; instead of x and y. Without an angle: heading 0. nb may be absent."},
+          "Initial pose of each object, in order; replaces x and y. Default angle: 0. nb may be omitted."},
         K{"area", Elsewhere{kArea}, any(), "",
-          "The formation places this category there, in what the arena has of it, before those without an area."},
+          "Region of the arena in which the formation places this category, before those without an area."},
     };
     return keys;
 }
@@ -36,8 +36,9 @@ std::span<Key<OwnFormation> const> formation_keys() {
         }
     }
     static std::array const keys{
-        Key<OwnFormation>{"initial_formation", one_of(&OwnFormation::name, names), any(), "",
-                          "Formation of this category alone, placed before the others; absent: that of the top level."},
+        Key<OwnFormation>{
+            "initial_formation", one_of(&OwnFormation::name, names), any(), "",
+            "Formation of this category alone, placed before the others; default: the top-level formation."},
     };
     return keys;
 }
@@ -81,7 +82,7 @@ std::vector<Placement> read_poses(Place const& place) {
         fail_expected(place, kPoses);
     }
     if (place.node.items.empty()) {
-        fail_at(place, "the list is empty; give a pose for each object, or leave it out");
+        fail_at(place, "the list is empty; specify one pose per object, or omit the key");
     }
     std::vector<Placement> poses;
     UnitSlips slips;
@@ -110,7 +111,7 @@ Polygon read_polygon_area(Place const& place) {
         fail_at(place, "these corners enclose no area");
     }
     if (survey_outlines({&corners, 1}).crossing) {
-        fail_at(place, "the sides of this polygon cross or touch each other; give its corners in order, each once");
+        fail_at(place, "the sides of this polygon cross or touch each other; list its corners in order, each once");
     }
     return corners;
 }
@@ -130,7 +131,7 @@ Polygon read_area(MapReader const& object, Node const& node) {
 void refuse_both(MapReader const& reader, std::string_view one, std::string_view other) {
     if (reader.find(one) != nullptr && reader.find(other) != nullptr) {
         fail_at({*reader.find(one), reader.path_of(one)},
-                fmt::format("cannot be together with '{}'; give one of them", other));
+                fmt::format("cannot be combined with '{}'; use one or the other", other));
     }
 }
 
@@ -138,7 +139,7 @@ void refuse_fixed_wheels_and_rings(MapReader const& reader, ObjectConfig const& 
     bool const has_wheels = object.spec.robot && object.spec.robot->has_wheels;
     if (object.spec.body && object.spec.body->fixed && (has_wheels || object.spec.ring)) {
         fail_at({*reader.find("body_fixed"), reader.path_of("body_fixed")},
-                fmt::format("{} cannot be fixed; an obstacle is a passive_object, an active_object or a pogobject",
+                fmt::format("{} cannot be fixed; use a passive_object, an active_object or a pogobject",
                             has_wheels ? "a robot with wheels" : "a membrane"));
     }
 }
@@ -173,7 +174,7 @@ void read_placement(MapReader& reader, ObjectConfig& object) {
     auto const count = static_cast<int>(object.poses.size());
     if (nb != nullptr && object.nb != count) {
         fail_at({*nb, reader.path_of("nb")},
-                fmt::format("expected {}, as many as there are poses, found {}; nb may be left out", count, object.nb));
+                fmt::format("expected {}, the number of poses, found {}; nb may be omitted", count, object.nb));
     }
     object.nb = count;
 }

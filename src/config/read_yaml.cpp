@@ -30,7 +30,7 @@ constexpr std::size_t kMaxFileBytes = 64U << 20U;
 std::string read_text(std::string const& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
-        throw ConfigError(fmt::format("{}: a folder, expected a YAML configuration file", path));
+        throw ConfigError(fmt::format("'{}' is a folder; expected a YAML file", path));
     }
     std::ifstream file(path, std::ios::binary);
     if (!file) {
@@ -43,7 +43,8 @@ std::string read_text(std::string const& path) {
     while (file.read(part.data(), part.size()) || file.gcount() > 0) {
         text.append(part.data(), static_cast<std::size_t>(file.gcount()));
         if (text.size() > kMaxFileBytes) {
-            throw ConfigError(fmt::format("{}: larger than {} MB, not a configuration", path, kMaxFileBytes >> 20U));
+            throw ConfigError(
+                fmt::format("'{}' is larger than {} MB; this is not a configuration", path, kMaxFileBytes >> 20U));
         }
     }
     return text;
@@ -57,8 +58,8 @@ void require_text(std::string_view text, std::string const& source) {
         std::size_t const length = first_code_point(text.substr(i)).bytes;
         bool const control = (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F;
         if (length == 0 || control) {
-            throw ConfigError(
-                fmt::format("{}:{}: byte 0x{:02x} is not text; a configuration is UTF-8 text", source, line, byte));
+            throw ConfigError(fmt::format("{}:{}: byte 0x{:02x} is not valid here; a configuration is UTF-8 text",
+                                          source, line, byte));
         }
         line += byte == '\n' ? 1 : 0;
         i += length;
@@ -82,8 +83,8 @@ std::string line_of(std::string const& text, int number) {
 /// The parser's messages in other words: what to do about the usual slips.
 std::string hint_for(std::string_view message) {
     constexpr std::string_view keys =
-        "; the keys of a map begin in the same column, each is followed by a colon and a space, and a text "
-        "with ': ' in it needs quotes";
+        "; the keys of a map must start in the same column, each followed by a colon and a space, and a "
+        "string containing ': ' needs quotes";
     constexpr std::array<std::pair<std::string_view, std::string_view>, 4> hints{{
         {"end of map not found", keys},
         {"illegal map value", keys},
@@ -99,7 +100,7 @@ std::string hint_for(std::string_view message) {
     int const line = std::clamp(error.mark.line + 1, 1, std::max(1, line_count(text)));
     std::string const found = line_of(text, line);
     bool const tab = found.substr(0, found.find_first_not_of(" \t")).find('\t') != std::string::npos;
-    std::string const why = tab ? "this line is indented with a tab, it needs spaces" : error.msg + hint_for(error.msg);
+    std::string const why = tab ? "this line is indented with a tab; use spaces" : error.msg + hint_for(error.msg);
     throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", source, line, why));
 }
 
@@ -107,8 +108,8 @@ std::string hint_for(std::string_view message) {
 void refuse_remains(std::string const& text, int line, std::string const& source) {
     std::string const found = line_of(text, line);
     if (!found.starts_with("---")) {
-        throw ConfigError(fmt::format("{}:{}: not valid YAML: '{}' does not belong to what stands above it", source,
-                                      line, shown(found)));
+        throw ConfigError(fmt::format("{}:{}: not valid YAML: '{}' is not part of the structure above it", source, line,
+                                      shown(found)));
     }
 }
 

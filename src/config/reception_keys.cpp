@@ -23,11 +23,11 @@ std::span<Key<ModelChoice> const> model_keys() {
             one_of(&ModelChoice::model,
                    {{"static", Model::constant}, {"dynamic", Model::dynamic}, {"realistic", Model::realistic}}),
             any(), "",
-            "static: always `rate`. dynamic: falls with message size m, send probability p and cluster size c. With "
-            "zeta or theta, or with none of the keys below, it is the article's equation, 1 / (alpha + beta p^gamma "
-            "c^delta exp(zeta m) + theta p c); with some of alpha, beta, gamma, delta alone it is the older "
-            "four-parameter law, 1 / (1 + alpha m^beta p^gamma c^delta). realistic: the four-parameter law with its "
-            "own defaults. Without msg_success_rate: the article's equation with its defaults.",
+            "static: always `rate`. dynamic: decreases with message size m, send probability p and cluster size c. "
+            "With zeta or theta, or with none of the keys below, the article's equation, 1 / (alpha + beta p^gamma "
+            "c^delta exp(zeta m) + theta p c); with only some of alpha, beta, gamma, delta, the older four-parameter "
+            "law, 1 / (1 + alpha m^beta p^gamma c^delta). realistic: the four-parameter law with its default "
+            "parameters. Without msg_success_rate: the article's equation with its default parameters.",
             /*required=*/true},
     };
     return keys;
@@ -37,7 +37,7 @@ std::span<Key<ReceptionSpec> const> parameter_keys() {
     using K = Key<ReceptionSpec>;
     static ReceptionSpec const older = four_parameter_law();
     static auto const doc = [](char const* name, double of_older) {
-        return fmt::format("dynamic: {} of the law; its default in the four-parameter law is {}.", name, of_older);
+        return fmt::format("dynamic: parameter {}; default in the four-parameter law: {}.", name, of_older);
     };
     static std::array const docs{doc("alpha", older.alpha), doc("beta", older.beta), doc("gamma", older.gamma),
                                  doc("delta", older.delta)};
@@ -50,8 +50,10 @@ std::span<Key<ReceptionSpec> const> parameter_keys() {
         K{"beta", &ReceptionSpec::beta, any(), "", docs[1]}.only_if(has_parameters),
         K{"gamma", &ReceptionSpec::gamma, any(), "", docs[2]}.only_if(has_parameters),
         K{"delta", &ReceptionSpec::delta, any(), "", docs[3]}.only_if(has_parameters),
-        K{"zeta", &ReceptionSpec::zeta, any(), "1/byte", "dynamic: chooses the article's equation."}.only_if(has_six),
-        K{"theta", &ReceptionSpec::theta, any(), "", "dynamic: chooses the article's equation."}.only_if(has_six),
+        K{"zeta", &ReceptionSpec::zeta, any(), "1/byte", "dynamic: parameter zeta; selects the article's equation."}
+            .only_if(has_six),
+        K{"theta", &ReceptionSpec::theta, any(), "", "dynamic: parameter theta; selects the article's equation."}
+            .only_if(has_six),
     };
     return keys;
 }

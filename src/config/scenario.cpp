@@ -34,12 +34,11 @@ void require_category(Node const& objects, std::string const& category, Node con
             others.push_back(name);
         }
     }
+    std::string const nearest = did_you_mean(shown(category), others);
     fail_at({node, "objects"},
-            fmt::format("there is no category '{}'{}{}; to add one, set its type, too", shown(category),
-                        others.empty()
-                            ? ""
-                            : fmt::format("; there {} {}", others.size() == 1 ? "is" : "are", fmt::join(others, ", ")),
-                        did_you_mean(shown(category), others)));
+            fmt::format("unknown category '{}'{}{} To add a category, also set its type", shown(category),
+                        others.empty() ? "" : fmt::format(" (known: {})", fmt::join(others, ", ")),
+                        nearest.empty() ? "." : nearest));
 }
 
 std::vector<ObjectConfig> read_objects(Node const* objects, bool strict) {

@@ -17,39 +17,41 @@ std::span<Key<Scenario> const> scenario_keys() {
     static std::array const keys{
         // Space.
         K{"arena_file", &Scenario::arena_file, any(), "",
-          "Needed. Outline of the arena, CSV; looked for from the working folder, beside the configuration, then in "
-          "the folder of Pogosim."},
+          "Required. Outline of the arena (CSV); searched in the working folder, next to the configuration file, then in "
+          "Pogosim's own folder."},
         K{"arena_surface", NumberOr<Scenario>{&Scenario::arena_surface_mm2, "file"},
           above(0).up_to(kMaxLength * kMaxLength).usually_from(100), "mm2",
-          "Area inside the outer wall less the holes; the outline is scaled to it. file: the numbers of the arena file "
-          "are millimetres, nothing is scaled."},
+          "Area inside the outer wall minus the holes; the outline is scaled to match it. file: the arena file is in "
+          "millimetres and is not scaled."},
         K{"arena_stretch", &Scenario::arena_stretch, any(), "",
-          "Stretch the outline so that its bounding box is a square; false: keep its proportions."},
+          "Stretch the outline so that its bounding box becomes a square; false: keep the proportions."},
         K{"boundary_condition",
           one_of(&Scenario::boundary, {{"solid", BoundaryCondition::solid}, {"periodic", BoundaryCondition::periodic}}),
-          any(), "", "solid: walls. periodic: no walls, what leaves the bounding box comes back on the other side."},
+          any(), "",
+          "solid: walls. periodic: no walls; whatever leaves the bounding box re-enters on the opposite side."},
         K{"arena_temperature", &Scenario::arena_temperature_c, between(-273.15, 10000), "C",
-          "What the robots' thermometers read."},
+          "Temperature that the robots' thermometers read."},
         K{"communication_ignore_occlusions", &Scenario::ignore_occlusions, any(), "",
-          "Infrared links depend on distance only: no shadows, no facing."},
+          "Infrared links depend on distance only, ignoring occlusion and the direction of emitters and receivers."},
         K{"light_map_nb_bin_x", &Scenario::light_map_columns, between(1, 10000), "cells", "Columns of the light map."},
         K{"light_map_nb_bin_y", &Scenario::light_map_rows, between(1, 10000), "cells", "Rows of the light map."},
         // Time and chance.
-        K{"simulation_time", &Scenario::simulation_time_s, between(0, 1e9), "s", "End of the run."},
-        K{"time_step", &Scenario::time_step_s, above(0).up_to(1), "s", "Step of the simulation."},
-        K{"seed", &Scenario::seed, any(), "", "Seed of all random numbers; absent: a new one each run."},
+        K{"simulation_time", &Scenario::simulation_time_s, between(0, 1e9), "s", "Simulated duration of the run."},
+        K{"time_step", &Scenario::time_step_s, above(0).up_to(1), "s", "Simulation step."},
+        K{"seed", &Scenario::seed, any(), "", "Random seed; if omitted, each run draws a new one."},
         K{"user_code_timeout", &Scenario::user_code_timeout_s, between(0, 1e6), "s",
-          "Processor time one call of user code may take, without that of other threads of the program, and wall-clock "
-          "time once a signal has asked the run to "
-          "end; 0: no limit."},
+          "Limit on the processor time of one call to user code (excluding other threads of the program), and on its "
+          "wall-clock time once a signal has requested a stop; 0: no limit."},
         // Things.
-        K{"objects", Elsewhere{"a map of categories"}, any(), "", "What is in the arena, by category; own tables."},
+        K{"objects", Elsewhere{"a map of categories"}, any(), "",
+          "Everything in the arena, by category; see the tables below."},
         K{"parameters", Elsewhere{"a map of keys"}, any(), "", "Values for the global variables of the user program."},
         // For the batch and optimisation tools; the simulator reads past them.
-        K{"result_filename_format", Elsewhere{"a text"}, any(), "", "Batch tool: name of each result file."},
-        K{"result_new_columns", Elsewhere{"a list of key paths"}, any(), "", "Batch tool: constant columns to add."},
-        K{"optimization", Elsewhere{"a map of keys"}, any(), "", "Optimisation tool: its settings."},
-        K{"progress_bar", Elsewhere{"true or false"}, any(), "", "Ignored; the command line says it."},
+        K{"result_filename_format", Elsewhere{"a string"}, any(), "", "For batch tools: name of each result file."},
+        K{"result_new_columns", Elsewhere{"a list of key paths"}, any(), "",
+          "For batch tools: constant columns to add."},
+        K{"optimization", Elsewhere{"a map of keys"}, any(), "", "For optimisation tools: their settings."},
+        K{"progress_bar", Elsewhere{"true or false"}, any(), "", "Ignored; use the command-line option -P."},
     };
     return keys;
 }
@@ -57,8 +59,8 @@ std::span<Key<Scenario> const> scenario_keys() {
 std::span<Key<WallSpec> const> wall_keys() {
     using K = Key<WallSpec>;
     static std::array const keys{
-        K{"wall_friction", &WallSpec::friction, between(0, 1000), "", "Coulomb friction of the walls."},
-        K{"wall_restitution", &WallSpec::restitution, between(0, 1), "", "Bounciness of the walls."},
+        K{"wall_friction", &WallSpec::friction, between(0, 1000), "", "Coulomb friction coefficient of the walls."},
+        K{"wall_restitution", &WallSpec::restitution, between(0, 1), "", "Coefficient of restitution of the walls."},
     };
     return keys;
 }
@@ -87,30 +89,30 @@ std::span<Key<FormationSpec> const> formation_keys() {
     }
     static std::array const keys{
         K{"initial_formation", one_of(&FormationSpec::name, names), any(), "",
-          "How objects without x and y are placed."},
+          "How to place objects without x and y, poses, or their own initial_formation."},
         K{"initial_formation_root_object", &FormationSpec::root_object, any(), "",
-          "Category whose contour bounds the formation; arena: the walls."},
+          "Category whose outline bounds the formation; arena: the walls."},
         K{"initial_formation_center", &FormationSpec::centre_mm, kCoordinate.or_nan(), "mm",
-          "Centre of disk formations; .nan: the centroid of the outer wall."}
+          "Centre of disk and chessboard formations; .nan: the centroid of the outer wall."}
             .only_if(has_centre),
         K{"formation_min_space_between_neighbors", &FormationSpec::min_space_mm, between(0, kMaxLength), "mm",
-          "Lower bound of the radius that each object is given when it is placed."},
+          "Smallest radius assumed for an object during placement."},
         K{"formation_max_space_between_neighbors", &FormationSpec::max_space_mm, kLength.or_infinity(), "mm",
-          "random: each object is placed this near another one, centre to centre."}
+          "random: maximum centre-to-centre distance from each object to its nearest neighbour."}
             .only_if(is_random),
         K{"formation_attempts_per_point", &FormationSpec::attempts_per_point, between(1, 1e9), "",
-          "Random places tried for one object before all starts again."}
+          "Random positions tried for one object before placement restarts."}
             .only_if(has_attempts),
         K{"formation_max_restarts", &FormationSpec::max_restarts, between(0, 1e9), "",
-          "New starts before the formation is declared impossible."}
+          "Restarts before placement fails."}
             .only_if(has_attempts),
         K{"chessboard_distance_between_neighbors", &FormationSpec::chessboard_pitch_mm, kLength, "mm",
-          "chessboard: distance of neighbours on the grid."}
+          "chessboard: distance between neighbours on the grid."}
             .only_if(is_chessboard),
         K{"formation_cluster_at_center", &FormationSpec::cluster_at_centre, any(), "",
-          "chessboard: around the centre; false: spread over the arena."},
+          "chessboard: place objects around the centre; false: spread them over the arena."},
         K{"formation_filename", &FormationSpec::filename, any(), "",
-          "imported: CSV or Feather file with the columns x, y and maybe angle; looked for like arena_file."},
+          "imported: CSV or Feather file with columns x, y and optionally angle; searched like arena_file."},
         K{"imported_formation_min_coords", &FormationSpec::imported_min, any().or_nan(), "unit of the file",
           "imported: corner of the file's box that is mapped onto the arena's bounding box; .nan: no mapping."}
             .only_if(is_imported),
@@ -126,23 +128,25 @@ std::span<Key<OutputConfig> const> output_keys() {
     constexpr auto has_data = [](OutputConfig const& output) { return output.enable_data_logging; };
     static std::array const keys{
         K{"enable_data_logging", &OutputConfig::enable_data_logging, any(), "", "Write the data file."},
-        K{"data_filename", &OutputConfig::data_filename, any(), "", "The data file, Feather; folders are made."},
+        K{"data_filename", &OutputConfig::data_filename, any(), "",
+          "Data file (Feather); missing folders are created."},
         K{"save_data_period", &OutputConfig::save_data_period_s, between(-1e9, 1e9), "s",
-          "Time between two sets of rows; 0 or less: only the rows of time 0."}
+          "Time between records; 0 or less: only record time 0."}
             .only_if(has_data),
-        K{"data_logger_fields", &OutputConfig::fields, any(), "", "Columns to write; absent: all."},
+        K{"data_logger_fields", &OutputConfig::fields, any(), "", "Columns to record; default: all."},
         K{"data_logger_category", &OutputConfig::categories, any(), "",
-          "Categories to write; absent: all. At least one must have objects other than lamps."},
+          "Categories to record; default: all. At least one must have objects other than lamps."},
         K{"data_logger_flush_row_count", &OutputConfig::flush_row_count, between(1, 1e9), "rows",
-          "Rows of one record batch in the file."}
+          "Rows per record batch of the file."}
             .only_if(has_data),
-        K{"data_logger_led", &OutputConfig::led_column, any(), "", "Add the column led_rgb, the head LED."},
+        K{"data_logger_led", &OutputConfig::led_column, any(), "",
+          "Add the column led_rgb, the colour of the head LED."},
         K{"enable_console_logging", &OutputConfig::enable_console_logging, any(), "", "Write the console file."},
-        K{"console_filename", &OutputConfig::console_filename, any(), "", "The console file; folders are made."},
+        K{"console_filename", &OutputConfig::console_filename, any(), "", "Console file; missing folders are created."},
         K{"log_format",
           one_of(&OutputConfig::log_format,
                  {{"default", LogFormat::dated}, {"date", LogFormat::dated}, {"minimal", LogFormat::minimal}}),
-          any(), "", "Console lines with date and level, or without."},
+          any(), "", "default, date: console lines with date and level; minimal: without."},
     };
     return keys;
 }
@@ -154,21 +158,24 @@ std::span<Key<ViewConfig> const> view_keys() {
         K{"GUI_speed_up", &ViewConfig::gui_speed_up, above(0).up_to(1e6), "",
           "Simulated seconds per second in the window."}
             .only_if([](ViewConfig const& view) { return view.gui; }),
-        K{"window_width", &ViewConfig::window_width_px, between(1, 16384), "pixels", "Width of window and frames."},
-        K{"window_height", &ViewConfig::window_height_px, between(1, 16384), "pixels", "Height of window and frames."},
+        K{"window_width", &ViewConfig::window_width_px, between(1, 16384), "pixels",
+          "Width of the window and of frames."},
+        K{"window_height", &ViewConfig::window_height_px, between(1, 16384), "pixels",
+          "Height of the window and of frames."},
         K{"mm_to_pixels", &ViewConfig::mm_to_pixels, any(), "pixels per mm",
-          "Ignored; the arena is fitted to the window, and the metadata say at which scale."},
-        K{"show_time", &ViewConfig::show_time, any(), "", "Write the time."},
+          "Ignored; the arena is fitted to the window. The metadata contain the scale."},
+        K{"show_time", &ViewConfig::show_time, any(), "", "Display the time."},
         K{"show_scale_bar", &ViewConfig::show_scale_bar, any(), "", "Draw the scale bar."},
         K{"show_communication_channels", &ViewConfig::show_communication_channels, any(), "", "Draw infrared links."},
         K{"show_communication_channels_above_all", &ViewConfig::show_communication_channels_above_all, any(), "",
           "Draw the links above the objects."},
         K{"show_lateral_LEDs", &ViewConfig::show_lateral_leds, any(), "", "Draw LEDs 1 to 4."},
         K{"show_light_levels", &ViewConfig::show_light_levels, any(), "", "Draw the light map."},
-        K{"show_trajectory_traces", &ViewConfig::show_trajectory_traces, any(), "", "Draw where robots came from."},
+        K{"show_trajectory_traces", &ViewConfig::show_trajectory_traces, any(), "", "Draw the trajectories of robots."},
         K{"save_video_period", &ViewConfig::save_video_period_s, between(-1e9, 1e9), "s",
-          "Time between two frames; 0 or less: none."},
-        K{"frames_name", &ViewConfig::frames_name, any(), "", "Name of a frame; its one {} field is the time in s."},
+          "Time between frames; 0 or less: no frames."},
+        K{"frames_name", &ViewConfig::frames_name, any(), "",
+          "File name of a frame; its only {} field is the time in s."},
         K{"delete_old_files", &ViewConfig::delete_old_files, any(), "",
           "Delete *.png in the folder of frames_name first."},
     };

@@ -15,7 +15,7 @@ K solid_geometry_key() {
             one_of(&Shape::kind,
                    {{"disk", ShapeKind::disk}, {"rectangle", ShapeKind::rectangle}, {"triangle", ShapeKind::triangle}},
                    kAnyCase),
-            any(), "", "Shape of the object; capitals do not matter."};
+            any(), "", "Shape of the object; case-insensitive."};
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ std::span<K const> outline_geometry_keys() {
                   {"rectangle", ShapeKind::rectangle},
                   {"triangle", ShapeKind::triangle}},
                  kAnyCase),
-          any(), "", "All walls of the arena, or the outline of a shape at x and y; capitals do not matter.",
+          any(), "", "arena: all walls; otherwise the outline of a shape at x and y. Case-insensitive.",
           /*required=*/true},
     };
     return keys;
@@ -59,7 +59,8 @@ std::span<K const> any_geometry_keys() {
                   {"rectangle", ShapeKind::rectangle},
                   {"triangle", ShapeKind::triangle}},
                  kAnyCase),
-          any(), "", "Shape: everywhere, inside the arena's polygons, or around the centre; capitals do not matter.",
+          any(), "",
+          "global: everywhere; arena: inside the arena's polygons; otherwise a shape around the centre. Case-insensitive.",
           /*required=*/true},
     };
     return keys;

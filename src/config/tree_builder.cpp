@@ -48,10 +48,10 @@ void TreeBuilder::OnNull(YAML::Mark const& mark, YAML::anchor_t anchor) {
 void TreeBuilder::OnScalar(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor,
                            std::string const& value) {
     if (value.find('\0') != std::string::npos) {
-        fail(line_of(mark), "a text holds a zero byte (\\0), which no name or path can");
+        fail(line_of(mark), "a string contains a zero byte (\\0), which names and paths cannot");
     }
     if (value.find(kEndMark.substr(0, kEndMark.size() - 1)) != std::string::npos) {
-        fail(line_of(mark), "not valid YAML: the text that starts here has no end; is its closing quote missing?");
+        fail(line_of(mark), "not valid YAML: the string that starts here does not end; is its closing quote missing?");
     }
     admit({1, 1}, line_of(mark));
     Node node = make(Node::Kind::scalar, mark);
@@ -63,7 +63,7 @@ void TreeBuilder::OnScalar(YAML::Mark const& mark, std::string const& tag, YAML:
 void TreeBuilder::OnAlias(YAML::Mark const& mark, YAML::anchor_t anchor) {
     auto const known = anchors_.find(anchor);
     if (known == anchors_.end()) {
-        fail(line_of(mark), "this alias (*name) stands inside the very value it names");
+        fail(line_of(mark), "this alias (*name) is inside the value it refers to");
     }
     admit(size_of(known->second), line_of(mark));
     Node copy = known->second;
@@ -87,8 +87,8 @@ void TreeBuilder::OnMapEnd() {
     for (auto const& [place, lines] : map.again) {
         auto const& [category, entries] = map.node.entries[place];
         log().warn(
-            "{}: objects.{} stands in lines {}; each of them is built, in the category '{}'. A list under one key "
-            "says the same without this warning",
+            "{}: objects.{} appears on lines {}; all of them are used, in the category '{}'. To avoid this warning, put "
+            "them in a list under one key",
             entries.where(), category, fmt::join(lines, ", "), category);
     }
     if (!map.merged.empty()) {
@@ -148,7 +148,7 @@ void TreeBuilder::add(Node node, YAML::anchor_t anchor) {
 
 void TreeBuilder::take_key(Open& map, Node const& key) const {
     if (key.kind != Node::Kind::scalar) {
-        fail(key.line, "the key of a map must be a plain text");
+        fail(key.line, "the key of a map must be a plain string");
     }
     map.has_key = true;
     map.key = key.scalar;
@@ -174,7 +174,7 @@ void TreeBuilder::take_value(Open& map, Node value) const {
 /// Categories of one name are as many entries; any other key has its last value.
 void TreeBuilder::take_again(Open& map, Node::Entry& earlier, Node value) const {
     if (!is_in_objects() || is_option_key(map.key)) {
-        log().warn("{}: key '{}' stands here again, first in line {}; the last one is used", value.where(), map.key,
+        log().warn("{}: duplicate key '{}', first on line {}; the last one is used", value.where(), map.key,
                    earlier.value.line);
         earlier.value = std::move(value);
         return;

@@ -309,12 +309,11 @@ void UnitSlips::warn() const {
         }
         std::string const others = slip.count == 1 ? ""
                                    : slip.count == 2
-                                       ? ", as is another number of this list"
-                                       : fmt::format(", as are {} other numbers of this list", slip.count - 1);
+                                       ? ", like another number of this list"
+                                       : fmt::format(", like {} other numbers of this list", slip.count - 1);
         double const meant = std::stod(fmt::format("{:.6g}", slip.number * similar->factor));
-        log().warn("{}: the unit is {}, in which {} is unusually {}{}; if {} are meant, write {}", slip.where,
-                   slip.unit, slip.text, similar->factor > 1.0 ? "small" : "large", others, similar->taken,
-                   number_text(meant));
+        log().warn("{}: {} {} is unusually {}{}; if you meant {}, write {}", slip.where, slip.text, slip.unit,
+                   similar->factor > 1.0 ? "small" : "large", others, similar->taken, number_text(meant));
     }
 }
 
@@ -355,7 +354,7 @@ std::string expected_text(Limits const& limits, double) {
     return expected_number(limits);
 }
 std::string expected_text(Limits const& /*limits*/, std::string const&) {
-    return "a text";
+    return "a string";
 }
 std::string expected_text(Limits const& limits, Vec2) {
     return with_unit("a list [x, y] of two numbers" + limits.range.text(), limits.unit);

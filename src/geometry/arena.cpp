@@ -58,7 +58,7 @@ float Arena::distance_to_walls(Vec2 point_mm) const {
 
 std::string arena_text(Arena const& arena) {
     Box const& box = arena.bounds;
-    return fmt::format("the arena, which spans ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm", box.min.x, box.min.y,
+    return fmt::format("the arena, which extends from ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}) mm", box.min.x, box.min.y,
                        box.max.x, box.max.y);
 }
 

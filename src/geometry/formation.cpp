@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
@@ -52,7 +53,7 @@ Formation const& formation_named(std::string const& name) {
     std::string const nearest = nearest_name(name, formation_names());
     throw FormationError(kFormationKey,
                          fmt::format("unknown formation '{}'. {}", name,
-                                     nearest.empty() ? fmt::format("Known are {}", fmt::join(formation_names(), ", "))
+                                     nearest.empty() ? fmt::format("Known: {}", fmt::join(formation_names(), ", "))
                                                      : fmt::format("Did you mean '{}'?", nearest)));
 }
 
@@ -90,6 +91,15 @@ std::vector<float> placement_radii(FormationSpec const& spec, std::span<float co
     return placed;
 }
 
+std::string area_text(double area_mm2) {
+    return area_mm2 >= 100.0 ? fmt::format("{:.0f} mm2", area_mm2) : fmt::format("{:.3g} mm2", area_mm2);
+}
+
+/// The two digits that an estimate is good for.
+double estimated(double value) {
+    return std::stod(fmt::format("{:.2g}", value));
+}
+
 /// No arrangement of disks covers more than all that is free.
 void check_area(PlacementTask const& task) {
     double covered = 0.0;
@@ -100,13 +110,12 @@ void check_area(PlacementTask const& task) {
     bool const alone = share == 1.0;
     double const free_mm2 = share * task.domain.area_mm2;
     if (covered > (alone ? free_mm2 : free_mm2 + kShareTolerance * task.domain.area_mm2)) {
-        std::string const room = alone ? fmt::format("{:.3g} mm2", free_mm2)
-                                       : fmt::format("about {:.2g} mm2 beside what stands there already", free_mm2);
+        std::string const room =
+            alone ? fmt::format("the {} is only {}", task.ground, area_text(free_mm2))
+                  : fmt::format("only about {} of the {} is free", area_text(estimated(free_mm2)), task.ground);
         throw FormationError(
-            kFormationKey,
-            fmt::format("'{}' cannot place {}: with their spacing they cover {:.3g} mm2, and the "
-                        "{} has {}. Ask for fewer or {}",
-                        task.spec.name, describe_objects(task), covered, task.ground, room, task.remedy));
+            kFormationKey, fmt::format("'{}' cannot place {}: they need {} including spacing, but {}; reduce nb or {}",
+                                       task.spec.name, describe_objects(task), area_text(covered), room, task.remedy));
     }
 }
 
@@ -125,7 +134,7 @@ void warn_of_clashes(PlacementTask const& task, std::span<float const> radii_mm,
     }
     if (clashes > 0) {
         log().warn("{}: {}{}", task.spec.filename, first,
-                   clashes > 1 ? fmt::format(", and {} more do so with what has a fixed place", clashes - 1) : "");
+                   clashes > 1 ? fmt::format(", and {} more overlap objects with a fixed place", clashes - 1) : "");
     }
 }
 

@@ -66,8 +66,8 @@ static void sleep_until_next_tick(void) {
     int32_t const allowed_us = 1000000 / main_loop_hz;
     int32_t const elapsed_us = pogobot_stopwatch_get_elapsed_microseconds(&timer_main_loop);
     if (elapsed_us > allowed_us) {
-        printf("[TIME] Error code: 0: a tick took %ld ms, more than the %ld ms of main_loop_hz\n",
-               (long)(elapsed_us / 1000), (long)(allowed_us / 1000));
+        printf("[TIME] Error code: 0: tick took %ld ms; main_loop_hz allows %ld ms\n", (long)(elapsed_us / 1000),
+               (long)(allowed_us / 1000));
         display_led_error_code(ERROR_TIME_OVERFLOW);
     } else {
         msleep((allowed_us - elapsed_us) / 1000);

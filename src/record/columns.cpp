@@ -163,8 +163,8 @@ std::vector<std::string> kept_names(std::vector<std::string> names,
         return std::find(fields->begin(), fields->end(), name) == fields->end();
     });
     if (names.empty()) {
-        throw ConfigError("data_logger_fields: names no column of the data file; choose among: " + all +
-                          ", leave the key out to record all, or set enable_data_logging to false");
+        throw ConfigError("data_logger_fields: no column of the data file is selected; choose from: " + all +
+                          ", omit the key to record all, or set enable_data_logging to false");
     }
     return names;
 }

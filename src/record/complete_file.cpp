@@ -162,7 +162,7 @@ Status CompleteFile::copy_to(int descriptor) const {
 Status CompleteFile::take_the_place_of(LockedFile const& unfinished) {
     std::error_code error;
     if (!unfinished.is_still_there() && std::filesystem::exists(unfinished.path(), error)) {
-        return Status::IOError("another program has replaced it during the run");
+        return Status::IOError("another program replaced it during the run");
     }
     int reason = ENOENT;
     if (can_be_renamed_to(unfinished)) {

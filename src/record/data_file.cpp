@@ -43,7 +43,7 @@ std::string reason_of(Status const& status) {
 }
 
 constexpr auto kNotAFile =
-    "it is a device, a pipe or a socket, not a file; for a run without data: enable_data_logging: false";
+    "it is a device, a pipe or a socket, not a file; to run without a data file: enable_data_logging: false";
 
 void make_parent_folder(std::string const& path) {
     auto const parent = std::filesystem::path(path).parent_path();
@@ -303,8 +303,8 @@ struct DataFile::Impl {
             fail(path, reason);
         }
         fail(path,
-             fmt::format("{}. It is unfinished, and holds the rows up to t = {:.4f} s; to make a complete file of "
-                         "it, make room and run: pogosim-recover '{}'",
+             fmt::format("{}. It contains the rows up to t = {:.4f} s; to complete it, free some disk space and run: "
+                         "pogosim-recover '{}'",
                          reason, saved_time_s, path));
     }
 
@@ -313,7 +313,7 @@ struct DataFile::Impl {
         auto const kept = complete->keep_beside(file);
         complete.reset();
         if (!kept.ok()) {
-            fail(path, fmt::format("{}. The rows of this run are lost: they cannot be written beside it: {}", reason,
+            fail(path, fmt::format("{}. The rows of this run are lost: they cannot be written next to it: {}", reason,
                                    reason_of(kept.status())));
         }
         fail(path, fmt::format("{}. The rows of this run are in '{}'", reason, kept->string()));
@@ -383,10 +383,10 @@ void DataFile::close() {
     impl_->check(impl_->finish());
     impl_->open = false;
     if (!is_ours) {
-        impl_->fail_beside("its size is not that of what was written; did another program change it?");
+        impl_->fail_beside("its size is not what was written; did another program change it?");
     }
     if (std::error_code error; !std::filesystem::exists(impl_->file.path(), error)) {
-        log().warn("another program has removed the data file '{}' during the run; it is made again", impl_->path);
+        log().warn("another program removed the data file '{}' during the run; it is written again", impl_->path);
     }
     if (auto const status = impl_->complete->take_the_place_of(impl_->file); !status.ok()) {
         impl_->fail_beside(reason_of(status));

@@ -21,7 +21,7 @@ namespace pogosim {
 namespace {
 
 [[noreturn]] void fail(std::filesystem::path const& path, std::string const& reason) {
-    throw ConfigError(fmt::format("formation_filename: cannot take poses from '{}': {}", path.string(), reason));
+    throw ConfigError(fmt::format("formation_filename: cannot read poses from '{}': {}", path.string(), reason));
 }
 
 /// What the system or the library found wrong, in our words.

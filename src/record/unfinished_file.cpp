@@ -11,8 +11,8 @@ namespace pogosim {
 namespace {
 
 constexpr auto kIncomplete =
-    "The run has not ended, or it was killed before its end. pogosim.utils.load_dataframe reads the rows; "
-    "pogosim-recover makes a complete Feather file of this one.";
+    "The run is still going on, or it was killed. pogosim.utils.load_dataframe reads the rows; pogosim-recover turns "
+    "this file into a complete Feather file.";
 
 std::shared_ptr<arrow::Schema> marked(arrow::Schema const& schema) {
     auto metadata = std::make_shared<arrow::KeyValueMetadata>();

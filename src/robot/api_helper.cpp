@@ -62,7 +62,7 @@ __attribute__((visibility("default"))) void exit(int status) noexcept {
         pogosim::end_run_from_thread(what, code);
     }
     if (pogosim::run_stage() == pogosim::RunStage::before_main) {
-        std::fprintf(stderr, "pogosim: the user program %s before main(). There was no run.\n", what);
+        std::fprintf(stderr, "pogosim: the user program %s before main(). The run did not start.\n", what);
     }
     reinterpret_cast<void (*)(int)>(dlsym(RTLD_NEXT, "exit"))(status);
     std::abort();  // not reached

@@ -33,8 +33,8 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
                    std::uint8_t const* payload) {
     if (header.payload_length > MAX_PAYLOAD_SIZE_BYTES) {
         context.services->warn_once(
-            "a message of {} bytes was not sent: the payload of a message has at most {} bytes "
-            "(MAX_PAYLOAD_SIZE_BYTES); the sending function has returned {}",
+            "a message of {} bytes was not sent: the largest payload is {} bytes (MAX_PAYLOAD_SIZE_BYTES); the sending "
+            "function returned {}",
             header.payload_length, MAX_PAYLOAD_SIZE_BYTES, kNotSent);
         return kNotSent;
     }
@@ -202,7 +202,7 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
     std::array<std::byte, MAX_PAYLOAD_SIZE_BYTES> payload;
     if (!context.has_robot() || !context.world->mailboxes.pop(context.robot, header, payload.data())) {
         context.services->warn_once(
-            "pogobot_infrared_recover_next_message was called with no message waiting: ask "
+            "pogobot_infrared_recover_next_message was called with no message waiting: check "
             "pogobot_infrared_message_available() first");
         return;
     }

@@ -13,8 +13,7 @@ void pogobot_led_setColor(uint8_t const r, uint8_t const g, uint8_t const b) {
 void pogobot_led_setColors(uint8_t const r, uint8_t const g, uint8_t const b, uint8_t id) {
     require_robot(__func__);
     if (id >= pogosim::kLedCount) {
-        context.services->warn_once(
-            "pogobot_led_setColors: there is no LED {}, and nothing is set: 0 is the head, 1 to 4 are the ring", id);
+        context.services->warn_once("pogobot_led_setColors: no LED {}; nothing set (valid: 0 head, 1 to 4 ring)", id);
     } else if (context.has_robot()) {
         context.world->robots.led[context.robot][id] = {r, g, b};
     }

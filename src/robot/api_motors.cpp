@@ -14,7 +14,7 @@ namespace {
 bool is_motor(motor_id motor) {
     bool const known = static_cast<int>(motor) >= 0 && static_cast<int>(motor) < kMotorCount;
     if (!known) {
-        context.services->warn_once("there is no motor {}, and nothing is set: use motorL, motorR or motorB",
+        context.services->warn_once("no motor {}; nothing set (valid: motorL, motorR, motorB)",
                                     static_cast<int>(motor));
     }
     return known;
@@ -24,9 +24,8 @@ bool is_motor(motor_id motor) {
 void warn_if_negative(std::uint16_t power) {
     if (power > INT16_MAX) {
         context.services->warn_once(
-            "pogobot_motor_set was called with {}: powers are unsigned (0 to {}), so this one is {} and drives the "
-            "motor "
-            "at full power; to turn it backwards, use pogobot_motor_dir_set and a positive power",
+            "pogobot_motor_set was called with {}: powers are unsigned (0 to {}), so this one becomes {} and drives "
+            "the motor at full power; to reverse it, use pogobot_motor_dir_set and a positive power",
             static_cast<int>(static_cast<std::int16_t>(power)), static_cast<int>(motorFull), power);
     }
 }

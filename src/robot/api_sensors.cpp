@@ -42,8 +42,7 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     require_robot(__func__);
     if (sensor_number >= pogosim::kPhotosensorCount) {
         context.services->warn_once(
-            "pogobot_photosensors_read: there is no light sensor {}, and -1 is returned: 0 is at the back, 1 at the "
-            "front left, 2 at the front right",
+            "pogobot_photosensors_read: no light sensor {}; returning -1 (valid: 0 back, 1 front left, 2 front right)",
             sensor_number);
         return -1;
     }

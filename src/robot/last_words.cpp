@@ -26,7 +26,7 @@ void append_data_file(Words& words) {
         words << " The data file '" << data_file_path.data()
               << (data_file_state == DataFileState::complete
                       ? "' is complete."
-                      : "' could not be completed; pogosim-recover rescues the rows that it has.");
+                      : "' could not be completed; recover its rows with pogosim-recover.");
     }
 }
 
@@ -39,13 +39,13 @@ Words words_before_main(char const* what, bool in_other_thread) {
     words << "pogosim: the user program failed before main(), in "
           << place_outside_run(in_other_thread,
                                "the constructor of a static object or another function that runs there")
-          << ": " << what << ". There was no run.";
+          << ": " << what << ". The run did not start.";
     return words;
 }
 
 Words words_of_preparation(char const* what) {
     Words words;
-    words << "pogosim: the program failed before the first robot ran: " << what << ". There was no run.";
+    words << "pogosim: the program failed before the first robot ran: " << what << ". The run did not start.";
     return words;
 }
 
@@ -62,7 +62,7 @@ Words words_of_run(char const* where, char const* what, char const* advice) {
     Words words;
     words << "pogosim: the user program failed" << where << ": " << what << ".";
     append_data_file(words);
-    words << " If the program writes to memory that is not its own, building it with -fsanitize=address finds where."
+    words << " If the program writes to memory it does not own, build it with -fsanitize=address to find out where."
           << advice;
     return words;
 }
@@ -78,7 +78,7 @@ SignalText<256> advice_to_repeat() {
     if (data_file_state == DataFileState::open) {
         World const& world = *context.world;
         double const time_before_s = std::max(0.0, static_cast<double>(world.step) - 0.5) * world.time_step_s;
-        advice << " To have the data up to there, run it again with -s ";
+        advice << " For the data up to that point, run it again with -s ";
         advice.whole(context.services->seed) << " --set simulation_time=";
         advice.number(time_before_s, 6);
     }
@@ -166,12 +166,11 @@ void prepare_last_words_of_interrupt(char const* signal_name) {
     last_words << "pogosim: " << signal_name;
     switch (stage) {
         case RunStage::before_main:
-            last_words
-                << " before main(), where constructors of static objects run: there is no data file of this run.";
+            last_words << " before main(), where constructors of static objects run: this run has no data file.";
             break;
         case RunStage::preparing:
         case RunStage::running:
-            last_words << " before the first robot ran: there is no data file of this run.";
+            last_words << " before the first robot ran: this run has no data file.";
             break;
         case RunStage::finished:
             last_words << " after the run, while destructors of static objects and exit handlers ran.";

@@ -54,9 +54,7 @@ void warn_of_large_user_data(std::size_t bytes) {
 }
 
 void warn_of_user_data_in_setup(std::uint16_t id) {
-    log().warn(
-        "callback_global_setup changed USERDATA (mydata), which is robot #{}'s alone there: initialise it in user_init",
-        id);
+    log().warn("callback_global_setup changed USERDATA (mydata) of robot #{} only: initialise it in user_init", id);
 }
 
 void warn_of_idle_categories(World const& world, std::span<Computer const> computers,
@@ -66,15 +64,14 @@ void warn_of_idle_categories(World const& world, std::span<Computer const> compu
     std::ranges::copy_if(started, std::back_inserter(strange), [&world](std::string const& name) {
         return std::ranges::find(world.categories, name, &Category::name) == world.categories.end();
     });
-    std::string const calls =
-        started.empty() ? "there is no call" : fmt::format("the calls name {}", fmt::join(started, ", "));
+    std::string const calls = started.empty() ? "" : fmt::format(" (only for {})", fmt::join(started, ", "));
     std::vector<bool> warned(world.categories.size());
     for (std::size_t i = 0; i < computers.size(); ++i) {
         std::uint16_t const category = world.robots.category[i];
         if (!computers[i].program.registered && !warned[category]) {
             warned[category] = true;
             std::string const& name = world.categories[category].name;
-            log().warn("no pogobot_start() of the program names the category '{}': its robots do nothing; {}{}", name,
+            log().warn("the program has no pogobot_start() for category '{}'{}; its robots will do nothing{}", name,
                        calls, did_you_mean(name, strange));
         }
     }
@@ -85,8 +82,7 @@ void warn_of_missing_init(std::span<Computer const> computers) {
     auto const is_prepared = [](Computer const& computer) { return computer.program.prepared; };
     if (std::ranges::any_of(computers, runs) && std::ranges::none_of(computers, is_prepared)) {
         log().warn(
-            "the program never calls pogobot_init(), without which nothing works on a real robot: call it in main(), "
-            "before pogobot_start()");
+            "the program never calls pogobot_init(), which real robots require: call it in main(), before pogobot_start()");
     }
 }
 
@@ -94,9 +90,9 @@ void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Comput
     auto const exports = [](Computer const& computer) { return computer.program.export_data != nullptr; };
     if (!columns.empty() && !computers.empty() && std::ranges::none_of(computers, exports)) {
         log().warn(
-            "the column '{}'{} of the data file will be empty: the program sets no callback_export_data "
+            "the column '{}'{} of the data file will be empty: the program does not set callback_export_data "
             "(SET_CALLBACK in main())",
-            columns.front().name, columns.size() > 1 ? " and the program's other ones" : "");
+            columns.front().name, columns.size() > 1 ? " (like the program's other columns)" : "");
     }
 }
 
@@ -156,7 +152,7 @@ void warn_of_unused_messages(World const& world, std::span<Computer const> compu
     auto const reads = [](Computer const& computer) { return computer.program.reads_messages; };
     if (arrivals > 0 && std::ranges::none_of(computers, reads) && std::ranges::none_of(deaf, std::identity())) {
         log().warn(
-            "{} messages arrived, but no robot reads messages: set msg_rx_fn in user_init, or call "
+            "{} messages arrived, but no robot reads them: set msg_rx_fn in user_init, or call "
             "pogobot_infrared_message_available() in user_step",
             arrivals);
     }

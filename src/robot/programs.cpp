@@ -404,8 +404,7 @@ void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* catego
     }
     if (context.computer->program.registered) {
         context.services->warn_once(
-            "pogobot_start() is called again for the category '{}': the last call counts here, the first one on real "
-            "robots",
+            "pogobot_start() is called again for the category '{}': the simulator uses the last call, a real robot the first",
             category);
     }
     context.computer->program.registered = true;

@@ -181,8 +181,8 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body) {
     if (sigsetjmp(guard.rescue_point, 0) != 0) {
         return UserFailure{std::string("the simulator crashed (") + guard.what.c_str() +
-                               "), most likely because the user program wrote to memory that is not its own; build the "
-                               "program with -fsanitize=address to find where",
+                               "), most likely because the user program wrote to memory it does not own; build the "
+                               "program with -fsanitize=address to find out where",
                            ExitCode::user_program};
     }
     guard.rescuable = true;
@@ -253,7 +253,7 @@ void called_without_robot(char const* function) {
         what << "there, but only main(), the steps and the callbacks run on a robot";
         end_run_from_thread(what.c_str(), ExitCode::user_program);
     }
-    what << "while no robot has the processor; call it in main(), user_init(), user_step() or a callback";
+    what << "while no robot was running; call it in main(), user_init(), user_step() or a callback";
     std::fflush(nullptr);
     prepare_last_words(what.c_str(), !on_simulator_thread());
     end_with_last_words(static_cast<int>(ExitCode::user_program));

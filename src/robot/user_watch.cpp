@@ -124,16 +124,17 @@ void tell_what_is_waited_for() {
     }
     waiting.told = true;
     SignalText<1024> text;
-    text << "pogosim: " << waiting.signal_name << ": the run ends when ";
+    text << "pogosim: " << waiting.signal_name << ": stopping ";
     if (guard.inside) {
-        text << running_place().c_str() << ", returns. A second signal leaves it at once; by itself it is left ";
+        text << "as soon as " << running_place().c_str()
+             << ", returns. Send a second signal to stop now; otherwise it is aborted ";
         if (busy.timeout_s > 0.0) {
-            text.number(busy.timeout_s, 6, /*kept=*/false) << " s after its start (user_code_timeout).\n";
+            text.number(busy.timeout_s, 6, /*kept=*/false) << " s after it began (user_code_timeout).\n";
         } else {
             text.number(kPatienceS, 0) << " s from now (there is no user_code_timeout).\n";
         }
     } else {
-        text << "the simulator has ended this step and completed the data file.\n";
+        text << "after this step, once the data file is complete.\n";
     }
     text.write_to_stderr();
 }
@@ -196,9 +197,9 @@ void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
         what << "it had not returned ";
         what.number(limit_s, 6, /*kept=*/false);
         if (busy.timeout_s > 0.0) {
-            what << " s after its start (user_code_timeout), and " << waiting.signal_name << " asked the run to end";
+            what << " s after it began (user_code_timeout), and " << waiting.signal_name << " had requested a stop";
         } else {
-            what << " s after " << waiting.signal_name << " asked the run to end";
+            what << " s after " << waiting.signal_name << " requested a stop";
         }
         what << (is_at_robots_start() ? kMoveTheLoop : "");
         request_end(what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);

@@ -35,8 +35,8 @@ void tell_scale(Scenario const& scenario, ArenaOutline const& outline, Arena con
     Vec2 const size_mm = bounding_box_of_all(arena.polygons).size();
     if (scenario.arena_surface_mm2 && length(size_mm - drawn) > kSameSize * length(drawn)) {
         log().info(
-            "arena '{}': its outline of {} is scaled to {} mm, for an arena_surface of {} mm2 (arena_surface: "
-            "file keeps the millimetres of the file)",
+            "arena '{}': outline {} scaled to {} mm to match arena_surface {} mm2 (use 'arena_surface: file' to keep "
+            "the file's size)",
             scenario.arena_file, size_text(bounding_box_of_all(outline.polygons)), size_text(arena.bounds),
             *scenario.arena_surface_mm2);
     }
@@ -47,8 +47,8 @@ void check_size(Scenario const& scenario, Arena const& arena) {
     Vec2 const size_mm = arena.bounds.size();
     if (!scenario.arena_surface_mm2 && std::max(size_mm.x, size_mm.y) > kMaxLength) {
         throw ConfigError(
-            fmt::format("{}: arena_surface: the arena '{}' is {} mm large; the largest size is {} mm. "
-                        "Give its area in mm2 instead of 'file'",
+            fmt::format("{}: arena_surface: the arena '{}' measures {} mm; the largest supported size is {} mm. "
+                        "Specify its area in mm2 instead of 'file'",
                         where_at_top(scenario, "arena_surface"), scenario.arena_file, size_text(arena.bounds),
                         number_text(kMaxLength)));
     }
@@ -56,15 +56,16 @@ void check_size(Scenario const& scenario, Arena const& arena) {
 
 void build_arena(Scenario const& scenario, World& world) {
     if (scenario.arena_file.empty()) {
-        throw ConfigError(fmt::format("{}: the key 'arena_file' is missing; give an outline, such as arenas/disk.csv",
-                                      where_at_top(scenario, "arena_file")));
+        throw ConfigError(
+            fmt::format("{}: the key 'arena_file' is missing; specify an outline, such as arenas/disk.csv",
+                        where_at_top(scenario, "arena_file")));
     }
     ArenaOutline const outline = read_arena_file(find_file(scenario, "arena_file", scenario.arena_file));
     world.periodic = scenario.boundary == BoundaryCondition::periodic || outline.periodic;
     Node const* const boundary = scenario.resolved.find("boundary_condition");
     if (outline.periodic && scenario.boundary == BoundaryCondition::solid && boundary != nullptr) {
         log().warn(
-            "{}: boundary_condition: '{}' says that it is periodic, and so it is; with walls, use another arena_file",
+            "{}: boundary_condition: ignored, because '{}' declares itself periodic; for walls, use another arena_file",
             boundary->where(), scenario.arena_file);
     }
     world.arena = scale_arena(outline, {.surface_mm2 = scenario.arena_surface_mm2, .stretch = scenario.arena_stretch});
@@ -164,7 +165,7 @@ private:
 bool is_created(World const& world, ObjectConfig const& object) {
     bool const is_wall = object.spec.robot && !object.spec.body;
     if (is_wall && world.periodic && object.nb > 0) {
-        log().warn("objects.{}: a periodic arena has no walls, so there is no {}", object.category, object.type);
+        log().warn("objects.{}: a periodic arena has no walls, so no {} is created", object.category, object.type);
         return false;
     }
     return object.spec.robot || object.spec.body;
@@ -205,8 +206,7 @@ void warn_of_gaps(Scenario const& scenario) {
             if (other.nb > 0 && other.spec.body && !other.spec.ring &&
                 2.0F * bounding_radius(other.spec.shape) < gap_mm) {
                 log().warn(
-                    "{}: the gaps between its dots grow to {:.1f} mm, so that '{}' may slip through; use more or "
-                    "larger dots",
+                    "{}: the gaps between its dots can grow to {:.1f} mm, so '{}' may slip through; use more or larger dots",
                     where_in_object(scenario, membrane, "num_dots"), gap_mm, other.category);
             }
         }

@@ -39,8 +39,8 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
         return;
     }
     throw ConfigError(fmt::format(
-        "{}: at {} {} robots {} up to {} {} in a time_step of {} s, more than the {} {} that {}; use at most {} "
-        "{}, or a time_step of at most {} s",
+        "{}: at {} {}, robots {} up to {} {} in a time_step of {} s, more than the {} {} that {}. Use at most {} {}, or a "
+        "time_step of at most {} s",
         where_in_object(scenario, object, motion.key), text(motion.speed), motion.speed_unit, motion.verb,
         text(in_a_step), motion.unit, text(time_step_s), text(motion.most), motion.unit, motion.reason,
         text(rounded_down(motion.most / motion.per_key / time_step_s)), motion.speed_unit,

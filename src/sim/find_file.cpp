@@ -67,7 +67,7 @@ std::filesystem::path find_file(Scenario const& scenario, std::string const& key
                 return folder / path;
             }
         }
-        looked_for = fmt::format("; it was looked for in {}", fmt::join(folder_names(folders), ", then in "));
+        looked_for = fmt::format("; searched {}", fmt::join(folder_names(folders), ", then in "));
     }
     throw ConfigError(
         fmt::format("{}: {}: there is no file '{}'{}{}", where_at_top(scenario, key), key, name, looked_for,

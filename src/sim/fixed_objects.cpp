@@ -74,9 +74,9 @@ public:
 
     void warn(Scenario const& scenario) const {
         for (auto const& [entry, other, text, more] : all_) {
-            log().warn("{}: at ({:g}, {:g}) {}{}",
+            log().warn("{}: '{}' at ({:g}, {:g}) {}{}",
                        where_in_object(scenario, *entry->object, entry->object->position_mm ? "x" : "poses"),
-                       entry->position_mm.x, entry->position_mm.y, text,
+                       entry->object->category, entry->position_mm.x, entry->position_mm.y, text,
                        more > 0 ? fmt::format(", and {} more like this", more) : "");
         }
     }
@@ -114,22 +114,19 @@ void warn_of_overlaps(Scenario const& scenario, World const& world) {
         ObjectConfig const& object = *entry->object;
         float const own_mm = half_thickness_mm(object.spec);
         if (object.position_mm && object.nb > 1) {
-            findings.add(*entry, &object,
-                         fmt::format("all {} objects of '{}' stand inside each other", object.nb, object.category));
+            findings.add(*entry, &object, fmt::format("has all {} objects on top of each other", object.nb));
         }
         for (auto other = entries.begin(); other != entry; ++other) {
             float const depth_mm = may_touch(*entry, *other) ? overlap_mm(entry->obstacle, other->obstacle) : 0.0F;
             if (depth_mm > kDeepShare * std::min(own_mm, half_thickness_mm(other->object->spec))) {
                 findings.add(*entry, other->object,
-                             fmt::format("'{}' reaches {:.1f} mm deep into {}", object.category, depth_mm,
-                                         other->object == &object ? "another one" : other->obstacle.name));
+                             fmt::format("overlaps {} by {:.1f} mm",
+                                         other->object == &object ? "another one" : other->obstacle.name, depth_mm));
             }
         }
         float const depth_mm = world.periodic ? 0.0F : overlap_mm(entry->obstacle, world.arena);
         if (depth_mm > kDeepShare * own_mm) {
-            findings.add(
-                *entry, nullptr,
-                fmt::format("'{}' reaches {:.1f} mm deep into a wall of the arena", object.category, depth_mm));
+            findings.add(*entry, nullptr, fmt::format("extends {:.1f} mm into an arena wall", depth_mm));
         }
     }
     findings.warn(scenario);

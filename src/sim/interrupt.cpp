@@ -24,7 +24,7 @@ constexpr std::array kInterrupts{
     SignalName{SIGINT, "Ctrl-C (SIGINT)"},
     SignalName{SIGTERM, "SIGTERM"},
     SignalName{SIGHUP, "SIGHUP (the terminal was closed)"},
-    SignalName{SIGXCPU, "SIGXCPU (the limit of processor time)"},
+    SignalName{SIGXCPU, "SIGXCPU (processor time limit)"},
     SignalName{SIGUSR1, "SIGUSR1"},  // batch systems send these two some time before they kill
     SignalName{SIGUSR2, "SIGUSR2"},
     SignalName{SIGQUIT, "Ctrl-\\ (SIGQUIT)"},
@@ -71,7 +71,7 @@ void on_interrupt(int signal, siginfo_t* /*info*/, void* /*context*/) {
         abandon_user_code();
     }
     if (count > 2 && !inside_user_code()) {
-        prepare_plain_last_words("interrupted three times, so the program ends at once");
+        prepare_plain_last_words("interrupted three times; exiting immediately");
         end_with_last_words(static_cast<int>(ExitCode::interrupted));
     }
 }

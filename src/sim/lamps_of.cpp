@@ -24,7 +24,7 @@ void warn_outside(Scenario const& scenario, ObjectConfig const& object, std::str
     Node const* const entry = node_of(scenario, object);
     bool const is_orbit = entry != nullptr && entry->find("center_" + axis) != nullptr;
     log().warn(
-        "{}: the lamp's centre ({:g}, {:g}) is outside of {}; coordinates of older configurations may need "
+        "{}: the lamp's centre ({:g}, {:g}) is outside {}; coordinates of older configurations may need "
         "'arena_stretch: true'",
         where_in_object(scenario, object, is_orbit ? "center_" + axis : axis), centre_mm.x, centre_mm.y,
         arena_text(arena));
@@ -98,8 +98,8 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
     auto const dark = std::ranges::count_if(areas, is_dark);
     if (dark > 0) {
         log().warn(
-            "{}: the lamp lights no cell of the light map{}: it covers the centre of none, and they are {:.1f} mm x "
-            "{:.1f} mm large; enlarge the lamp, or use more cells (light_map_nb_bin_x, light_map_nb_bin_y)",
+            "{}: the lamp lights no cell of the light map{}: it covers no cell centre, and cells measure {:.1f} mm x {:.1f} mm; "
+            "enlarge the lamp, or use more cells (light_map_nb_bin_x, light_map_nb_bin_y)",
             where_in_object(scenario, object, size_key(shape)),
             dark < std::ssize(areas) ? " on parts of its orbit" : "", map.cell_mm.x, map.cell_mm.y);
     }

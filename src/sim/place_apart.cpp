@@ -50,7 +50,7 @@ std::vector<Obstacle> outside_of(Arena const& arena) {
     frame.insert(frame.end(), {low, {low.x, high.y}, high, {high.x, low.y}, low});
     std::vector<Obstacle> obstacles{{.name = "the arena's wall", .line = std::move(frame)}};
     for (auto hole = arena.polygons.begin() + 1; hole != arena.polygons.end(); ++hole) {
-        obstacles.push_back({.name = "a hole of the arena", .line = *hole});
+        obstacles.push_back({.name = "a hole in the arena", .line = *hole});
     }
     return obstacles;
 }
@@ -64,17 +64,17 @@ std::vector<Placement> place_apart(Scenario const& scenario, World const& world,
     formation.name = own.name.value_or(formation.name);
     std::string const where = where_in_object(scenario, object, own.area_mm ? "area" : "initial_formation");
     if (formation.name == kImportedFormation) {
-        throw ConfigError(
-            fmt::format("{}: the formation 'imported' fills no areas; give the category an initial_formation of its "
-                        "own, or poses",
-                        where));
+        throw ConfigError(fmt::format(
+            "{}: the formation 'imported' cannot fill an area; give the category its own initial_formation, or "
+            "poses",
+            where));
     }
     std::vector<float> const radii(static_cast<std::size_t>(object.nb), outer_radius_mm(object.spec));
     Arena const ground = own.area_mm ? make_arena({*own.area_mm}) : world.arena;
     if (own.area_mm) {
         Overlap const overlap = overlap_with(world.arena, *own.area_mm);
         if (overlap == Overlap::none) {
-            throw ConfigError(fmt::format("{}: no part of it is in {}", where, arena_text(world.arena)));
+            throw ConfigError(fmt::format("{}: it lies entirely outside {}", where, arena_text(world.arena)));
         }
         if (overlap == Overlap::partial) {
             std::ranges::move(outside_of(world.arena), std::back_inserter(obstacles));

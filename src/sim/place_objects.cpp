@@ -68,13 +68,13 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     float const radius_mm = bounding_radius(object.spec.shape);
     if (half_thickness_mm(ring) > radius_mm) {
         char const* const key = ring.segments && ring.thickness_mm ? "rect_thickness" : "dot_radius";
-        throw ConfigError(fmt::format("{}: a ring so thick does not fit into a shape of radius {:g} mm",
+        throw ConfigError(fmt::format("{}: the ring is too thick for a shape of radius {:g} mm",
                                       where_in_object(scenario, object, key), radius_mm));
     }
     Polygon const line = ring_line(object.spec, {});
     float const step_mm = length(line[1] - line[0]);
     if (step_mm < kSmallestStepMm) {
-        throw ConfigError(fmt::format("{}: so many would lie {:.2g} mm from each other; the least is {} mm",
+        throw ConfigError(fmt::format("{}: that many would be only {:.2g} mm apart; the minimum is {} mm",
                                       where_in_object(scenario, object, "num_dots"), step_mm, kSmallestStepMm));
     }
 }
@@ -87,7 +87,7 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     bool const y_fits = y >= box.min.y && y <= box.max.y;
     char const* const key = !object.position_mm ? "poses" : x_fits && !y_fits ? "y" : "x";
     throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}", where_in_object(scenario, object, key), x, y,
-                                  x_fits && y_fits ? "beyond the walls of" : "outside of", arena_text(world.arena)));
+                                  x_fits && y_fits ? "beyond the walls of" : "outside", arena_text(world.arena)));
 }
 
 void check_position(Scenario const& scenario, World const& world, ObjectConfig const& object, Placement const& pose) {
@@ -150,9 +150,8 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     ObjectSpec const& spec = root.spec;
     bool const is_solid = spec.body && !spec.ring;
     if (root.nb == 0 || is_solid) {
-        throw ConfigError(fmt::format("{}: '{}' {}; it can be the arena, a wall, a membrane or a lamp",
-                                      where_root(scenario), root.category,
-                                      is_solid ? "is solid: nothing fits into it" : "has no object"));
+        throw ConfigError(fmt::format("{}: '{}' {}; use the arena, a wall, a membrane or a lamp", where_root(scenario),
+                                      root.category, is_solid ? "is solid, so nothing fits inside" : "has no objects"));
     }
     if (spec.lamp) {
         auto const [shape, centre_mm] = area_at_start(*spec.lamp);
@@ -163,7 +162,7 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     }
     Polygon space = outline(inset(spec.shape, spec.ring ? 2.0F * half_thickness_mm(*spec.ring) : 0.0F));
     if (signed_area(space) < 1.0) {
-        throw ConfigError(fmt::format("{}: the ring of '{}' is so thick that there is no space in it; enlarge {}",
+        throw ConfigError(fmt::format("{}: the ring of '{}' is so thick that it leaves no space inside; enlarge {}",
                                       where_root(scenario), root.category,
                                       where_in_object(scenario, root, size_key(spec.shape))));
     }
@@ -179,7 +178,7 @@ void check_inside(Scenario const& scenario, World const& world, ObjectConfig con
         for (Placement const& pose : poses[i]) {
             if (is_placed && !stands_inside(world, pose.position_mm)) {
                 throw ConfigError(
-                    fmt::format("{}: '{}' reaches beyond {}, and some of what it holds would start there; "
+                    fmt::format("{}: '{}' reaches beyond {}, and some of its contents would start there; "
                                 "move it or make it smaller",
                                 where_root(scenario), root.category, arena_text(world.arena)));
             }
@@ -283,8 +282,8 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
         if (root == kNoEntry) {
             throw;
         }
-        throw ConfigError(fmt::format("{} (inside of '{}': {})", error.what(), scenario.objects[root].category,
-                                      where_root(scenario)));
+        throw ConfigError(
+            fmt::format("{} (inside '{}': {})", error.what(), scenario.objects[root].category, where_root(scenario)));
     }
     if (root != kNoEntry) {
         check_inside(scenario, world, scenario.objects[root], poses);

@@ -173,7 +173,7 @@ void Recorder::close() {
 
 std::string Recorder::note() const {
     return is_opened_ && is_complete_
-               ? fmt::format(". The data file '{}' is complete up to there", output().data_filename)
+               ? fmt::format(". The data file '{}' contains all rows up to that point", output().data_filename)
                : "";
 }
 

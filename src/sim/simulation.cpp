@@ -131,7 +131,7 @@ void Simulation::report_unread_parameters() const {
     if (unread.empty()) {
         return;
     }
-    std::string const message = "parameters that the program never reads: " + unread;
+    std::string const message = "parameters never read by the program: " + unread;
     if (options_.strict && !interrupted()) {
         throw ConfigError(message + " (--strict; the run itself is complete)");
     }
@@ -204,7 +204,7 @@ void Simulation::fit_time_step() {
     // Robots sleep whole milliseconds between ticks, and tick once a step at most.
     double const tick_s = std::floor(1000.0 / hz) / 1000.0;
     if (world_.time_step_s > tick_s) {
-        log().warn("time_step is lowered from {} s to {} s, so that a robot with main_loop_hz {} gets all its ticks",
+        log().warn("time_step reduced from {} s to {} s, so that no ticks are skipped (main_loop_hz: {})",
                    world_.time_step_s, tick_s, hz);
         world_.time_step_s = tick_s;
     }
@@ -214,7 +214,7 @@ void Simulation::report(UserFailure const& failure) const {
     std::string const where = fmt::format(
         "{}, t = {:.4f} s", failure.in_other_thread ? "a thread that it started" : current_place(), world_.time_s());
     if (failure.refused) {
-        log().error("{} (asked for in {}){}", failure.what, where, recorder_.note());
+        log().error("{} (called from {}){}", failure.what, where, recorder_.note());
         return;
     }
     if (failure.code == ExitCode::interrupted) {

@@ -73,10 +73,10 @@ void check_used_files(Scenario const& scenario, std::string const& configuration
             UsedFile const& other = files[j];
             if (written.is_output && written.key != other.key && are_same(written.path, other.path)) {
                 throw ConfigError(fmt::format(
-                    "{}: {}: '{}'{} is the same file as {}, {}; name another file", where_at_top(scenario, written.key),
-                    written.key, written.path.string(),
-                    written.is_beside ? ", where the run puts the data file together," : "", described(scenario, other),
-                    other.is_output ? "which the run writes, too" : "which the run would write over"));
+                    "{}: {}: '{}'{} is the same file as {}, {}; choose another file",
+                    where_at_top(scenario, written.key), written.key, written.path.string(),
+                    written.is_beside ? " (used to assemble the data file)" : "", described(scenario, other),
+                    other.is_output ? "which the run also writes" : "which the run would overwrite"));
             }
         }
     }

@@ -74,7 +74,7 @@ TEST(BadInput, WrongTypesAndRangesAtTheTopLevel) {
          {"seed: random", "seed: expected an integer from 0 to 4294967295, found 'random'"},
          {"arena_surface: 0",
           "arena_surface: expected a number above 0, at most 1000000000000 (mm2), or 'file', found 0"},
-         {"arena_file: [a]", "arena_file: expected a text, found a list"},
+         {"arena_file: [a]", "arena_file: expected a string, found a list"},
          {"arena_file: ''", "arena_file: expected a file name, found nothing; 'arena_surface' needs it"},
          {"GUI: 1", "GUI: expected true or false, found 1"},
          {"GUI: maybe", "GUI: expected true or false, found 'maybe'"},
@@ -87,7 +87,7 @@ TEST(BadInput, WrongTypesAndRangesAtTheTopLevel) {
          {"boundary_condition: [solid]", "boundary_condition: expected solid or periodic, found a list"},
          {"log_format: xml", "log_format: expected one of default, date, minimal, found 'xml'"},
          {"data_logger_fields: time", "data_logger_fields: expected a list of names, found 'time'"},
-         {"data_logger_fields: [time, [x]]", "data_logger_fields.1: expected a text, found a list"},
+         {"data_logger_fields: [time, [x]]", "data_logger_fields.1: expected a string, found a list"},
          {"data_logger_flush_row_count: 0",
           "data_logger_flush_row_count: expected an integer from 1 to 1000000000 (rows), found 0"},
          {"initial_formation_center: 5",
@@ -163,8 +163,8 @@ TEST(BadInput, WrongRobots) {
          {"    angular_systematic_bias_domain: [0, 5000]",
           "objects.robots.angular_systematic_bias_domain.1: expected an integer from -1023 to 1023 (motor power "
           "units), found 5000"},
-         {"    x: 5", "objects.robots.x: stands alone; give both x and y, or neither"},
-         {"    y: 5", "objects.robots.y: stands alone; give both x and y, or neither"},
+         {"    x: 5", "objects.robots.x: x without y; specify both or neither"},
+         {"    y: 5", "objects.robots.y: y without x; specify both or neither"},
          {"    x: left", "objects.robots.x: expected a number from -1000000 to 1000000 (mm), found 'left'"},
          {"    msg_success_rate: 0.9",
           "objects.robots.msg_success_rate: expected a map of keys, such as {type: static, rate: 0.9}, found 0.9"},
@@ -232,7 +232,7 @@ TEST(BadInput, WrongMovingLights) {
          {"    center_x: left",
           "objects.lamp.center_x: expected a number from -1000000 to 1000000 (mm), found 'left'"}});
     EXPECT_EQ(load_error(lamp_of("orbiting_static_light") + "    orbit_angular_speed: 1\n    angular_speed: 2\n"),
-              "x.yaml:7: objects.lamp.angular_speed: is another name of orbit_angular_speed; give one of them");
+              "x.yaml:7: objects.lamp.angular_speed: is an alias of orbit_angular_speed; use one or the other");
 }
 
 TEST(BadInput, ObjectsNeedTypeAndGeometry) {
@@ -280,7 +280,7 @@ TEST(BadInput, EveryKeyOfEveryTableRefusesAMapAndNonsense) {
     int checked = 0;
     for (KeyGroup const& group : configuration_reference()) {
         for (KeyDescription const& key : group.keys) {
-            bool const is_text = key.expected == "a text";
+            bool const is_text = key.expected == "a string";
             bool const is_free = key.name == "parameters" || key.name == "optimization" || key.name == "progress_bar" ||
                                  key.name.starts_with("result_") || key.name == "light_mode" || key.required;
             bool const is_map = key.expected.starts_with("a map");

@@ -74,7 +74,7 @@ TEST(ReadYaml, MergeOfSomethingElseThanMapsIsRefused) {
 TEST(ReadYaml, DuplicateKeyWarnsWithBothLinesAndTheLastWins) {
     Warnings const warnings;
     EXPECT_EQ(rewritten("a: 1\nb: 2\na: 3\n"), "a: 3\nb: 2\n");
-    EXPECT_EQ(warnings.text(), "x.yaml:3: key 'a' stands here again, first in line 1; the last one is used\n");
+    EXPECT_EQ(warnings.text(), "x.yaml:3: duplicate key 'a', first on line 1; the last one is used\n");
 }
 
 TEST(ReadYaml, OnlyTheFirstDocumentIsUsed) {
@@ -94,12 +94,13 @@ TEST(ReadYaml, MissingFileIsNamedWithThePlaceLookedAt) {
     EXPECT_EQ(error_of([] { read_yaml_file("conf/none.yaml"); }),
               "cannot read the configuration 'conf/none.yaml': No such file or directory (looked for " +
                   (std::filesystem::current_path() / "conf/none.yaml").string() + ")");
-    EXPECT_EQ(error_of([] { read_yaml_file("."); }), ".: a folder, expected a YAML configuration file");
+    EXPECT_EQ(error_of([] { read_yaml_file("."); }), "'.' is a folder; expected a YAML file");
     EXPECT_NE(error_of([] { read_yaml_file(""); }).find("No such file or directory"), std::string::npos);
 }
 
 TEST(ReadYaml, EndlessFileIsNoConfiguration) {
-    EXPECT_EQ(error_of([] { read_yaml_file("/dev/zero"); }), "/dev/zero: larger than 64 MB, not a configuration");
+    EXPECT_EQ(error_of([] { read_yaml_file("/dev/zero"); }),
+              "'/dev/zero' is larger than 64 MB; this is not a configuration");
 }
 
 TEST(ReadYaml, EmptyFileSaysWhatIsNeeded) {
@@ -119,39 +120,40 @@ TEST(ReadYaml, SyntaxErrorsNameTheirLine) {
     EXPECT_EQ(read_error("a: 1\nb: [1, 2\nc: 3\n").substr(0, 9), "x.yaml:3:");
     EXPECT_EQ(read_error("a: 1\nb: {x: 1\n").substr(0, 9), "x.yaml:2:");
     for (char const* text : {"a: 1\n\tb: 2\n", "a:\n\tb: 2\n", "a:\n  \tb: {c: 1}\n"}) {
-        EXPECT_EQ(read_error(text), "x.yaml:2: not valid YAML: this line is indented with a tab, it needs spaces")
-            << text;
+        EXPECT_EQ(read_error(text), "x.yaml:2: not valid YAML: this line is indented with a tab; use spaces") << text;
     }
     for (char const* text : {"z: 0\na: 'open\n", "z: 0\na: \"open\nb: 2\n", "z: 0\n'a", "z: 0\na: \"x\\"}) {
         EXPECT_EQ(read_error(text),
-                  "x.yaml:2: not valid YAML: the text that starts here has no end; is its closing quote missing?")
+                  "x.yaml:2: not valid YAML: the string that starts here does not end; is its closing quote missing?")
             << text;
     }
-    EXPECT_EQ(read_error("{a: 1}\nb: 2\n"), "x.yaml:2: not valid YAML: 'b: 2' does not belong to what stands above it");
+    EXPECT_EQ(read_error("{a: 1}\nb: 2\n"), "x.yaml:2: not valid YAML: 'b: 2' is not part of the structure above it");
     // yaml-cpp 0.8 adds the anchor's name.
     std::string const anchor = read_error("a: *nobody\n");
     EXPECT_TRUE(anchor.starts_with("x.yaml:1: not valid YAML: the referenced anchor is not defined")) << anchor;
     std::string const keys =
-        "; the keys of a map begin in the same column, each is followed by a colon and a space, and a text "
-        "with ': ' in it needs quotes";
+        "; the keys of a map must start in the same column, each followed by a colon and a space, and a string "
+        "containing ': ' needs quotes";
     EXPECT_EQ(read_error("a: b: c\n"), "x.yaml:1: not valid YAML: illegal map value" + keys);
     EXPECT_EQ(read_error("a: 1\n  b: 2\n"), "x.yaml:2: not valid YAML: illegal map value" + keys);
     EXPECT_EQ(read_error("a:\n    b: 2\n  c: 3\n"), "x.yaml:3: not valid YAML: end of map not found" + keys);
     EXPECT_EQ(read_error("a: {b: 1\n"),
               "x.yaml:1: not valid YAML: end of map flow not found; is a '}' or a comma missing?");
-    EXPECT_EQ(read_error("? [1]\n: 2\n"), "x.yaml:1: the key of a map must be a plain text");
-    EXPECT_EQ(read_error("a: {~: 1}\n"), "x.yaml:1: the key of a map must be a plain text");
+    EXPECT_EQ(read_error("? [1]\n: 2\n"), "x.yaml:1: the key of a map must be a plain string");
+    EXPECT_EQ(read_error("a: {~: 1}\n"), "x.yaml:1: the key of a map must be a plain string");
 }
 
 TEST(ReadYaml, BytesThatAreNoTextAreRefusedWithTheirLine) {
-    EXPECT_EQ(read_error("a: 1\nb: \xFF\n"), "x.yaml:2: byte 0xff is not text; a configuration is UTF-8 text");
-    EXPECT_EQ(read_error(std::string("a: \0\n", 5)), "x.yaml:1: byte 0x00 is not text; a configuration is UTF-8 text");
-    EXPECT_EQ(read_error("a: \x04\n"), "x.yaml:1: byte 0x04 is not text; a configuration is UTF-8 text");
+    EXPECT_EQ(read_error("a: 1\nb: \xFF\n"), "x.yaml:2: byte 0xff is not valid here; a configuration is UTF-8 text");
+    EXPECT_EQ(read_error(std::string("a: \0\n", 5)),
+              "x.yaml:1: byte 0x00 is not valid here; a configuration is UTF-8 text");
+    EXPECT_EQ(read_error("a: \x04\n"), "x.yaml:1: byte 0x04 is not valid here; a configuration is UTF-8 text");
     EXPECT_EQ(read_error("\x7F"
                          "ELF\x02\x01")
                   .substr(0, 9),
               "x.yaml:1:");
-    EXPECT_EQ(read_error("a: \"\\0\"\n"), "x.yaml:1: a text holds a zero byte (\\0), which no name or path can");
+    EXPECT_EQ(read_error("a: \"\\0\"\n"),
+              "x.yaml:1: a string contains a zero byte (\\0), which names and paths cannot");
     // Overlong, surrogate, beyond Unicode, cut short.
     for (char const* bytes : {"\xC0\xAF", "\xE0\x80\xAF", "\xED\xA0\x80", "\xF0\x80\x80\xAF", "\xF4\x90\x80\x80",
                               "\xF8\x88\x80\x80\x80", "\xE2\x82", "\x80"}) {
@@ -162,8 +164,8 @@ TEST(ReadYaml, BytesThatAreNoTextAreRefusedWithTheirLine) {
 }
 
 TEST(ReadYaml, AliasInsideItsOwnValueIsRefused) {
-    EXPECT_EQ(read_error("a: &x\n  b: *x\n"), "x.yaml:2: this alias (*name) stands inside the very value it names");
-    EXPECT_EQ(read_error("a: &x [1, *x]\n"), "x.yaml:1: this alias (*name) stands inside the very value it names");
+    EXPECT_EQ(read_error("a: &x\n  b: *x\n"), "x.yaml:2: this alias (*name) is inside the value it refers to");
+    EXPECT_EQ(read_error("a: &x [1, *x]\n"), "x.yaml:1: this alias (*name) is inside the value it refers to");
 }
 
 TEST(ReadYaml, AliasesThatMultiplyEndInAnErrorNotInMemory) {

@@ -613,7 +613,7 @@ TEST(Scenario, ConfigurationWithoutRobotsOnlyWarns) {
                              "global}}\n"}) {
         Warnings const warnings;
         load(text);
-        EXPECT_EQ(warnings.text(), "x.yaml:1: objects: there is no robot in this configuration; nothing will move\n")
+        EXPECT_EQ(warnings.text(), "x.yaml:1: objects: there are no robots in this configuration; nothing will move\n")
             << text;
     }
 }
@@ -688,7 +688,7 @@ TEST(Scenario, ArenaSurfaceMayBeThatOfTheFile) {
               "'files'");
     EXPECT_EQ(
         load_error(kRobots + "arena_surface: file\narena_stretch: true\n"),
-        "x.yaml:7: arena_stretch: expected false where 'arena_surface: file' keeps the sizes of the file; give an "
+        "x.yaml:7: arena_stretch: expected false, because 'arena_surface: file' keeps the size of the file; specify an "
         "area in mm2 to stretch it");
 }
 
@@ -703,8 +703,9 @@ TEST(Scenario, CategoryThatStandsSeveralTimesIsAsManyEntries) {
     Warnings const warnings;
     Scenario const s = load(text);
     EXPECT_EQ(warnings.lines(),
-              std::vector<std::string>{"x.yaml:3: objects.lamp stands in lines 3, 4, 6; each of them is built, in the "
-                                       "category 'lamp'. A list under one key says the same without this warning"});
+              std::vector<std::string>{
+                  "x.yaml:3: objects.lamp appears on lines 3, 4, 6; all of them are used, in the category "
+                  "'lamp'. To avoid this warning, put them in a list under one key"});
     ASSERT_EQ(s.objects.size(), 5U);
     std::vector<float> places;
     for (ObjectConfig const& object : s.objects) {
@@ -732,10 +733,9 @@ TEST(Scenario, EachEntryOfACategoryIsCheckedAndCanBeSet) {
     EXPECT_EQ(s.objects.at(0).nb, 1);
     EXPECT_EQ(s.objects.at(1).nb, 5);
     EXPECT_EQ(s.objects.at(2).nb, 7);
-    EXPECT_EQ(
-        load_error(text, {.overrides = {"objects.robots.nb=5"}}),
-        "--set 'objects.robots.nb=5': 'nb' is not one of the 3 places of the list at x.yaml:2 (from 0); the first "
-        "one is '0'");
+    EXPECT_EQ(load_error(text, {.overrides = {"objects.robots.nb=5"}}),
+              "--set 'objects.robots.nb=5': 'nb' is not an index of the list of length 3 at x.yaml:2; the first one is "
+              "0");
     EXPECT_EQ(load_error(text + "  robots: {type: pogobot, nb: many}\n"),
               "x.yaml:5: objects.robots.3.nb: expected an integer from 0 to 65535, found 'many'");
 }
@@ -760,8 +760,8 @@ TEST(Scenario, KeyThatStandsTwiceElsewhereHasItsLastValue) {
 TEST(Scenario, SettingAKeyOfACategoryThatIsNotThereNamesThoseThatAre) {
     EXPECT_EQ(
         load_error(kRobots + "  box: {type: passive_object, geometry: disk}\n", {.overrides = {"objects.robot.nb=5"}}),
-        "--set: objects: there is no category 'robot'; there are robots, box; did you mean 'robots'?; to add one, "
-        "set its type, too");
+        "--set: objects: unknown category 'robot' (known: robots, box); did you mean 'robots'? To add a category, also "
+        "set its type");
     Scenario const s = load(kRobots, {.overrides = {"objects.lamp.type=static_light", "objects.lamp.geometry=global"}});
     EXPECT_EQ(s.objects.at(1).type, "static_light");
 }

@@ -92,7 +92,7 @@ TEST(Tree, SetThatMakesNoSenseIsRefused) {
     EXPECT_EQ(set_error("a: 1\n", "b.=1"), "--set 'b.=1': a name in the key path is empty");
     EXPECT_EQ(set_error("a: 1\n", "a.b=1"), "--set 'a.b=1': 'b' would be inside the single value '1' (x.yaml:1)");
     EXPECT_EQ(set_error("a: [1]\n", "a.1=1"),
-              "--set 'a.1=1': '1' is not one of the 1 places of the list at x.yaml:1 (from 0); the first one is '0'");
+              "--set 'a.1=1': '1' is not an index of the list of length 1 at x.yaml:1; the first one is 0");
     EXPECT_EQ(set_error("a: 1\n", "a=[1"),
               "--set 'a=[1':1: not valid YAML: end of sequence flow not found; is a ']' or a comma missing?");
     std::string path = "a";

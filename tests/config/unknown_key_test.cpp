@@ -114,7 +114,7 @@ std::string const kTwo =
 }  // namespace
 
 TEST(UnknownCategoryToRecord, WarnsAndNamesTheNearest) {
-    std::string const known = "is ignored, the categories with rows in the data file are robots, wall";
+    std::string const known = "is ignored; the categories with rows in the data file are robots, wall";
     EXPECT_EQ(warnings_of(kTwo + "data_logger_category: [robot, wall]\n"),
               Lines{"x.yaml:8: data_logger_category: 'robot' " + known + "; did you mean 'robots'?"});
     EXPECT_EQ(warnings_of(kTwo + "data_logger_category: [robots, lamp]\n"),

@@ -138,19 +138,19 @@ TEST(UnusedKey, CoordinateOfALampThatStandsAloneWarns) {
     std::string const disk = "    geometry: disk\n    x: 500\n";
     for (std::string const type :
          {"static_light", "orbiting_static_light", "rotating_ray_of_light", "alternating_rays_of_light"}) {
-        EXPECT_EQ(warnings_of_lamp(type, disk), "x.yaml:6: objects.it.x: stands alone, so y is 0; give both\n");
+        EXPECT_EQ(warnings_of_lamp(type, disk), "x.yaml:6: objects.it.x: x without y; y is 0. Specify both\n");
         EXPECT_EQ(warnings_of_lamp(type, "    geometry: disk\n    y: 500\n"),
-                  "x.yaml:6: objects.it.y: stands alone, so x is 0; give both\n");
+                  "x.yaml:6: objects.it.y: y without x; x is 0. Specify both\n");
         EXPECT_EQ(warnings_of_lamp(type, disk + "    y: 0\n"), "");
         EXPECT_EQ(warnings_of_lamp(type, "    geometry: global\n    x: 500\n"), "") << "from the centre, or unused";
     }
     EXPECT_EQ(warnings_of_lamp("static_light", "    geometry: global\n    light_mode: gradient\n    x: 5\n"),
-              "x.yaml:7: objects.it.x: stands alone, so y is 0; give both\n");
+              "x.yaml:7: objects.it.x: x without y; y is 0. Specify both\n");
 }
 
 TEST(UnusedKey, CoordinateOfAnOrbitThatStandsAloneWarns) {
     std::string const orbit = "    geometry: disk\n    center_x: 500\n";
     EXPECT_EQ(warnings_of_lamp("orbiting_static_light", orbit + "    x: 3\n    y: 4\n"),
-              "x.yaml:6: objects.it.center_x: stands alone, so center_y is 4; give both\n");
+              "x.yaml:6: objects.it.center_x: center_x without center_y; center_y is 4. Specify both\n");
     EXPECT_EQ(warnings_of_lamp("orbiting_static_light", orbit + "    center_y: 7\n    x: 3\n"), "");
 }

@@ -56,7 +56,7 @@ TEST(UserParameters, WrongTypesAreErrorsWithTheirLine) {
     EXPECT_EQ(error_of([] { bool_parameter(kParameters, "ratio"); }),
               "x.yaml:2: parameters.ratio: expected true or false, found 0.25");
     EXPECT_EQ(error_of([] { text_parameter(kParameters, "map"); }),
-              "x.yaml:13: parameters.map: expected a text, found a map");
+              "x.yaml:13: parameters.map: expected a string, found a map");
 }
 
 TEST(UserParameters, NumbersThatDoNotFitAFloatAreErrorsInAFloat) {

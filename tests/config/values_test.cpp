@@ -124,7 +124,7 @@ TEST(Values, PairsHaveTwoNumbersInOrder) {
 TEST(Values, ListsOfNamesHoldSingleValues) {
     EXPECT_EQ(value<std::vector<std::string>>("[a, '', 3]"), (std::vector<std::string>{"a", "", "3"}));
     EXPECT_EQ(refusal<std::vector<std::string>>("a"), "x.yaml:1: key: expected a list of names, found 'a'");
-    EXPECT_EQ(refusal<std::vector<std::string>>("[a, [b]]"), "x.yaml:1: key.1: expected a text, found a list");
+    EXPECT_EQ(refusal<std::vector<std::string>>("[a, [b]]"), "x.yaml:1: key.1: expected a string, found a list");
 }
 
 TEST(Values, LongAndStrangeTextsAreShownOnOneShortLine) {

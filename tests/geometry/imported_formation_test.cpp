@@ -91,7 +91,7 @@ TEST_F(ImportedFormation, OnlyTheRowsOfTheFirstInstantCount) {
     std::string const text = "time,x,y\n2,1,1\n0.5,10,20\n2,2,2\n0.5,30,40\n7,3,3\n";
     EXPECT_EQ(place_from(text, 2)[1].position_mm, (Vec2{30, 40}));
     EXPECT_EQ(error_of(text, 3),
-              "poses.csv: expected at least 3 rows of poses (of the first instant), one for each object, found 2");
+              "poses.csv: expected at least 3 poses (rows with the first time value), one for each object, found 2");
 }
 
 TEST_F(ImportedFormation, BoxOfTheFileIsMappedOntoTheArenasBox) {
@@ -132,7 +132,7 @@ TEST_F(ImportedFormation, BadRowsAreRefusedWithTheirLine) {
     std::string const utf16 = error_of(std::string("\xff\xfex\0,\0y\0\n\0", 10), 1);
     EXPECT_TRUE(utf16.ends_with("found '\\xff\\xfex\\x00,\\x00y\\x00'")) << utf16;
     EXPECT_TRUE(error_of("x,y\n1e300,2\n", 1).starts_with("poses.csv:2: the position"));
-    EXPECT_TRUE(error_of("", 1).starts_with("poses.csv: expected at least 1 row"));
+    EXPECT_TRUE(error_of("", 1).starts_with("poses.csv: expected at least 1 pose (rows"));
     EXPECT_TRUE(error_of(std::string("\0\x01\x02\xff\n", 5), 1).starts_with("poses.csv:1: "));
 }
 

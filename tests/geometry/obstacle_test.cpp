@@ -186,8 +186,7 @@ TEST_P(FormationAmongObstacles, MoreThanTheFreeAreaIsRefusedAtOnce) {
         FAIL() << "placed";
     } catch (ConfigError const& error) {
         std::string const message = error.what();
-        EXPECT_NE(message.find("the arena has about 5e+05 mm2 beside what stands there already"), std::string::npos)
-            << message;
+        EXPECT_NE(message.find("only about 500000 mm2 of the arena is free"), std::string::npos) << message;
     }
 }
 

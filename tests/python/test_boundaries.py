@@ -105,8 +105,8 @@ def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that
     result = run(example("run_and_tumble"), tmp_path, {spin: 1e4})
     assert result.code == 2
     assert (
-        "objects.robots.max_angular_speed: at 10000 rad/s robots turn up to 400 rad in a time_step of 0.01 s, more "
-        "than the 156 rad that can be simulated; use at most 3880 rad/s, or a time_step of at most 0.00388 s"
+        "objects.robots.max_angular_speed: at 10000 rad/s, robots turn up to 400 rad in a time_step of 0.01 s, more "
+        "than the 156 rad that can be simulated. Use at most 3880 rad/s, or a time_step of at most 0.00388 s"
     ) in result.errors
     assert not (tmp_path / "data.feather").exists()
     for accepted in ({spin: 3.88e3}, {spin: 1e4, "time_step": 0.00388}):
@@ -128,8 +128,8 @@ def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that
     result = run(example("coverage_neighbors_novelty"), tmp_path, slow)
     assert result.code == 2
     assert "scene.yaml:" in result.errors
-    assert "objects.robots.max_linear_speed: at 1000000 mm/s robots move up to 200000 mm in a" in result.errors
-    assert "use at most 99000 mm/s, or a time_step of at most 0.0198 s" in result.errors
+    assert "objects.robots.max_linear_speed: at 1000000 mm/s, robots move up to 200000 mm in a" in result.errors
+    assert "Use at most 99000 mm/s, or a time_step of at most 0.0198 s" in result.errors
 
 
 def test_speeds_that_a_membrane_cannot_hold_back_are_refused_with_the_largest_that_it_can(tmp_path: Path) -> None:
@@ -152,8 +152,8 @@ def test_speeds_that_a_membrane_cannot_hold_back_are_refused_with_the_largest_th
     result = run(example("run_and_tumble"), tmp_path, settings)
     assert result.code == 2
     assert (
-        "objects.robots.max_linear_speed: at 30000 mm/s robots move up to 300 mm in a time_step of 0.01 s, more than "
-        "the 200 mm that a membrane can hold back; use at most 20000 mm/s, or a time_step of at most 0.00666 s"
+        "objects.robots.max_linear_speed: at 30000 mm/s, robots move up to 300 mm in a time_step of 0.01 s, more than "
+        "the 200 mm that a membrane can hold back. Use at most 20000 mm/s, or a time_step of at most 0.00666 s"
     ) in result.errors
     for accepted in ({speed: 2e4}, {"time_step": 0.00666}):
         result = run(example("run_and_tumble"), tmp_path, {**settings, **accepted})

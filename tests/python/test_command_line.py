@@ -94,7 +94,7 @@ def test_help_names_every_option_and_exit_code(tmp_path: Path, flag: str) -> Non
     )
     for option in options.split():
         assert option in result.output
-    assert "0 done, 2 wrong usage or configuration, 3 the program failed, 130 interrupted" in result.output
+    assert "0 success, 2 usage, configuration or file error, 3 the program failed, 130 interrupted" in result.output
 
 
 @pytest.mark.parametrize("flag", ["-V", "--version"])

@@ -69,7 +69,7 @@ def test_every_configuration_is_named_by_an_example() -> None:
 def test_example_runs_with_the_simplest_configuration(program: str, tmp_path: Path) -> None:
     # Its parameters are those of run_and_tumble.
     text = run_shortly(program, ROOT / "conf/simple.yaml", tmp_path)
-    assert [line for line in text.splitlines() if "parameters that the program never reads: " not in line] == []
+    assert [line for line in text.splitlines() if "parameters never read by the program: " not in line] == []
 
 
 @pytest.mark.parametrize("configuration", CONFIGURATIONS, ids=lambda path: path.name)

@@ -121,7 +121,7 @@ def test_complete_file_with_a_damaged_batch_is_an_error_that_says_how_to_save_th
     before = path.read_bytes()
     code, line = recovered(capsys, path)
     assert code == 2
-    assert f"{path} is damaged; to save the rows before that, name another file with -o" in line
+    assert f"{path} is damaged; to save the rows before the damage, choose another file with -o" in line
     assert path.read_bytes() == before
     assert recovered(capsys, path, "-o", tmp_path / "b.feather")[0] == 0
     assert row_count(tmp_path / "b.feather") == 8
@@ -200,7 +200,7 @@ def test_output_that_is_a_pipe_socket_or_device_is_refused(
         own.bind("socket")
         for name in ("pipe", "socket"):
             code, line = recovered(capsys, path, "-o", name)
-            assert (code, f"{name} is a {name}, not a file; name another output" in line) == (2, True)
+            assert (code, f"{name} is a {name}, not a file; choose another output" in line) == (2, True)
             code, line = recovered(capsys, name)
             assert (code, f"{name} is not a file" in line) == (2, True)
     try:
@@ -227,7 +227,7 @@ def test_output_that_is_a_file_of_another_kind_is_refused(
         name.hardlink_to(other)
     code, line = recovered(capsys, path, "-o", name)
     assert code == 2
-    assert "it is not written over: name another file with -o" in line
+    assert "it will not be overwritten: choose another file with -o" in line
     assert other.read_bytes() == content
     assert name.is_symlink() == (link == "symbolic")
 

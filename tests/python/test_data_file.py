@@ -169,7 +169,7 @@ def test_with_steps_that_do_not_divide_the_period_rows_follow_it_within_a_step(
 def test_step_longer_than_a_tick_is_shortened_with_a_warning(tmp_path: Path) -> None:
     result = run(example("helloworld"), tmp_path, {"time_step": 0.1, "simulation_time": 10.0})
     assert result.code == 0
-    assert "time_step is lowered from 0.1 s to 0.016 s" in result.errors
+    assert "time_step reduced from 0.1 s to 0.016 s" in result.errors
     assert result.errors.count("\n") == 1
     assert result.frame()["pogobot_ticks"].max() == pytest.approx(625, abs=2)
 

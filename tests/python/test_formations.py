@@ -144,11 +144,10 @@ def test_fixed_objects_deep_in_each_other_or_in_a_wall_are_named(tmp_path: Path)
     twins = {**BOX, "nb": 2, "x": 200, "y": 1000}
     changes = {"objects.sunk": sunk, "objects.across": across, "objects.twins": twins, "objects.robots.nb": 5}
     sunk_line, *others = sorted(warnings(simulate(tmp_path, **changes)), key=lambda line: "sunk" not in line)
-    assert "objects.sunk.x: at (1180, 200) 'sunk' reaches 100.0 mm deep into a wall of the arena" in sunk_line
+    assert "objects.sunk.x: 'sunk' at (1180, 200) extends 100.0 mm into an arena wall" in sunk_line
     across_line, twins_line = sorted(others, key=lambda line: "twins" in line)
-    assert "objects.across.x: at (650, 420) 'across' reaches" in across_line
-    assert "deep into 'membranes'" in across_line
-    assert "objects.twins.x: at (200, 1000) all 2 objects of 'twins' stand inside each other" in twins_line
+    assert "objects.across.x: 'across' at (650, 420) overlaps 'membranes' by " in across_line
+    assert "objects.twins.x: 'twins' at (200, 1000) has all 2 objects on top of each other" in twins_line
 
 
 def test_fixed_objects_that_touch_are_no_mistake(tmp_path: Path) -> None:

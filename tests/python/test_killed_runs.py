@@ -67,7 +67,7 @@ def full_run(folder: Path, end_s: float) -> pd.DataFrame:
 def test_killed_run_leaves_its_first_rows_as_they_would_have_been(tmp_path: Path, flush_row_count: int) -> None:
     path = killed_run(tmp_path, {"data_logger_flush_row_count": flush_row_count})
     rows, metadata = read_incomplete(path)
-    assert "has not ended" in str(metadata["incomplete"])
+    assert "is still going on, or it was killed" in str(metadata["incomplete"])
     assert metadata["configuration"]["seed"] == 1  # type: ignore[index]
     expected = full_run(tmp_path / "full", float(rows["time"].max()))
     pd.testing.assert_frame_equal(rows, expected.iloc[: len(rows)])
@@ -112,7 +112,7 @@ def test_disk_that_fills_up_leaves_the_rows_up_to_there_and_says_how_to_have_the
     result = run(program, tmp_path, {**LONG, "objects.robots.nb": 20})
     assert result.code == 2
     (line,) = result.errors.splitlines()
-    assert "cannot write the data file 'data.feather' (data_filename): File too large. It is unfinished" in line
+    assert "cannot write the data file 'data.feather' (data_filename): File too large. It contains" in line
     rows, _ = read_incomplete(tmp_path / "data.feather")
     assert f"up to t = {rows['time'].max():.4f} s" in line
     assert not list(tmp_path.glob("*.pogosim-new"))
@@ -136,7 +136,7 @@ def test_second_run_that_writes_the_same_data_file_is_refused(tmp_path: Path, na
     (tmp_path / "link.feather").symlink_to("data.feather")
     second = run(example("helloworld"), tmp_path, {"data_filename": name})
     assert second.code == 2
-    assert f"'{name}' (data_filename): another run is writing it" in second.errors
+    assert f"'{name}' (data_filename): in use by another run" in second.errors
     process.send_signal(signal.SIGINT)
     process.communicate()
     assert process.returncode == 130
@@ -214,7 +214,7 @@ def test_file_of_a_run_that_goes_on_is_not_replaced(tmp_path: Path, capsys: pyte
     wait_for_rows(path)
     code, _, errors = recovered(capsys, path)
     assert code == 2
-    assert f"a run is still writing {path}; name another file with -o" in errors
+    assert f"{path} is in use by a run; choose another file with -o" in errors
     assert recovered(capsys, path, "-o", tmp_path / "b.feather")[0] == 0
     process.kill()
     process.communicate()
@@ -225,7 +225,7 @@ def test_complete_file_needs_no_recovery(tmp_path: Path, capsys: pytest.CaptureF
     before = (tmp_path / "data.feather").read_bytes()
     code, _, errors = recovered(capsys, tmp_path / "data.feather")
     assert code == 2
-    assert "is complete: there is nothing to recover" in errors
+    assert "is already complete; nothing to recover" in errors
     assert (tmp_path / "data.feather").read_bytes() == before
 
 
@@ -234,7 +234,7 @@ def test_complete_file_that_was_cut_off_can_be_recovered(tmp_path: Path, capsys:
     path = tmp_path / "data.feather"
     rows = len(pd.read_feather(path))
     path.write_bytes(path.read_bytes()[:-1])
-    with pytest.raises(ValueError, match="it was cut off; to make a complete file of it: pogosim-recover"):
+    with pytest.raises(ValueError, match="it is truncated; to recover it: pogosim-recover"):
         load_dataframe(path)
     assert recovered(capsys, path)[0] == 0
     assert len(pd.read_feather(path)) == rows
@@ -290,7 +290,7 @@ def test_message_of_an_end_calls_no_file_complete_that_could_not_be_completed(tm
         first, *others = result.errors.splitlines()
         assert "the user program " in first
         assert " in user_step of robot #0 " in first
-        assert ("The data file 'data.feather' is complete up to there" in first) == (not full)
+        assert ("The data file 'data.feather' contains all rows up to that point" in first) == (not full)
         if full:
             (reason,) = others
             assert "cannot write the data file 'data.feather' (data_filename): File too large" in reason

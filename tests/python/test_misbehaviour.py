@@ -57,7 +57,7 @@ def test_crash_in_user_code_ends_with_3_a_message_and_a_readable_file(
     assert result.code == 3
     assert f"the user program failed {WHERE}: " in result.errors
     assert re.search(what, result.errors)
-    assert "The data file 'data.feather' is complete up to there" in result.errors
+    assert "The data file 'data.feather' contains all rows up to that point" in result.errors
     assert saved_times(result) == SAVED_TIMES
 
 
@@ -267,7 +267,9 @@ def test_interrupted_run_ends_with_130_and_complete_data(program: Compile, tmp_p
     process.send_signal(signal.Signals[name])
     result = end(process, tmp_path)
     assert result.code == 130
-    match = re.search(r"interrupted at t = ([0-9.]+) s\. The data file 'data\.feather' is complete", result.errors)
+    match = re.search(
+        r"interrupted at t = ([0-9.]+) s\. The data file 'data\.feather' contains all rows", result.errors
+    )
     assert match
     times = saved_times(result)
     assert times == list(range(len(times)))
@@ -323,8 +325,8 @@ def test_first_interrupt_says_at_once_what_it_waits_for(program: Compile, tmp_pa
     assert process.stderr is not None
     told = process.stderr.readline()
     assert told == (
-        f"pogosim: Ctrl-C (SIGINT): the run ends when {WHERE.removeprefix('in ')}, returns. A second signal leaves it "
-        "at once; by itself it is left 30 s after its start (user_code_timeout).\n"
+        f"pogosim: Ctrl-C (SIGINT): stopping as soon as {WHERE.removeprefix('in ')}, returns. Send a second "
+        "signal to stop now; otherwise it is aborted 30 s after it began (user_code_timeout).\n"
     )
     time.sleep(0.15)
     process.send_signal(signal.SIGINT)
@@ -340,11 +342,11 @@ def test_one_signal_ends_user_code_that_has_not_returned_after_its_time(
     process.send_signal(signal.Signals[name])
     result = end(process, tmp_path)
     assert result.code == 130
-    assert f"the run was interrupted {WHERE}: it had not returned 0.25 s after its start (user_code_timeout), and " in (
+    assert f"the run was interrupted {WHERE}: it had not returned 0.25 s after it began (user_code_timeout), and " in (
         result.errors
     )
     assert name in result.errors
-    assert "The data file 'data.feather' is complete up to there" in result.errors
+    assert "The data file 'data.feather' contains all rows up to that point" in result.errors
     assert saved_times(result) == SAVED_TIMES
 
 
@@ -355,7 +357,7 @@ def test_user_code_without_a_limit_has_ten_seconds_after_a_signal(program: Compi
     assert process.poll() is None
     result = end(process, tmp_path)
     assert result.code == 130
-    assert "it had not returned 10 s after SIGTERM asked the run to end" in result.errors
+    assert "it had not returned 10 s after SIGTERM requested a stop" in result.errors
     assert saved_times(result) == SAVED_TIMES
 
 

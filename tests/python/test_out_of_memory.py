@@ -16,7 +16,7 @@ from running import Run, compile_program, example, run, write_scene
 pytestmark = pytest.mark.skipif(sys.platform == "darwin", reason="macOS has no limit of address space")
 
 MIB = 1 << 20
-ADVICE = "ask for less, or raise the limit of this run (ulimit -v, or the batch system's)"
+ADVICE = "reduce it, or raise this run's memory limit (ulimit -v, or the batch system's)"
 
 
 def limited(program: Path, folder: Path, settings: Mapping[str, object], kind: int, most: int) -> Run:

@@ -85,7 +85,7 @@ def test_place_where_the_data_file_is_put_together_counts_as_an_output(tmp_path:
         result = run_command(example("helloworld"), tmp_path, ["-c", beside, "-g"])
     assert result.code == 2
     (line,) = result.errors.splitlines()
-    assert f": data_filename: '{tmp_path / beside}', where the run puts the data file together, is the same" in line
+    assert f": data_filename: '{tmp_path / beside}' (used to assemble the data file) is the same" in line
     assert (f"file as {key} '{beside}' (scene.yaml:" if key else f"the configuration file '{beside}'") in line
     assert (tmp_path / beside).read_text() == contents
 
@@ -129,7 +129,7 @@ def test_second_run_that_writes_the_same_console_file_is_refused(tmp_path: Path)
     process.kill()
     process.communicate()
     assert second.code == 2
-    assert "'console.txt' (console_filename): another run is writing it" in second.errors
+    assert "'console.txt' (console_filename): in use by another run" in second.errors
     assert (tmp_path / "console.txt").stat().st_size > 0
     assert not (tmp_path / "b.feather").exists()
 

@@ -50,7 +50,7 @@ def test_crash_before_main_is_named_and_ends_with_3(program: Compile, tmp_path: 
     assert result.code == 3
     assert "pogosim: the user program failed before main(), in the constructor of a static object" in result.errors
     assert CRASHES[kind] in result.errors
-    assert "There was no run." in result.errors
+    assert "The run did not start." in result.errors
     assert "data file" not in result.errors
     assert not (tmp_path / "data.feather").exists()
 
@@ -75,7 +75,7 @@ def test_call_of_the_interface_outside_of_the_run_is_named(
 ) -> None:
     result = outside(program, tmp_path, place, kind)
     assert result.code == 3
-    assert f"{CALLS[kind]}() was called while no robot has the processor" in result.errors
+    assert f"{CALLS[kind]}() was called while no robot was running" in result.errors
     assert ("before main()" in result.errors) == (place in BEFORE)
 
 
@@ -89,7 +89,7 @@ def test_what_is_printed_outside_of_robots_comes_as_it_is(program: Compile, tmp_
 def test_exit_before_main_keeps_its_code_and_is_said(program: Compile, tmp_path: Path) -> None:
     result = outside(program, tmp_path, "constructor", "exit")
     assert result.code == 5
-    assert result.errors == "pogosim: the user program called exit(5) before main(). There was no run.\n"
+    assert result.errors == "pogosim: the user program called exit(5) before main(). The run did not start.\n"
 
 
 @pytest.mark.parametrize("kind", CRASHES)
@@ -100,7 +100,7 @@ def test_crash_in_a_thread_of_the_program_ends_the_run_with_3_and_a_complete_fil
     assert result.code == 3
     assert "the user program failed in a thread that it started, t = 0.1600 s: " in result.errors
     assert CRASHES[kind] in result.errors
-    assert "The data file 'data.feather' is complete up to there" in result.errors
+    assert "The data file 'data.feather' contains all rows up to that point" in result.errors
     np.testing.assert_allclose(saved_times(result), [0.0, 0.1], atol=1e-6)
 
 
@@ -164,6 +164,6 @@ def test_program_under_the_address_sanitizer_names_calls_before_main(tmp_path: P
     compiled = compile_program(tmp_path / "outside", PROGRAMS / "outside.cpp", flags=flags)
     result = outside(lambda _: compiled, tmp_path, "constructor", "seed")
     assert result.code == 3
-    assert "pogobot_helper_getRandSeed() was called while no robot has the processor" in result.errors
+    assert "pogobot_helper_getRandSeed() was called while no robot was running" in result.errors
     assert outside(lambda _: compiled, tmp_path, "thread", "print").code == 0
     assert outside(lambda _: compiled, tmp_path, "thread", "crash").code == 3

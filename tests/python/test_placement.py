@@ -39,7 +39,7 @@ def points(rows: pd.DataFrame) -> Floats:
 def warnings(done: Run) -> list[str]:
     """All but that the program of this test has nothing to do for some categories."""
     lines = [line for line in done.text.splitlines() if "warning" in line.lower()]
-    return [line for line in lines if "no pogobot_start() of the program names the category" not in line]
+    return [line for line in lines if "the program has no pogobot_start() for category" not in line]
 
 
 def test_obstacles_are_not_moved_by_robots_at_high_speed(tmp_path: Path) -> None:
@@ -126,16 +126,16 @@ def test_angle_turns_all_objects_at_x_and_y(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"angle": 1}, ".angle: stands alone; it is the heading of objects at x and y"),
-        ({"nb": 3, "poses": [[1, 2]]}, ".nb: expected 1, as many as there are poses, found 3; nb may be left out"),
-        ({"poses": []}, ".poses: the list is empty; give a pose for each object, or leave it out"),
+        ({"angle": 1}, ".angle: angle without x and y; it is the heading of objects placed at x and y"),
+        ({"nb": 3, "poses": [[1, 2]]}, ".nb: expected 1, the number of poses, found 3; nb may be omitted"),
+        ({"poses": []}, ".poses: the list is empty; specify one pose per object, or omit the key"),
         ({"poses": {"x": 1}}, ".poses: expected a list of [x, y] or [x, y, angle] (mm, rad), found a map"),
         ({"poses": [[5, 5, 0, 1]]}, ".poses.0: expected [x, y] or [x, y, angle] (mm, rad), found a list"),
         ({"poses": [[500, "here"]]}, ".poses.0.1: expected a number from -1000000 to 1000000 (mm), found 'here'"),
-        ({"poses": [[500, 5000]]}, ".poses: (500, 5000) is outside of the arena, which spans"),
-        ({"poses": [[1, 2]], "x": 1, "y": 2}, ".poses: cannot be together with 'x'; give one of them"),
-        ({"poses": [[1, 2]], "area": [[0, 0], [9, 0], [9, 9]]}, ".area: cannot be together with 'poses'; give one"),
-        ({"initial_formation": "disk", "x": 1, "y": 2}, ".initial_formation: cannot be together with 'x'; give one"),
+        ({"poses": [[500, 5000]]}, ".poses: (500, 5000) is outside the arena, which extends from"),
+        ({"poses": [[1, 2]], "x": 1, "y": 2}, ".poses: cannot be combined with 'x'; use one or the other"),
+        ({"poses": [[1, 2]], "area": [[0, 0], [9, 0], [9, 9]]}, ".area: cannot be combined with 'poses'; use one"),
+        ({"initial_formation": "disk", "x": 1, "y": 2}, ".initial_formation: cannot be combined with 'x'; use one"),
         ({"initial_formation": "imported"}, ".initial_formation: expected one of random,"),
         ({"area": 5}, ".area: expected a map of x, y and radius, or a list of at least 3 corners [x, y] (mm), found 5"),
         ({"area": [[0, 0], [9, 9]]}, ".area: expected a map of x, y and radius, or a list of at least 3 corners"),
@@ -144,13 +144,13 @@ def test_angle_turns_all_objects_at_x_and_y(tmp_path: Path) -> None:
         ({"area": [[0, 0], [10, 10], [20, 0], [0, 12]]}, ".area: the sides of this polygon cross or touch"),
         ({"area": {"x": 1, "y": 2}}, ".area: the key 'radius' is missing"),
         ({"area": {"x": 1, "y": 2, "radius": -1}}, ".area.radius: expected a number above 0, at most 1000000 (mm)"),
-        ({"area": {"x": 5000, "y": 2, "radius": 9}}, ".area: no part of it is in the arena, which spans"),
+        ({"area": {"x": 5000, "y": 2, "radius": 9}}, ".area: it lies entirely outside the arena, which extends from"),
         (
             {"nb": 50, "area": {"x": 500, "y": 500, "radius": 40}},
-            ".area: initial_formation: 'power_lloyd' cannot place 50 objects (largest radius 10 mm): with their "
-            "spacing they cover 1.6e+04 mm2, and the area has 5.02e+03 mm2. Ask for fewer or enlarge the area",
+            ".area: initial_formation: 'power_lloyd' cannot place 50 objects (largest radius 10 mm): they need "
+            "16024 mm2 including spacing, but the area is only 5025 mm2; reduce nb or enlarge the area",
         ),
-        ({"body_fixed": True}, ".body_fixed: a robot with wheels cannot be fixed; an obstacle is a passive_object"),
+        ({"body_fixed": True}, ".body_fixed: a robot with wheels cannot be fixed; use a passive_object"),
         ({"body_fixed": 3}, ".body_fixed: expected true or false, found 3"),
     ],
     ids=lambda value: re.sub(r"\W+", "-", str(value))[:40],
@@ -190,7 +190,7 @@ def test_more_rows_than_objects_is_one_warning_and_rows_go_by_category(tmp_path:
     np.testing.assert_allclose(points(at_start(done, "robots")), [[100, 100]])
     np.testing.assert_allclose(points(at_start(done, "others")), [[200, 100], [300, 100]])
     (warning,) = warnings(done)
-    assert "poses.csv: it has 4 rows of poses (of the first instant), and there are 3 objects to place" in warning
+    assert "poses.csv: has 4 poses (rows with the first time value) for 3 objects" in warning
     changes["objects.others"] = {**ROBOT, "nb": 3}
     assert warnings(simulate(tmp_path, **changes)) == []
 

@@ -149,7 +149,7 @@ def test_crashed_run_whose_data_get_nowhere_ends_by_itself(build: Build, tmp_pat
     result = end(crash_on_slow_disk(program, tmp_path, 0.0), tmp_path)
     assert result.code == 3
     assert "segmentation fault" in result.errors
-    assert "could not be completed; pogosim-recover rescues the rows that it has" in result.errors
+    assert "could not be completed; recover its rows with pogosim-recover" in result.errors
 
 
 def test_crashed_run_that_hangs_after_its_data_are_saved_says_that_they_are(build: Build, tmp_path: Path) -> None:
@@ -185,7 +185,7 @@ def test_signal_before_the_run_ends_it_with_130_and_keeps_the_older_data(tmp_pat
     result = end(process, tmp_path)
     assert result.code == 130
     assert name in result.errors
-    assert result.errors.endswith(" before the first robot ran: there is no data file of this run.\n")
+    assert result.errors.endswith(" before the first robot ran: this run has no data file.\n")
     assert (tmp_path / "data.feather").read_text() == "older"
 
 
@@ -198,7 +198,7 @@ def test_signal_ends_a_constructor_that_never_returns(build: Build, tmp_path: Pa
     result = end(process, tmp_path)
     assert result.code == 130
     assert f"{name}" in result.errors
-    assert "before main(), where constructors of static objects run: there is no data file" in result.errors
+    assert "before main(), where constructors of static objects run: this run has no data file" in result.errors
 
 
 # ---- during the run ----
@@ -348,7 +348,7 @@ def test_simulator_that_waits_for_a_lock_which_a_crashed_thread_holds_ends_by_it
     result = end(start(build(steps), tmp_path, LONG), tmp_path)
     assert result.code == 3
     assert "pogosim: the user program failed in a thread that it started: segmentation fault" in result.errors
-    assert "could not be completed; pogosim-recover rescues the rows that it has" in result.errors
+    assert "could not be completed; recover its rows with pogosim-recover" in result.errors
 
 
 # ---- in a child ----
@@ -428,7 +428,7 @@ def test_console_file_that_is_a_pipe_without_a_reader_is_refused(
     settings = {"console_filename": "console", "enable_console_logging": True}
     result = end(start(example("helloworld"), tmp_path, settings), tmp_path)
     assert result.code == 2
-    assert "cannot open the console file 'console' (console_filename): it is a pipe that nobody reads" in result.errors
+    assert "cannot open the console file 'console' (console_filename): it is a pipe without a reader" in result.errors
 
 
 def test_console_file_may_be_a_pipe_with_a_reader(tmp_path: Path) -> None:

@@ -43,9 +43,9 @@ def warnings(result: Run) -> list[str]:
     ("kind", "text"),
     [
         ("negative_power", f"{FIRST}pogobot_motor_set was called with -500: "),
-        ("motor_3", f"{FIRST}there is no motor 3, "),
-        ("led_5", f"{FIRST}pogobot_led_setColors: there is no LED 5, "),
-        ("sensor_3", f"{FIRST}pogobot_photosensors_read: there is no light sensor 3, "),
+        ("motor_3", f"{FIRST}no motor 3; "),
+        ("led_5", f"{FIRST}pogobot_led_setColors: no LED 5; "),
+        ("sensor_3", f"{FIRST}pogobot_photosensors_read: no light sensor 3; "),
         (
             "long_message",
             "robot #0 of category 'robots', tick 0: a message of 383 bytes was not sent: ",
@@ -61,8 +61,7 @@ def warnings(result: Run) -> list[str]:
         ),
         (
             "setup_of_userdata",
-            "callback_global_setup changed USERDATA (mydata), which is robot #2's alone there: initialise it in "
-            "user_init",
+            "callback_global_setup changed USERDATA (mydata) of robot #2 only: initialise it in user_init",
         ),
         ("empty_column", "the column 'age' of the data file will be empty: "),
         ("sends_never", "no robot of category 'robots' sent a message: "),
@@ -72,12 +71,12 @@ def warnings(result: Run) -> list[str]:
         ),
         (
             "wrong_category",
-            "no pogobot_start() of the program names the category 'robots': its robots do nothing; the calls name "
-            "robot, predators; did you mean 'robot'?",
+            "the program has no pogobot_start() for category 'robots' (only for robot, predators); its robots will do "
+            "nothing; did you mean 'robot'?",
         ),
         (
             "no_start",
-            "no pogobot_start() of the program names the category 'robots': its robots do nothing; there is no call",
+            "the program has no pogobot_start() for category 'robots'; its robots will do nothing",
         ),
         ("reads_none", "no robot of category 'robots' read a message: "),
     ],
@@ -106,7 +105,7 @@ def test_messages_that_nobody_reads_are_counted(program: Compile, tmp_path: Path
     (warning,) = warnings(slip(program, tmp_path, "deaf", CROWD))
     count, _, rest = warning.partition(" ")
     assert int(count) > 1000
-    assert rest.startswith("messages arrived, but no robot reads messages: set msg_rx_fn ")
+    assert rest.startswith("messages arrived, but no robot reads them: set msg_rx_fn ")
 
 
 def test_messages_that_a_limit_of_0_keeps_from_being_read_are_warned_of_once(program: Compile, tmp_path: Path) -> None:
@@ -118,7 +117,8 @@ def test_full_queues_are_counted_by_category_of_those_who_read(program: Compile,
     second = {"type": "pogobot", "nb": 2, "geometry": "disk", "radius": 26.5}
     settings = {**CROWD, "arena_surface": 3.0e5, "objects.strangers": second}
     idle, lost = warnings(slip(program, tmp_path, "slow", settings))
-    assert "names the category 'strangers': its robots do nothing" in idle
+    assert "the program has no pogobot_start() for category 'strangers' (only for " in idle
+    assert "); its robots will do nothing" in idle
     count, _, rest = lost.partition(" ")
     assert int(count) > 0
     assert rest == (
@@ -194,7 +194,7 @@ def unread(folder: Path) -> str:
     lines = (folder / "scene.yaml").read_text().splitlines()
     places = {line.split(":")[0].strip(): number + 1 for number, line in enumerate(lines)}
     return (
-        "parameters that the program never reads: "
+        "parameters never read by the program: "
         f"turn_duratoin (scene.yaml:{places['turn_duratoin']}; did you mean 'turn_duration'?), "
         f"walk.speed (scene.yaml:{places['speed']}), list (scene.yaml:{places['list']})"
     )
@@ -248,7 +248,7 @@ def test_part_of_a_map_that_is_not_read_is_listed(tmp_path: Path) -> None:
     program = compile_program(tmp_path / "main", source)
     settings = {"parameters": {"walk": {"speed": 1.0, "sped": 2.0}, "ids": [4, 5]}}
     (warning,) = warnings(run(program, tmp_path, settings))
-    assert "never reads: walk.sped (scene.yaml:" in warning
+    assert "never read by the program: walk.sped (scene.yaml:" in warning
     assert "ids" not in warning
 
 

@@ -48,14 +48,14 @@ LAMP = {"type": "static_light", "light_mode": "plane", "geometry": "disk", "radi
 @pytest.mark.parametrize(
     ("key", "value", "unit", "hint"),
     [
-        ("robots.radius", 0.0265, "mm", "small; if metres are meant, write 26.5"),
-        ("robots.communication_radius", 0.08, "mm", "small; if metres are meant, write 80"),
-        ("robots.max_linear_speed", 0.1, "mm/s", "small; if metres per second are meant, write 100"),
-        ("robots.max_angular_speed", 114.6, "rad/s", "large; if degrees per second are meant, write 2.00015"),
-        ("body.body_width", 0.3, "mm", "small; if metres are meant, write 300"),
-        ("lamp.y", 0.5, "mm", "small; if metres are meant, write 500"),
-        ("lamp.radius", 0.5, "mm", "small; if metres are meant, write 500"),
-        ("lamp.plane_angle", 90, "rad", "large; if degrees are meant, write 1.5708"),
+        ("robots.radius", 0.0265, "mm", "small; if you meant metres, write 26.5"),
+        ("robots.communication_radius", 0.08, "mm", "small; if you meant metres, write 80"),
+        ("robots.max_linear_speed", 0.1, "mm/s", "small; if you meant metres per second, write 100"),
+        ("robots.max_angular_speed", 114.6, "rad/s", "large; if you meant degrees per second, write 2.00015"),
+        ("body.body_width", 0.3, "mm", "small; if you meant metres, write 300"),
+        ("lamp.y", 0.5, "mm", "small; if you meant metres, write 500"),
+        ("lamp.radius", 0.5, "mm", "small; if you meant metres, write 500"),
+        ("lamp.plane_angle", 90, "rad", "large; if you meant degrees, write 1.5708"),
     ],
 )
 def test_number_in_another_unit_is_warned_of_with_the_one_that_was_meant(
@@ -64,27 +64,27 @@ def test_number_in_another_unit_is_warned_of_with_the_one_that_was_meant(
     settings = {"objects.body": dict(BODY), "objects.lamp": dict(LAMP), f"objects.{key}": value}
     # A lamp of half a millimetre also lights no cell.
     (warning,) = [text for text in warnings(greet(tmp_path, settings)) if "lights no cell" not in text]
-    assert warning.endswith(f": objects.{key}: the unit is {unit}, in which {value} is unusually {hint}")
+    assert warning.endswith(f": objects.{key}: {value} {unit} is unusually {hint}")
 
 
 def test_list_in_another_unit_is_warned_of_once_for_each_unit(tmp_path: Path) -> None:
     # 60 obstacles in metres and degrees: 119 coordinates (one is 0), 59 angles.
     poses = [[0.01 * i, 0.5 + 0.002 * i, 10.0 * (i % 36) + 7.0] for i in range(60)]
     corner = {"type": "passive_object", "geometry": "disk", "radius": 1, "body_fixed": True, "poses": poses}
-    units = [text for text in warnings(greet(tmp_path, {"objects.corner": corner})) if ": the unit is " in text]
+    units = [text for text in warnings(greet(tmp_path, {"objects.corner": corner})) if " is unusually " in text]
     assert [warning.partition(": objects.")[2] for warning in units] == [
-        "corner.poses.0.1: the unit is mm, in which 0.5 is unusually small, as are 118 other numbers of this list; "
-        "if metres are meant, write 500",
-        "corner.poses.0.2: the unit is rad, in which 7.0 is unusually large, as are 59 other numbers of this list; "
-        "if degrees are meant, write 0.122173",
+        "corner.poses.0.1: 0.5 mm is unusually small, like 118 other numbers of this list; "
+        "if you meant metres, write 500",
+        "corner.poses.0.2: 7.0 rad is unusually large, like 59 other numbers of this list; "
+        "if you meant degrees, write 0.122173",
     ]
 
 
 @pytest.mark.parametrize(
     ("first", "text"),
     [
-        (0.1, "area.0.0: the unit is mm, in which 0.1 is unusually small, as are 2 other numbers of this list; if"),
-        (0, "area.0.1: the unit is mm, in which 0.1 is unusually small, as is another number of this list; if"),
+        (0.1, "area.0.0: 0.1 mm is unusually small, like 2 other numbers of this list; if"),
+        (0, "area.0.1: 0.1 mm is unusually small, like another number of this list; if"),
     ],
 )
 def test_area_in_another_unit_is_warned_of_once(tmp_path: Path, first: float, text: str) -> None:
@@ -96,9 +96,7 @@ def test_arena_of_a_square_metre_is_warned_of_before_it_has_no_room(tmp_path: Pa
     result = greet(tmp_path, {"arena_surface": 1.0})
     assert result.code == 2
     warning, error = result.errors.splitlines()
-    assert warning.endswith(
-        "the unit is mm2, in which 1.0 is unusually small; if square metres are meant, write 1000000"
-    )
+    assert warning.endswith("1.0 mm2 is unusually small; if you meant square metres, write 1000000")
     assert error.startswith("Error: ")
 
 

@@ -312,7 +312,7 @@ TEST_F(DataFileColumns, AllowListThatLeavesNothingIsRefusedWithTheChoice) {
     LogCatcher const caught;
     for (auto const& fields : {std::vector<std::string>{}, std::vector<std::string>{"nothing_like_it"}}) {
         auto const message = config_error({.path = path("a.feather"), .fields = fields});
-        EXPECT_NE(message.find("choose among: time, robot_category, robot_id"), std::string::npos) << message;
+        EXPECT_NE(message.find("choose from: time, robot_category, robot_id"), std::string::npos) << message;
     }
     EXPECT_FALSE(std::filesystem::exists(path("a.feather")));
 }

@@ -122,7 +122,7 @@ TEST_F(OutputFailure, DiskThatFillsUpLeavesTheRowsUpToThereAndSaysHowToHaveThem)
     std::string const message = fill_the_disk({.path = path("a.feather")});
     auto const rows = read_unfinished(path("a.feather"))->num_rows();
     EXPECT_GT(rows, 1000);
-    expect_says(message, {"File too large", fmt::format("holds the rows up to t = {}.0000 s", rows - 1),
+    expect_says(message, {"File too large", fmt::format("contains the rows up to t = {}.0000 s", rows - 1),
                           "pogosim-recover '" + path("a.feather") + "'"});
     EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
 }
@@ -212,7 +212,7 @@ TEST_F(OutputFailure, FileThatAnotherProgramPutThereIsLeftAlone) {
     file.append({.category = "robots"}, {});
     std::ofstream(path("b")) << "something else";
     std::filesystem::rename(path("b"), path("a.feather"));
-    expect_says(output_error([&file] { file.close(); }), {"another program has replaced it", "a.feather.pogosim-kept"});
+    expect_says(output_error([&file] { file.close(); }), {"another program replaced it", "a.feather.pogosim-kept"});
     EXPECT_EQ(bytes_of(path("a.feather")), "something else");
     EXPECT_EQ(read_back(path("a.feather.pogosim-kept")).table->num_rows(), 1);
 }
@@ -222,15 +222,15 @@ TEST_F(OutputFailure, FileThatAnotherRunWritesIsRefusedUntilThatOneHasEnded) {
     auto const before = bytes_of(path("a.feather"));
     {
         auto const reserved = DataFile::reserve(path("a.feather"));
-        expect_says(open_error(path("a.feather")), {path("a.feather"), "data_filename", "another run is writing it"});
+        expect_says(open_error(path("a.feather")), {path("a.feather"), "data_filename", "in use by another run"});
         EXPECT_EQ(bytes_of(path("a.feather")), before);
     }
     {
         DataFile file({.path = path("a.feather")});
         std::filesystem::create_symlink(path("a.feather"), path("link"));
-        expect_says(open_error(path("link")), {path("link"), "another run is writing it"});
+        expect_says(open_error(path("link")), {path("link"), "in use by another run"});
         file.close();
-        expect_says(open_error(path("a.feather")), {"another run is writing it"});  // the complete file, too
+        expect_says(open_error(path("a.feather")), {"in use by another run"});  // the complete file, too
     }
     EXPECT_EQ(open_error(path("a.feather")), "");
 }

@@ -100,8 +100,7 @@ TEST(Categories, WithoutAControllerWarnOnceAndTick) {
     std::vector<std::string> const lines = warnings.lines();
     ASSERT_EQ(lines.size(), kCategories.size() - 1);
     EXPECT_EQ(lines[0],
-              "no pogobot_start() of the program names the category 'walls': its robots do nothing; the "
-              "calls name robots");
+              "the program has no pogobot_start() for category 'walls' (only for robots); its robots will do nothing");
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
 }
 
@@ -151,7 +150,7 @@ TEST(Walls, AreNotMadeInAPeriodicArena) {
     Scenario scenario = square_scene({arena_wall(), robot_at({100, 100}), robot_at({300, 100})});
     scenario.boundary = BoundaryCondition::periodic;
     Simulation simulation(std::move(scenario), {});
-    EXPECT_EQ(warnings.text(), "objects.walls: a periodic arena has no walls, so there is no pogowall\n");
+    EXPECT_EQ(warnings.text(), "objects.walls: a periodic arena has no walls, so no pogowall is created\n");
     ASSERT_FALSE(simulation.start());
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
     EXPECT_EQ(simulation.world().objects.size(), 2U);

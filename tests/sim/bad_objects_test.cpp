@@ -62,7 +62,7 @@ TEST(BadObjects, NegativeAndZeroSizesAndMasses) {
                     ".body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found 0"},
                    {"geometry: blob", ".geometry: expected one of disk, rectangle, triangle, found 'blob'"},
                    {"geometry: arena", ".geometry: expected one of disk, rectangle, triangle, found 'arena'"},
-                   {"geometry: disk, x: 4", ".x: stands alone; give both x and y, or neither"}});
+                   {"geometry: disk, x: 4", ".x: x without y; specify both or neither"}});
     }
 }
 
@@ -81,17 +81,17 @@ TEST(BadObjects, MembranesWithoutDots) {
 
 TEST(BadObjects, RingsThatCannotBe) {
     expect_refused("membrane", {{"geometry: disk, radius: 100, dot_radius: 150",
-                                 ".dot_radius: a ring so thick does not fit into a shape of radius 100 mm"},
+                                 ".dot_radius: the ring is too thick for a shape of radius 100 mm"},
                                 {"geometry: disk, radius: 100, num_dots: 9000",
-                                 ".num_dots: so many would lie 0.063 mm from each other; the least is 0.1 mm"}});
+                                 ".num_dots: that many would be only 0.063 mm apart; the minimum is 0.1 mm"}});
     expect_refused("rectmembrane", {{"geometry: disk, radius: 100, rect_thickness: 201",
-                                     ".rect_thickness: a ring so thick does not fit into a shape of radius 100 mm"},
+                                     ".rect_thickness: the ring is too thick for a shape of radius 100 mm"},
                                     {"geometry: disk, rect_thickness: 0",
                                      ".rect_thickness: expected a number above 0, at most 1000000 (mm), found 0"}});
     EXPECT_EQ(error_with("  it: {type: membrane, geometry: disk}\n"), "no error");  // all defaults
 }
 
-std::string const kArena = "the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm";
+std::string const kArena = "the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm";
 
 TEST(BadObjects, WhatMaySlipThroughAMembraneIsNamedIfThereIsAny) {
     std::string const ring = "  it: {type: membrane, geometry: disk, radius: 60, num_dots: 5}\n";
@@ -127,18 +127,19 @@ TEST(BadObjects, LargerThanTheArena) {
 }
 
 TEST(BadObjects, BeyondTheWallsThoughInsideOfTheBox) {
-    EXPECT_EQ(error_with("  it: {type: passive_object, geometry: disk, x: 20, y: 20}\n", "", "5,0\n10,5\n5,10\n0,5\n"),
-              "x.yaml:7: objects.it.x: (20, 20) is beyond the walls of the arena, which spans (0.0, 0.0) to (1414.2, "
-              "1414.2) mm");
+    EXPECT_EQ(
+        error_with("  it: {type: passive_object, geometry: disk, x: 20, y: 20}\n", "", "5,0\n10,5\n5,10\n0,5\n"),
+        "x.yaml:7: objects.it.x: (20, 20) is beyond the walls of the arena, which extends from (0.0, 0.0) to (1414.2, "
+        "1414.2) mm");
 }
 
 TEST(BadObjects, OutsideOfTheArena) {
     for (char const* const type :
          {"pogobot", "pogobject", "pogowall", "membrane", "rectmembrane", "active_object", "passive_object"}) {
         EXPECT_EQ(error_with(std::string("  it: {type: ") + type + ", geometry: disk, x: 1300, y: -2}\n"),
-                  "x.yaml:7: objects.it.x: (1300, -2) is outside of " + kArena);
+                  "x.yaml:7: objects.it.x: (1300, -2) is outside " + kArena);
         EXPECT_EQ(error_with(std::string("  it: {type: ") + type + ", geometry: disk, x: 500,\n    y: 1300}\n"),
-                  "x.yaml:8: objects.it.y: (500, 1300) is outside of " + kArena);
+                  "x.yaml:8: objects.it.y: (500, 1300) is outside " + kArena);
     }
 }
 
@@ -159,14 +160,14 @@ TEST(BadObjects, FormationsInsideOfSomethingThatIsNoSpace) {
     EXPECT_EQ(error_with(ring + "}\n", "it"), "no error");
     EXPECT_EQ(error_with(ring + "}\n", "nobody"), key + "expected 'arena' or a category of 'objects', found 'nobody'");
     EXPECT_EQ(error_with(ring + ", nb: 0}\n", "it"),
-              key + "'it' has no object; it can be the arena, a wall, a membrane or a lamp");
+              key + "'it' has no objects; use the arena, a wall, a membrane or a lamp");
     EXPECT_EQ(error_with("  it: {type: passive_object, geometry: disk, radius: 150}\n", "it"),
-              key + "'it' is solid: nothing fits into it; it can be the arena, a wall, a membrane or a lamp");
+              key + "'it' is solid, so nothing fits inside; use the arena, a wall, a membrane or a lamp");
     EXPECT_EQ(error_with(ring + ", dot_radius: 90}\n", "it"),
-              key + "the ring of 'it' is so thick that there is no space in it; enlarge x.yaml:7: objects.it.radius");
+              key + "the ring of 'it' is so thick that it leaves no space inside; enlarge x.yaml:7: objects.it.radius");
     std::string const narrow = error_with(ring + ", dot_radius: 65}\n", "it");
     EXPECT_TRUE(narrow.starts_with("x.yaml:3: initial_formation: 'random' cannot place 1 object ")) << narrow;
-    EXPECT_TRUE(narrow.ends_with(" (inside of 'it': x.yaml:4: initial_formation_root_object)")) << narrow;
+    EXPECT_TRUE(narrow.ends_with(" (inside 'it': x.yaml:4: initial_formation_root_object)")) << narrow;
 }
 
 TEST(BadObjects, FormationsThatHaveNoRoomNameTheirLineAndTheSizes) {
@@ -193,12 +194,10 @@ TEST(MissingFiles, OnlyArenasAreOfferedArenas) {
     std::string const head = "initial_formation: imported\nformation_filename: poses.csv\narena_file: square.csv\n";
     Folder::write("x.yaml", head + "objects:\n  robots: {type: pogobot, geometry: disk}\n");
     auto const message = [] { return error_of([] { build_world(load_scenario("x.yaml", {}), 1); }); };
-    EXPECT_EQ(message().find("x.yaml:3: arena_file: there is no file 'square.csv'; it was looked for in "), 0U)
-        << message();
+    EXPECT_EQ(message().find("x.yaml:3: arena_file: there is no file 'square.csv'; searched "), 0U) << message();
     EXPECT_NE(message().find("Bundled arenas"), std::string::npos) << message();
     Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
-    EXPECT_EQ(message().find("x.yaml:2: formation_filename: there is no file 'poses.csv'; it was looked for in "), 0U)
-        << message();
+    EXPECT_EQ(message().find("x.yaml:2: formation_filename: there is no file 'poses.csv'; searched "), 0U) << message();
     EXPECT_EQ(message().find("Bundled arenas"), std::string::npos) << message();
 }
 
@@ -207,9 +206,10 @@ TEST(BadObjects, NothingStartsOutsideOfTheArenaThoughALampReachesOut) {
     std::string const lamp = "  lamp: {type: static_light, geometry: disk, radius: 300, y: 500, x: ";
     EXPECT_EQ(error_with(robots + lamp + "500}\n", "lamp"), "no error");
     for (char const* x : {"0", "-500"}) {
-        EXPECT_EQ(error_with(robots + lamp + x + "}\n", "lamp"),
-                  "x.yaml:4: initial_formation_root_object: 'lamp' reaches beyond the arena, which spans (0.0, 0.0) to "
-                  "(1000.0, 1000.0) mm, and some of what it holds would start there; move it or make it smaller");
+        EXPECT_EQ(
+            error_with(robots + lamp + x + "}\n", "lamp"),
+            "x.yaml:4: initial_formation_root_object: 'lamp' reaches beyond the arena, which extends from (0.0, 0.0) to "
+            "(1000.0, 1000.0) mm, and some of its contents would start there; move it or make it smaller");
     }
 }
 
@@ -219,7 +219,7 @@ TEST(MissingFiles, ConfigurationWithoutAnArenaIsToldTheKey) {
     Folder::write("test.csv", "0,0\n1,0\n1,1\n0,1\n");
     Folder::write("x.yaml", "objects:\n  robots: {type: pogobot}\n");
     EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }),
-              "x.yaml:1: the key 'arena_file' is missing; give an outline, such as arenas/disk.csv");
+              "x.yaml:1: the key 'arena_file' is missing; specify an outline, such as arenas/disk.csv");
 }
 
 TEST(MissingFiles, FilesOfOtherFormationsAreNotLookedFor) {
@@ -254,8 +254,8 @@ TEST(MissingFiles, MessageSaysWhereWasLooked) {
         return error_of([] { build_world(load_scenario("conf/x.yaml", {}), 1); });
     };
     EXPECT_EQ(message("none.csv")
-                  .find("conf/x.yaml:3: arena_file: there is no file 'none.csv'; it was looked for in " + here +
-                        ", then in " + here + "/conf, then in "),
+                  .find("conf/x.yaml:3: arena_file: there is no file 'none.csv'; searched " + here + ", then in " +
+                        here + "/conf, then in "),
               0U)
         << message("none.csv");
     EXPECT_EQ(message("/none/at/all.csv"),
@@ -273,8 +273,8 @@ TEST(ArenaScale, SizesOfTheFileAreKeptOnRequest) {
     EXPECT_EQ(arena.bounds.max, (Vec2{2000, 1200}));
     Folder::write("hall.csv", "0,0\n2e7,0\n2e7,1e3\n0,1e3\n");
     EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }),
-              "x.yaml:2: arena_surface: the arena 'hall.csv' is 20000000.0 x 1000.0 mm large; the largest size is "
-              "1000000 mm. Give its area in mm2 instead of 'file'");
+              "x.yaml:2: arena_surface: the arena 'hall.csv' measures 20000000.0 x 1000.0 mm; the largest supported "
+              "size is 1000000 mm. Specify its area in mm2 instead of 'file'");
 }
 
 TEST(Boundary, ArenaFileThatSaysSoIsPeriodic) {
@@ -289,7 +289,7 @@ TEST(Boundary, ArenaFileThatSaysSoIsPeriodic) {
     EXPECT_TRUE(build_world(load_scenario("x.yaml", {}), 1).periodic);
     EXPECT_EQ(
         warnings.text(),
-        "x.yaml:4: boundary_condition: 'torus.csv' says that it is periodic, and so it is; with walls, use another "
+        "x.yaml:4: boundary_condition: ignored, because 'torus.csv' declares itself periodic; for walls, use another "
         "arena_file\n");
 }
 

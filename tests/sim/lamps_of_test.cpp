@@ -35,7 +35,7 @@ std::string warning_of_lamp(std::string const& type, std::string const& keys) {
 
 std::string outside(int line, std::string const& key, std::string const& found) {
     return "x.yaml:" + std::to_string(line) + ": objects.lamp." + key + ": the lamp's centre " + found +
-           " is outside of the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm; coordinates of older "
+           " is outside the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm; coordinates of older "
            "configurations may need 'arena_stretch: true'\n";
 }
 
@@ -77,7 +77,7 @@ TEST(LampsOf, SeveralOfOneEntryStandAtTheSamePlaceAndWarn) {
 std::string dark(int line, std::string const& key, std::string const& when = "") {
     return "x.yaml:" + std::to_string(line) + ": objects.lamp." + key + ": the lamp lights no cell of the light map" +
            when +
-           ": it covers the centre of none, and they are 10.0 mm x 20.0 mm large; enlarge the lamp, or use more cells "
+           ": it covers no cell centre, and cells measure 10.0 mm x 20.0 mm; enlarge the lamp, or use more cells "
            "(light_map_nb_bin_x, light_map_nb_bin_y)\n";
 }
 

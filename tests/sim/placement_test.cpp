@@ -123,21 +123,21 @@ TEST(Placement, SaysWhatIsWrongWhere) {
         char const* message;
     };
     Case const cases[] = {
-        {"angle: 1", ".angle: stands alone; it is the heading of objects at x and y"},
-        {"nb: 3, poses: [[1, 2]]", ".nb: expected 1, as many as there are poses, found 3; nb may be left out"},
-        {"poses: []", ".poses: the list is empty; give a pose for each object, or leave it out"},
+        {"angle: 1", ".angle: angle without x and y; it is the heading of objects placed at x and y"},
+        {"nb: 3, poses: [[1, 2]]", ".nb: expected 1, the number of poses, found 3; nb may be omitted"},
+        {"poses: []", ".poses: the list is empty; specify one pose per object, or omit the key"},
         {"poses: [[500, 500], [1]]", ".poses.1: expected [x, y] or [x, y, angle] (mm, rad), found a list"},
         {"poses: [[500, 5000]]",
-         ".poses: (500, 5000) is outside of the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm"},
-        {"x: 1, y: 2, poses: [[1, 2]]", ".poses: cannot be together with 'x'; give one of them"},
-        {"x: 1, y: 2, area: {x: 1, y: 1, radius: 5}", ".area: cannot be together with 'x'; give one of them"},
+         ".poses: (500, 5000) is outside the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm"},
+        {"x: 1, y: 2, poses: [[1, 2]]", ".poses: cannot be combined with 'x'; use one or the other"},
+        {"x: 1, y: 2, area: {x: 1, y: 1, radius: 5}", ".area: cannot be combined with 'x'; use one or the other"},
         {"area: {x: 500, y: 500, radius: -5}",
          ".area.radius: expected a number above 0, at most 1000000 (mm), found -5"},
         {"area: [[0, 0], [10, 10], [10, 0], [0, 10]]", ".area: these corners enclose no area"},
         {"area: [[0, 0], [10, 10], [20, 0], [0, 12]]",
-         ".area: the sides of this polygon cross or touch each other; give its corners in order, each once"},
+         ".area: the sides of this polygon cross or touch each other; list its corners in order, each once"},
         {"body_fixed: true",
-         ".body_fixed: a robot with wheels cannot be fixed; an obstacle is a passive_object, an active_object or a "
+         ".body_fixed: a robot with wheels cannot be fixed; use a passive_object, an active_object or a "
          "pogobject"},
     };
     for (Case const& one : cases) {
@@ -148,11 +148,11 @@ TEST(Placement, SaysWhatIsWrongWhere) {
     EXPECT_EQ(build(small).error.find("x.yaml:6: objects.it.area: initial_formation: 'random' cannot place 50 objects"),
               0U)
         << build(small).error;
-    EXPECT_TRUE(build(small).error.ends_with("Ask for fewer or enlarge the area")) << build(small).error;
+    EXPECT_TRUE(build(small).error.ends_with("reduce nb or enlarge the area")) << build(small).error;
     std::string const away = "  it: {type: pogobot, geometry: disk, area: {x: 5000, y: 500, radius: 50}}\n";
     EXPECT_EQ(
         build(away).error,
-        "x.yaml:6: objects.it.area: no part of it is in the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm");
+        "x.yaml:6: objects.it.area: it lies entirely outside the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm");
 }
 
 TEST(Placement, RowsOfAFileGoToTheCategoriesInTheirOrderAndRowsTooManyAreSaid) {
@@ -169,7 +169,10 @@ TEST(Placement, RowsOfAFileGoToTheCategoriesInTheirOrderAndRowsTooManyAreSaid) {
     EXPECT_EQ(built.place(built.of("a")[0]), (Vec2{200, 100}));
     EXPECT_EQ(built.place(built.of("a")[1]), (Vec2{300, 100}));
     ASSERT_EQ(built.warnings.size(), 1U);
-    EXPECT_NE(built.warnings[0].find("4 rows of poses"), std::string::npos) << built.warnings[0];
+    EXPECT_NE(
+        built.warnings[0].find("has 4 poses (rows with the first time value) for 3 objects; the last 1 is ignored"),
+        std::string::npos)
+        << built.warnings[0];
 }
 
 TEST(FixedBody, StaysWhereItIsWhateverHitsIt) {

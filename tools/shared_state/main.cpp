@@ -18,16 +18,16 @@ namespace {
 
 constexpr char const* usage = R"(Usage: pogosim-shared-state [options] PROGRAM
 
-Lists the variables of a simulated program that it could change and that all robots share: everything but USERDATA, what
-is read from the configuration (init_from_configuration), and what is marked POGO_SHARED. Those in headers of the system
-do not count. PROGRAM is linked and has debug information (-g).
+Lists the modifiable variables that all simulated robots share: everything except USERDATA, variables read from the
+configuration (init_from_configuration), variables marked POGO_SHARED, and those declared in system headers. PROGRAM is
+a linked executable with debug information (-g).
 
-  --ignore FOLDER         variables declared in files of this folder do not count; may be repeated
-  -Werror=shared-state    a variable found is an error
-  -Wno-shared-state       looks at nothing
-  -h, --help              this text
+  --ignore FOLDER         ignore variables declared in files of this folder; may be repeated
+  -Werror=shared-state    treat shared variables as errors
+  -Wno-shared-state       disable the check
+  -h, --help              print this help and exit
 
-Exit codes: 0 nothing found, or warnings only; 1 found, with -Werror=shared-state; 2 wrong usage, or no such program.
+Exit codes: 0 nothing found, or warnings only; 1 found, with -Werror=shared-state; 2 usage error, or unreadable program.
 )";
 
 struct Options {
@@ -54,13 +54,13 @@ Options read_options(std::vector<std::string> const& arguments) {
         } else if (argument == "-h" || argument == "--help") {
             options.help = true;
         } else if (argument.starts_with("-") || !options.program.empty()) {
-            throw ProgramError("'" + argument + "' is not understood; see --help");
+            throw ProgramError("unknown argument '" + argument + "'; see --help");
         } else {
             options.program = argument;
         }
     }
     if (options.program.empty() && !options.help) {
-        throw ProgramError("which program? See --help");
+        throw ProgramError("no program specified; see --help");
     }
     return options;
 }
@@ -112,8 +112,9 @@ void print(Object const& object, bool error) {
                               (object.column > 0 ? ":" + std::to_string(object.column) : std::string());
     std::string const name = object.function.empty() ? object.qualifier + object.name : object.name;
     std::string const function = object.function.empty() ? "" : " in " + object.function + "()";
-    char const* const what = object.constant ? "is set once, by the first robot that comes by, for all simulated robots"
-                                             : "is shared by all simulated robots";
+    char const* const what = object.constant
+                                 ? "is set once, by the first robot to run this line, for all simulated robots"
+                                 : "is shared by all simulated robots";
     std::fprintf(stderr, "%s: %s: '%s'%s (%llu byte%s) %s; on real robots each has its own [%s]\n", place.c_str(),
                  error ? "error" : "warning", name.c_str(), function.c_str(),
                  static_cast<unsigned long long>(object.bytes), object.bytes == 1 ? "" : "s", what,
@@ -129,8 +130,8 @@ int check(Options const& options) {
     if (!found.empty()) {
         std::fprintf(
             stderr,
-            "Move it to USERDATA; or read it in global_setup with init_from_configuration(); or, if robots are to "
-            "share it, mark it POGO_SHARED.\n");
+            "Move it to USERDATA, read it in global_setup with init_from_configuration(), or mark it POGO_SHARED if "
+            "sharing is intended.\n");
     }
     return options.errors && !found.empty() ? 1 : 0;
 }

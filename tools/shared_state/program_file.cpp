@@ -43,14 +43,14 @@ ProgramFile::ProgramFile(std::string const& path) : descriptor_(open(path.c_str(
     dwarf_ = dwarf_begin(descriptor_, DWARF_C_READ);
     if (!dwarf_) {
         close(descriptor_);
-        throw ProgramError(path + ": no debug information here, compile and link with -g (" + dwarf_errmsg(-1) + ")");
+        throw ProgramError(path + ": no debug information; compile and link with -g (" + dwarf_errmsg(-1) + ")");
     }
     elf_ = dwarf_getelf(dwarf_);
     GElf_Ehdr header;
     if (!gelf_getehdr(elf_, &header) || header.e_type == ET_REL) {
         dwarf_end(dwarf_);
         close(descriptor_);
-        throw ProgramError(path + ": this is not linked yet; give the program");
+        throw ProgramError(path + ": not linked yet; specify the linked program");
     }
     read_symbols();
 }

@@ -14,14 +14,15 @@ std::span<Key<AlternatingRaysSpec> const> ray_keys() {
     using S = AlternatingRaysSpec;
     using K = Key<S>;
     static std::array const keys{
-        K{"value", &S::value, kLightLevel, "sensor counts", "Level in the beams; it replaces that of other lamps."},
-        K{"ray_half_width", &S::half_width_rad, kHalfWidth, "rad", "Lit to either side of a beam's direction."},
+        K{"value", &S::value, kLightLevel, "sensor counts", "Level in the beams, replacing that of other lamps."},
+        K{"ray_half_width", &S::half_width_rad, kHalfWidth, "rad",
+          "Half-width of a beam, to either side of its direction."},
         K{"angular_speed", &S::angular_speed_rad_s, kAngularSpeed, "rad/s",
-          "Of both beams. Above 0: clockwise on the screen. 0: the first beam never moves."},
+          "Angular speed of both beams; positive: clockwise on the screen. 0: the first beam never moves."},
         K{"long_white_frame_duration", &S::long_white_frame_duration_s, kSeconds, "s",
-          "Length of the flash over the whole shape before the first beam."},
+          "Duration of the flash over the whole shape before the first beam."},
         K{"short_white_frame_duration", &S::short_white_frame_duration_s, kSeconds, "s",
-          "Length of the flash before the second beam."},
+          "Duration of the flash before the second beam."},
         K{"white_frame_value", &S::white_frame_value, kLightLevel, "sensor counts", "Level of both flashes."},
     };
     return keys;

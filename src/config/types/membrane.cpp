@@ -17,17 +17,17 @@ std::span<Key<RingSpec> const> ring_keys() {
     constexpr auto has_dot_radius = [](RingSpec const& ring) { return !(ring.segments && ring.thickness_mm); };
     constexpr auto has_springs = [](RingSpec const& ring) { return !ring.segments || ring.cross_span > 1; };
     static std::array const keys{
-        K{"num_dots", &RingSpec::body_count, between(3, kMostBodies), "", "Bodies along the outline."},
+        K{"num_dots", &RingSpec::body_count, between(3, kMostBodies), "", "Number of bodies along the outline."},
         K{"dot_radius", &RingSpec::radius_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm", "Radius of a dot."}
             .only_if(has_dot_radius),
         K{"cross_span", &RingSpec::cross_span, between(0, kMostBodies), "dots",
-          "Above 1: weaker springs from each dot to the one this many places on, which keep the membrane from "
-          "folding."},
+          "Above 1: adds weaker springs from each dot to the one this many places further on, which keep the membrane "
+          "from folding."},
         K{"stiffness", &RingSpec::stiffness_hz, above(0).up_to(1e4), "Hz",
-          "Frequency of the springs between neighbours; their damping ratio is body_linear_damping."}
+          "Natural frequency of the springs between neighbours; their damping ratio is body_linear_damping."}
             .only_if(has_springs),
         K{"serialize_dot_pose", &RingSpec::in_data_file, any(), "",
-          "Adds a row for each dot to the data file, with its number in the column subpart_id."},
+          "Record each dot as a row of the data file, with its number in the column subpart_id."},
     };
     return keys;
 }
@@ -36,7 +36,7 @@ std::span<Key<RingSpec> const> thickness_keys() {
     using K = Key<RingSpec>;
     static std::array const keys{
         K{"rect_thickness", &RingSpec::thickness_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm",
-          "Thickness of the segments; absent: dot_radius."},
+          "Thickness of the segments; default: dot_radius."},
     };
     return keys;
 }

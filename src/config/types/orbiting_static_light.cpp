@@ -20,8 +20,8 @@ struct OrbitCentre {
 std::span<Key<OrbitCentre> const> orbit_centre_keys() {
     using K = Key<OrbitCentre>;
     static std::array const keys{
-        K{"center_x", &OrbitCentre::x_mm, kCoordinate, "mm", "Centre of the circle; without: `x`."},
-        K{"center_y", &OrbitCentre::y_mm, kCoordinate, "mm", "Centre of the circle; without: `y`."},
+        K{"center_x", &OrbitCentre::x_mm, kCoordinate, "mm", "Centre of the circle; default: `x`."},
+        K{"center_y", &OrbitCentre::y_mm, kCoordinate, "mm", "Centre of the circle; default: `y`."},
     };
     return keys;
 }
@@ -31,15 +31,15 @@ std::span<Key<Orbit> const> orbit_keys() {
     constexpr auto goes_round = [](Orbit const& orbit) { return orbit.radius_mm > 0.0F; };
     static std::array const keys{
         K{"orbit_radius", &Orbit::radius_mm, kLengthOrZero, "mm",
-          "Radius of the circle on which the lamp's centre goes round; 0: it stands still."},
+          "Radius of the circle on which the lamp's centre moves; 0: it does not move."},
         K{"orbit_angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s",
-          "Above 0: clockwise on the screen."}
+          "Positive: clockwise on the screen."}
             .only_if(goes_round),
-        K{"angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s", "Another name of orbit_angular_speed."}
+        K{"angular_speed", &Orbit::angular_speed_rad_s, kAngularSpeed, "rad/s", "Alias of orbit_angular_speed."}
             .only_if(goes_round)
             .other_name_of("orbit_angular_speed"),
-        K{"orbit_phase", &Orbit::phase_rad, kAngle, "rad", "Where on the circle at time 0, clockwise from +x."}.only_if(
-            goes_round),
+        K{"orbit_phase", &Orbit::phase_rad, kAngle, "rad", "Position on the circle at time 0, clockwise from +x."}
+            .only_if(goes_round),
     };
     return keys;
 }

@@ -14,16 +14,17 @@ std::span<Key<RotatingRaySpec> const> ray_keys() {
     using S = RotatingRaySpec;
     using K = Key<S>;
     static std::array const keys{
-        K{"value", &S::value, kLightLevel, "sensor counts", "Level in the beam; it replaces that of other lamps."},
-        K{"ray_half_width", &S::half_width_rad, kHalfWidth, "rad", "Lit to either side of the beam's direction."},
+        K{"value", &S::value, kLightLevel, "sensor counts", "Level in the beam, replacing that of other lamps."},
+        K{"ray_half_width", &S::half_width_rad, kHalfWidth, "rad",
+          "Half-width of the beam, to either side of its direction."},
         K{"angular_speed", &S::angular_speed_rad_s, kAngularSpeed, "rad/s",
-          "Above 0: clockwise on the screen. 0: the beam stays at angle 0, along +x."},
+          "Positive: clockwise on the screen. 0: the beam stays at angle 0, along +x."},
         K{"white_frame_duration", &S::white_frame_duration_s, kSeconds, "s",
-          "Length of the flash over the whole shape, at the start and each time the beam is back at angle 0, where it "
+          "Duration of the flash over the whole shape, at the start and whenever the beam returns to angle 0, where it "
           "waits meanwhile."},
         K{"white_frame_value", &S::white_frame_value, kLightLevel, "sensor counts", "Level of the flash."},
         K{"photo_start_at", &S::photo_start_at_s, kStartTime, "s",
-          "At 0 or later: dark until then and for `photo_start_duration` more. Negative: no photo start."},
+          "Dark until this time and for `photo_start_duration` after it. Negative: no photo start."},
         K{"photo_start_duration", &S::photo_start_duration_s, kSeconds, "s", "See photo_start_at."}.only_if(
             [](S const& spec) { return spec.photo_start_at_s >= 0.0; }),
     };

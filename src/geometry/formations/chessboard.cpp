@@ -17,7 +17,7 @@ constexpr int kPitchSteps = 16;           // tried on either side
 constexpr double kMostNodes = 1.0e6;      // of a spread grid
 
 std::string remedy(PlacementTask const& task) {
-    return fmt::format("Ask for fewer, lower chessboard_distance_between_neighbors, or {}", task.remedy);
+    return fmt::format("reduce nb, lower chessboard_distance_between_neighbors, or {}", task.remedy);
 }
 
 /// Squares of grid nodes around the centre; of each, those nearest to the centre first.
@@ -86,7 +86,7 @@ std::vector<Vec2> best_grid(PlacementTask const& task) {
         }
     }
     if (enough.empty()) {
-        refuse(task, fmt::format("a grid of pitch {:g} mm (+-8 %) has at most {} places in this {}. {}",
+        refuse(task, fmt::format("a grid of pitch {:g} mm (+-8 %) has at most {} places in this {}; {}",
                                  task.spec.chessboard_pitch_mm, most, task.ground, remedy(task)));
     }
     return enough;

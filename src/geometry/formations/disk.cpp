@@ -43,7 +43,7 @@ std::vector<Placement> place_disk(PlacementTask const& task) {
     double const room_mm2 = task.domain.area_mm2 / static_cast<double>(task.radii_mm.size());
     float const smallest_mm = 1.0e-2F * static_cast<float>(std::sqrt(room_mm2));
     auto const pattern_for = [&](float radius_mm) { return circles(centre, std::max(radius_mm, smallest_mm)); };
-    return place_on_rings(task, centre, pattern_for, fmt::format("Ask for fewer, {}, or use power_lloyd", task.remedy));
+    return place_on_rings(task, centre, pattern_for, fmt::format("reduce nb, {}, or use power_lloyd", task.remedy));
 }
 
 }  // namespace pogosim

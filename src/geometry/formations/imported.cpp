@@ -109,7 +109,7 @@ std::vector<ImportedPose> read_poses(PlacementTask const& task) {
         return read_csv_poses(path);
     }
     if (!task.read_feather) {
-        throw ConfigError(fmt::format("{}: Feather files cannot be read here; convert it to csv", path.string()));
+        throw ConfigError(fmt::format("{}: Feather files cannot be read here; convert it to CSV", path.string()));
     }
     return task.read_feather(path);
 }
@@ -136,7 +136,7 @@ public:
         if (given < 4 || min.x >= max.x || min.y >= max.y) {
             throw FormationError(
                 "imported_formation_min_coords",
-                fmt::format("with imported_formation_max_coords expected two corners of a box, smaller and larger, "
+                fmt::format("with imported_formation_max_coords, expected the lower and upper corners of a box, "
                             "found ({:g}, {:g}) and ({:g}, {:g})",
                             min.x, min.y, max.x, max.y));
         }
@@ -167,15 +167,14 @@ std::vector<Placement> place_imported(PlacementTask const& task) {
     std::size_t const needed = count + others.count;
     if (poses.size() < needed) {
         throw ConfigError(
-            fmt::format("{}: expected at least {} rows of poses (of the first instant), one for each "
+            fmt::format("{}: expected at least {} pose{} (rows with the first time value), one for each "
                         "object, found {}",
-                        task.spec.filename, needed, poses.size()));
+                        task.spec.filename, needed, needed == 1 ? "" : "s", poses.size()));
     }
     if (poses.size() > needed && !others.may_follow) {
-        log().warn(
-            "{}: it has {} rows of poses (of the first instant), and there are {} objects to place; the last {} "
-            "are not used",
-            task.spec.filename, poses.size(), needed, poses.size() - needed);
+        log().warn("{}: has {} poses (rows with the first time value) for {} objects; the last {} {} ignored",
+                   task.spec.filename, poses.size(), needed, poses.size() - needed,
+                   poses.size() - needed == 1 ? "is" : "are");
     }
     auto const first_of_others = poses.begin() + static_cast<std::ptrdiff_t>(others.first);
     poses.erase(first_of_others, first_of_others + static_cast<std::ptrdiff_t>(others.count));

@@ -98,8 +98,8 @@ std::vector<Placement> place_evenly(PlacementTask const& task, std::span<float c
     }
     throw FormationError(
         kFormationKey,
-        fmt::format("'{}' found no arrangement of {} in this {} that keeps them apart and off the walls. "
-                    "Ask for fewer or {}",
+        fmt::format("'{}' found no arrangement of {} in this {} that keeps them apart and clear of the walls; "
+                    "reduce nb or {}",
                     task.spec.name, describe_objects(task), task.ground, task.remedy));
 }
 

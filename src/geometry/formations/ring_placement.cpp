@@ -66,8 +66,9 @@ private:
     }
 
     [[noreturn]] void refuse() const {
-        throw FormationError(kFormationKey, fmt::format("'{}' has places for {} of {} in this {}. {}", task_.spec.name,
-                                                        placed_, describe_objects(task_), task_.ground, remedy_));
+        throw FormationError(kFormationKey,
+                             fmt::format("'{}' has room for only {} of {} in this {}; {}", task_.spec.name, placed_,
+                                         describe_objects(task_), task_.ground, remedy_));
     }
 
     PlacementTask const& task_;

@@ -33,7 +33,7 @@ void repeat_until_all_stand(PlacementTask const& task, std::int64_t const& point
         if (points_drawn >= kMostPointsDrawn || restarts == task.spec.max_restarts) {
             throw FormationError(
                 kFormationKey,
-                fmt::format("'{}' placed {} of {} in this {} after {} restarts: ask for fewer, {}, or use "
+                fmt::format("'{}' could place only {} of {} in this {} after {} restarts; reduce nb, {}, or use "
                             "power_lloyd",
                             task.spec.name, most, describe_objects(task), task.ground, restarts, task.remedy));
         }
