@@ -202,7 +202,7 @@ def test_page_of_messages_quotes_what_mistakes_in_the_first_program_lead_to(tmp_
     crash = "if (pogobot_helper_getid() == 7 && pogobot_ticks == 100) { *(int volatile*)0 = 1; }\n"
     endless = "while (!pogobot_infrared_message_available()) {}\n"
     mistakes = [
-        (program, configuration.replace("radius: 26.5", "raduis: 26.5")),
+        (program, configuration.replace("nb: 30", "nb: 30, raduis: 26.5")),
         (program, configuration.replace("nb: 30", "nb: thirty")),
         (program, configuration.replace("nb: 30", "nb: 300")),
         (with_step(program, crash), configuration),
