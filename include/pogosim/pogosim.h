@@ -1,6 +1,6 @@
 /// @file
-/// The interface layer: user data, the loop of a program and its globals. It is compiled for simulated and real robots
-/// alike; main_loop.c is its code. On a real robot it uses the SDK (pogobot.h), here pogosim/pogolib.h.
+/// The interface layer: user data, the main loop and its globals. It is compiled for both simulated and real robots; its
+/// code is main_loop.c. On a real robot it uses the SDK (pogobot.h), in the simulator pogosim/pogolib.h.
 #ifndef POGOSIM_POGOSIM_H
 #define POGOSIM_POGOSIM_H
 
@@ -34,7 +34,7 @@ extern "C" {
 #define STRINGIFY_RAW(x) #x
 /// The text of what the macro `x` expands to.
 #define STRINGIFY(x) STRINGIFY_RAW(x)
-/// strcmp() that the compiler evaluates if both texts are constants.
+/// strcmp() that the compiler evaluates if both strings are constants.
 #define STATIC_STRCMP(a, b) __builtin_strcmp((a), (b))
 
 #ifdef __cplusplus
@@ -44,25 +44,25 @@ POGO_BEGIN_API
 
 // ---- Globals of the main loop. Each robot has its own. ----
 
-/// Ticks executed so far; incremented at the end of each tick.
+/// Number of ticks executed; incremented at the end of each tick.
 extern POGO_PER_ROBOT uint32_t pogobot_ticks;
-/// Requested ticks per second, 60 at the start. The sleep between ticks is truncated to milliseconds, so 60 gives 62.5.
-/// 0: no sleep, which is one tick per `time_step` in the simulator.
+/// Requested ticks per second, initially 60. The sleep between ticks is truncated to milliseconds, so 60 gives 62.5.
+/// 0: no sleep, i.e. one tick per `time_step` in the simulator.
 extern POGO_PER_ROBOT uint8_t main_loop_hz;
-/// Most messages handed to msg_rx_fn in one tick, 3 at the start; any others waiting are dropped.
+/// Maximum number of messages passed to msg_rx_fn per tick, initially 3; any others waiting are dropped.
 extern POGO_PER_ROBOT uint8_t max_nb_processed_msg_per_tick;
-/// Chance (0 to 100 %) that msg_tx_fn is called in a tick, 20 at the start. Reception depends on it, too.
+/// Chance (0 to 100 %) that msg_tx_fn is called in a tick, initially 20. Reception also depends on it.
 extern POGO_PER_ROBOT uint8_t percent_msgs_sent_per_ticks;
-/// Called with each received message, after the step; NULL, as at the start: messages stay in the queue.
+/// Called with each received message, after the step; NULL (initially): messages stay in the queue.
 extern POGO_PER_ROBOT void (*msg_rx_fn)(message_t*);
-/// Called at random after the step to send a message; returns true if it sent one. NULL, as at the start: none.
+/// Called at random after the step to send a message; returns true if it sent one. NULL (initially): none.
 extern POGO_PER_ROBOT bool (*msg_tx_fn)(void);
 ///@{
 /// Messages sent (msg_tx_fn returned true) and received (msg_rx_fn was called) so far.
 extern POGO_PER_ROBOT uint32_t nb_msgs_sent;
 extern POGO_PER_ROBOT uint32_t nb_msgs_recv;
 ///@}
-/// LED that shows error codes, 0 to 4, 3 at the start; negative: none.
+/// LED that shows error codes, 0 to 4, initially 3; negative: none.
 extern POGO_PER_ROBOT int8_t error_codes_led_idx;
 
 // Stopwatches and times of the library itself.
@@ -74,7 +74,7 @@ extern POGO_PER_ROBOT uint32_t _error_code_initial_time;
 /// Milliseconds since this robot started, by its own clock.
 uint32_t current_time_milliseconds(void);
 
-/// What a robot can show on its error LED.
+/// Error codes that a robot shows on its error LED.
 typedef enum error_code_t {
     ERROR_TIME_OVERFLOW = 0,  ///< a tick took longer than 1 / main_loop_hz
     error_code_t_last_entry   ///< number of codes
@@ -83,15 +83,15 @@ typedef enum error_code_t {
 /// Shows an error code on the LED error_codes_led_idx, in the colour qualitative_colormap(code), for a second.
 void display_led_error_code(error_code_t code);
 
-/// One tick of the main loop: user step (NULL: none), send, receive, sleep. Programs need not call it.
+/// One tick of the main loop: user step (NULL: none), send, receive, sleep. Programs do not need to call it.
 void pogo_main_loop_step(void (*user_step)(void));
 
 // ---- Entry point ----
 
 /// `pogobot_start(user_init, user_step)` or `pogobot_start(user_init, user_step, "category")`: called by main() once
 /// per category of objects the program controls (default "robots"). user_init runs once, user_step in each tick; both
-/// may be NULL. On a real robot the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in
-/// the simulator all return, and objects of a category that no call names do nothing, with a warning.
+/// may be NULL. On a real robot, the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in
+/// the simulator all calls return, and objects of a category without a call do nothing, with a warning.
 #define pogobot_start(...) POGO_START_PICK(__VA_ARGS__, pogobot_start_3, pogobot_start_2, )(__VA_ARGS__)
 #define POGO_START_PICK(init, step, category, chosen, ...) chosen
 #define pogobot_start_2(init, step) pogobot_start_3(init, step, "robots")
@@ -101,7 +101,7 @@ void pogo_main_loop_step(void (*user_step)(void));
 #ifndef ROBOT_CATEGORY
 #define ROBOT_CATEGORY robots
 #endif
-/// Constant for the compiler, so that the controllers of other categories are not in the firmware.
+/// A compile-time constant, so that the controllers of other categories are not in the firmware.
 #define get_current_robot_category() STRINGIFY(ROBOT_CATEGORY)
 #define current_robot_category_is(name) (STATIC_STRCMP(STRINGIFY(ROBOT_CATEGORY), (name)) == 0)
 #define pogobot_start_3(init, step, category)    \
@@ -114,7 +114,7 @@ void user_init(void);
 void user_step(void);
 /// Empties the hardware FIFOs of the four infrared receivers.
 void clear_IR_buffers(void);
-/// Callbacks exist in the simulator only; here the function need not exist.
+/// Callbacks exist in the simulator only; on a robot, the function need not exist.
 #define SET_CALLBACK(callback_name, fn)
 
 #else
@@ -123,7 +123,7 @@ void clear_IR_buffers(void);
 void _pogobot_start(void (*user_init)(void), void (*user_step)(void), char const* category);
 /// Category of the object that runs this code, as in the configuration; "__system" in callback_global_step.
 char const* get_current_robot_category(void);
-/// Whether that is its category; false for NULL. On a real robot a constant, as get_current_robot_category().
+/// Whether the object has this category; false for NULL. A constant on a real robot, like get_current_robot_category().
 bool current_robot_category_is(char const* category);
 
 #endif
@@ -132,7 +132,7 @@ bool current_robot_category_is(char const* category);
 
 ///@{
 /// `pogobot_start(default_walls_user_init, default_walls_user_step, "walls")`: sends the five bytes "wall\0" as a long
-/// message in all directions, 7.5 times a second.
+/// message in all directions, 7.5 times per second.
 void default_walls_user_init(void);
 void default_walls_user_step(void);
 ///@}

@@ -3,16 +3,16 @@
 /// pogosim-shared-state) warns about each that the program could change, except those
 ///
 ///   - set from the configuration, with `init_from_configuration(variable)` and the like: the same on all robots;
-///   - marked with #POGO_SHARED: the program means to share them.
+///   - marked with #POGO_SHARED, i.e. shared intentionally.
 #ifndef POGOSIM_SHARED_STATE_H
 #define POGOSIM_SHARED_STATE_H
 
-/// Marks a variable that simulated robots share on purpose, such as a count over the whole swarm for the data file:
+/// Marks a variable that simulated robots share intentionally, such as a count over the whole swarm for the data file:
 ///
 ///     POGO_SHARED uint32_t messages_of_all_robots;
 ///     POGO_SHARED static float table[256];   // every robot fills it with the same values
 ///
-/// It has no effect on real robots. (g++ forgets it for static variables in templates and, with -flto, in inline
+/// It has no effect on real robots. (g++ drops it for static variables in templates and, with -flto, in inline
 /// functions.)
 #ifdef REAL_ROBOT
 #define POGO_SHARED
@@ -25,8 +25,8 @@
 #define POGO_TEXT_OF_RAW(x) #x
 #endif
 
-// Notes in the program which variable a call reads from the configuration, for pogosim-shared-state: a constant with
-// the text of the call's first argument, in the scope in which that text has its meaning.
+// Records in the program which variable a call reads from the configuration, for pogosim-shared-state: a constant with
+// the text of the call's first argument, in the scope in which that text is valid.
 #define POGO_NOTE_CONFIGURED(variable, ...) \
     __extension__({ static char const pogosim_configured[] __attribute__((used, unused)) = #variable; })
 

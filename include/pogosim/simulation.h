@@ -1,6 +1,6 @@
 /// @file
-/// What only the simulator has: configuration values for a program's globals, columns in the data file, callbacks.
-/// Real robots have none of this except an empty SET_CALLBACK(): programs use it inside `#ifdef SIMULATOR` only.
+/// Simulator-only functions: configuration values for a program's globals, columns of the data file, callbacks.
+/// Real robots have only an empty SET_CALLBACK(): use everything else inside `#ifdef SIMULATOR`.
 /// Errors end the run with a message and exit code 2.
 #ifndef POGOSIM_SIMULATION_H
 #define POGOSIM_SIMULATION_H
@@ -14,23 +14,23 @@ POGO_BEGIN_API
 
 /// Number of objects that run code: robots, pogobjects, active objects, walls and membranes.
 uint32_t get_nb_robots(void);
-/// Ends the run after the current time step. The data file is complete, the exit code 0.
+/// Ends the run after the current time step, with a complete data file and exit code 0.
 void stop_simulation(void);
 
 // ---- Callbacks: SET_CALLBACK(callback_name, function), in main() after pogobot_start() ----
 
-/// Sets a callback; in main(), after pogobot_start(). On real robots it is empty, and the function need not exist.
+/// Sets a callback; in main(), after pogobot_start(). On real robots it does nothing, and the function need not exist.
 #define SET_CALLBACK(callback_name, fn) ((callback_name) = (fn))
 
 /// Once, before any user_init: read the configuration here.
 extern POGO_PER_ROBOT void (*callback_global_setup)(void);
-/// Once, after every user_init, when there is a data file: declare columns here.
+/// Once, after every user_init, if there is a data file: declare columns here.
 extern POGO_PER_ROBOT void (*callback_create_data_schema)(void);
 /// For each object at time 0 and at each save period: set the values of its row.
 extern POGO_PER_ROBOT void (*callback_export_data)(void);
-/// At each tick of a 60 Hz loop, before the robots, in a context of its own (category "__system", no body).
+/// At each tick of a 60 Hz loop, before the robots, in its own context (category "__system", no body).
 extern POGO_PER_ROBOT void (*callback_global_step)(void);
-/// For each object when the run has ended.
+/// For each object at the end of the run.
 extern POGO_PER_ROBOT void (*callback_robot_end)(void);
 /// When a robot is clicked in the window.
 extern POGO_PER_ROBOT void (*callback_robot_click)(void);
@@ -38,9 +38,9 @@ extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 // ---- Configuration: values under `parameters:` ----
 
 ///@{
-/// Sets the variable to the value under `parameters.NAME` (dots lead into maps and lists), or to the default when it is
-/// absent. A value of the wrong type or out of the range of the variable's type is an error; integers truncate
-/// fractions, with a warning.
+/// Sets the variable to the value of `parameters.NAME` (dots address entries of maps and lists), or to the default if it
+/// is absent. A value of the wrong type or outside the range of the variable's type is an error; for integers, fractions
+/// are truncated, with a warning.
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
 void init_float_from_configuration(float* variable, char const* name, float const default_value);
 void init_double_from_configuration(double* variable, char const* name, double const default_value);
@@ -53,21 +53,21 @@ void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t 
 ///@}
 
 ///@{
-/// Sets an array to the first `size` numbers of the list under `parameters.NAME`. An absent or empty list changes
-/// nothing, a shorter one is an error.
+/// Sets an array to the first `size` numbers of the list `parameters.NAME`. An absent or empty list changes
+/// nothing; a shorter one is an error.
 void init_float_array_from_configuration(float* array, char const* name, size_t const size);
 void init_double_array_from_configuration(double* array, char const* name, size_t const size);
 ///@}
-/// Sets a text (an array of `size` characters) to the one under `parameters.NAME`, truncated to `size` - 1 characters;
+/// Sets a string (an array of `size` characters) to `parameters.NAME`, truncated to `size` - 1 characters;
 /// an absent one changes nothing.
 void init_string_from_configuration(char* text, char const* name, size_t const size);
 
-/// Ends the run with a message that says where `parameters.NAME` stands, what was `expected` and what was found, and
-/// with exit code 2: for values that the program cannot work with.
+/// Rejects the value of `parameters.NAME`: ends the run with exit code 2 and a message that gives its line, what was
+/// `expected` and what was found.
 void refuse_parameter(char const* name, char const* expected);
-/// The same unless `value`, which was read from `parameters.NAME`, is from `min` to `max` (NaN never is).
+/// Does the same unless `value`, which was read from `parameters.NAME`, is from `min` to `max` (NaN never is).
 void check_parameter_range(char const* name, double value, double min, double max);
-/// Ends the run with a message, as refuse_parameter(), unless a variable set by init_from_configuration() is a number
+/// Ends the run with a message, like refuse_parameter(), unless a variable set by init_from_configuration() is a number
 /// from `min` to `max`: `check_parameter(heartbeat_hz, 1, 1000)`.
 #define check_parameter(variable, min, max) check_parameter_range(#variable, (double)(variable), (min), (max))
 
@@ -87,10 +87,10 @@ void data_add_column_float16(char const* name);
 ///@}
 
 ///@{
-/// Sets the value of a column in this object's row; only in callback_export_data, elsewhere it does nothing, with a
-/// warning. A column that is not set is null, as is a text that is NULL. An unknown column or another type than
-/// declared is an error; a column left out by `data_logger_fields` is ignored. float holds 24 bits, float16 11 bits and
-/// at most 65504.
+/// Sets the value of a column in this object's row; only in callback_export_data. Elsewhere, it does nothing, with a
+/// warning. A column that is not set is null, and so is a NULL string. An unknown column, or a type other than declared,
+/// is an error; columns omitted from `data_logger_fields` are ignored. float has 24 significant bits, float16 has 11 and
+/// is at most 65504.
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
 void data_set_value_int32(char const* name, int32_t value);
@@ -103,7 +103,7 @@ void data_set_value_float16(char const* name, float value);
 ///@}
 
 ///@{
-/// Says in callback_export_data whether this object's row is written this time. Enabled again before each call.
+/// Determines, in callback_export_data, whether this object's row is recorded this time. Re-enabled before each call.
 void enable_data_export(void);
 void disable_data_export(void);
 ///@}
@@ -175,7 +175,7 @@ inline void pogosim_init_array(char (&a)[N], char const* name) {
 /// `parameters.walk.speed`; its present value is the default.
 #define init_from_configuration(variable) \
     (POGO_NOTE_CONFIGURED(variable, ), pogosim_init_variable((variable), #variable))
-/// The same for arrays of float or double, and for texts (arrays of char).
+/// The same for arrays of float or double, and for strings (arrays of char).
 #define init_array_from_configuration(array) (POGO_NOTE_CONFIGURED(array, ), pogosim_init_array((array), #array))
 #else
 // clang-format off
@@ -205,7 +205,7 @@ void pogosim_init_unsupported(void const* variable, char const* name, ...);
         int8_t: init_int8_from_configuration,           \
         uint8_t: init_uint8_from_configuration,         \
         default: pogosim_init_unsupported)(&(variable), #variable, (variable)))
-/// The same for arrays of float or double, and for texts (arrays of char).
+/// The same for arrays of float or double, and for strings (arrays of char).
 #define init_array_from_configuration(array)            \
     (POGO_NOTE_CONFIGURED(array, ), POGO_CHECK_CONFIGURABLE_ARRAY(array), _Generic(&(array)[0], \
         float *: init_float_array_from_configuration,   \

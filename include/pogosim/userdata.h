@@ -1,17 +1,17 @@
 /// @file
-/// User data: the variables of one robot. In the simulator `mydata` points to the block of the robot that is
-/// running; on a real robot it is the address of a global, which the compiler folds away.
+/// User data: the variables of one robot. In the simulator, `mydata` points to the block of the current robot; on
+/// a real robot, it is the address of a global, which the compiler folds away.
 ///
 ///     typedef struct { uint8_t age; } USERDATA;
-///     DECLARE_USERDATA(USERDATA);    // beside the struct, wherever it is needed
+///     DECLARE_USERDATA(USERDATA);    // next to the struct, wherever it is needed
 ///     REGISTER_USERDATA(USERDATA);   // once per program
 ///
-/// Both work with and without the semicolon; as the last line of a C file, with it. All bytes are zero at the start; in
+/// Both work with and without the semicolon; as the last line of a C file, with it. All bytes are initially zero; in
 /// C++, members may have initial values.
 #ifndef POGOSIM_USERDATA_H
 #define POGOSIM_USERDATA_H
 
-// What follows may be a semicolon alone. In C that is an extension, of which -Wpedantic then says nothing.
+// A lone semicolon may follow. In C, that is an extension; this keeps -Wpedantic silent about it.
 #ifdef __cplusplus
 #define POGO_MAYBE_SEMICOLON
 #else
@@ -30,13 +30,13 @@
 
 #else
 
-/// Declares `mydata`, a pointer to the T of the robot that runs; in each file of the program that uses it.
+/// Declares `mydata`, a pointer to the T of the current robot; in each file of the program that uses it.
 #define DECLARE_USERDATA(T)             \
     extern POGO_PER_ROBOT T* mydata;    \
     extern char REGISTER_USERDATA_once; \
     POGO_ASK_FOR_USERDATA(__COUNTER__)  \
     POGO_MAYBE_SEMICOLON
-/// Defines `mydata`; once per program. Without it the linker misses `REGISTER_USERDATA_once`.
+/// Defines `mydata`; once per program. Without it, the linker reports `REGISTER_USERDATA_once` as undefined.
 #define REGISTER_USERDATA(T)                     \
     POGO_SHARED char REGISTER_USERDATA_once = 0; \
     POGO_SHARED size_t UserdataSize = sizeof(T); \
@@ -61,8 +61,8 @@ inline void operator delete(void*, pogosim_place) noexcept {}
 #define POGO_CONSTRUCT_USERDATA(T)
 #endif
 
-// The library has a `mydata` for programs without user data, so a forgotten REGISTER_USERDATA would link: robots would
-// have no room for what they write. A constant, used by nobody, asks for something that only REGISTER_USERDATA defines.
+// The library has a `mydata` for programs without user data, so without REGISTER_USERDATA a program would link, but
+// robots would have no memory to write to. An unused constant refers to a symbol that only REGISTER_USERDATA defines.
 #define POGO_ASK_FOR_USERDATA(number) POGO_ASK_FOR_USERDATA_RAW(number)
 #define POGO_ASK_FOR_USERDATA_RAW(number) \
     __attribute__((used)) static char const* const pogo_user_data_##number = &REGISTER_USERDATA_once;

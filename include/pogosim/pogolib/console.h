@@ -1,5 +1,5 @@
 /// @file
-/// What a robot prints. Text is kept until a line is complete (or the run ends, or 64 KiB are waiting); the line then
+/// Robot output. Text is buffered until a line is complete (or the run ends, or 64 KiB are waiting); the line then
 /// goes to the log of the run as "[ROBOT #id] [PRINTF] line".
 #ifndef POGOSIM_POGOLIB_CONSOLE_H
 #define POGOSIM_POGOLIB_CONSOLE_H
@@ -52,14 +52,14 @@ using ::pogosim_vprintf;
 #undef puts
 #undef vprintf
 
-/// Prints as the robot's own C library does: `long` has 32 bits there, so `%ld` and `%lu` print an int32_t or uint32_t.
+/// Prints like the robot's own C library, where `long` has 32 bits: `%ld` and `%lu` print an int32_t or uint32_t.
 /// Returns the number of characters, or a negative value for a bad format.
 #define printf(...) pogosim_printf(__VA_ARGS__)
 /// Prints one character and returns it.
 #define putchar(character) pogosim_putchar(character)
-/// Prints a text and a line end. Returns 0.
+/// Prints a string and a newline. Returns 0.
 #define puts(text) pogosim_puts(text)
-/// As printf(), with the arguments in a va_list.
+/// Like printf(), with the arguments in a va_list.
 #define vprintf(format, arguments) pogosim_vprintf(format, arguments)
 
 #endif

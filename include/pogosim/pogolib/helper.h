@@ -8,15 +8,15 @@ extern "C" {
 #endif
 POGO_BEGIN_API
 
-/// Prepares the hardware of a real robot; nothing to do here.
+/// Initialises the hardware of a real robot; does nothing in the simulator.
 void pogobot_init(void);
 
 /// Identifier of this robot: 0, 1, 2, ... in the order of the configuration; 65535, 65534, ... for walls and membranes;
 /// 0 in callback_global_step. A real robot has the number in its memory.
 uint16_t pogobot_helper_getid(void);
 
-/// A seed for srand(), any int16_t. The first one a robot asks for is different on every robot of a run and depends
-/// only on the seed of the run and the robot. rand() without srand() differs between simulated robots, too.
+/// A seed for srand(), any int16_t. The first one that a robot requests differs for every robot of a run and depends
+/// only on the seed of the run and the robot. rand() without srand() also differs between simulated robots.
 int16_t pogobot_helper_getRandSeed(void);
 
 /// Prints the version of the SDK, #POGOLIB_RELEASE_VERSION.

@@ -1,22 +1,22 @@
 /// @file
-/// Infrared messages. Four emitters and four receiving faces: front, right, back, left. docs/communication.md says who
-/// hears whom, and how often. A message is delivered at the end of the simulator's step in which it was sent.
+/// Infrared messages. Four emitters and four receiving faces: front, right, back, left. docs/communication.md explains
+/// who hears whom, and how often. A message is delivered at the end of the simulation step in which it was sent.
 #ifndef POGOSIM_POGOLIB_INFRARED_H
 #define POGOSIM_POGOLIB_INFRARED_H
 
 #ifndef MAX_PAYLOAD_SIZE_BYTES
-/// Longest payload of a message, bytes. A program may define a smaller one before the include: it makes message_t
-/// smaller, and longer payloads are truncated when they are received.
+/// Maximum payload of a message, bytes. A program may define a smaller one before the include: this makes message_t
+/// smaller, and longer payloads are truncated on reception.
 #define MAX_PAYLOAD_SIZE_BYTES 382
 #endif
 #ifndef MAX_NUMBER_OF_WORD
-/// For programs that name it; the simulator does not use it.
+/// For compatibility; the simulator does not use it.
 #define MAX_NUMBER_OF_WORD 20
 #endif
 
 /// Number of receivers.
 #define IR_RX_COUNT 4
-/// Messages a real robot's queue holds; in the simulator `message_queue_size` says how many, by default as many.
+/// Capacity of a real robot's message queue; in the simulator it is `message_queue_size`, by default the same.
 #define NUMEL 20
 
 /// Faces of a robot; `ir_all`: all four.
@@ -35,7 +35,7 @@ typedef struct message_header_t {
     uint16_t payload_length;       ///< bytes
 } message_header_t;
 
-/// A long message, and what a receiver gets of both kinds.
+/// A long message; receivers get messages of both kinds in this form.
 typedef struct message_t {
     message_header_t header;                  ///< set by the sending and receiving functions
     uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];  ///< payload_length bytes of it count
@@ -53,11 +53,11 @@ typedef struct short_message_t {
     uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];  ///< payload_length bytes of it count
 } short_message_t;
 
-/// What went wrong at one receiver of a real robot. All zero in the simulator, which loses whole messages.
+/// Error counters of one receiver of a real robot. All zero in the simulator, which loses whole messages.
 typedef struct {
     uint32_t overflow_counter;              ///< messages longer than the buffer
     uint32_t unknown_escaped_byte_counter;  ///< wrong bytes after an escape
-    uint32_t crc_mismatch_counter;          ///< wrong check sums
+    uint32_t crc_mismatch_counter;          ///< wrong checksums
 } slip_error_counter_s;
 
 /// Power of each emitter, 0 to 3, a byte each.
@@ -77,7 +77,7 @@ typedef union emitting_power_list_t {
 #define pogobot_infrared_emitter_power_null 0
 ///@}
 
-/// Bits that a power has in a list.
+/// Bits per power in a list.
 #define pogobot_infrared_emitter_width_bits 2
 
 /// List of four powers, 0 to 3, for `_emitting_power_list` of a raw long message.
@@ -112,39 +112,39 @@ extern "C" {
 #endif
 POGO_BEGIN_API
 
-// Sending. 0 means sent, while msg_tx_fn returns true when it sent one.
+// Sending. These functions return 0 on success, whereas msg_tx_fn returns true if it sent a message.
 
 /// Sends a long message (8 bytes of header and `message_size` of payload) through all emitters at once; receivers see
-/// `_sender_ir_index` 4. Returns 0, or 1 when the payload is longer than 382 bytes or NULL and nothing was sent.
+/// `_sender_ir_index` 4. Returns 0, or 1 if nothing was sent because the payload is longer than 382 bytes or NULL.
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size);
 /// Sends four long messages, one through each emitter, so that receivers see which one. Returns 0, or the number of
-/// those that were not sent.
+/// messages that were not sent.
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size);
-/// Sends a long message through one emitter; with `ir_all` as pogobot_infrared_sendLongMessage_omniGen(). Returns 0, or
-/// 1 as that.
+/// Sends a long message through one emitter; with `ir_all`, like pogobot_infrared_sendLongMessage_omniGen(). Same return
+/// values.
 uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* const message, uint16_t const message_size);
-/// Sends a short message (3 bytes of header: no sender, no emitter) through all emitters at once. Returns 0, or 1 when
-/// the payload is longer than 382 bytes or NULL and nothing was sent.
+/// Sends a short message (3 bytes of header: no sender, no emitter) through all emitters at once. Returns 0, or 1 if
+/// nothing was sent because the payload is longer than 382 bytes or NULL.
 uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size);
-/// Sends a short message through one emitter, or with `ir_all` through all at once. Returns 0, or 1 as for all.
+/// Sends a short message through one emitter, or with `ir_all` through all at once. Same return values.
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size);
-/// Sends a long message unchanged, through the emitters whose power in `_emitting_power_list` is not 0 (none: nothing
-/// is sent, with a warning), and as far as the largest of these powers reaches. Sets type and sender. Returns 0, or 1
-/// when the message is NULL or `payload_length` above 382 and nothing was sent.
+/// Sends a long message unchanged, through the emitters whose power in `_emitting_power_list` is not 0 (if all are 0,
+/// nothing is sent, with a warning), with the range of the largest of these powers. Sets type and sender. Returns 0, or
+/// 1 if nothing was sent because the message is NULL or `payload_length` is above 382.
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message);
-/// Sends a short message unchanged, through one emitter or, with `ir_all`, all. Sets the type. Returns 0, or 1 as for
+/// Sends a short message unchanged, through one emitter or, with `ir_all`, all. Sets the type. Same return values as for
 /// long ones.
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message);
 
-/// Power of the emitters for the functions above except raw long messages: 0 to 3, more counts as 3; 1 at the start. 0
-/// sends nothing. In the simulator 1 to 3 reach as far as `communication_radius_by_power` says, equally far without it.
+/// Power of the emitters for the functions above except raw long messages: 0 to 3 (more counts as 3), initially 1. 0
+/// sends nothing. In the simulator, `communication_radius_by_power` sets the ranges of 1 to 3; by default they are equal.
 void pogobot_infrared_set_power(uint8_t power);
 
-// Receiving, without msg_rx_fn. When the queue is full, new messages are lost.
+// Receiving, without msg_rx_fn. When the queue is full, new messages are dropped.
 
-/// Decodes what has arrived on a real robot; nothing to do here.
+/// Decodes received data on a real robot; does nothing in the simulator.
 void pogobot_infrared_update(void);
-/// Non-zero when a message waits. It does not change within a simulated tick: do not wait for it in a loop.
+/// Non-zero if a message is waiting. It does not change within a simulated tick: do not wait for it in a loop.
 int pogobot_infrared_message_available(void);
 /// Drops all waiting messages.
 void pogobot_infrared_clear_message_queue(void);
@@ -153,16 +153,16 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes);
 
 /// Error counters of receiver `ir_index`, 0 to 3: always zero in the simulator. NULL does nothing.
 void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t ir_index);
-/// Sets the error counters of a real robot to zero; nothing to do here.
+/// Resets the error counters of a real robot; does nothing in the simulator.
 void pogobot_infrared_reset_receiver_error_counter(void);
 
-/// Prepares the hardware of a real robot; nothing to do here.
+/// Initialises the hardware of a real robot; does nothing in the simulator.
 void pogobot_infrared_ll_init(void);
 
 POGO_END_API
 
-/// Takes the oldest message out of the queue; bytes beyond its payload are zero. Warns once and leaves the argument as
-/// it is when no message waits.
+/// Removes the oldest message from the queue; bytes beyond its payload are zero. If no message is waiting, warns once and
+/// leaves the argument unchanged.
 static inline void pogobot_infrared_recover_next_message(message_t* message) {
     pogosim_recover_next_message(message, MAX_PAYLOAD_SIZE_BYTES);
 }

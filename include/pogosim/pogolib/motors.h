@@ -1,5 +1,5 @@
 /// @file
-/// The motors. A power, once set, drives the robot until it is changed. With powers L and R a simulated robot drives at
+/// The motors. A power, once set, drives the robot until it is changed. With powers L and R, a simulated robot drives at
 /// `max_linear_speed` (L + R) / 2046 and turns clockwise at `max_angular_speed` (L - R) / 511.5, with the noise and the
 /// bias of its category. Motors of walls, membranes, pogobjects and active objects do nothing.
 #ifndef POGOSIM_POGOLIB_MOTORS_H
@@ -28,11 +28,11 @@ void pogobot_motor_power_set(motor_id motor, uint16_t value);
 void pogobot_motor_set(motor_id motor, uint16_t value);
 ///@}
 
-/// Direction bit of one motor, 0 or 1 (more counts as 1), at once. Forward is 1 for the left motor and 0 for the right
-/// one, unless the stored calibration says otherwise. An unknown motor does nothing.
+/// Sets the direction bit of one motor, 0 or 1 (more counts as 1), immediately. Forward is 1 for the left motor and 0
+/// for the right one, unless the stored calibration says otherwise. An unknown motor does nothing.
 void pogobot_motor_dir_set(motor_id motor, uint8_t value);
 
-/// Direction bits now: bit 0 right, bit 1 left, bit 2 back.
+/// Current direction bits: bit 0 right, bit 1 left, bit 2 back.
 uint32_t pogobot_motor_dir_current_status(void);
 
 ///@{
@@ -44,7 +44,7 @@ int8_t pogobot_motor_dir_mem_set(uint8_t* p_directions);
 
 ///@{
 /// Reads or writes the powers in the persistent memory: three values [right, left, back], 0 to 1023, {512, 512, 0} at
-/// the start of a simulation. They move nothing until the program sets them. Returns 0, or 255 for NULL.
+/// the start of a simulation. They have no effect until the program sets them. Returns 0, or 255 for NULL.
 uint8_t pogobot_motor_power_mem_get(uint16_t* p_powers);
 uint8_t pogobot_motor_power_mem_set(uint16_t* p_powers);
 ///@}

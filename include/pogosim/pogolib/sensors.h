@@ -12,15 +12,15 @@ extern "C" {
 POGO_BEGIN_API
 
 /// Light level at photosensor 0 (back), 1 (front left) or 2 (front right), sensor counts: 0 to 32767, with noise and
-/// bias -32768 to 32767. -1 for other numbers. Sensors sit on the rim, at 180, -40 and +40 degrees from the heading.
+/// bias -32768 to 32767. -1 for other numbers. Sensors are on the rim, at 180, -40 and +40 degrees from the heading.
 int16_t pogobot_photosensors_read(uint8_t sensor_number);
 
 /// Acceleration (m/s2: [0] to the right, [1] forward, [2] up) and angular velocity (rad/s; [2] counter-clockwise seen
-/// from above), three floats each, not NULL. Clamped to +-156.9 m/s2 and +-34.9 rad/s as the real chip. The simulator
+/// from above), three floats each, not NULL. Clamped to +-156.9 m/s2 and +-34.9 rad/s like the real chip. The simulator
 /// has neither gravity nor tilt: acc[2], gyro[0] and gyro[1] are 0. The acceleration is the change of velocity between
-/// the last two ticks, 0 at the first, divided by the robot's time between them. Ticks of 16 ms fall on steps of 10 ms
-/// (the default `time_step`) 10 or 20 ms apart, so in a steady turn it alternates about its mean; with 8 or 16 ms it
-/// does not.
+/// the last two ticks (0 at the first), divided by the robot's time between them. With a `time_step` of 10 ms (the
+/// default), ticks of 16 ms are 10 or 20 ms apart, so in a steady turn it alternates around its mean; with a `time_step`
+/// of 8 or 16 ms it does not.
 void pogobot_imu_read(float* acc, float* gyro);
 
 /// Temperature of the chip, degrees Celsius, -40 to 85; `arena_temperature` in the simulator.

@@ -1,15 +1,15 @@
 /// @file
-/// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stands still while user code
-/// runs and goes on when the robot sleeps; but a loop that waits for it ends, since each look at the clock beyond the
-/// thousandth in a tick takes a microsecond. Differences beyond the range of int32_t (35 minutes) are clamped to it; on
-/// a real robot they wrap around after about 107 s.
+/// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stops while user code runs and
+/// advances when the robot sleeps; a loop that waits for it ends nevertheless, since after a thousand clock queries in a
+/// tick, each further one takes a microsecond. Differences are clamped to the range of int32_t (35 minutes); on a real
+/// robot they wrap around after about 107 s.
 #ifndef POGOSIM_POGOLIB_TIMERS_H
 #define POGOSIM_POGOLIB_TIMERS_H
 
-/// A point in time. Declare, embed, copy and pass it by address; its fields are the library's.
+/// A point in time. Declare, embed, copy and pass it by address; its fields are private to the library.
 typedef struct time_reference_t {
     uint32_t hardware_value_at_time_origin;  ///< counter of the robot's clock
-    int64_t origin_us;                       ///< us since the robot's start; in the simulator only
+    int64_t origin_us;                       ///< us since the robot's start; simulator only
 } time_reference_t;
 
 #ifdef __cplusplus
@@ -30,18 +30,18 @@ void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, i
 void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go);
 /// Time left, us; negative once it has expired.
 int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer);
-/// True when the time left is negative.
+/// True if the time left is negative.
 bool pogobot_timer_has_expired(time_reference_t* timer);
 /// Sleeps for the time left, if any.
 void pogobot_timer_wait_for_expiry(time_reference_t* timer);
 /// Moves the expiry by the offset: re-arms a periodic timer without drift.
 void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset);
 
-/// Sleeps: delays the robot's next tick by this time, but the rest of this one still runs in the same step of the
-/// simulator, with sensors and messages unchanged. Zero and less do nothing.
+/// Sleeps: delays the robot's next tick by this time, but the rest of this one still runs in the same simulation step,
+/// with sensors and messages unchanged. Zero and negative values do nothing.
 void msleep(int milliseconds);
 
-/// Prepares the clock of a real robot; nothing to do here.
+/// Initialises the clock of a real robot; does nothing in the simulator.
 void pli_timer_sleep_stopwatch_init(void);
 
 POGO_END_API
