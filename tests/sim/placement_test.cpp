@@ -104,17 +104,60 @@ TEST(Placement, AreaHoldsItsCategoryAndTheOthersKeepOffIt) {
 
 TEST(Placement, AreaIsWhatTheArenaHasOfIt) {
     // The arena is a triangle with legs of 1414 mm; the area is a square around the middle of its long side.
+    for (char const* const arena : {kTriangle, "0,0\n0,1\n1,0\n"}) {
+        Built const built = build(
+            "  it: {type: pogobot, geometry: disk, radius: 10, nb: 30, initial_formation: random, "
+            "area: [[500, 500], [900, 500], [900, 900], [500, 900]]}\n",
+            arena);
+        ASSERT_EQ(built.error, "no error");
+        for (Object const& it : built.of("it")) {
+            Vec2 const place = built.place(it);
+            EXPECT_TRUE(built.world.arena.contains(place));
+            EXPECT_GE(built.world.arena.distance_to_walls(place), 10.0F);
+            EXPECT_GE(std::min(place.x, place.y), 510.0F);
+        }
+    }
+}
+
+TEST(Placement, AreaAroundAHoleOfTheArenaIsFreeBesideTheHoleOnly) {
     Built const built = build(
-        "  it: {type: pogobot, geometry: disk, radius: 10, nb: 30, initial_formation: random, "
-        "area: [[500, 500], [900, 500], [900, 900], [500, 900]]}\n",
-        kTriangle);
+        "  it: {type: pogobot, geometry: disk, radius: 10, nb: 60, initial_formation: random, "
+        "area: [[250, 250], [850, 250], [850, 850], [250, 850]]}\n",
+        "0,0\n1,0\n1,1\n0,1\n\n0.3,0.3\n0.7,0.3\n0.7,0.7\n0.3,0.7\n");
     ASSERT_EQ(built.error, "no error");
     for (Object const& it : built.of("it")) {
-        Vec2 const place = built.place(it);
-        EXPECT_TRUE(built.world.arena.contains(place));
-        EXPECT_GE(built.world.arena.distance_to_walls(place), 10.0F);
-        EXPECT_GE(std::min(place.x, place.y), 510.0F);
+        EXPECT_TRUE(built.world.arena.contains(built.place(it)));
+        EXPECT_GE(built.world.arena.distance_to_walls(built.place(it)), 10.0F);
     }
+}
+
+TEST(Placement, FormationAroundACentreStandsAroundThatOfItsArea) {
+    Built const built = build(
+        "  it: {type: pogobot, geometry: disk, radius: 10, nb: 7, initial_formation: disk, "
+        "area: {x: 700, y: 300, radius: 200}}\n");
+    ASSERT_EQ(built.error, "no error");
+    Vec2 sum;
+    for (Object const& it : built.of("it")) {
+        sum = sum + built.place(it);
+    }
+    EXPECT_LT(length((1.0F / 7.0F) * sum - Vec2{700, 300}), 20.0F);
+}
+
+TEST(Placement, LampThatReachesBeyondTheWallsHoldsNobodyThere) {
+    Built const built = build("  light: {type: static_light, geometry: disk, radius: 400, x: 950, y: 500}\n", kSquare,
+                              "initial_formation_root_object: light\n" + kScene);
+    EXPECT_NE(built.error.find("'light' reaches beyond the arena"), std::string::npos) << built.error;
+}
+
+TEST(Placement, SmallObjectDeepInALargeOneIsWarnedOf) {
+    // Fixed disks of 10 and 200 mm; the small one is 12 mm deep in the large one.
+    Built const built = build(
+        "  big: {type: passive_object, geometry: disk, radius: 200, x: 500, y: 500}\n"
+        "  small: {type: passive_object, geometry: disk, radius: 10, x: 698, y: 500}\n");
+    ASSERT_EQ(built.error, "no error");
+    ASSERT_EQ(built.warnings.size(), 1U);
+    EXPECT_NE(built.warnings[0].find("'small' reaches 12.0 mm deep into 'big'"), std::string::npos)
+        << built.warnings[0];
 }
 
 TEST(Placement, SaysWhatIsWrongWhere) {
