@@ -30,16 +30,15 @@ struct OwnFormation {
 
 /// One entry of `objects`.
 struct ObjectConfig {
-    std::string category;  // its name in the configuration
-    std::string type;      // lower case, "pogobot"
-    int nb = 1;            // how many
-    std::optional<Vec2>
-        position_mm;               // both x and y given: all stand there; else the formation places the tangible ones
-    float heading_rad = 0.0F;      // with position_mm
-    std::vector<Placement> poses;  // one for each object, instead of position_mm
-    OwnFormation own_formation;    // without position_mm and poses
-    ObjectSpec spec;               // what the type makes them of
-    std::string where;             // file:line, for messages
+    std::string category;               // its name in the configuration
+    std::string type;                   // lower case, "pogobot"
+    int nb = 1;                         // how many
+    std::optional<Vec2> position_mm;    // both x and y given: all stand there
+    float heading_rad = 0.0F;           // with position_mm
+    std::vector<Placement> poses;       // one for each object, instead of position_mm
+    OwnFormation own_formation;         // without position_mm and poses a formation places those with a body: this one
+    ObjectSpec spec;                    // what the type makes them of
+    std::string where;                  // file:line, for messages
     std::optional<std::size_t> item{};  // the category is a list of entries, and this one has the place, from 0
     Node values{};                      // of each key that means something, defaults included
 };

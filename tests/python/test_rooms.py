@@ -44,6 +44,12 @@ def test_room_includes_only_what_it_declares(room: str) -> None:
         assert other in allowed, f"{room}/{file} looks into {other}"
 
 
+@pytest.mark.parametrize("room", sorted(declared_rooms()))
+def test_room_declares_only_what_it_includes(room: str) -> None:
+    used = {other for _, other in includes(room, r'^#include "(\w+)/')}
+    assert declared_rooms()[room] - used == set()
+
+
 @pytest.mark.parametrize("library", sorted(PRIVATE_LIBRARIES))
 def test_library_is_included_by_its_room_alone(library: str) -> None:
     for room in declared_rooms():
