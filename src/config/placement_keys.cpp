@@ -154,14 +154,15 @@ Polygon read_disk_area(MapReader& reader) {
 
 void read_placement(MapReader& reader, ObjectConfig& object) {
     refuse_fixed_wheels_and_rings(reader, object);
-    read_position(reader, object);
-    reader.read(placement_keys(), object);
-    reader.read(formation_keys(), object.own_formation);
     for (std::string_view const key : {"poses", "area", "initial_formation"}) {
         refuse_both(reader, key, "x");
+        refuse_both(reader, key, "y");
     }
     refuse_both(reader, "area", "poses");
     refuse_both(reader, "initial_formation", "poses");
+    read_position(reader, object);
+    reader.read(placement_keys(), object);
+    reader.read(formation_keys(), object.own_formation);
     if (Node const* area = reader.find("area")) {
         object.own_formation.area_mm = read_area(reader, *area);
     }

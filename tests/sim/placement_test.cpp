@@ -132,9 +132,13 @@ TEST(Placement, AreaAroundAHoleOfTheArenaIsFreeBesideTheHoleOnly) {
 }
 
 TEST(Placement, FormationAroundACentreStandsAroundThatOfItsArea) {
+    // Not around that of the other robots' formation.
+    std::string with_disk = kScene;
+    with_disk.replace(with_disk.find("random"), 6, "disk");
     Built const built = build(
         "  it: {type: pogobot, geometry: disk, radius: 10, nb: 7, initial_formation: disk, "
-        "area: {x: 700, y: 300, radius: 200}}\n");
+        "area: {x: 700, y: 300, radius: 200}}\n",
+        kSquare, "initial_formation_center: [400, 600]\n" + with_disk);
     ASSERT_EQ(built.error, "no error");
     Vec2 sum;
     for (Object const& it : built.of("it")) {
@@ -172,6 +176,8 @@ TEST(Placement, SaysWhatIsWrongWhere) {
         {"poses: [[500, 5000]]",
          ".poses: (500, 5000) is outside the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm"},
         {"x: 1, y: 2, poses: [[1, 2]]", ".poses: cannot be combined with 'x'; use one or the other"},
+        {"x: 1, poses: [[1, 2]]", ".poses: cannot be combined with 'x'; use one or the other"},
+        {"y: 2, poses: [[1, 2]]", ".poses: cannot be combined with 'y'; use one or the other"},
         {"x: 1, y: 2, area: {x: 1, y: 1, radius: 5}", ".area: cannot be combined with 'x'; use one or the other"},
         {"area: {x: 500, y: 500, radius: -5}",
          ".area.radius: expected a number above 0, at most 1000000 (mm), found -5"},
