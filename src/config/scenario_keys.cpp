@@ -131,7 +131,7 @@ std::span<Key<OutputConfig> const> output_keys() {
         K{"data_filename", &OutputConfig::data_filename, any(), "",
           "Data file (Feather); missing folders are created."},
         K{"save_data_period", &OutputConfig::save_data_period_s, between(-1e9, 1e9), "s",
-          "Time between records; 0 or less: only record time 0."}
+          "Time between records; shorter than time_step: a record at every step; 0 or less: only record time 0."}
             .only_if(has_data),
         K{"data_logger_fields", &OutputConfig::fields, any(), "", "Columns to record; default: all."},
         K{"data_logger_category", &OutputConfig::categories, any(), "",
