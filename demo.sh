@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One minute of a swarm: builds what is needed, runs the hanabi example without a window, and draws the run.
+# One minute of a swarm: builds the project, runs the hanabi example without a window, and draws the run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -17,13 +17,13 @@ fi
 data=results/demo/data.feather
 picture=results/demo/swarm.png
 mkdir -p results/demo
-say "Running 100 robots for 60 s of their time"
+say "Running 100 robots for 60 s of simulated time"
 ./examples/hanabi/hanabi -c conf/demo.yaml --no-GUI --progress || fail "the run" "See its message above"
 say "Drawing"
 .venv/bin/python -m pogosim.swarm_picture "$data" "$picture" || fail "the picture" "See the message above"
 
 size_of() { du -h "$1" | cut -f1; }
 echo
-echo "Made $data ($(size_of "$data")): where every robot was, ten times a second"
+echo "Made $data ($(size_of "$data")): the positions of all robots, ten times per second"
 echo "     $picture ($(size_of "$picture")): trajectories and final LED colours"
-echo "The same run in a window (this version has none yet and runs without):  ./examples/hanabi/hanabi -c conf/demo.yaml"
+echo "To run it in a window (not available in this version yet):  ./examples/hanabi/hanabi -c conf/demo.yaml"

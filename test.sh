@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every test. Installs what is missing first. The last line counts tests and checks: "N passed, N failed".
+# Runs all tests. Installs missing dependencies first. The last line counts tests and checks: "N passed, N failed".
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -8,9 +8,9 @@ usage="Usage: ./test.sh [--quick] [--tidy]
 Builds Release with the system's compiler and runs the C++ tests (CTest) and the Python tests (pytest); builds Debug
 with clang and sanitizers and runs the C++ tests again; checks formatting (clang-format, ruff), Python style (ruff) and
 types (mypy).
-  --quick      the Release build and its tests only
-  --tidy       clang-tidy over the C++ sources, too (slow)
-  -h, --help   this text"
+  --quick      run the Release build and its tests only
+  --tidy       also run clang-tidy on the C++ sources (slow)
+  -h, --help   print this help"
 
 quick=no
 needs="test"
@@ -53,8 +53,8 @@ check() {
     fi
 }
 
-# suite WHAT REPORT COMMAND...: many tests; the command leaves a JUnit report. One that ends badly without a failed test
-# (a crash, no tests at all) counts as one failure.
+# suite WHAT REPORT COMMAND...: many tests; the command writes a JUnit report. If it fails without a failed test (a
+# crash, no tests at all), that counts as one failure.
 suite() {
     local what=$1 report=$2 status=0 counts
     shift 2
@@ -110,7 +110,7 @@ sanitizes() {
     "$1" -fsanitize=address,undefined "$reports/leak.cpp" -o "$reports/leak" 2>/dev/null
 }
 
-# Whether leaks can be looked for: that needs ptrace, which many containers forbid.
+# Whether leaks can be detected: this needs ptrace, which many containers forbid.
 leak_sanitizer_works() { ASAN_OPTIONS=detect_leaks=1 "$reports/leak" 2>/dev/null; }
 
 sanitized_tests() {
@@ -121,10 +121,10 @@ sanitized_tests() {
         sanitizes c++ || true
     fi
     if ! leak_sanitizer_works; then
-        echo "Leaks are not looked for: LeakSanitizer needs ptrace, which this machine or container forbids."
+        echo "Leak detection is off: LeakSanitizer needs ptrace, which this machine or container forbids."
         leaks=0
     fi
-    # The build runs the test programs too: it asks them for the names of their tests.
+    # The build also runs the test programs, to list their tests.
     export ASAN_OPTIONS=detect_leaks=$leaks UBSAN_OPTIONS=print_stacktrace=1
     # The second compiler: Release is built with the system's, gcc on Linux.
     check "Debug build with sanitizers ($cpp)" build_tree "build/sanitized-$c" Debug \
@@ -133,7 +133,7 @@ sanitized_tests() {
     suite "C++ tests (sanitizers, $cpp)" "$reports/sanitized.xml" run_ctest "build/sanitized-$c" "$reports/sanitized.xml"
 }
 
-# cpp_files: everything that clang-format looks after, separated by zero bytes.
+# cpp_files: all files formatted by clang-format, separated by zero bytes.
 cpp_files() {
     find . \( -name build -o -name .venv -o -name .git \) -prune -o \
         \( -name '*.c' -o -name '*.h' -o -name '*.[ch]pp' \) -print0

@@ -1,11 +1,11 @@
-# Installs what the project needs: packages of the system, and Python packages in the project's own .venv. Meant to be
-# sourced by build.sh, test.sh and demo.sh from the project's folder:
+# Installs the project's dependencies: system packages, and Python packages in the project's own .venv. Sourced by
+# build.sh, test.sh and demo.sh from the project folder:
 #
 #   . scripts/bootstrap.sh
 #   bootstrap build          # or: test, tidy
 #
-# What is there already is not asked for again, so that a repeat costs next to nothing. POGOSIM_PACKAGES=skip leaves the
-# system alone, for machines where somebody else installs packages.
+# Installed packages are not requested again, so repeating this costs next to nothing. POGOSIM_PACKAGES=skip leaves the
+# system alone, for users who cannot install packages.
 # shellcheck shell=bash
 
 apt_packages="build-essential cmake ninja-build ccache pkg-config
@@ -19,12 +19,12 @@ brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 google
 brew_test_packages="doxygen"
 brew_tidy_packages="llvm"
 
-# A caller's own Python settings must not leak into the project's environment.
+# The caller's Python settings must not leak into the project's environment.
 unset PYTHONPATH PYTHONHOME VIRTUAL_ENV PIP_USER PIP_TARGET PIP_PREFIX PIP_REQUIRE_VIRTUALENV
 
 say() { printf '\033[1m==> %s\033[0m\n' "$*"; }
 
-# fail WHAT HINT: one clear line, and the end.
+# fail WHAT HINT: prints one line and exits.
 fail() {
     printf '%s: failed: %s. %s\n' "${0##*/}" "$1" "$2" >&2
     exit 1
@@ -59,11 +59,11 @@ install_with_apt() {
     fi
     say "Installing with apt (takes a minute or two): $missing"
     as_root apt-get -o DPkg::Lock::Timeout=300 update -qq ||
-        fail "apt-get update" "Check the network and /etc/apt/sources.list, then start again"
+        fail "apt-get update" "Check the network and /etc/apt/sources.list, then try again"
     # shellcheck disable=SC2086 # a list of words
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
         install -y -qq --no-install-recommends $missing >/dev/null ||
-        fail "apt-get install $missing" "See apt's message above; needed is Debian 12, Ubuntu 24.04 or later"
+        fail "apt-get install $missing" "See apt's message above; Debian 12+ or Ubuntu 24.04+ is required"
 }
 
 install_with_brew() {
@@ -96,10 +96,10 @@ install_packages() {
     elif command -v brew >/dev/null; then
         install_with_brew "$brew"
     else
-        printf 'Neither apt nor Homebrew is here. Install these (names of Debian):\n' >&2
+        printf 'Neither apt nor Homebrew was found. Install these packages (Debian names):\n' >&2
         # shellcheck disable=SC2086 # a list of words
         printf '  %s\n' $apt >&2
-        fail "packages cannot be installed" "When they are there: POGOSIM_PACKAGES=skip $0"
+        fail "packages cannot be installed" "Once they are installed: POGOSIM_PACKAGES=skip $0"
     fi
 }
 
@@ -111,8 +111,8 @@ system_python() {
     fi
 }
 
-# trim_venv: removes from .venv what nothing here uses and pip cannot leave out: the packages' own tests, and Arrow's
-# clients for remote data (Flight, S3), which are a third of pyarrow.
+# trim_venv: removes unused files that pip cannot skip from .venv: the packages' own tests, and Arrow's clients for
+# remote data (Flight, S3), which are a third of pyarrow.
 trim_venv() {
     local packages
     packages=$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("platlib"))') || return
@@ -120,8 +120,8 @@ trim_venv() {
         "$packages"/pyarrow/{_flight,_s3fs,libarrow_flight,libarrow_python_flight,libarrow_s3}.*
 }
 
-# make_venv build|test: .venv with the Python package of the project, editable, and what it depends on. A stamp tells
-# for which pyproject.toml, recipe and folder that was done; an environment does not survive a move.
+# make_venv build|test: .venv with the project's Python package, editable, and its dependencies. A stamp records the
+# pyproject.toml, this script and the folder it was made for; an environment cannot be moved.
 make_venv() {
     local root extra="" stamp=.venv/stamp-$1 key python
     root=$(pwd -P)
@@ -131,19 +131,19 @@ make_venv() {
     fi
 
     if [ "$(cat .venv/root 2>/dev/null)" != "$root" ] || ! .venv/bin/python -m pip --version >/dev/null 2>&1; then
-        python=$(system_python) || fail "there is no python3" "Install Python 3.9 or later"
+        python=$(system_python) || fail "python3 not found" "Install Python 3.9 or later"
         say "Making .venv with $python"
-        "$python" -m venv --clear .venv || fail "$python -m venv" "See Python's message above; remove .venv and start again"
+        "$python" -m venv --clear .venv || fail "$python -m venv" "See Python's message above; remove .venv and try again"
         printf '%s' "$root" >.venv/root
     fi
     if [ "$1" = test ]; then
         extra="[test]"
     fi
     say "Installing Python packages in .venv"
-    # Python compiles what it imports, when it does: compiling all of it takes half a minute and 100 MB.
+    # Python compiles modules when it imports them; compiling all of them takes half a minute and 100 MB.
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --no-compile \
         --editable "./python$extra" ||
-        fail "pip install ./python$extra" "See pip's message above: check the network, then start again"
+        fail "pip install ./python$extra" "See pip's message above: check the network, then try again"
     trim_venv
     printf '%s' "$key" | tee .venv/stamp-build >"$stamp"
 }
@@ -157,7 +157,7 @@ bootstrap() {
     esac
 }
 
-# configure FOLDER TYPE [options of cmake]: a folder of a project that was moved is made anew.
+# configure FOLDER TYPE [options of cmake]: recreates the folder if the project has been moved.
 configure() {
     local folder=$1 type=$2 generator=""
     shift 2

@@ -1,7 +1,7 @@
-# The program of a real robot, for the Makefile's bin and connect: all files of the project and Pogosim's interface layer,
-# compiled and linked as the Pogobot SDK says.
+# The firmware of a real robot, for the Makefile's bin and connect: all files of the project and Pogosim's interface layer,
+# compiled and linked according to the Pogobot SDK.
 #
-# The SDK's tools/variables.mak and tools/common.mak name the compiler and its options (TRIPLE, CC, CFLAGS and the macro
+# The SDK's tools/variables.mak and tools/common.mak define the compiler and its options (TRIPLE, CC, CFLAGS and the macro
 # `compile`) and the robot's addresses (ROM_BASE).
 include $(POGO_SDK)/tools/variables.mak
 include $(POGO_SDK)/tools/common.mak
@@ -14,7 +14,7 @@ FIRMWARE := $(BIN_DIR)/firmware
 # ---- bin
 
 ifneq ($(words $(ROBOT_CATEGORY)),1)
-$(error ROBOT_CATEGORY is one word, found '$(ROBOT_CATEGORY)')
+$(error ROBOT_CATEGORY must be one word, found '$(ROBOT_CATEGORY)')
 endif
 
 LAYER := $(sort $(wildcard $(POGOSIM_INTERFACE_DIR)/*.c))
@@ -22,7 +22,7 @@ OBJECTS := $(SOURCES:%=$(BIN_DIR)/%.o) $(patsubst $(POGOSIM_INTERFACE_DIR)/%,$(B
 
 ROBOT_FLAGS := -DREAL_ROBOT -DROBOT_CATEGORY=$(ROBOT_CATEGORY) -flto -ffunction-sections -fdata-sections \
     -I. -I$(POGO_SDK)/includes -I$(POGOSIM_INCLUDE_DIR) $(addprefix -I,$(POGOUTILS_INCLUDE_DIR)) -MD -MP
-# C++ is tried less: as C, but for what is C only, without what robots have no room for.
+# C++ is less tested: the options of C except C-only ones, and without features that are too large for robots.
 CPP_FLAGS := $(filter-out -std=% -fexceptions -Wstrict-prototypes -Wold-style-definition -Wmissing-prototypes,$(CFLAGS)) \
     -std=gnu++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics
 CFLAGS += $(ROBOT_FLAGS)
@@ -37,10 +37,10 @@ bin: $(FIRMWARE).bin
 $(FIRMWARE).bin: $(FIRMWARE).elf
 	$(TRIPLE)-objcopy -O binary $< $@
 
-# A misspelt category would make a robot that does nothing. The compiler leaves out calls for other categories.
+# With a misspelt category, the robot would do nothing. The compiler removes calls for other categories.
 $(FIRMWARE).elf: $(OBJECTS) $(BIN_DIR)/.link
-	@$(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || { echo "There is no pogobot_start() for robots of \
-category '$(ROBOT_CATEGORY)' in this program (ROBOT_CATEGORY)" >&2; exit 1; }
+	@$(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || { echo "This program has no pogobot_start() for robots of \
+category '$(ROBOT_CATEGORY)' (ROBOT_CATEGORY)" >&2; exit 1; }
 	$(LINK) -o $@
 
 $(BIN_DIR)/%.c.o: %.c $(BIN_DIR)/.compile
@@ -67,7 +67,7 @@ FORCE:
 TERMINAL := $(or $(POGO_TERMINAL),$(firstword $(wildcard $(POGO_SDK)/tools/*term*)))
 connect:
 ifeq ($(TERMINAL),)
-	$(error There is no serial terminal in $(POGO_SDK)/tools: name it with POGO_TERMINAL=<program>)
+	$(error There is no serial terminal in $(POGO_SDK)/tools: specify it with POGO_TERMINAL=<program>)
 else
 	@test -f $(FIRMWARE).bin || { echo "There is no $(FIRMWARE).bin yet: make bin" >&2; exit 1; }
 	$(TERMINAL) --serial-boot --kernel $(FIRMWARE).bin --kernel-adr $(ROM_BASE) --safe $(TTY)

@@ -14,14 +14,14 @@ namespace pogosim {
 
 namespace {
 
-/// Empty for a decimal number that fits 32 bits, else what is wrong.
+/// Empty for a decimal number that fits in 32 bits, otherwise an error message.
 std::string is_seed(std::string const& text) {
     bool const digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
     bool const fits = digits && text.size() <= 10 && std::stoull(text) <= std::numeric_limits<std::uint32_t>::max();
     return fits ? "" : "expected a whole number from 0 to 4294967295, found '" + text + "'";
 }
 
-/// CLI11 reads "-nr" as "-n -r", so it gets the long name instead.
+/// CLI11 parses "-nr" as "-n -r", so it is replaced by the long name.
 std::vector<std::string> normalised_arguments(int argc, char const* const* argv) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
     std::replace(arguments.begin(), arguments.end(), std::string("-nr"), std::string("--do-not-show-robot-msg"));
@@ -74,7 +74,7 @@ std::string unknown_argument(CLI::App const& app) {
     return "unknown argument '" + typed + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
 }
 
-/// CLI11 counts what it required and what it received.
+/// CLI11's own messages count required and received arguments.
 std::string problem_of(CLI::App const& app, CLI::ParseError const& error) {
     if (dynamic_cast<CLI::ArgumentMismatch const*>(&error) == nullptr) {
         return error.what();
@@ -101,7 +101,7 @@ ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
     } catch (CLI::Success const& asked) {
         parsed.exit_code = app.exit(asked);
     } catch (CLI::ParseError const& error) {
-        // An option that nobody knows says more than one that is missing.
+        // An unknown option is more informative than a missing one.
         parsed.exit_code = report_usage(app, app.remaining().empty() ? problem_of(app, error) : unknown_argument(app));
     }
     return parsed;

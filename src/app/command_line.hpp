@@ -20,8 +20,8 @@ struct CommandLine {
     std::vector<std::string> overrides;  // --set, in order
 };
 
-/// What the arguments ask for; or, when they ask for help or the version or are wrong, the exit code of the program
-/// after everything has been printed.
+/// The parsed options; or, after --help, --version or an error, the exit code of the program, once everything has been
+/// printed.
 struct ParsedCommandLine {
     CommandLine options;
     std::optional<int> exit_code;

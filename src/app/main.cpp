@@ -24,7 +24,7 @@ using namespace pogosim;
 
 ExitCode simulate(CommandLine const& options) {
     ignore_broken_outputs();
-    // Until the configuration is known, warnings go to a console as the command line asks.
+    // Until the configuration is read, the console follows the command line.
     LogOptions logging;
     logging.verbose = options.verbose;
     logging.quiet = options.quiet;
@@ -53,14 +53,14 @@ ExitCode simulate(CommandLine const& options) {
     return simulation.run();
 }
 
-/// Returns the exit code of a run that would have ended with `code`.
+/// Prints an error. Returns the exit code of a run that would otherwise have ended with `code`.
 ExitCode report(char const* error, ExitCode code) {
     flush_logs();
     std::fprintf(stderr, "Error: %s\n", error);
     return code == ExitCode::done ? ExitCode::usage : code;
 }
 
-/// Destructors of libraries may crash for want of memory.
+/// Destructors of libraries may crash when memory is short.
 [[noreturn]] void end_short_of_memory(char const* error) {
     ExitCode const code = report(error, ExitCode::usage);
     std::fflush(nullptr);
@@ -76,7 +76,7 @@ __attribute__((constructor)) static void catch_interrupts_from_the_start() {
 
 extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv) {
     if (is_forked_child()) {
-        end_forked_child(0);  // of a constructor: the run is the parent's
+        end_forked_child(0);  // forked by a constructor; the run belongs to the parent
     }
     enter_stage(RunStage::preparing);
     ParsedCommandLine const parsed = parse_command_line(argc, argv);
@@ -98,7 +98,7 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
     }
     flush_logs();
     if (code == ExitCode::user_program || was_left_by_force()) {
-        // The user's program may have destroyed memory: no destructors on top of that.
+        // The user's program may have corrupted memory, so skip the destructors.
         std::fflush(nullptr);
         std::_Exit(static_cast<int>(code));
     }

@@ -1,4 +1,4 @@
-// What the user did wrong, said in one message. Thrown while a run is being set up; nothing is thrown through C code.
+// User errors, each with one message. Thrown while a run is being set up; nothing is thrown through C code.
 #pragma once
 
 #include <stdexcept>

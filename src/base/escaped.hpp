@@ -1,4 +1,4 @@
-// Names of files and keys, quoted in messages, may hold any bytes. None of them may break a line or steer the terminal.
+// Names of files and keys quoted in messages may contain any bytes. None may break a line or control the terminal.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Points sorted into square cells, built anew each time: who is near whom, in time proportional to the answer.
+// Points sorted into square cells, rebuilt each time: finds neighbours in time proportional to their number.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ public:
     void for_each_near(Vec2 centre, float radius_mm, Visit const& visit) const;
 
 private:
-    /// A copy of the point beside its index: queries read memory in order.
+    /// A copy of the point next to its index, so that queries read memory sequentially.
     struct Item {
         Vec2 point;
         std::uint32_t index;

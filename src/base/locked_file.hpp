@@ -9,7 +9,7 @@
 
 namespace pogosim {
 
-/// A file cannot be opened, locked or written; says why, without the name of the file.
+/// A file cannot be opened, locked or written; the message gives the reason, without the name of the file.
 class FileError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -18,18 +18,18 @@ public:
 /// Throws FileError with the system's text for `error_number` (errno).
 [[noreturn]] void fail_with_errno(int error_number);
 
-/// The path without symbolic links, "." and "..", absolute; what is not there yet is kept as it is written. Links whose
-/// target is not there are followed, too.
+/// The absolute path without symbolic links, "." and ".."; components that do not exist yet are kept unchanged. Dangling
+/// links are also followed.
 std::filesystem::path real_path(std::filesystem::path const& path);
 
-/// An open file that no other run can open this way until this one is closed. What the file holds is left alone: the
-/// lock comes first, truncating later. Where the file system knows no locks, there is none. Belongs to the process that
-/// opened it: a child after fork() closes its copy and no more.
+/// An open file that no other run can open this way until it is closed. The contents are left untouched: the lock comes
+/// first, truncation later. On file systems without locks, there is none. It belongs to the process that opened it: a
+/// forked child only closes its copy.
 class LockedFile {
 public:
     LockedFile() = default;  // no file
 
-    /// Opens the file for writing, or makes it. Throws FileError, also when another run has it.
+    /// Opens or creates the file for writing. Throws FileError, also if another run has locked it.
     explicit LockedFile(std::filesystem::path const& path);
 
     /// Releases the lock. A file that was made here is removed again unless keep() was called.
@@ -38,7 +38,7 @@ public:
     LockedFile(LockedFile&& other) noexcept;
     LockedFile& operator=(LockedFile&& other) noexcept;
 
-    /// The file is wanted from now on.
+    /// Keeps a file that was created here.
     void keep() { made_here_ = false; }
 
     int descriptor() const { return descriptor_; }               // -1: no file
@@ -57,7 +57,7 @@ private:
     pid_t owner_ = 0;
 };
 
-/// Takes the lock of an open file; false when somebody else has it, true also where there are no locks.
+/// Locks an open file; false if another process has the lock, true also if locks are not supported.
 bool try_lock(int descriptor);
 
 }  // namespace pogosim

@@ -29,7 +29,7 @@ constexpr std::chrono::seconds kFlushPeriod{2};
 /// Standard output below `warn`, standard error from there on.
 class ConsoleSink final : public spdlog::sinks::sink {
 public:
-    /// Nobody is told of a console that is broken: where to?
+    /// Errors of a broken console cannot be reported anywhere.
     void log(spdlog::details::log_msg const& message) override {
         try {
             (message.level >= spdlog::level::warn ? static_cast<sink&>(error_) : static_cast<sink&>(output_))
@@ -61,7 +61,7 @@ struct Loggers {
     LockedFile lock{};  // of the console file
 };
 
-/// What first kept a line from the console file; empty: nothing.
+/// The first failure to write the console file; empty: none.
 std::string& first_failure() {
     static std::string text;
     return text;
@@ -73,7 +73,7 @@ void keep_first_failure(std::string const& text) {
     }
 }
 
-/// One message, one line, whatever names it quotes.
+/// Each message is a single line, whatever names it quotes.
 class OneLineLogger final : public spdlog::logger {
 public:
     using logger::logger;

@@ -10,7 +10,7 @@ namespace pogosim {
 
 struct LogOptions {
     bool verbose = false;          // debug messages on console and file
-    bool quiet = false;            // console: warnings and errors only; wins over verbose
+    bool quiet = false;            // console: warnings and errors only; takes precedence over verbose
     bool show_robot_lines = true;  // printf lines of robots on the console (the file always has them)
     bool minimal = false;          // console lines without date and level
     std::string file;              // path of the console file; empty: none
@@ -19,20 +19,20 @@ struct LogOptions {
 /// Installs loggers and sinks. Parent folders of the file are created. Throws OutputError if it cannot be opened.
 void start_logging(LogOptions const& options);
 
-/// Usable before start_logging: then everything from information upwards goes to the console.
+/// Usable before start_logging: messages from level info on then go to the console.
 spdlog::logger& log();
 spdlog::logger& robot_log();
 
 /// Writes out what is buffered.
 void flush_logs();
 
-/// Nothing is logged any more.
+/// Stops all logging.
 void silence_logs();
 
-/// Writes out what is buffered when the last time was 2 s ago, so that it outlives the process. Call it often.
+/// Flushes buffered output every 2 s, so that it outlives the process. Call it often.
 void flush_logs_if_due();
 
-/// Writes out what is buffered. Throws OutputError if anything since start_logging did not reach the console file.
+/// Flushes buffered output. Throws OutputError if anything since start_logging did not reach the console file.
 void check_logs();
 
 }  // namespace pogosim

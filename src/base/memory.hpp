@@ -17,12 +17,12 @@ public:
 /// Throws OutOfMemory: "not enough memory for the light map: 10000 x 10000 cells of 2 bytes, 190.7 MiB; ...".
 [[noreturn]] void fail_for_memory(std::string const& purpose, std::optional<double> bytes);
 
-/// What is said when nobody knows which allocation failed.
+/// The message if it is unknown which allocation failed.
 inline constexpr auto kOutOfMemory =
     "not enough memory; free some, or raise this run's memory limit (ulimit -v, or the batch system's)";
 
-/// Returns allocate(). When there is not enough memory for that, throws OutOfMemory with purpose(), a text such as "the
-/// light map: 10000 x 10000 cells of 2 bytes", and with the size, if it is known.
+/// Returns allocate(). If there is not enough memory for it, throws OutOfMemory with purpose(), a string such as "the
+/// light map: 10000 x 10000 cells of 2 bytes", and with the size, if known.
 template <class Purpose, class Allocate>
 decltype(auto) allocate_for(Purpose const& purpose, std::optional<double> bytes, Allocate const& allocate) {
     try {

@@ -7,7 +7,7 @@
 
 namespace pogosim {
 
-/// Levenshtein distance between two texts (insertions, deletions, substitutions), ASCII case ignored.
+/// Levenshtein distance between two strings (insertions, deletions, substitutions), ignoring ASCII case.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The closest of `known`, or an empty string when nothing is close enough to be a misspelling (more than a third of the

@@ -1,15 +1,15 @@
-// The file that a run writes beside its data file before it takes that one's place. One at a time; it must not be left
-// behind, even when the program ends in a signal handler.
+// The file that a run writes next to its data file before replacing it. One at a time; it must not be left behind, even
+// if the program ends in a signal handler.
 #pragma once
 
 #include <filesystem>
 
 namespace pogosim {
 
-/// From now on this file is scratch.
+/// Registers the scratch file.
 void remember_scratch_file(std::filesystem::path const& path);
 
-/// It has become a file of the user's, or is gone.
+/// The scratch file has become a user's file, or is gone.
 void forget_scratch_file();
 
 /// Removes it, if there is one and this process made it. May be called in a signal handler.

@@ -1,5 +1,5 @@
-// The outlines of walls and membranes, cut into short pieces that are sorted by place: how near a point is to which of
-// them.
+// The outlines of walls and membranes, cut into short segments sorted by position, to find the outlines near a
+// point.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How likely a message gets through.
+// The probability that a message gets through.
 #pragma once
 
 #include "world/specs.hpp"

@@ -1,4 +1,4 @@
-// Who sees whom by infrared.
+// Who sees whom over infrared.
 //
 //                front (0)
 //               .---^---.

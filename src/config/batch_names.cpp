@@ -23,7 +23,7 @@ void add_names_of_alternatives(Node const& node, std::vector<std::string>& names
     }
 }
 
-/// All texts of a map, list or value, keys included.
+/// All strings of a map, list or value, including keys.
 void add_texts(Node const& node, std::vector<std::string>& names) {
     if (node.kind == Node::Kind::scalar) {
         names.push_back(node.scalar);

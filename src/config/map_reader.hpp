@@ -1,4 +1,4 @@
-// Reads one map of a configuration by tables of keys. Several tables may be applied to one map; what none of them knows
+// Reads one map of a configuration with tables of keys. Several tables may be applied to one map; a key in none of them
 // is an unknown key.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace pogosim {
 class MapReader {
 public:
     /// `path` is the key path of the map, empty at the top level. A null node is an empty map; throws ConfigError for
-    /// anything else that is no map.
+    /// anything else that is not a map.
     MapReader(Node const& map, std::string path, bool strict);
 
     /// Fills `into` from the keys of the table. A key that is absent or null leaves its member as it is, and

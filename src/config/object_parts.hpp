@@ -15,14 +15,14 @@ void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Sh
 /// `body_*`: makes the object tangible.
 void read_body(MapReader& reader, ObjectConfig& object);
 
-/// Motors, sensors, infrared: the object runs user code. `kind` says what the type makes of it: its wheels and
+/// Motors, sensors, infrared: the object runs user code. `kind` sets the type's own properties: wheels and
 /// emitters.
 void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind = {});
 
 /// `x` and `y`, both or neither.
 void read_position(MapReader& reader, ObjectConfig& object);
 
-/// `x` and `y` of an object that is wherever it is put: they mean nothing.
+/// `x` and `y` of an object to which they do not apply.
 void ignore_position(MapReader& reader);
 
 /// `colormap`.

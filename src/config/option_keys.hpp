@@ -1,4 +1,4 @@
-// The keys with which a configuration offers several values, for batches and optimisations.
+// The keys with which a configuration offers alternative values, for batches and optimisations.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ inline constexpr std::string_view kOptimizationDomain = "optimization_domain";
 /// Written by batch tools: which alternatives they chose.
 inline constexpr char const* kBatchChoices = "_batch_choice_names";
 
-/// Keys of a map that stands in place of a value.
+/// Keys of a map that replaces a value.
 inline constexpr std::array kValueOptions{kDefaultOption, std::string_view("batch_options"),
                                           std::string_view("batch_options_range"), kOptimizationDomain};
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr auto kSource = kSetSource;
 
-/// A value given on the command line has no line.
+/// A value on the command line has no line number.
 void forget_lines(Node& node) {
     node.source = kSource;
     node.line = 0;
@@ -28,7 +28,7 @@ void forget_lines(Node& node) {
     std::ranges::for_each(node.items, forget_lines);
 }
 
-/// The node one step further down the path; maps are made where nothing is.
+/// The node one step further down the path; missing maps are created.
 Node& step_into(Node& parent, std::string const& key, std::string const& assignment) {
     if (Node* child = child_at(parent, key)) {
         return *child;

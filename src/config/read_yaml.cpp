@@ -1,4 +1,4 @@
-// From a file to a tree: what can be wrong with a file is said here.
+// Reads a file into a tree and reports errors in the file.
 #include <fmt/format.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
@@ -80,7 +80,7 @@ std::string line_of(std::string const& text, int number) {
     return line;
 }
 
-/// The parser's messages in other words: what to do about the usual slips.
+/// Hints added to the parser's messages: how to fix common mistakes.
 std::string hint_for(std::string_view message) {
     constexpr std::string_view keys =
         "; the keys of a map must start in the same column, each followed by a colon and a space, and a "
@@ -104,7 +104,7 @@ std::string hint_for(std::string_view message) {
     throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", source, line, why));
 }
 
-/// The parser takes what follows a finished map or list for a new document, even without the `---` of one.
+/// The parser treats whatever follows a complete map or list as a new document, even without `---`.
 void refuse_remains(std::string const& text, int line, std::string const& source) {
     std::string const found = line_of(text, line);
     if (!found.starts_with("---")) {

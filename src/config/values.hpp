@@ -1,4 +1,4 @@
-// From one node to one value: numbers, truths, texts, pairs and lists, each checked, each error with its place.
+// Converts one node to one value: numbers, booleans, strings, pairs and lists, all checked, with the place of errors.
 #pragma once
 
 #include <array>
@@ -23,29 +23,29 @@ struct Place {
     std::string path;
 };
 
-/// What a number has to be. The unit is for messages and documentation.
+/// The range of a number. The unit is for messages and documentation.
 struct Limits {
     Range range = {};
     std::string_view unit = {};
 };
 
-/// Throws ConfigError "file:line: path: expected <expected>, found <what is there>".
+/// Throws ConfigError "file:line: path: expected <expected>, found <the value>".
 [[noreturn]] void fail_expected(Place const& place, std::string_view expected);
 
 /// Throws ConfigError "file:line: path: <what>".
 [[noreturn]] void fail_at(Place const& place, std::string_view what);
 
-/// What stands at a node, for messages: "-3", "'many'", "a list".
+/// The value of a node, for messages: "-3", "'many'", "a list".
 std::string found_text(Node const& node);
 
-/// ASCII capitals made small.
+/// Converts ASCII letters to lower case.
 std::string lower_case(std::string text);
 
-/// A user's text for a message: without line breaks, cut when long.
+/// A user's string for a message: without line breaks, truncated if long.
 std::string shown(std::string_view text);
 
 /// Decimal ("12", "1.0e6", ".5"), hexadecimal ("0x1F") and octal ("0o17") numbers, ".inf", ".nan". Quotes do not
-/// matter: some tools write 1.0e6 as a text.
+/// matter: some tools write 1.0e6 as a string.
 std::optional<double> number_of(Node const& node);
 
 /// true, false, yes, no, on, off in any case.

@@ -57,7 +57,7 @@ std::string_view advice(std::string_view line, bool is_first) {
     return "Coordinates are finite decimal numbers such as -12.5 or 1e3";
 }
 
-/// A coordinate that is finite in single precision too.
+/// A coordinate that is also finite in single precision.
 std::optional<float> parse_coordinate(std::string_view field) {
     auto const value = parse_number(field);
     if (!value || !std::isfinite(static_cast<float>(*value))) {

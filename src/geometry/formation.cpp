@@ -119,7 +119,7 @@ void check_area(PlacementTask const& task) {
     }
 }
 
-/// The file rules where imported objects stand; say so when one stands in something else.
+/// The file determines where imported objects are; warns if one overlaps something else.
 void warn_of_clashes(PlacementTask const& task, std::span<float const> radii_mm,
                      std::span<Placement const> placements) {
     std::size_t clashes = 0;

@@ -1,5 +1,5 @@
 // Cells sorted by the direction in which one sees them from a lighthouse. Those in its beam are then one run of the
-// list, or two where it starts anew, found without a look at the others.
+// list, or two where it wraps around, found without visiting the others.
 //
 //     bearing  -pi ........|======|............ pi      beam of +- half width around an angle
 #pragma once

@@ -29,7 +29,7 @@ Phase phase_at(SpotSpec const& spec, double time_s) {
     return time_s < start_s + static_cast<double>(spec.photo_start_duration_s) - kTimeToleranceS ? flash : normal;
 }
 
-/// False, too, for lamps that go round and look the same all the time.
+/// Also false for orbiting lamps that always look the same.
 bool is_seen_moving(SpotSpec const& spec) {
     bool const is_same_everywhere = is_everywhere(spec.shape) && spec.mode == LightMode::uniform;
     return spec.orbit.radius_mm > 0.0F && spec.orbit.angular_speed_rad_s != 0.0 && !is_same_everywhere;

@@ -26,7 +26,7 @@ struct Iterations {
 };
 constexpr Iterations kForContacts{6, 3};
 constexpr Iterations kForJoints{12, 6};  // a pull has to go round a ring
-// Box2D sees a contact once it is there, so a pair overlaps by what it has approached since. Steps are cut into
+// Box2D detects a contact only once it exists, so a pair overlaps by the distance travelled since. Steps are cut into
 // sub-steps in which no two robots at full speed approach by more than this, as long as that is not too many.
 constexpr float kApproachMm = 1.0F;
 constexpr int kMaxSubsteps = 8;

@@ -113,7 +113,7 @@ std::vector<BuiltInColumn const*> enabled_built_ins(DataFileOptions const& optio
     return enabled;
 }
 
-/// Names of all columns in their order. Throws ConfigError if one is empty or stands twice.
+/// Names of all columns in their order. Throws ConfigError if one is empty or repeated.
 std::vector<std::string> checked_names(std::span<BuiltInColumn const* const> built_ins,
                                        std::span<ColumnSpec const> user_columns) {
     std::vector<std::string> names;
@@ -144,8 +144,8 @@ std::string joined(std::span<std::string const> names) {
     return text;
 }
 
-/// Those of `names` that the allow-list keeps. Warns about entries that name no column; throws ConfigError if no column
-/// is left.
+/// The columns of `names` in the allow-list. Warns about entries that are unknown columns; throws ConfigError if no
+/// column is left.
 std::vector<std::string> kept_names(std::vector<std::string> names,
                                     std::optional<std::vector<std::string>> const& fields) {
     if (!fields) {

@@ -1,5 +1,5 @@
-// The columns of the data file, and their cells that are not yet written. Tables in columns.cpp say what there is;
-// which of it a file has is chosen once, so that a row costs one indirect call per column.
+// The columns of the data file, and their cells that are not yet written. Tables in columns.cpp list all columns; those
+// of a file are chosen once, so that a row costs one indirect call per column.
 #pragma once
 
 #include <arrow/builder.h>
@@ -19,8 +19,8 @@ struct UserColumnType;  // how cells of a user column are stored
 
 class Columns {
 public:
-    /// Columns in the order of the file. Warns about entries of `options.fields` that name no column. Throws
-    /// ConfigError if a name is empty or stands twice, or if `options.fields` leaves no column.
+    /// Columns in the order of the file. Warns about unknown columns in `options.fields`. Throws ConfigError if a name
+    /// is empty or repeated, or if `options.fields` leaves no column.
     explicit Columns(DataFileOptions const& options);
 
     arrow::FieldVector const& fields() const { return fields_; }

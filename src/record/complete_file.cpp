@@ -125,7 +125,7 @@ Status CompleteFile::finish(bool sync) {
     return Status::OK();
 }
 
-/// A renamed file must be to the user what the unfinished one was: same owner, and no other name leads to it.
+/// Renaming is only possible if the file then equals the unfinished one to the user: same owner, no other hard link.
 bool CompleteFile::can_be_renamed_to(LockedFile const& unfinished) const {
     struct stat mine = {};
     struct stat theirs = {};

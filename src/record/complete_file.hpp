@@ -1,5 +1,5 @@
-// The complete data file on its way: a Feather file that is written beside the unfinished one and takes its place at
-// the end, so that at every moment one of the two holds all rows.
+// The complete data file in progress: a Feather file that is written next to the unfinished one and replaces it at the
+// end, so that at any time one of the two contains all rows.
 #pragma once
 
 #include <arrow/ipc/writer.h>
@@ -36,8 +36,8 @@ public:
     /// Writes the footer; afterwards all rows are in the file. `sync`: waits until it is on the disk.
     arrow::Status finish(bool sync);
 
-    /// Puts the finished file in the place of the unfinished one, also where that was removed: by renaming it, else by
-    /// copying its bytes. Fails when another file stands there now.
+    /// Replaces the unfinished file, even if that was removed, with the finished one: by renaming it, or else by copying
+    /// its bytes. Fails if another file is there now.
     arrow::Status take_the_place_of(LockedFile const& unfinished);
 
     /// Gives the finished file a name that was free, and that no later run uses: beside the unfinished one, else in the

@@ -34,7 +34,7 @@ namespace {
     throw OutputError("cannot write the data file '" + path + "' (data_filename): " + reason);
 }
 
-/// A failure of the system, which is in our words, or of the library.
+/// A failure of the system, in our own words, or of the library.
 std::string reason_of(Status const& status) {
     if (status.IsOutOfMemory()) {
         return "there is not enough memory for its rows";
@@ -58,7 +58,7 @@ std::filesystem::file_type kind_of(std::string const& path) {
     return std::filesystem::status(path, error).type();
 }
 
-/// Throws OutputError for what would take data for ever or destroy a disk. Opening a pipe would wait for its reader.
+/// Throws OutputError for paths that are not files, such as block devices. Opening a pipe would wait for its reader.
 void check_kind_of_file(std::string const& path) {
     using std::filesystem::file_type;
     auto const kind = kind_of(path);
@@ -116,7 +116,7 @@ public:
 
     bool is_due() const { return Clock::now() >= next_; }
 
-    /// A power failure is guarded against once a run is old enough that somebody would mind.
+    /// Rows are synced against power failures once the run is old enough for it to matter.
     bool run_is_long() const { return Clock::now() - start_ >= kLongRun; }
 
     /// Saving began at `begin` and is over now. While a run is young, rows are saved whenever its age has doubled.
@@ -159,7 +159,7 @@ struct DataFile::Impl {
     std::int64_t buffered_rows = 0;
     std::int64_t saved_rows = 0;
     float saved_time_s = 0.0F;
-    bool open = false;  // false from the first failure on, too: nothing good can follow it
+    bool open = false;  // also false after the first failure
 
     Impl(DataFileOptions const& options, LockedFile locked)
         : path(options.path), file(std::move(locked)), flush_row_count(options.flush_row_count), columns(options) {
@@ -169,7 +169,7 @@ struct DataFile::Impl {
         if (!started.ok()) {
             fail(path, reason_of(started.status()));
         }
-        // A device such as /dev/null takes everything and keeps nothing.
+        // A device such as /dev/null accepts everything and stores nothing.
         if (kind_of(path) == std::filesystem::file_type::character) {
             fail(path, kNotAFile);
         }
@@ -290,7 +290,7 @@ struct DataFile::Impl {
         return complete->finish(clock.run_is_long());
     }
 
-    /// After a failure the unfinished file is what there is.
+    /// After a failure, only the unfinished file remains.
     void check(Status const& status) {
         if (status.ok()) {
             return;

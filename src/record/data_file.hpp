@@ -4,8 +4,8 @@
 //     append() ──► columns ──► batches that are not yet ... ──► saved      unfinished_file.hpp, every few seconds
 //                                                           └─► complete   complete_file.hpp, flush_row_count rows each
 //
-// Until the end, the path leads to the unfinished file, which can be read whenever the run is killed. What stands in
-// the complete one depends on the rows alone, not on the clock.
+// Until the end, the path refers to the unfinished file, which can be read whenever the run is killed. The contents of
+// the complete one depend on the rows alone, not on the clock.
 #pragma once
 
 #include <cstdint>
@@ -52,8 +52,8 @@ struct ObjectRow {
 /// In a child after fork(), it writes nothing.
 class DataFile {
 public:
-    /// Opens and locks the file and makes its folder, so that an unwritable path, or another run that writes the same
-    /// file, is known before the run. What the file holds stays until a DataFile is made of it. Throws OutputError.
+    /// Opens and locks the file and creates its folder, so that an unwritable path, or another run that writes the same
+    /// file, is detected before the run. The contents remain until a DataFile is created. Throws OutputError.
     static LockedFile reserve(std::string const& path);
 
     /// The file beside that of `path` in which a run puts the complete file together, if nothing else stands there.
@@ -64,7 +64,7 @@ public:
     /// Empties the file of `options.path` and writes its head.
     DataFile(DataFileOptions const& options, LockedFile file);
 
-    /// Closes what is still open, as far as it can be written; errors are logged.
+    /// Closes the file if it is still open, writing as much as possible; errors are logged.
     ~DataFile();
 
     DataFile(DataFile const&) = delete;
@@ -73,8 +73,8 @@ public:
     /// Adds a row. `user` holds one value per user column, in their order (monostate: null).
     void append(ObjectRow const& row, std::vector<CellValue> const& user);
 
-    /// Writes new rows to the unfinished file when it is time: some seconds of wall clock after the last time, so that
-    /// at most a hundredth of the run is spent on it where the disk is not slow. Call it often.
+    /// Writes new rows to the unfinished file when that is due: a few seconds of wall-clock time after the last time, so
+    /// that at most 1 % of the run is spent on it unless the disk is slow. Call it often.
     void save_if_due();
 
     /// Writes new rows to the unfinished file now.

@@ -60,8 +60,7 @@ arrow::Status DescriptorStream::Close() {
 void DescriptorStream::go_back_to(int64_t position) {
     gathered_.clear();
     position_ = position;
-    [[maybe_unused]] auto const failed =
-        ftruncate(descriptor_, position);  // a reader stops at the torn end all the same
+    [[maybe_unused]] auto const failed = ftruncate(descriptor_, position);  // readers stop at the truncated end anyway
 }
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-// Arrow's way to a file that is already open.
+// An Arrow stream for a file that is already open.
 #pragma once
 
 #include <arrow/io/interfaces.h>
@@ -9,8 +9,8 @@
 
 namespace pogosim {
 
-/// Writes to an open file from its beginning on. Small pieces are gathered until Flush(), so that what belongs together
-/// comes to the file at once. Does not close the file.
+/// Writes to an open file from its beginning. Small pieces are buffered until Flush(), so that related data reach the
+/// file together. Does not close the file.
 class DescriptorStream final : public arrow::io::OutputStream {
 public:
     explicit DescriptorStream(int descriptor) : descriptor_(descriptor) {}
@@ -22,7 +22,7 @@ public:
     arrow::Status Close() override;
     bool closed() const override { return closed_; }
 
-    /// Ends the file at this position and goes on there.
+    /// Truncates the file at this position and continues there.
     void go_back_to(int64_t position);
 
 private:

@@ -24,7 +24,7 @@ namespace {
     throw ConfigError(fmt::format("formation_filename: cannot read poses from '{}': {}", path.string(), reason));
 }
 
-/// What the system or the library found wrong, in our words.
+/// An error of the system or the library, in our own words.
 template <class Value>
 Value value_or_fail(std::filesystem::path const& path, arrow::Result<Value> result) {
     if (!result.ok()) {
@@ -35,7 +35,7 @@ Value value_or_fail(std::filesystem::path const& path, arrow::Result<Value> resu
 }
 
 std::shared_ptr<arrow::io::ReadableFile> open_file(std::filesystem::path const& path) {
-    // The library's own messages do not name the system's reason alone.
+    // The library's own messages contain more than the system's reason.
     int const descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) {
         fail(path, std::generic_category().message(errno));

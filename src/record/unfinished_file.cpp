@@ -33,7 +33,7 @@ arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descrip
     options.use_threads = false;
     ARROW_RETURN_NOT_OK(file->stream_->Write(kFileMagic.data(), kFileMagic.size()));
     ARROW_ASSIGN_OR_RAISE(file->writer_, arrow::ipc::MakeStreamWriter(file->stream_, marked(*schema), options));
-    // The schema goes out with the first batch only; a file without rows is to be readable, too.
+    // The schema is written with the first batch only, but a file without rows must also be readable.
     ARROW_ASSIGN_OR_RAISE(auto const nothing, arrow::RecordBatch::MakeEmpty(schema));
     ARROW_RETURN_NOT_OK(file->writer_->WriteRecordBatch(*nothing));
     // Before what stands there is cut off: once the head is written, the file never lacks it. A reader that comes just
@@ -45,7 +45,7 @@ arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descrip
 }
 
 arrow::Status UnfinishedFile::append(arrow::RecordBatch const& batch) {
-    // The next batch must not stand behind one that a crash or a full disk has torn.
+    // The next batch must not follow one that was truncated by a crash or a full disk.
     if (torn_) {
         stream_->go_back_to(size_bytes_);
     }

@@ -1,5 +1,5 @@
-// The data file while the run goes on: complete record batches one after the other, and no footer. Whenever the run is
-// killed, all batches but one that is being written can be read.
+// The data file during the run: complete record batches one after the other, and no footer. Whenever the run is
+// killed, all batches can be read except one that is being written.
 //
 //     "ARROW1\0\0" │ schema │ batch │ batch │ ...        the same bytes as a Feather file has before its footer
 //
@@ -29,13 +29,13 @@ public:
     static arrow::Result<std::unique_ptr<UnfinishedFile>> start(int descriptor,
                                                                 std::shared_ptr<arrow::Schema> const& schema);
 
-    /// Appends rows. When that fails, the file is as it was before.
+    /// Appends rows. On failure, the file is unchanged.
     arrow::Status append(arrow::RecordBatch const& batch);
 
-    /// Waits until all is on the disk, so that it outlives a power failure.
+    /// Waits until everything is on disk, so that it survives a power failure.
     void sync() const;
 
-    /// True when the file has not the size that was written.
+    /// True if the size of the file is not what was written.
     bool somebody_changed_it() const;
 
 private:
@@ -46,7 +46,7 @@ private:
     std::shared_ptr<DescriptorStream> stream_;
     std::shared_ptr<arrow::ipc::RecordBatchWriter> writer_;
     int64_t size_bytes_ = 0;  // up to the last complete batch
-    bool torn_ = false;       // a part of a batch may stand behind that
+    bool torn_ = false;       // a partial batch may follow
 };
 
 }  // namespace pogosim

@@ -18,7 +18,7 @@ using pogosim::context;
 namespace {
 
 constexpr std::size_t kShortText = 512;
-constexpr std::size_t kLongestLine = 65536;  // a longer one is cut, so that memory does not fill with it
+constexpr std::size_t kLongestLine = 65536;  // longer lines are split, to limit memory use
 
 /// A format in which a single `l` before an integer conversion is gone: `long` has 32 bits on the robot, and programs
 /// print uint32_t with %lu.
@@ -30,7 +30,7 @@ std::string with_robot_longs(std::string_view format) {
         if (format[i] != '%') {
             continue;
         }
-        // Flags, width and precision stand between '%' and the length.
+        // Flags, width and precision are between '%' and the length.
         std::size_t const length = std::min(format.find_first_not_of("-+ #0123456789.*'", i + 1), format.size());
         result += format.substr(i + 1, length - i - 1);
         bool const single_l =
@@ -66,7 +66,7 @@ void print_complete_lines(std::string& text, std::size_t searched) {
     }
 }
 
-/// Before main(), after the run, in a thread or a child process of the program: no robot prints, the program does.
+/// Before main(), after the run, in a thread or a child process: the program prints, not a robot.
 bool is_robot_printing() {
     return context.printed != nullptr && !pogosim::is_forked_child();
 }

@@ -1,6 +1,6 @@
 // pogolib/helper.h, and three functions of the C library: rand() and srand(), which on simulated robots draw from the
 // robot's own stream as they do on real ones, and exit(), which ends the run so that its data file is complete.
-// Programs call them by their usual names; this library stands before libc in the search order.
+// Programs call them by their usual names; this library comes before libc in the search order.
 #include <dlfcn.h>
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// pogolib/infrared.h: what user code says goes on the air of the world; comms delivers it after every robot has run.
+// pogolib/infrared.h: messages sent by user code are put on the air; comms delivers them after every robot has run.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -83,7 +83,7 @@ std::uint8_t highest_power(std::uint8_t list) {
     return highest;
 }
 
-/// What receivers see of the emitters: 4 for all of them, else the first one.
+/// The emitter index that receivers see: 4 for all of them, otherwise the first one.
 std::uint8_t sender_index(std::uint8_t emitters) {
     return emitters == kAllFaces ? static_cast<std::uint8_t>(ir_all)
                                  : static_cast<std::uint8_t>(__builtin_ctz(emitters | 1U << kFaceCount));

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::int64_t kMicrosecondsPerMillisecond = 1000;
 
-// User code takes no simulated time, so a program that waits in a loop for a stopwatch or a timer would wait for ever.
-// Beyond this many looks at the clock within one tick each one takes a microsecond, as on the real robot.
+// User code takes no simulated time, so a program that waits in a loop for a stopwatch or a timer would wait forever.
+// Beyond this many clock queries within one tick, each one takes a microsecond, as on the real robot.
 constexpr int kFreeClockReads = 1000;
 constexpr std::int64_t kClockReadUs = 1;
 

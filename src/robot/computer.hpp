@@ -1,4 +1,4 @@
-// A robot's own computer: what its processor, memory and peripherals remember between two ticks. Plain data, one per
+// A robot's own computer: the state of its processor, memory and peripherals between two ticks. Plain data, one per
 // robot.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace pogosim {
 
-/// Values of the main loop's globals while another robot has the processor.
+/// Values of the main loop's globals while another robot is running.
 struct LoopGlobals {
     std::uint32_t ticks = 0;
     std::uint8_t loop_hz = 60;

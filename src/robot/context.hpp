@@ -1,4 +1,4 @@
-// Who has the processor: what the functions of the C interface work on.
+// The current robot, on which the functions of the C interface act.
 #pragma once
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ struct DataExport {
     std::size_t next_column = 0;  // where the search for the next value's column starts
 };
 
-/// What user code can reach beside its own robot.
+/// What user code can access besides its own robot.
 struct RunServices {
     ParameterSource* parameters = nullptr;
     std::uint32_t seed = 0;  // of the run
@@ -89,7 +89,7 @@ struct Context {
 /// The context of this thread.
 extern constinit thread_local Context context;
 
-/// "user_step of robot #3 of category 'robots', tick 17": which user code has the processor, or had it last.
+/// "user_step of robot #3 of category 'robots', tick 17": the user code that is running, or ran last.
 std::string current_place();
 
 /// "robot #3 of category 'robots', tick 17", or the callback when it is one of the whole run.

@@ -35,7 +35,7 @@ struct Stack {
 
 thread_local Stack noted;
 
-/// Null on a machine that is not known here.
+/// Null on unknown architectures.
 void* stack_pointer([[maybe_unused]] void const* signal_context) {
 #if defined(__linux__) && defined(__x86_64__)
     // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
@@ -47,7 +47,7 @@ void* stack_pointer([[maybe_unused]] void const* signal_context) {
 #endif
 }
 
-/// The stack pointer is at the end of the stack or beyond, and what was to be touched is there too.
+/// Both the stack pointer and the faulting address are at or beyond the end of the stack.
 bool is_stack_overflow(siginfo_t const& info, void const* signal_context) {
     auto const pointer = reinterpret_cast<std::uintptr_t>(stack_pointer(signal_context));
     auto const touched = reinterpret_cast<std::uintptr_t>(info.si_addr);

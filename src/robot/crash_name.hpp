@@ -1,4 +1,4 @@
-// What a crash is called in messages.
+// Descriptions of crashes for messages.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ void note_stack();
 /// "segmentation fault at address 0x10"; for signal handlers. `signal_context` is what the handler was given.
 CrashText crash_name(int signal, siginfo_t const& info, void const* signal_context);
 
-/// Where the processor was when the signal came; null on a machine that is not known here.
+/// The instruction pointer at the time of the signal; null on unknown architectures.
 void* program_counter(void const* signal_context);
 
 }  // namespace pogosim

@@ -17,7 +17,7 @@ namespace {
 
 std::atomic<bool> forked = false;
 
-/// Else the child would have a copy of what the parent has not written yet, and write it as well.
+/// Otherwise the child would inherit the parent's unwritten output and also write it.
 void before_fork() {
     std::fflush(nullptr);
 }

@@ -4,13 +4,13 @@
 
 namespace pogosim {
 
-/// Recognises children from now on.
+/// Detects children from now on.
 void watch_for_forks();
 
 /// True in a child.
 bool is_forked_child();
 
-/// Ends the child: what it printed itself is written out, no handler or destructor of the run is called.
+/// Ends the child: flushes its own output, without calling any handler or destructor of the run.
 [[noreturn]] void end_forked_child(int status);
 
 }  // namespace pogosim

@@ -1,5 +1,5 @@
-// What the fence around user code (user_guard.cpp) and the watch over it (user_watch.cpp) share. No others include
-// this.
+// State shared by the fence around user code (user_guard.cpp) and its watchdog (user_watch.cpp). Not included anywhere
+// else.
 #pragma once
 
 #include <pthread.h>
@@ -47,11 +47,11 @@ void begin_rescue(char const* what, ExitCode code, bool in_other_thread);
 
 [[noreturn]] void jump_out(ExitCode code);
 
-/// False in the middle of a library function, such as malloc(): it may hold a lock, which nobody would release.
+/// False inside a library function such as malloc(), which may hold a lock that would never be released.
 bool is_in_user_program(void const* signal_context);
 
-/// Asks for the end of the run from wherever the caller is: another thread, or a signal handler. User code is left as
-/// soon as it holds no lock, as far as that can be told; the simulator's own code comes to its end. The first request
+/// Requests the end of the run from anywhere: another thread, or a signal handler. User code is aborted as soon as it
+/// holds no lock, as far as that can be determined; the simulator's own code runs to its end. Only the first request
 /// counts.
 void request_end(char const* what, ExitCode code, bool in_other_thread);
 

@@ -72,7 +72,7 @@ void append_time(PlaceText& text) {
     text.number(context.world->time_s(), 4) << " s";
 }
 
-/// Runs are repeatable: the same one, ended after the step before this.
+/// Runs are reproducible: suggests the same one, ended after the previous step.
 SignalText<256> advice_to_repeat() {
     SignalText<256> advice;
     if (data_file_state == DataFileState::open) {

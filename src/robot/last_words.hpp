@@ -1,5 +1,5 @@
-// The message of a program that ends at once, because a crash has left nothing that can be relied on. It is composed
-// in a signal handler, before anything else is tried, and says only what is true of the stage that the program is in.
+// The message of a program that ends at once, because nothing can be relied on after a crash. It is composed in a signal
+// handler, before anything else is tried, and only states what is certain at the current stage of the program.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ enum class DataFileState { none, open, complete };
 void enter_stage(RunStage stage);
 RunStage run_stage();
 
-/// For the message: what has become of the data file.
+/// The state of the data file, for the message.
 void note_data_file(std::string const& path, DataFileState state);
 
 bool data_file_is_complete();
@@ -30,8 +30,8 @@ using PlaceText = SignalText<512>;
 /// "user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s": which user code runs. For signal handlers.
 PlaceText running_place();
 
-/// Composes the message. It begins with what is certain and says more and more: each look at what user code may have
-/// destroyed can be the last. For signal handlers.
+/// Composes the message. It starts with what is certain and adds details one by one: any access to memory that user code
+/// may have corrupted can be the last. For signal handlers.
 void prepare_last_words(char const* what, bool in_other_thread);
 
 /// The same for a program that ends although nothing has failed.
@@ -40,7 +40,7 @@ void prepare_plain_last_words(char const* what);
 /// The same for a program that a signal ends outside of the run.
 void prepare_last_words_of_interrupt(char const* signal_name);
 
-/// Says it and ends the program. For signal handlers.
+/// Prints the message and ends the program. For signal handlers.
 [[noreturn]] void end_with_last_words(int code);
 
 }  // namespace pogosim

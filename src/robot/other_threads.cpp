@@ -58,7 +58,7 @@ private:
 
 void prepare_main_thread_for_crashes() {
     note_stack();
-    static std::array<char, kSignalStackBytes> memory;  // destructors after the run need it, too
+    static std::array<char, kSignalStackBytes> memory;  // destructors after the run also need it
     use_for_signals(memory.data());
 }
 
@@ -73,7 +73,7 @@ __attribute__((weak)) void __asan_init();
 
 using ThreadFunction = void* (*)(void*);
 
-/// As the C library's, which it calls: this library stands before libc in the search order.
+/// Wraps the C library's function: this library comes before libc in the search order.
 __attribute__((visibility("default"))) int pthread_create(pthread_t* thread, pthread_attr_t const* attributes,
                                                           ThreadFunction function, void* argument) noexcept {
     struct Start {

@@ -1,4 +1,4 @@
-// What a crash in a thread needs to be named: another stack for the handler, as the thread's own may be full. The thread of
+// Reporting a crash in a thread requires a separate stack for the handler, as the thread's own may be full. The thread of
 // the simulator does not end by itself.
 #pragma once
 

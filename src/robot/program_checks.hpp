@@ -1,5 +1,5 @@
-// What looks like a slip in the user's program, told in warnings: at the start of a run, and when it is over. Each is
-// something that no correct program does; what one robot does at one tick is warned of where it happens
+// Warnings about probable mistakes in the user's program, at the start and at the end of a run. Each is about something
+// that no correct program does; mistakes of one robot at one tick are reported where they happen
 // (RunServices::warn_once).
 #pragma once
 
@@ -17,20 +17,20 @@
 
 namespace pogosim {
 
-/// User data that no real robot has room for. `bytes`: of one robot.
+/// User data too large for a real robot. `bytes`: of one robot.
 void warn_of_large_user_data(std::size_t bytes);
 
 /// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
 void warn_of_user_data_in_setup(std::uint16_t id);
 
-/// Categories that no pogobot_start() names. `started`: those that the program's calls do name.
+/// Categories without a pogobot_start(). `started`: those that the program's calls do name.
 void warn_of_idle_categories(World const& world, std::span<Computer const> computers,
                              std::span<std::string const> started);
 
 /// A program that has never called pogobot_init(), not even in user_init.
 void warn_of_missing_init(std::span<Computer const> computers);
 
-/// Columns of the data file that nobody can fill.
+/// Columns of the data file that cannot be filled.
 void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Computer const> computers);
 
 /// Columns that the program's callback left empty in all of its rows. `fields`: the columns that the data file has;
@@ -40,8 +40,8 @@ void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std
 /// Messages dropped because the queue of a robot that reads messages was full, by category.
 void warn_of_lost_messages(World const& world, std::span<Computer const> computers);
 
-/// Messages that nobody reads, or that a program means to send and read but cannot. `arrivals`: messages that reached
-/// robots in the whole run.
+/// Messages that are never read, or that a program intends to send and read but cannot. `arrivals`: messages that
+/// reached robots in the whole run.
 void warn_of_unused_messages(World const& world, std::span<Computer const> computers, std::uint64_t arrivals);
 
 /// A percent_msgs_sent_per_ticks above 100, by category.

@@ -110,7 +110,7 @@ char const* program_name() {
 #endif
 }
 
-/// As the C library calls main(): with arguments, whether the program's takes them or not. C leaves that undefined, and
+/// Like the C library, calls main() with arguments, whether it takes them or not. C leaves that undefined, and
 /// clang's sanitizer says so.
 #ifdef __clang__
 [[clang::no_sanitize("function")]]
@@ -237,7 +237,7 @@ void Programs::construct_user_data(std::uint32_t robot) {
 void Programs::run_main(std::uint32_t robot) {
     enter(robot, "main");
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
-    // A program may write to its arguments, so each robot gets them anew.
+    // A program may modify its arguments, so each robot gets a fresh copy.
     program_name_ = program_name();
     main_arguments_ = {program_name_.data(), nullptr};
     call_main(main_arguments_.data());
@@ -318,7 +318,7 @@ void Programs::tick(std::uint32_t robot) {
     enter(robot, "user_step");
     pogo_main_loop_step(self.program.step);
     leave();
-    // A drift may not turn the clock back.
+    // The drift must not turn the clock back.
     std::int64_t const slept_us = self.clock_us - self.loop.loop_timer.origin_us;
     self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);
     if (self.motors.driven && world_.spec_of(robot).has_wheels) {

@@ -30,7 +30,7 @@ public:
     /// callback_create_data_schema: fills the services' columns.
     void declare_columns();
 
-    /// One step: the global step, then every robot whose clock has come.
+    /// One step: the global step, then every robot that is due.
     void run_step();
 
     /// callback_export_data of one robot. Its row is in the services' data afterwards.
@@ -39,13 +39,13 @@ public:
     /// callback_robot_end of every robot.
     void end();
 
-    /// Warns of messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
+    /// Warns about messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
     void warn_of_messages(std::uint64_t arrivals) const;
 
     /// Tells of columns that the program has declared and never set. `fields`: those of the data file; absent: all.
     void tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const;
 
-    /// Logs what robots have printed and not ended with a newline. Called after the last call of user code.
+    /// Logs incomplete lines that robots have printed. Called after the last call of user code.
     void print_unfinished_lines();
 
     /// Ticks this robot has executed.

@@ -1,4 +1,4 @@
-// The first lines of every function of the interface that works on a robot.
+// Preconditions of interface functions that act on a robot.
 #pragma once
 
 #include <cstdio>
@@ -8,14 +8,14 @@
 
 namespace pogosim {
 
-/// Does not return when no robot has the processor. `function`: its name, for the message.
+/// Does not return if no robot is running. `function`: its name, for the message.
 inline void require_robot(char const* function) {
     if (context.computer == nullptr) [[unlikely]] {
         called_without_robot(function);
     }
 }
 
-/// Refuses a pointer that must not be NULL: exit code 2.
+/// Rejects a NULL pointer: exit code 2.
 inline void require_argument(void const* argument, char const* function, char const* name) {
     if (argument == nullptr) [[unlikely]] {
         char what[128];

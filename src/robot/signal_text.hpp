@@ -1,4 +1,4 @@
-// Text made in a signal handler: neither memory, nor locks, nor the locale are asked for.
+// Text composed in a signal handler, without allocating memory, taking locks or using the locale.
 #pragma once
 
 #include <unistd.h>

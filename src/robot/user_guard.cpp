@@ -50,7 +50,7 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
     give_up_rescue();
 }
 
-/// Before the constructors of the program, whose crashes are to be named, too: this library is initialised first.
+/// Before the constructors of the program, so that their crashes are also reported: this library is initialised first.
 __attribute__((constructor)) void install_crash_handlers() {
     guard.thread = pthread_self();
     prepare_main_thread_for_crashes();

@@ -1,11 +1,11 @@
-// A fence around user code. Whatever happens inside (a crash, abort(), a step that never returns, an error in a call of
-// the interface), control comes back here, so that the run can end with a message and a complete data file.
+// A fence around user code. Whatever happens inside (a crash, abort(), a step that never returns, an error in an
+// interface function), control returns here, so that the run can end with a message and a complete data file.
 //
 //   call_user_code(f) ──► sigsetjmp ──► f() ──► user's program
 //          ▲                                        │ SIGSEGV, SIGFPE, SIGABRT, too long, leave_user_code()
 //          └──────────────── siglongjmp ◄───────────┘
 //
-// A jump skips the destructors of every frame between, so the code between the fence and the user's functions keeps
+// A jump skips the destructors of every frame in between, so the code between the fence and the user's functions owns
 // nothing that needs one.
 //
 // Crashes elsewhere end the program with a message (last_words.hpp): in constructors before main(), in atexit()
@@ -30,23 +30,23 @@ enum class ExitCode : int { done = 0, usage = 2, user_program = 3, interrupted =
 struct UserFailure {
     std::string what;  // "segmentation fault at address 0x10"
     ExitCode code = ExitCode::user_program;
-    bool refused = false;          // a function of the interface said no: a wrong parameter, a column that is not there
+    bool refused = false;          // rejected by an interface function: an invalid parameter, an unknown column
     bool in_other_thread = false;  // in one that the program started
     bool too_long = false;         // it had not returned after user_code_timeout
 };
 
-/// Begins the run: watches over processor time from now on. `timeout_s` is the processor time one call of user code may
+/// Starts the run: limits processor time from now on. `timeout_s` is the processor time that one call of user code may
 /// take; 0: no limit. Call it before user code runs, in the thread that will call it.
 void install_user_guard(double timeout_s);
 
-/// Ends the run: nothing is watched any more, and what fails from now on fails after the run.
+/// Ends the run: stops the watchdog; subsequent failures happen after the run.
 void remove_user_guard();
 
-/// Runs `body`, which calls user code. Returns nothing when it came back by itself. Not reentrant.
+/// Runs `body`, which calls user code. Returns nothing if it returned normally. Not reentrant.
 std::optional<UserFailure> call_user_code(std::function<void()> const& body);
 
-/// Runs the simulator's own code, which may find its memory destroyed by user code. A crash in it, outside
-/// call_user_code, comes back as a failure, once: the caller then saves what can be saved and ends the program.
+/// Runs the simulator's own code, whose memory user code may have corrupted. A crash in it, outside call_user_code, is
+/// returned as a failure, once: the caller then saves as much as possible and ends the program.
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body);
 
 /// A new call of user code begins: the watch starts again from zero.
@@ -55,7 +55,7 @@ void restart_watch();
 /// True while user code runs inside call_user_code, for the thread that runs it.
 bool inside_user_code();
 
-/// True when user code was left in the middle: no destructor or atexit() handler may rely on its memory and locks.
+/// True if user code was aborted: no destructor or atexit() handler may rely on its memory and locks.
 bool was_left_by_force();
 
 /// Ends the running call_user_code with this failure. Does not return; outside user code it aborts.
@@ -70,22 +70,22 @@ bool is_other_thread_of_run();
 /// Ends the run from another thread, which stops here: the run ends with this failure and a complete data file.
 [[noreturn]] void end_run_from_thread(char const* what, ExitCode code);
 
-/// A function of the interface was called where no robot has the processor: before main(), after the run or in a thread
-/// that the program started. Ends the program with a message and exit code 3.
+/// An interface function was called while no robot was running: before main(), after the run or in a thread that the
+/// program started. Ends the program with a message and exit code 3.
 [[noreturn]] void called_without_robot(char const* function);
 
 /// The thread that calls this is about to end. Returns in a thread that the program started; the simulator's own cannot
 /// be spared: user code is left with a failure, and elsewhere the program ends with a message, with exit code 3.
 void check_end_of_thread();
 
-/// The run was asked to end by this signal, for the first time: says what it waits for when user code does not return
-/// soon, and leaves it when it has run for `user_code_timeout` of wall-clock time. For signal handlers.
+/// This signal requests a stop for the first time: if user code does not return soon, prints what the run is waiting
+/// for, and aborts it after `user_code_timeout` of wall-clock time. For signal handlers.
 void hurry_user_code(char const* signal_name);
 
-/// Asked again: leaves user code. Returns at once; does nothing outside user code. For signal handlers.
+/// Second request: aborts user code. Returns at once; does nothing outside user code. For signal handlers.
 void abandon_user_code();
 
-/// Seconds of the monotonic clock. For signal handlers, too.
+/// Seconds of the monotonic clock. Also for signal handlers.
 double monotonic_s();
 
 /// For handlers of signals that may come on any thread: false when the signal has been passed on to the simulator's.

@@ -22,7 +22,7 @@ constexpr double kWatchPeriodS = 0.25;   // of processor time
 constexpr double kRetryPeriodS = 0.001;  // in which user code is looked for outside of libraries
 constexpr double kLongestRetryS = 0.25;
 constexpr double kLookPeriodS = 0.05;   // of wall-clock time
-constexpr double kPromptReturnS = 0.1;  // nobody need be told to wait for less
+constexpr double kPromptReturnS = 0.1;  // shorter waits are not reported
 constexpr double kPromptEndS = 1.0;     // of a step of the simulator's own, and of the data file
 constexpr double kPatienceS = 10.0;     // for user code without a limit, and for the simulator's own
 constexpr double kRescueLookPeriodS = 0.25;
@@ -36,7 +36,7 @@ struct ProcessorWatch {
     bool retrying = false;
 };
 
-/// Since the run was asked to end.
+/// State since a stop was requested.
 struct WallClockWatch {
     char const* signal_name = "";
     unsigned long calls_seen = 0;
@@ -117,7 +117,7 @@ void on_watch(int signal, siginfo_t* /*info*/, void* signal_context) {
     jump_out(ExitCode::user_program);
 }
 
-/// Tells the user who waits, once.
+/// Tells the waiting user what is going on, once.
 void tell_what_is_waited_for() {
     if (waiting.told) {
         return;
@@ -139,7 +139,7 @@ void tell_what_is_waited_for() {
     text.write_to_stderr();
 }
 
-/// Leaves user code as asked for, where that does no harm.
+/// Aborts user code as requested, where it is safe.
 void look_after_request(void const* signal_context, double now_s) {
     double const asked_since_s = now_s - request.made_s;
     if (!guard.inside) {

@@ -28,7 +28,7 @@ std::string size_text(Box const& box) {
     return fmt::format("{:.1f} x {:.1f}", box.size().x, box.size().y);
 }
 
-/// Sizes in a configuration are mm, so whoever draws an arena in mm has to know that it is scaled.
+/// Sizes in a configuration are in mm, so users who draw an arena in mm need to know that it is scaled.
 void tell_scale(Scenario const& scenario, ArenaOutline const& outline, Arena const& arena) {
     constexpr float kSameSize = 5e-3F;  // less is the rounding of corners
     Vec2 const drawn = bounding_box_of_all(outline.polygons).size();
@@ -42,7 +42,7 @@ void tell_scale(Scenario const& scenario, ArenaOutline const& outline, Arena con
     }
 }
 
-/// A file in millimetres has sizes of its own, which must be among those that a configuration can ask for.
+/// A file in millimetres sets its own size, which must be within the range allowed in a configuration.
 void check_size(Scenario const& scenario, Arena const& arena) {
     Vec2 const size_mm = arena.bounds.size();
     if (!scenario.arena_surface_mm2 && std::max(size_mm.x, size_mm.y) > kMaxLength) {
@@ -117,7 +117,7 @@ void add_robot(World& world, Object const& object, std::uint32_t seed) {
     robots.stream.emplace_back(seed, index);
 }
 
-/// Where an object whose emitters lie along its outline sends.
+/// The outline along which an object with Emitters::outline sends.
 Outline outline_of(World const& world, Object const& object, ObjectSpec const& spec, Placement const& placement) {
     Outline line{.robot = object.robot, .polygons = {}, .body = object.body, .body_count = object.body_count};
     if (spec.shape.kind == ShapeKind::arena) {
@@ -128,8 +128,8 @@ Outline outline_of(World const& world, Object const& object, ObjectSpec const& s
     return line;
 }
 
-/// Makes objects one after the other and numbers them: those with a rigid body and a program from 0 up, all others from
-/// 65535 down.
+/// Creates objects one by one and numbers them: those with a rigid body and a program from 0 up, all others from 65535
+/// down.
 class ObjectMaker {
 public:
     ObjectMaker(World& world, std::uint32_t seed) : world_(world), seed_(seed) {}
@@ -161,7 +161,7 @@ private:
     std::uint16_t next_down_ = std::numeric_limits<std::uint16_t>::max();
 };
 
-/// Walls have nothing to stand on in a world without walls.
+/// There are no arena walls in a periodic world.
 bool is_created(World const& world, ObjectConfig const& object) {
     bool const is_wall = object.spec.robot && !object.spec.body;
     if (is_wall && world.periodic && object.nb > 0) {
@@ -195,7 +195,7 @@ std::string objects_text(Scenario const& scenario) {
     return fmt::format("the objects and their initial positions: {} of them", all);
 }
 
-/// A membrane holds in what is larger than the gaps between its bodies.
+/// A membrane contains whatever is larger than the gaps between its bodies.
 void warn_of_gaps(Scenario const& scenario) {
     for (ObjectConfig const& membrane : scenario.objects) {
         if (!membrane.spec.ring || membrane.nb == 0) {

@@ -26,7 +26,7 @@ std::vector<std::filesystem::path> data_folders() {
     return folders;
 }
 
-/// Where a relative name may lead, in this order; the working folder first.
+/// The folders in which relative names are searched, in this order; the working folder first.
 std::vector<std::filesystem::path> search_folders(Scenario const& scenario) {
     std::vector<std::filesystem::path> folders{""};
     if (!scenario.file.empty()) {

@@ -8,9 +8,9 @@
 
 namespace pogosim {
 
-/// A file that the configuration names under `key`. A relative name is looked for in the working folder, then beside
-/// the configuration, then in the folders of what is installed or bundled with Pogosim. Throws ConfigError, naming
-/// them, when there is none. An empty name stays empty.
+/// The file that the configuration sets as `key`. A relative name is searched in the working folder, then next to the
+/// configuration, then in the folders of files installed or bundled with Pogosim. Throws ConfigError, listing these
+/// folders, if there is none. An empty name stays empty.
 std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name);
 
 }  // namespace pogosim

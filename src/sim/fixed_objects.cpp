@@ -12,7 +12,7 @@ namespace pogosim {
 
 namespace {
 
-// Deep is more than this part of half the thickness of the thinner one. Less is soon pushed apart.
+// An overlap is deep if it exceeds this share of half the thickness of the thinner object. Physics resolves the rest.
 constexpr float kDeepShare = 0.1F;
 
 struct FixedEntry {
@@ -21,7 +21,7 @@ struct FixedEntry {
     Obstacle obstacle;
 };
 
-/// What is wrong with the fixed objects of a category, or of two; the text is about the first of them.
+/// A problem with the fixed objects of one or two categories; the text is about the first object.
 struct Finding {
     FixedEntry const* entry;
     ObjectConfig const* other;  // nullptr: a wall

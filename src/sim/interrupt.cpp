@@ -76,7 +76,7 @@ void on_interrupt(int signal, siginfo_t* /*info*/, void* /*context*/) {
     }
 }
 
-/// Ignores a signal in this program, but not in those that it starts.
+/// Ignores a signal in this program, but not in its child programs.
 void on_ignored_signal(int /*signal*/, siginfo_t* /*info*/, void* /*context*/) {}
 
 /// Whoever started the program may have it ignore some (nohup, a shell without job control).
@@ -92,8 +92,8 @@ void ignore_broken_outputs() {
             open("/dev/null", O_RDWR);  // takes the lowest number that is free
         }
     }
-    // A reader of the console that has gone away is no reason to lose the data file, and a file that may not grow
-    // further (ulimit -f) is an error of writing it.
+    // A closed console pipe must not cost the data file, and exceeding the file size limit (ulimit -f) is a write
+    // error.
     for (int const signal : {SIGPIPE, SIGXFSZ}) {
         catch_signal(signal, SA_RESTART, on_ignored_signal);
     }

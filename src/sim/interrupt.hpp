@@ -4,8 +4,8 @@
 
 namespace pogosim {
 
-/// From now on a console that is closed, full or read by nobody any more is no reason to lose the run. Descriptors
-/// 0 to 2 that are closed lead to /dev/null, so that no file of the run gets one of these numbers and what is printed.
+/// From now on, a console that is closed, full or no longer read does not end the run. Closed descriptors from 0 to 2
+/// are opened to /dev/null, so that no file of the run gets one of these numbers and the console output.
 void ignore_broken_outputs();
 
 /// Catches the signals from now on, as long as the program sets no handler of its own. The first one asks the run to

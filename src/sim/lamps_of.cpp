@@ -14,13 +14,13 @@ namespace pogosim {
 namespace {
 
 bool is_between(float low, float value, float high) {
-    constexpr float kMarginMm = 1.0F;  // a scaled arena may be a little smaller than meant
+    constexpr float kMarginMm = 1.0F;  // a scaled arena may be slightly smaller than intended
     return value >= low - kMarginMm && value <= high + kMarginMm;
 }
 
 void warn_outside(Scenario const& scenario, ObjectConfig const& object, std::string const& axis, Vec2 centre_mm,
                   Arena const& arena) {
-    // The key that says where: center_x of an orbit, else x.
+    // The key that sets the position: center_x of an orbit, otherwise x.
     Node const* const entry = node_of(scenario, object);
     bool const is_orbit = entry != nullptr && entry->find("center_" + axis) != nullptr;
     log().warn(

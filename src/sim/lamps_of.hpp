@@ -12,7 +12,7 @@ namespace pogosim {
 /// that light nothing: their centre is outside the arena's bounding box, or they lie between the centres of cells.
 std::vector<LampSpec> lamps_of(Scenario const& scenario, World const& world);
 
-/// What a lamp can light at time 0.
+/// The area that a lamp can light at time 0.
 struct LampArea {
     Shape shape;
     Vec2 centre_mm;

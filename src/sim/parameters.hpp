@@ -1,4 +1,4 @@
-// The values under `parameters` of a configuration, as user code asks for them.
+// The values under `parameters` of a configuration, read by user code.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +51,7 @@ public:
         check_parameter_range(parameters_, name, value, between(min, max));
     }
 
-    /// The values that the program has never asked for, with their places; empty when there are none.
+    /// The values that the program never read, with file and line; empty if there are none.
     std::string unread() const { return use_.unread(); }
 
 private:

@@ -34,7 +34,7 @@ Overlap overlap_with(Arena const& arena, Polygon const& area_mm) {
     return survey.parent[outer] == area ? Overlap::partial : Overlap::none;
 }
 
-/// All that is not in the arena, as obstacles.
+/// Everything outside the arena, as obstacles.
 std::vector<Obstacle> outside_of(Arena const& arena) {
     // A frame around the arena, cut open along a line from its corner to the corner of the outer wall next to it.
     Polygon frame = arena.outer();

@@ -1,4 +1,4 @@
-// Categories with an area or a formation of their own.
+// Categories with their own area or formation.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace pogosim {
 
-/// Places the objects of an entry whose `own_formation` is given: inside its area, where the arena has it, clear of the
-/// obstacles. One pose for each. Throws ConfigError when they do not fit, or when the area is not in the arena.
+/// Places the objects of an entry that has an `own_formation`: inside the part of its area that is in the arena, clear of
+/// the obstacles. One pose per object. Throws ConfigError if they do not fit, or if the area is outside the arena.
 std::vector<Placement> place_apart(Scenario const& scenario, World const& world, ObjectConfig const& object,
                                    std::vector<Obstacle> obstacles, RandomStream& random);
 

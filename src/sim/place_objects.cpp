@@ -22,7 +22,7 @@ namespace {
 // The random stream of the formation belongs to no robot; robots have theirs by their index.
 constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;
 
-// Bodies of a ring closer together than this are below the tolerance of physics.
+// A smaller distance between bodies of a ring is below the tolerance of the physics.
 constexpr float kSmallestStepMm = 0.1F;
 
 constexpr std::size_t kNoEntry = std::numeric_limits<std::size_t>::max();
@@ -53,7 +53,7 @@ bool stands_inside(World const& world, Vec2 point_mm) {
                                   arena_text(world.arena)));
 }
 
-/// A formation needs room for a disk around each object; say so where the object is given, not where it fails.
+/// A formation needs room for a disk around each object; report this at the object, not when the formation fails.
 void check_size(Scenario const& scenario, World const& world, ObjectConfig const& object) {
     float const needed_mm = 2.0F * outer_radius_mm(object.spec);
     Vec2 const room_mm = world.arena.bounds.size();
@@ -62,7 +62,7 @@ void check_size(Scenario const& scenario, World const& world, ObjectConfig const
     }
 }
 
-/// Bodies of a ring have a line to lie on and some distance from each other.
+/// Bodies of a ring need a line to lie on and some distance from each other.
 void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     RingSpec const& ring = *object.spec.ring;
     float const radius_mm = bounding_radius(object.spec.shape);
@@ -118,7 +118,7 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
     }
 }
 
-/// The entry that bounds the formation; kNoEntry: the arena does.
+/// The entry that bounds the formation; kNoEntry: the arena.
 std::size_t root_entry(Scenario const& scenario) {
     std::string const& root = scenario.formation.root_object;
     auto const found = std::ranges::find(scenario.objects, root, &ObjectConfig::category);
@@ -131,8 +131,8 @@ std::string where_root(Scenario const& scenario) {
     return where_at_top(scenario, key) + ": " + key;
 }
 
-/// Behind a message that tells only how many objects there are: ". Radii: robots (40) 26.5 mm, ..."; nothing when they
-/// are of one category.
+/// Appended to a message that gives only the number of objects: ". Radii: robots (40) 26.5 mm, ..."; empty if there is
+/// only one category.
 std::string radii_text(Scenario const& scenario, std::vector<std::size_t> const& entries) {
     std::vector<std::string> radii;
     for (std::size_t const i : entries) {
@@ -223,8 +223,8 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, For
 std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, World const& world, std::uint32_t seed) {
     std::vector<std::vector<Placement>> poses(scenario.objects.size());
     std::vector<std::size_t> entries;      // for the formation
-    std::vector<std::size_t> own_entries;  // for formations of their own, which come before
-    std::vector<Obstacle> obstacles;       // that it keeps off
+    std::vector<std::size_t> own_entries;  // for their own formations, which come first
+    std::vector<Obstacle> obstacles;       // that the formation avoids
     std::size_t const root = root_entry(scenario);
     RandomStream random(seed, kFormationStream);
     FormationSpec formation = scenario.formation;
@@ -251,7 +251,7 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
                     check_position(scenario, world, object, pose);
                 }
             }
-            poses[i].resize(static_cast<std::size_t>(object.nb));  // walls that are everywhere have no place
+            poses[i].resize(static_cast<std::size_t>(object.nb));  // arena walls have no position
             if (object.spec.body) {
                 add_obstacles(i);
             }
@@ -265,7 +265,7 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     Arena domain = world.arena;
     if (root != kNoEntry) {
         if (auto const place = std::ranges::find(entries, root); place != entries.end()) {
-            // The first to be placed, but the rows of an imported file keep to the order of the categories.
+            // It is placed first, but the rows of an imported file follow the order of the categories.
             std::size_t const rows_before = count_objects(scenario, {entries.begin(), place});
             FormationSpec of_root = formation;
             of_root.rows_of_others = {.first = 0, .count = rows_before, .may_follow = true};

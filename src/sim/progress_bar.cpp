@@ -12,7 +12,7 @@ namespace pogosim {
 namespace {
 
 constexpr int kBarWidth = 40;
-constexpr std::int64_t kStepsBetweenLooks = 16;  // the clock is not asked at each step
+constexpr std::int64_t kStepsBetweenLooks = 16;  // the clock is not queried at every step
 constexpr auto kRedrawPeriod = std::chrono::milliseconds(100);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A line on the standard error that shows how far a run is.
+// A line on stderr that shows the progress of a run.
 #pragma once
 
 #include <chrono>
@@ -9,13 +9,13 @@ namespace pogosim {
 
 class ProgressBar {
 public:
-    /// `total` steps. Disabled bars do nothing. On a terminal the line is redrawn in place ten times a second,
-    /// elsewhere a line is printed at each tenth of the run. Nothing more is drawn once the standard error is broken.
+    /// `total` steps. Disabled bars do nothing. On a terminal, the line is redrawn in place ten times per second;
+    /// otherwise a line is printed after each tenth of the run. Nothing is drawn once stderr is broken.
     ProgressBar(std::int64_t total, double time_step_s, bool enabled);
 
     void show(std::int64_t done);
 
-    /// Leaves the line as it is and goes to the next.
+    /// Keeps the line and moves to the next.
     void finish(std::int64_t done);
 
 private:

@@ -1,4 +1,4 @@
-// When rows of the data file are due, and what stands in them.
+// When rows of the data file are due, and their contents.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@ namespace pogosim {
 
 class Recorder {
 public:
-    /// Takes the data file, so that no other run writes it. All references outlive this. `data` is what user code
+    /// Locks the data file, so that no other run writes it. All references outlive this. `data` is what user code
     /// declares and exports. Throws OutputError.
     Recorder(Scenario const& scenario, World const& world, Programs& programs, DataExport const& data,
              std::uint32_t seed);
 
-    /// Asks the program for its columns and starts the data file, if there is to be one. Throws OutputError.
+    /// Lets the program declare its columns and opens the data file, if enabled. Throws OutputError.
     std::optional<UserFailure> open();
 
     /// For a program that failed before open(): an empty file. Does nothing when the file is open.
     void open_without_rows();
 
-    /// Writes the rows of now, if a multiple of the save period has come. Throws OutputError.
+    /// Writes the current rows if a multiple of the save period has been reached. Throws OutputError.
     std::optional<UserFailure> record_if_due();
 
-    /// Brings rows to the disk when that is due, so that they outlive the process. Call it at every step. Throws
+    /// Saves rows to disk when that is due, so that they outlive the process. Call it at every step. Throws
     /// OutputError.
     void save_if_due();
 

@@ -1,4 +1,4 @@
-// What a data file says of its run.
+// Metadata that a data file stores about its run.
 #pragma once
 
 #include <cstdint>

@@ -36,7 +36,7 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     }
 }
 
-/// Whatever ends a run: what fails or is interrupted from then on has no data to save.
+/// However a run ends, later failures and interrupts have no data to save.
 struct RunEnd {
     RunEnd() = default;
     RunEnd(RunEnd const&) = delete;
@@ -95,14 +95,14 @@ ExitCode Simulation::run() {
     if (crash) {
         failure = crash;
     } else if (!failure) {
-        failure = call_user_code([] {});  // a thread of the program may have failed meanwhile
+        failure = call_user_code([] {});  // a thread of the program may have failed in the meantime
     }
     if (failure) {
         // The message last, since it says what has become of the data file. When completing that crashes, because
         // memory is destroyed, the last words of the first crash are said.
         try {
             if (!failure->refused) {
-                recorder_.open_without_rows();  // the file of an earlier run must not pass for this one's
+                recorder_.open_without_rows();  // the file of an earlier run must not be mistaken for this one's
             }
             finish();
         } catch (std::exception const&) {
@@ -201,7 +201,7 @@ void Simulation::fit_time_step() {
     if (hz == 0) {
         return;
     }
-    // Robots sleep whole milliseconds between ticks, and tick once a step at most.
+    // Robots sleep whole milliseconds between ticks, and tick at most once per step.
     double const tick_s = std::floor(1000.0 / hz) / 1000.0;
     if (world_.time_step_s > tick_s) {
         log().warn("time_step reduced from {} s to {} s, so that no ticks are skipped (main_loop_hz: {})",

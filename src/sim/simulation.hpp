@@ -1,4 +1,4 @@
-// A whole run: a world, the stages that change it, and what is written down of it.
+// A whole run: a world, the stages that change it, and the recorder.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace pogosim {
 struct RunOptions {
     bool progress_bar = false;
     bool measure_stages = false;  // for benchmarks
-    bool strict = false;          // parameters that nobody reads are an error
+    bool strict = false;          // unread parameters are an error
 };
 
 class Simulation {
@@ -34,8 +34,8 @@ public:
     Simulation& operator=(Simulation const&) = delete;
 
     /// From the first main() to the last callback: runs until the simulated time is over, the program or the user ends
-    /// it, or user code fails. Errors of user code are logged and give the exit code. Throws OutputError; and, when
-    /// strict, a ConfigError at the end of a run in which a parameter was not read.
+    /// it, or user code fails. Errors of user code are logged and set the exit code. Throws OutputError and, if strict,
+    /// ConfigError at the end of a run in which a parameter was not read.
     ExitCode run();
 
     // The same in parts, for tests and benchmarks. start() once, then steps, then finish().

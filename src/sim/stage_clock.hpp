@@ -1,4 +1,4 @@
-// Wall-clock time each stage of the steps has taken, for benchmarks. Nothing of it reaches a result.
+// Wall-clock time taken by each stage of the steps, for benchmarks. It does not affect results.
 #pragma once
 
 #include <array>

@@ -22,7 +22,7 @@ struct UsedFile {
     bool is_beside = false;  // the data file is put together there
 };
 
-/// What this run does not use is left out.
+/// Files that this run does not use are omitted.
 std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& configuration) {
     std::vector<UsedFile> files{{"", configuration}};
     auto const add_input = [&](std::string const& key, std::string const& name, bool is_used) {

@@ -1,4 +1,4 @@
-// What is on the air and what has arrived: plain data between the robots' programs and the communication stage.
+// Messages on the air and received messages: plain data between the robots' programs and the communication stage.
 #pragma once
 
 #include <array>
@@ -48,9 +48,9 @@ struct Air {
     }
 };
 
-/// Every robot's FIFO of received messages. Messages lie one behind the other in the robot's near block, a few cache
-/// lines beside its counters; what does not fit there goes to its far block, which has room for a queue of the longest
-/// messages and costs no memory before it is used.
+/// Every robot's FIFO of received messages. Messages are stored one after the other in the robot's near block, a few
+/// cache lines next to its counters; the rest goes to its far block, which has room for a queue of messages of maximum
+/// length and takes no memory before it is used.
 class Mailboxes {
 public:
     Mailboxes() = default;

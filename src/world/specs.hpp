@@ -1,5 +1,5 @@
-// What is fixed for a whole run: what walls and the objects of each category are made of, as the configuration gave it.
-// The defaults of these parameters stand here; those of shapes in geometry/shape.hpp, those of formations in
+// Parameters that are fixed for a whole run: the parts of walls and of the objects of each category, from the
+// configuration. Their defaults are here; those of shapes are in geometry/shape.hpp, those of formations in
 // geometry/formation.hpp, and those of the run itself in config/scenario.hpp.
 #pragma once
 
@@ -87,7 +87,7 @@ struct IntRange {
 
 enum class Emitters {
     rim,      // four, on the bounding disk at the front, right, back and left
-    centre,   // four, looking the same ways from the centre
+    centre,   // four, facing the same directions from the centre
     outline,  // one, all along the object's outline; no half planes, no shadows
 };
 
@@ -122,7 +122,7 @@ enum class Colormap { rainbow, qualitative };
 
 enum class LightMode { uniform, gradient, plane };
 
-/// A circle on which a lamp goes round.
+/// A circle along which a lamp moves.
 struct Orbit {
     float radius_mm = 0.0F;            // 0: the lamp stands still in the centre
     double angular_speed_rad_s = 0.0;  // > 0: clockwise on the screen
@@ -145,7 +145,7 @@ struct SpotSpec {
     int photo_start_value = 32767;
 };
 
-/// A lighthouse whose beam goes round: `rotating_ray_of_light`. Where it shines, nothing else counts.
+/// A lighthouse with a rotating beam: `rotating_ray_of_light`. Its light replaces all other light.
 struct RotatingRaySpec {
     Shape shape;                       // what it can light
     Vec2 centre_mm;                    // where it stands; global and arena: from the centre of the arena's bounding box
@@ -159,7 +159,7 @@ struct RotatingRaySpec {
 };
 
 /// Two lighthouses in turn, each through a right angle, a flash before each: `alternating_rays_of_light`. They stand at
-/// the corners (xmin, ymax) and (xmax, ymax) of the shape's bounding box. Where they shine, nothing else counts.
+/// the corners (xmin, ymax) and (xmax, ymax) of the shape's bounding box. Their light replaces all other light.
 struct AlternatingRaysSpec {
     Shape shape;                       // what they can light
     Vec2 centre_mm;                    // of the shape; global and arena: from the centre of the arena's bounding box
@@ -174,7 +174,7 @@ struct AlternatingRaysSpec {
 /// A lamp. A new kind is a struct here, a file in src/light and one in src/config.
 using LampSpec = std::variant<SpotSpec, RotatingRaySpec, AlternatingRaysSpec>;
 
-/// What the objects of a category are made of. Parts that they do not have are absent.
+/// The parts of the objects of a category; all are optional.
 struct ObjectSpec {
     Shape shape;
     std::optional<BodySpec> body;    // tangible: takes part in collisions

@@ -226,10 +226,10 @@ def test_category_chooses_the_controller(project: Path, sdk: Path) -> None:
 def test_category_that_no_controller_is_for_is_an_error(project: Path, sdk: Path) -> None:
     unknown = make(project, "bin", f"POGO_SDK={sdk}", "ROBOT_CATEGORY=robot")
     assert unknown.code == 2
-    assert "There is no pogobot_start() for robots of category 'robot' in this program" in unknown.errors
+    assert "This program has no pogobot_start() for robots of category 'robot' (ROBOT_CATEGORY)" in unknown.errors
     assert not (project / "build" / "bin" / "firmware.bin").exists()
     words = make(project, "bin", f"POGO_SDK={sdk}", "ROBOT_CATEGORY=my robots")
-    assert "ROBOT_CATEGORY is one word, found 'my robots'" in words.errors
+    assert "ROBOT_CATEGORY must be one word, found 'my robots'" in words.errors
 
 
 def test_cpp_program_becomes_firmware(project: Path, sdk: Path) -> None:

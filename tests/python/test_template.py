@@ -177,7 +177,7 @@ def test_without_an_sdk_make_builds_the_simulation_and_says_so(goals: tuple[str,
     assert result.output.splitlines()[-2:] == [
         "Built ./swarm",
         "Only the simulation: there is no Pogobot SDK in ../../pogobot-sdk. "
-        "To build for robots, too: make POGO_SDK=<its folder>",
+        "To also build for robots: make POGO_SDK=<its folder>",
     ]
     assert made(project, *goals[-1:]).output.count("Only the simulation") == 1  # also if nothing is left to do
     assert "Only the simulation" not in made(project, "sim").output
@@ -206,7 +206,7 @@ def test_other_mistakes_are_one_helpful_line(project: Path, tmp_path: Path) -> N
     assert "Rename the folder" in sentence(make(copy_template(tmp_path / "sim"), "sim"))
     assert "Rename the folder" in sentence(make(copy_template(tmp_path / "conf"), "sim"))  # has a folder conf in it
     blank = sentence(make(project, "sim", f"POGOSIM_DIR={tmp_path}/my pogosim"))
-    assert blank.startswith(f"POGOSIM_DIR has a blank in it, which make cannot handle: {tmp_path}/my pogosim. A link")
+    assert blank.startswith(f"POGOSIM_DIR contains a space, which make cannot handle: {tmp_path}/my pogosim. Use a")
 
 
 @pytest.mark.parametrize("name", ["my swarm", "a$b", "a'b", "a(b", "a:b", "a&b", "a;b", "a%b", "a\\b", "-a", "a.c"])

@@ -46,7 +46,7 @@ struct DebugInfo {
     std::map<Scope, std::set<std::string>> local_to_a_call;  ///< parameters and automatic variables of functions
 };
 
-/// Reads all compiled files. Objects of library headers are there, too.
+/// Reads all compiled files, including objects of library headers.
 DebugInfo read_debug_info(ProgramFile const& program);
 
 }  // namespace shared_state

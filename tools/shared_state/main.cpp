@@ -71,7 +71,7 @@ bool is_ignored(std::string const& file, Options const& options) {
                        [&](std::string const& folder) { return place.starts_with(folder + "/"); });
 }
 
-// Shared and not meant to be: could be written, or was by the first robot that came by.
+// Shared unintentionally: writable, or set by the first robot that ran the line.
 bool is_suspect(Object const& object, ProgramFile const& program) {
     auto const section = program.section_at(object.address);
     if (!section.writable || section.name.starts_with("pogo_shared")) {
@@ -90,7 +90,7 @@ std::vector<Object> find_shared_state(ProgramFile const& program, Options const&
         }
     }
 
-    // In the order of the source; a variable in a header is one, however many files include it.
+    // In source order; a variable in a header counts once, however many files include it.
     auto const key = [](Object const& object) {
         return std::tie(object.file, object.line, object.column, object.name);
     };
@@ -101,7 +101,7 @@ std::vector<Object> find_shared_state(ProgramFile const& program, Options const&
     return found;
 }
 
-// As compilers write it: relative to here, if it is below.
+// As compilers print it: relative to the working folder, if inside it.
 std::string shown_file(std::string const& file) {
     auto const relative = std::filesystem::path(file).lexically_proximate(std::filesystem::current_path());
     return relative.empty() || relative.string().starts_with("..") ? file : relative.string();

@@ -22,7 +22,7 @@ void for_each_section(Elf* elf, std::function<void(Elf_Scn*, GElf_Shdr const&)> 
 }
 
 bool holds(GElf_Shdr const& header, uint64_t address) {
-    // Thread-local sections have addresses that others have, too.
+    // Thread-local sections share addresses with others.
     return (header.sh_flags & SHF_ALLOC) && !(header.sh_flags & SHF_TLS) && address >= header.sh_addr &&
            address - header.sh_addr < header.sh_size;
 }

@@ -1,4 +1,4 @@
-// Objects of type `active_object`: a body that can be pushed, with a program and infrared, without motors.
+// Objects of type `active_object`: a pushable body with a program and infrared, but no motors.
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
 #include "config/placement_keys.hpp"

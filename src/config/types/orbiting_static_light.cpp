@@ -1,4 +1,4 @@
-// Objects of type `orbiting_static_light`: a static light that goes round.
+// Objects of type `orbiting_static_light`: a static light moving along a circle.
 #include <array>
 #include <optional>
 #include <span>

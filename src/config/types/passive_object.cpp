@@ -1,4 +1,4 @@
-// Objects of type `passive_object`: a body that can be pushed.
+// Objects of type `passive_object`: a pushable body.
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
 #include "config/placement_keys.hpp"

@@ -10,7 +10,7 @@
 
 namespace pogosim {
 
-/// What lies above or below the bounds is kept in the first or last band, so that every search finds it too.
+/// Points above or below the bounds are kept in the first or last band, so that every search also finds them.
 class BandIndex {
 public:
     /// Bands for about `segment_count` segments.

@@ -39,7 +39,7 @@ RingPattern circles(Vec2 centre, float radius_mm) {
 
 std::vector<Placement> place_disk(PlacementTask const& task) {
     Vec2 const centre = formation_centre(task);
-    // Objects without a size get circles of their own all the same.
+    // Objects without a size get their own circles nevertheless.
     double const room_mm2 = task.domain.area_mm2 / static_cast<double>(task.radii_mm.size());
     float const smallest_mm = 1.0e-2F * static_cast<float>(std::sqrt(room_mm2));
     auto const pattern_for = [&](float radius_mm) { return circles(centre, std::max(radius_mm, smallest_mm)); };

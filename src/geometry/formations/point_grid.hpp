@@ -10,7 +10,7 @@
 
 namespace pogosim {
 
-/// Points beyond the bounds are kept in the cells of the border, so that every search finds them too.
+/// Points beyond the bounds are kept in the border cells, so that every search also finds them.
 class PointGrid {
 public:
     /// Cells are at least `smallest_cell_mm` wide, and wide enough for about one of `point_count` points each.
