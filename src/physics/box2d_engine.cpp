@@ -67,7 +67,7 @@ int substeps_for(World const& world, float most_motion_mm) {
     float fastest_rad_s = 0.0F;
     for (Drive const& drive : world.robots.drive) {
         fastest_mm2_s2 = std::max(fastest_mm2_s2, squared_length(drive.velocity_mm_s));
-        fastest_rad_s = std::max(fastest_rad_s, std::abs(drive.spin_rad_s));
+        fastest_rad_s = std::max(fastest_rad_s, std::abs(drive.angular_velocity_rad_s));
     }
     auto const step_s = static_cast<float>(world.time_step_s);
     float const motion_mm = std::sqrt(fastest_mm2_s2) * step_s;
@@ -159,7 +159,7 @@ private:
         definition.position = to_box2d(bodies.position_mm[i]);
         definition.angle = bodies.heading_rad[i];
         definition.linearVelocity = to_box2d(bodies.velocity_mm_s[i]);
-        definition.angularVelocity = bodies.spin_rad_s[i];
+        definition.angularVelocity = bodies.angular_velocity_rad_s[i];
         definition.linearDamping = bodies.spec[i].linear_damping;
         definition.angularDamping = bodies.spec[i].angular_damping;
         b2Body* const body = engine_.CreateBody(&definition);
@@ -202,7 +202,7 @@ private:
             drive.fresh = false;
             b2Body& body = *bodies_[robots.body[i]];
             body.SetLinearVelocity(to_box2d(drive.velocity_mm_s));
-            body.SetAngularVelocity(drive.spin_rad_s);
+            body.SetAngularVelocity(drive.angular_velocity_rad_s);
             any_awake_ = any_awake_ || body.IsAwake();
             sweep_if_fast(body, drive, world.bodies.radius_mm[robots.body[i]], world.time_step_s);
         }
@@ -245,7 +245,7 @@ private:
         }
         if (!body.IsAwake()) {
             bodies.velocity_mm_s[i] = {};
-            bodies.spin_rad_s[i] = 0.0F;
+            bodies.angular_velocity_rad_s[i] = 0.0F;
             return;
         }
         any_awake_ = true;
@@ -254,7 +254,7 @@ private:
         bodies.axis[i] = {pose.q.c, pose.q.s};
         bodies.heading_rad[i] = body.GetAngle();
         bodies.velocity_mm_s[i] = from_box2d(body.GetLinearVelocity());
-        bodies.spin_rad_s[i] = body.GetAngularVelocity();
+        bodies.angular_velocity_rad_s[i] = body.GetAngularVelocity();
     }
 
     RingFilter filter_;

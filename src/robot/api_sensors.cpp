@@ -20,7 +20,7 @@ constexpr std::array<Vec2, pogosim::kPhotosensorCount> kPhotosensors{Vec2{-1.0F,
 
 // Ranges of the ICM-20689 on the robot: +-16 g, +-2000 degrees per second, -40 to 85 degrees Celsius.
 constexpr float kMaxAcceleration = 16.0F * 9.80665F;
-constexpr float kMaxSpin = 2000.0F * std::numbers::pi_v<float> / 180.0F;
+constexpr float kMaxAngularVelocity = 2000.0F * std::numbers::pi_v<float> / 180.0F;
 constexpr float kMinTemperature = -40.0F;
 constexpr float kMaxTemperature = 85.0F;
 constexpr float kMmPerM = 1000.0F;
@@ -74,7 +74,8 @@ void pogobot_imu_read(float* acc, float* gyro) {
     Vec2 const acceleration = acceleration_in_body_frame();
     acc[0] = std::clamp(acceleration.y, -kMaxAcceleration, kMaxAcceleration);
     acc[1] = std::clamp(acceleration.x, -kMaxAcceleration, kMaxAcceleration);
-    gyro[2] = std::clamp(0.0F - context.world->bodies.spin_rad_s[context.body()], -kMaxSpin, kMaxSpin);
+    gyro[2] = std::clamp(0.0F - context.world->bodies.angular_velocity_rad_s[context.body()], -kMaxAngularVelocity,
+                         kMaxAngularVelocity);
 }
 
 float pogobot_imu_readTemp() {

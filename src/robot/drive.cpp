@@ -24,7 +24,7 @@ void drive(World& world, std::size_t robot, Motors const& motors) {
 
     float const speed = spec.max_linear_speed_mm_s * (left + right) / (2.0F * kFullPower);
     Vec2 velocity = speed * world.bodies.axis[world.robots.body[robot]];
-    float spin = spec.max_angular_speed_rad_s * (left - right) / (kFullPower / 2.0F);
+    float angular_velocity = spec.max_angular_speed_rad_s * (left - right) / (kFullPower / 2.0F);
 
     RandomStream& stream = world.robots.stream[robot];
     if (spec.linear_noise_stddev > 0.0F) {
@@ -33,9 +33,9 @@ void drive(World& world, std::size_t robot, Motors const& motors) {
         velocity.y += noise_mm_s * stream.normal();
     }
     if (spec.angular_noise_stddev > 0.0F) {
-        spin += spec.angular_noise_stddev * stream.normal();
+        angular_velocity += spec.angular_noise_stddev * stream.normal();
     }
-    world.robots.drive[robot] = {.velocity_mm_s = velocity, .spin_rad_s = spin, .fresh = true};
+    world.robots.drive[robot] = {.velocity_mm_s = velocity, .angular_velocity_rad_s = angular_velocity, .fresh = true};
 }
 
 }  // namespace pogosim

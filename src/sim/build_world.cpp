@@ -79,7 +79,7 @@ std::uint32_t add_body(Bodies& bodies, RingBody const& body, BodySpec const& spe
     bodies.heading_rad.push_back(body.heading_rad);
     bodies.axis.push_back(direction(body.heading_rad));
     bodies.velocity_mm_s.push_back({});
-    bodies.spin_rad_s.push_back(0.0F);
+    bodies.angular_velocity_rad_s.push_back(0.0F);
     bodies.radius_mm.push_back(bounding_radius(body.shape));
     bodies.shape.push_back(body.shape);
     bodies.spec.push_back(spec);

@@ -42,8 +42,8 @@ struct Bodies {
     std::vector<float> heading_rad;  // not wrapped
     std::vector<Vec2> axis;          // unit vector along the heading
     std::vector<Vec2> velocity_mm_s;
-    std::vector<float> spin_rad_s;  // clockwise on the screen
-    std::vector<float> radius_mm;   // bounding disk
+    std::vector<float> angular_velocity_rad_s;  // clockwise on the screen
+    std::vector<float> radius_mm;               // bounding disk
     std::vector<Shape> shape;
     std::vector<BodySpec> spec;
 
@@ -71,7 +71,7 @@ struct Ring {
 /// The velocity a robot's motors ask of its body.
 struct Drive {
     Vec2 velocity_mm_s;
-    float spin_rad_s = 0.0F;
+    float angular_velocity_rad_s = 0.0F;
     bool fresh = false;  // set at a control tick, cleared when physics has imposed it
 };
 

@@ -34,7 +34,7 @@ TEST(Physics, FreeBodyMovesStraightAtConstantSpeed) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F));
     world.bodies.velocity_mm_s[0] = {100, 50};
-    world.bodies.spin_rad_s[0] = 1.0F;
+    world.bodies.angular_velocity_rad_s[0] = 1.0F;
     run(world, 10.0);
     EXPECT_NEAR(world.bodies.position_mm[0].x, 2000.0F, 0.1F);
     EXPECT_NEAR(world.bodies.position_mm[0].y, 1500.0F, 0.1F);
@@ -45,12 +45,12 @@ TEST(Physics, DampedBodySlowsDownExponentially) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 0.3F));
     world.bodies.velocity_mm_s[0] = {100, 0};
-    world.bodies.spin_rad_s[0] = 2.0F;
+    world.bodies.angular_velocity_rad_s[0] = 2.0F;
     run(world, 5.0);
     // The engine's implicit step differs from the exponential by a factor of 1 - damping * time step / 2.
     float const left = std::exp(-0.3F * 5.0F);
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * left, 0.2F);
-    EXPECT_NEAR(world.bodies.spin_rad_s[0], 2.0F * left, 0.005F);
+    EXPECT_NEAR(world.bodies.angular_velocity_rad_s[0], 2.0F * left, 0.005F);
     EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 100.0F / 0.3F * (1.0F - left), 1.0F);
 }
 
@@ -100,7 +100,7 @@ TEST(Physics, HolesPushOutwards) {
 TEST(Physics, FastBodyDoesNotJumpAWall) {
     World world = square_world(1000.0F);
     add_robot(world, {500, 500}, 0.0F, body(0.0F));
-    world.robots.drive[0] = {.velocity_mm_s = {15000, 0}, .spin_rad_s = 0.0F, .fresh = true};
+    world.robots.drive[0] = {.velocity_mm_s = {15000, 0}, .angular_velocity_rad_s = 0.0F, .fresh = true};
     run(world, 1.0);
     EXPECT_LT(world.bodies.position_mm[0].x, 1000.0F - 26.5F + 1.0F);
 }
@@ -108,7 +108,7 @@ TEST(Physics, FastBodyDoesNotJumpAWall) {
 TEST(Physics, DriveIsImposedOnce) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 1.0F));
-    world.robots.drive[0] = {.velocity_mm_s = {100, 0}, .spin_rad_s = 1.0F, .fresh = true};
+    world.robots.drive[0] = {.velocity_mm_s = {100, 0}, .angular_velocity_rad_s = 1.0F, .fresh = true};
     run(world, 1.0);
     EXPECT_FALSE(world.robots.drive[0].fresh);
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * std::exp(-1.0F), 0.5F);

@@ -84,7 +84,7 @@ float mass_in_disks(Shape const& shape, Vec2 towards, float density = 10.0F) {
     add(world, disk(26.5F), kMiddle - far_mm * towards, 100.0F * towards);
     run(world, 1.0);
     float const ratio = dot(world.bodies.velocity_mm_s[1], towards) / 100.0F;
-    EXPECT_NEAR(world.bodies.spin_rad_s[0], 0.0F, 1e-3F);
+    EXPECT_NEAR(world.bodies.angular_velocity_rad_s[0], 0.0F, 1e-3F);
     return (1.0F - ratio) / (1.0F + ratio);
 }
 
@@ -214,8 +214,8 @@ TEST(Collision, ObliqueOneChangesVelocitiesAlongTheLineOfCentresOnly) {
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].y, a.y, 0.7F);
     EXPECT_NEAR(world.bodies.velocity_mm_s[1].x, b.x, 0.7F);
     EXPECT_NEAR(world.bodies.velocity_mm_s[1].y, b.y, 0.7F);
-    EXPECT_NEAR(world.bodies.spin_rad_s[0], 0.0F, 1e-4F);  // without friction nothing turns
-    EXPECT_NEAR(world.bodies.spin_rad_s[1], 0.0F, 1e-4F);
+    EXPECT_NEAR(world.bodies.angular_velocity_rad_s[0], 0.0F, 1e-4F);  // without friction nothing turns
+    EXPECT_NEAR(world.bodies.angular_velocity_rad_s[1], 0.0F, 1e-4F);
 }
 
 /// Of both bodies, with their masses and moments of inertia: momentum, and angular momentum about the middle.
@@ -229,8 +229,8 @@ Momenta momenta(World const& world, std::array<float, 2> masses, std::array<floa
     for (std::size_t i = 0; i < 2; ++i) {
         Vec2 const momentum = masses[i] * world.bodies.velocity_mm_s[i];
         sum.linear = sum.linear + momentum;
-        sum.angular +=
-            cross(world.bodies.position_mm[i] - kMiddle, momentum) + inertias[i] * world.bodies.spin_rad_s[i];
+        sum.angular += cross(world.bodies.position_mm[i] - kMiddle, momentum) +
+                       inertias[i] * world.bodies.angular_velocity_rad_s[i];
     }
     return sum;
 }
@@ -252,7 +252,7 @@ TEST(Collision, RectangleHitOffItsCentreTurns) {
         (1.0F + restitution) * 100.0F / (1.0F / disk_mass + 1.0F / bar_mass + lever_mm * lever_mm / bar_inertia);
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, impulse / bar_mass, 0.2F);
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].y, 0.0F, 0.05F);
-    EXPECT_NEAR(world.bodies.spin_rad_s[0], lever_mm * impulse / bar_inertia, 0.005F);
+    EXPECT_NEAR(world.bodies.angular_velocity_rad_s[0], lever_mm * impulse / bar_inertia, 0.005F);
     EXPECT_NEAR(world.bodies.velocity_mm_s[1].x, 100.0F - impulse / disk_mass, 0.3F);
 
     Momenta const after = momenta(world, {bar_mass, disk_mass}, {bar_inertia, 0.5F * disk_mass * 26.5F * 26.5F});
@@ -274,7 +274,7 @@ TEST(Collision, FrictionTurnsBodiesAndKeepsMomentumAndAngularMomentum) {
     Momenta const before = momenta(world, masses, inertias);
     run(world, 0.8);
     Momenta const after = momenta(world, masses, inertias);
-    EXPECT_GT(std::abs(world.bodies.spin_rad_s[1]), 0.1F);  // they did touch, roughly
+    EXPECT_GT(std::abs(world.bodies.angular_velocity_rad_s[1]), 0.1F);  // they did touch, roughly
     EXPECT_NEAR(after.linear.x / before.linear.x, 1.0F, 1e-3F);
     EXPECT_NEAR(after.linear.y / before.linear.y, 1.0F, 5e-3F);
     EXPECT_NEAR(after.angular / before.angular, 1.0F, 0.02F);

@@ -85,7 +85,7 @@ Vec2 free_place(Arena const& arena, float radius_mm, RandomStream& random) {
 struct Scene {
     World world;
     float speed_mm_s = 0.0F;
-    float spin_rad_s = 0.0F;
+    float angular_velocity_rad_s = 0.0F;
     std::string text;
 };
 
@@ -97,7 +97,7 @@ Scene random_scene(std::vector<std::pair<std::string, Arena>> const& arenas, Ran
     scene.world.time_step_s = one_of(random, std::array{0.001, 0.01, 0.016, 0.1, 1.0});
     float const radius_mm = log_uniform(random, 0.01F, 25.0F);
     scene.speed_mm_s = log_uniform(random, 100.0F, 1e6F);
-    scene.spin_rad_s = log_uniform(random, 0.1F, 1e4F);
+    scene.angular_velocity_rad_s = log_uniform(random, 0.1F, 1e4F);
     auto const count = static_cast<int>(random.uniform(1.0F, 25.0F));
     for (int i = 0; i < count; ++i) {
         add_robot(scene.world, free_place(arena, radius_mm, random), random.uniform(-kPi, kPi),
@@ -119,7 +119,7 @@ void steer(Scene& scene, Vec2 target_mm, RandomStream& random) {
         float const heading = i % 2 == 0 ? std::atan2(way.y, way.x) : world.bodies.heading_rad[i];
         Vec2 const noise{0.1F * random.normal(), 0.1F * random.normal()};
         world.robots.drive[i] = {.velocity_mm_s = scene.speed_mm_s * (direction(heading) + noise),
-                                 .spin_rad_s = scene.spin_rad_s * random.normal(),
+                                 .angular_velocity_rad_s = scene.angular_velocity_rad_s * random.normal(),
                                  .fresh = true};
     }
 }
@@ -236,7 +236,7 @@ TEST(Speed, IsWhatTheMotorsAskForHoweverFarAStepGoes) {
     for (float const speed_mm_s : {100.0F, 3e4F, 1e6F}) {
         World world = square_world(1e6F);
         add_robot(world, {1000, 5e5F});
-        world.robots.drive[0] = {.velocity_mm_s = {speed_mm_s, 0}, .spin_rad_s = 1000.0F, .fresh = true};
+        world.robots.drive[0] = {.velocity_mm_s = {speed_mm_s, 0}, .angular_velocity_rad_s = 1000.0F, .fresh = true};
         make_box2d_engine(world, {})->advance(world);
         EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 0.01F * speed_mm_s, 1.0F);
         EXPECT_NEAR(world.bodies.heading_rad[0], 10.0F, 1e-3F);

@@ -84,7 +84,7 @@ TEST(Motion, MotorBiasTurnsARobotThatDrivesStraight) {
     ObjectSpec spec = testing::article_robot();
     spec.robot->motor_bias = {50, 50};
     auto const simulation = run_alone(spec, full_ahead, nullptr, 2.0);
-    EXPECT_NEAR(simulation->world().bodies.spin_rad_s[0], 2.0F * 100.0F / 511.5F, 1e-3F);
+    EXPECT_NEAR(simulation->world().bodies.angular_velocity_rad_s[0], 2.0F * 100.0F / 511.5F, 1e-3F);
 }
 
 TEST(Motion, AngularNoiseOfStddevSSpreadsHeadingsAsARandomWalk) {

@@ -43,7 +43,7 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
     world.bodies.heading_rad.push_back(heading_rad);
     world.bodies.axis.push_back(direction(heading_rad));
     world.bodies.velocity_mm_s.push_back({});
-    world.bodies.spin_rad_s.push_back(0.0F);
+    world.bodies.angular_velocity_rad_s.push_back(0.0F);
     world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
     world.bodies.shape.push_back(spec.shape);
     world.bodies.spec.push_back(*spec.body);
