@@ -62,7 +62,7 @@ std::span<Key<RobotSpec> const> robot_keys() {
         K{"linear_noise_stddev", &RobotSpec::linear_noise_stddev, between(0, 1e4), "100 mm/s",
           "Standard deviation of Gaussian noise on each velocity component, drawn at every control tick."}
             .only_if(has_wheels),
-        K{"angular_noise_stddev", &RobotSpec::angular_noise_stddev, between(0, 1e4), "rad/s",
+        K{"angular_noise_stddev", &RobotSpec::angular_noise_stddev, between(0, 1e4).usually_up_to(50), "rad/s",
           "Standard deviation of Gaussian noise on the angular velocity, drawn at every control tick."}
             .only_if(has_wheels),
         K{"angular_systematic_bias_domain", &RobotSpec::motor_bias, between(-1023, 1023), "motor power units",

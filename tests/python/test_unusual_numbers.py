@@ -52,6 +52,7 @@ LAMP = {"type": "static_light", "light_mode": "plane", "geometry": "disk", "radi
         ("robots.communication_radius", 0.08, "mm", "small; if you meant metres, write 80"),
         ("robots.max_linear_speed", 0.1, "mm/s", "small; if you meant metres per second, write 100"),
         ("robots.max_angular_speed", 114.6, "rad/s", "large; if you meant degrees per second, write 2.00015"),
+        ("robots.angular_noise_stddev", 57.3, "rad/s", "large; if you meant degrees per second, write 1.00007"),
         ("body.body_width", 0.3, "mm", "small; if you meant metres, write 300"),
         ("lamp.y", 0.5, "mm", "small; if you meant metres, write 500"),
         ("lamp.radius", 0.5, "mm", "small; if you meant metres, write 500"),
