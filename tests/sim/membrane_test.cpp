@@ -263,7 +263,7 @@ TEST(Membrane, HoldsAtEverySpeedSizeAndStepOrRefusesToStart) {
                         ++held;
                     } catch (ConfigError const& error) {
                         std::string const message = error.what();
-                        EXPECT_NE(message.find("that a membrane can hold back; use at most "), std::string::npos)
+                        EXPECT_NE(message.find("that a membrane can hold back. Use at most "), std::string::npos)
                             << message;
                         ++refused;
                     }
