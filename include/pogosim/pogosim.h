@@ -1,6 +1,6 @@
 /// @file
-/// The interface layer: user data, the main loop and its globals. It is compiled for both simulated and real robots; its
-/// code is main_loop.c. On a real robot it uses the SDK (pogobot.h), in the simulator pogosim/pogolib.h.
+/// The interface layer: user data, the main loop and its globals. It is compiled for both simulated and real robots;
+/// its code is main_loop.c. On a real robot it uses the SDK (pogobot.h), in the simulator pogosim/pogolib.h.
 #ifndef POGOSIM_POGOSIM_H
 #define POGOSIM_POGOSIM_H
 
@@ -90,8 +90,8 @@ void pogo_main_loop_step(void (*user_step)(void));
 
 /// `pogobot_start(user_init, user_step)` or `pogobot_start(user_init, user_step, "category")`: called by main() once
 /// per category of objects the program controls (default "robots"). user_init runs once, user_step in each tick; both
-/// may be NULL. On a real robot, the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in
-/// the simulator all calls return, and objects of a category without a call do nothing, with a warning.
+/// may be NULL. On a real robot, the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns;
+/// in the simulator all calls return, and objects of a category without a call do nothing, with a warning.
 #define pogobot_start(...) POGO_START_PICK(__VA_ARGS__, pogobot_start_3, pogobot_start_2, )(__VA_ARGS__)
 #define POGO_START_PICK(init, step, category, chosen, ...) chosen
 #define pogobot_start_2(init, step) pogobot_start_3(init, step, "robots")

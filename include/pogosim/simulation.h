@@ -38,9 +38,9 @@ extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 // ---- Configuration: values under `parameters:` ----
 
 ///@{
-/// Sets the variable to the value of `parameters.NAME` (dots address entries of maps and lists), or to the default if it
-/// is absent. A value of the wrong type or outside the range of the variable's type is an error; for integers, fractions
-/// are truncated, with a warning.
+/// Sets the variable to the value of `parameters.NAME` (dots address entries of maps and lists), or to the default if
+/// it is absent. A value of the wrong type or outside the range of the variable's type is an error; for integers,
+/// fractions are truncated, with a warning.
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
 void init_float_from_configuration(float* variable, char const* name, float const default_value);
 void init_double_from_configuration(double* variable, char const* name, double const default_value);
@@ -88,9 +88,9 @@ void data_add_column_float16(char const* name);
 
 ///@{
 /// Sets the value of a column in this object's row; only in callback_export_data. Elsewhere, it does nothing, with a
-/// warning. A column that is not set is null, and so is a NULL string. An unknown column, or a type other than declared,
-/// is an error; columns omitted from `data_logger_fields` are ignored. float has 24 significant bits, float16 has 11 and
-/// is at most 65504.
+/// warning. A column that is not set is null, and so is a NULL string. An unknown column, or a type other than
+/// declared, is an error; columns omitted from `data_logger_fields` are ignored. float has 24 significant bits, float16
+/// has 11 and is at most 65504.
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
 void data_set_value_int32(char const* name, int32_t value);

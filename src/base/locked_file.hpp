@@ -18,8 +18,8 @@ public:
 /// Throws FileError with the system's text for `error_number` (errno).
 [[noreturn]] void fail_with_errno(int error_number);
 
-/// The absolute path without symbolic links, "." and ".."; components that do not exist yet are kept unchanged. Dangling
-/// links are also followed.
+/// The absolute path without symbolic links, "." and ".."; components that do not exist yet are kept unchanged.
+/// Dangling links are also followed.
 std::filesystem::path real_path(std::filesystem::path const& path);
 
 /// An open file that no other run can open this way until it is closed. The contents are left untouched: the lock comes

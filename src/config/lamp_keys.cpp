@@ -42,8 +42,8 @@ std::span<Key<SpotSpec> const> spot_keys() {
           "gradient and plane: level at the far side."}
             .only_if(has_edge),
         K{"gradient_radius", &SpotSpec::gradient_radius_mm, kCoordinate, "mm",
-          "gradient: distance from the centre at which `edge_value` is reached; 0 or less: the largest distance inside the "
-          "shape."}
+          "gradient: distance from the centre at which `edge_value` is reached; 0 or less: the largest distance inside "
+          "the shape."}
             .only_if(is_gradient),
         K{"plane_angle", &SpotSpec::plane_angle_rad, kAngle, "rad",
           "plane: direction of the normal, clockwise on the screen from +x."}

@@ -17,8 +17,8 @@ std::span<Key<Scenario> const> scenario_keys() {
     static std::array const keys{
         // Space.
         K{"arena_file", &Scenario::arena_file, any(), "",
-          "Required. Outline of the arena (CSV); searched in the working folder, next to the configuration file, then in "
-          "Pogosim's own folder."},
+          "Required. Outline of the arena (CSV); searched in the working folder, next to the configuration file, then "
+          "in Pogosim's own folder."},
         K{"arena_surface", NumberOr<Scenario>{&Scenario::arena_surface_mm2, "file"},
           above(0).up_to(kMaxLength * kMaxLength).usually_from(100), "mm2",
           "Area inside the outer wall minus the holes; the outline is scaled to match it. file: the arena file is in "

@@ -60,7 +60,8 @@ std::span<K const> any_geometry_keys() {
                   {"triangle", ShapeKind::triangle}},
                  kAnyCase),
           any(), "",
-          "global: everywhere; arena: inside the arena's polygons; otherwise a shape around the centre. Case-insensitive.",
+          "global: everywhere; arena: inside the arena's polygons; otherwise a shape around the centre. "
+          "Case-insensitive.",
           /*required=*/true},
     };
     return keys;

@@ -87,8 +87,8 @@ void TreeBuilder::OnMapEnd() {
     for (auto const& [place, lines] : map.again) {
         auto const& [category, entries] = map.node.entries[place];
         log().warn(
-            "{}: objects.{} appears on lines {}; all of them are used, in the category '{}'. To avoid this warning, put "
-            "them in a list under one key",
+            "{}: objects.{} appears on lines {}; all of them are used, in the category '{}'. To avoid this warning, "
+            "put them in a list under one key",
             entries.where(), category, fmt::join(lines, ", "), category);
     }
     if (!map.merged.empty()) {

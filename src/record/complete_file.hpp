@@ -36,8 +36,8 @@ public:
     /// Writes the footer; afterwards all rows are in the file. `sync`: waits until it is on the disk.
     arrow::Status finish(bool sync);
 
-    /// Replaces the unfinished file, even if that was removed, with the finished one: by renaming it, or else by copying
-    /// its bytes. Fails if another file is there now.
+    /// Replaces the unfinished file, even if that was removed, with the finished one: by renaming it, or else by
+    /// copying its bytes. Fails if another file is there now.
     arrow::Status take_the_place_of(LockedFile const& unfinished);
 
     /// Gives the finished file a name that was free, and that no later run uses: beside the unfinished one, else in the

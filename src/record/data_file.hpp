@@ -73,8 +73,8 @@ public:
     /// Adds a row. `user` holds one value per user column, in their order (monostate: null).
     void append(ObjectRow const& row, std::vector<CellValue> const& user);
 
-    /// Writes new rows to the unfinished file when that is due: a few seconds of wall-clock time after the last time, so
-    /// that at most 1 % of the run is spent on it unless the disk is slow. Call it often.
+    /// Writes new rows to the unfinished file when that is due: a few seconds of wall-clock time after the last time,
+    /// so that at most 1 % of the run is spent on it unless the disk is slow. Call it often.
     void save_if_due();
 
     /// Writes new rows to the unfinished file now.

@@ -1,5 +1,5 @@
-// Zeroed memory between two protected pages: a program that writes beyond the end of its user data faults there and does
-// not corrupt the simulator's own.
+// Zeroed memory between two protected pages: a program that writes beyond the end of its user data faults there and
+// does not corrupt the simulator's own.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The message of a program that ends at once, because nothing can be relied on after a crash. It is composed in a signal
-// handler, before anything else is tried, and only states what is certain at the current stage of the program.
+// The message of a program that ends at once, because nothing can be relied on after a crash. It is composed in a
+// signal handler, before anything else is tried, and only states what is certain at the current stage of the program.
 #pragma once
 
 #include <string>
@@ -30,8 +30,8 @@ using PlaceText = SignalText<512>;
 /// "user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s": which user code runs. For signal handlers.
 PlaceText running_place();
 
-/// Composes the message. It starts with what is certain and adds details one by one: any access to memory that user code
-/// may have corrupted can be the last. For signal handlers.
+/// Composes the message. It starts with what is certain and adds details one by one: any access to memory that user
+/// code may have corrupted can be the last. For signal handlers.
 void prepare_last_words(char const* what, bool in_other_thread);
 
 /// The same for a program that ends although nothing has failed.

@@ -1,5 +1,5 @@
-// Reporting a crash in a thread requires a separate stack for the handler, as the thread's own may be full. The thread of
-// the simulator does not end by itself.
+// Reporting a crash in a thread requires a separate stack for the handler, as the thread's own may be full. The thread
+// of the simulator does not end by itself.
 #pragma once
 
 namespace pogosim {

@@ -82,7 +82,8 @@ void warn_of_missing_init(std::span<Computer const> computers) {
     auto const is_prepared = [](Computer const& computer) { return computer.program.prepared; };
     if (std::ranges::any_of(computers, runs) && std::ranges::none_of(computers, is_prepared)) {
         log().warn(
-            "the program never calls pogobot_init(), which real robots require: call it in main(), before pogobot_start()");
+            "the program never calls pogobot_init(), which real robots require: call it in main(), before "
+            "pogobot_start()");
     }
 }
 

@@ -404,7 +404,8 @@ void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* catego
     }
     if (context.computer->program.registered) {
         context.services->warn_once(
-            "pogobot_start() is called again for the category '{}': the simulator uses the last call, a real robot the first",
+            "pogobot_start() is called again for the category '{}': the simulator uses the last call, a real robot the "
+            "first",
             category);
     }
     context.computer->program.registered = true;

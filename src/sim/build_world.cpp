@@ -206,7 +206,8 @@ void warn_of_gaps(Scenario const& scenario) {
             if (other.nb > 0 && other.spec.body && !other.spec.ring &&
                 2.0F * bounding_radius(other.spec.shape) < gap_mm) {
                 log().warn(
-                    "{}: the gaps between its dots can grow to {:.1f} mm, so '{}' may slip through; use more or larger dots",
+                    "{}: the gaps between its dots can grow to {:.1f} mm, so '{}' may slip through; use more or larger "
+                    "dots",
                     where_in_object(scenario, membrane, "num_dots"), gap_mm, other.category);
             }
         }

@@ -38,13 +38,13 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
     if (in_a_step <= motion.most) {
         return;
     }
-    throw ConfigError(fmt::format(
-        "{}: at {} {}, robots {} up to {} {} in a time_step of {} s, more than the {} {} that {}. Use at most {} {}, or a "
-        "time_step of at most {} s",
-        where_in_object(scenario, object, motion.key), text(motion.speed), motion.speed_unit, motion.verb,
-        text(in_a_step), motion.unit, text(time_step_s), text(motion.most), motion.unit, motion.reason,
-        text(rounded_down(motion.most / motion.per_key / time_step_s)), motion.speed_unit,
-        text(rounded_down(motion.most / motion.per_key / motion.speed))));
+    throw ConfigError(
+        fmt::format("{}: at {} {}, robots {} up to {} {} in a time_step of {} s, more than the {} {} that {}. Use at "
+                    "most {} {}, or a time_step of at most {} s",
+                    where_in_object(scenario, object, motion.key), text(motion.speed), motion.speed_unit, motion.verb,
+                    text(in_a_step), motion.unit, text(time_step_s), text(motion.most), motion.unit, motion.reason,
+                    text(rounded_down(motion.most / motion.per_key / time_step_s)), motion.speed_unit,
+                    text(rounded_down(motion.most / motion.per_key / motion.speed))));
 }
 
 }  // namespace

@@ -98,8 +98,8 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
     auto const dark = std::ranges::count_if(areas, is_dark);
     if (dark > 0) {
         log().warn(
-            "{}: the lamp lights no cell of the light map{}: it covers no cell centre, and cells measure {:.1f} mm x {:.1f} mm; "
-            "enlarge the lamp, or use more cells (light_map_nb_bin_x, light_map_nb_bin_y)",
+            "{}: the lamp lights no cell of the light map{}: it covers no cell centre, and cells measure {:.1f} mm x "
+            "{:.1f} mm; enlarge the lamp, or use more cells (light_map_nb_bin_x, light_map_nb_bin_y)",
             where_in_object(scenario, object, size_key(shape)),
             dark < std::ssize(areas) ? " on parts of its orbit" : "", map.cell_mm.x, map.cell_mm.y);
     }

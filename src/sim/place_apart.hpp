@@ -9,8 +9,8 @@
 
 namespace pogosim {
 
-/// Places the objects of an entry that has an `own_formation`: inside the part of its area that is in the arena, clear of
-/// the obstacles. One pose per object. Throws ConfigError if they do not fit, or if the area is outside the arena.
+/// Places the objects of an entry that has an `own_formation`: inside the part of its area that is in the arena, clear
+/// of the obstacles. One pose per object. Throws ConfigError if they do not fit, or if the area is outside the arena.
 std::vector<Placement> place_apart(Scenario const& scenario, World const& world, ObjectConfig const& object,
                                    std::vector<Obstacle> obstacles, RandomStream& random);
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,11 @@ sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs
 from running import PROGRAMS, compile_program  # noqa: E402
 
 Compile = Callable[[str], Path]
+
+# Programs inherit what is ignored: SIGHUP under nohup, SIGINT and SIGQUIT in the background of a shell.
+for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2):
+    if signal.getsignal(number) == signal.SIG_IGN:
+        signal.signal(number, signal.SIG_DFL)
 
 
 @pytest.fixture(scope="session")

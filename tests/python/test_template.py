@@ -196,7 +196,7 @@ def test_missing_pogosim_is_one_helpful_line(tmp_path: Path) -> None:
     assert sentence(make(project, "clean", "sim")) == f"Pogosim is not found: {advice}"
     nowhere = f"POGOSIM_DIR={tmp_path}"
     assert sentence(make(project, "sim", nowhere)) == f"Pogosim is not found in {tmp_path}: {advice}"
-    assert "pkg-config is missing" in sentence(make(project, "sim", "PKG_CONFIG=no-such-program"))
+    assert "pkg-config is also missing" in sentence(make(project, "sim", "PKG_CONFIG=no-such-program"))
     assert make(project, "clean").code == 0
 
 

@@ -198,9 +198,9 @@ TEST(Placement, SaysWhatIsWrongWhere) {
         << build(small).error;
     EXPECT_TRUE(build(small).error.ends_with("reduce nb or enlarge the area")) << build(small).error;
     std::string const away = "  it: {type: pogobot, geometry: disk, area: {x: 5000, y: 500, radius: 50}}\n";
-    EXPECT_EQ(
-        build(away).error,
-        "x.yaml:6: objects.it.area: it lies entirely outside the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm");
+    EXPECT_EQ(build(away).error,
+              "x.yaml:6: objects.it.area: it lies entirely outside the arena, which extends from (0.0, 0.0) to "
+              "(1000.0, 1000.0) mm");
 }
 
 TEST(Placement, RowsOfAFileGoToTheCategoriesInTheirOrderAndRowsTooManyAreSaid) {

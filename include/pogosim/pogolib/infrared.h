@@ -120,8 +120,8 @@ uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16
 /// Sends four long messages, one through each emitter, so that receivers see which one. Returns 0, or the number of
 /// messages that were not sent.
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size);
-/// Sends a long message through one emitter; with `ir_all`, like pogobot_infrared_sendLongMessage_omniGen(). Same return
-/// values.
+/// Sends a long message through one emitter; with `ir_all`, like pogobot_infrared_sendLongMessage_omniGen(). Same
+/// return values.
 uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* const message, uint16_t const message_size);
 /// Sends a short message (3 bytes of header: no sender, no emitter) through all emitters at once. Returns 0, or 1 if
 /// nothing was sent because the payload is longer than 382 bytes or NULL.
@@ -132,12 +132,13 @@ uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const 
 /// nothing is sent, with a warning), with the range of the largest of these powers. Sets type and sender. Returns 0, or
 /// 1 if nothing was sent because the message is NULL or `payload_length` is above 382.
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message);
-/// Sends a short message unchanged, through one emitter or, with `ir_all`, all. Sets the type. Same return values as for
-/// long ones.
+/// Sends a short message unchanged, through one emitter or, with `ir_all`, all. Sets the type. Same return values as
+/// for long ones.
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message);
 
 /// Power of the emitters for the functions above except raw long messages: 0 to 3 (more counts as 3), initially 1. 0
-/// sends nothing. In the simulator, `communication_radius_by_power` sets the ranges of 1 to 3; by default they are equal.
+/// sends nothing. In the simulator, `communication_radius_by_power` sets the ranges of 1 to 3; by default they are
+/// equal.
 void pogobot_infrared_set_power(uint8_t power);
 
 // Receiving, without msg_rx_fn. When the queue is full, new messages are dropped.
@@ -161,8 +162,8 @@ void pogobot_infrared_ll_init(void);
 
 POGO_END_API
 
-/// Removes the oldest message from the queue; bytes beyond its payload are zero. If no message is waiting, warns once and
-/// leaves the argument unchanged.
+/// Removes the oldest message from the queue; bytes beyond its payload are zero. If no message is waiting, warns once
+/// and leaves the argument unchanged.
 static inline void pogobot_infrared_recover_next_message(message_t* message) {
     pogosim_recover_next_message(message, MAX_PAYLOAD_SIZE_BYTES);
 }

@@ -1,7 +1,7 @@
 /// @file
-/// The motors. A power, once set, drives the robot until it is changed. With powers L and R, a simulated robot drives at
-/// `max_linear_speed` (L + R) / 2046 and turns clockwise at `max_angular_speed` (L - R) / 511.5, with the noise and the
-/// bias of its category. Motors of walls, membranes, pogobjects and active objects do nothing.
+/// The motors. A power, once set, drives the robot until it is changed. With powers L and R, a simulated robot drives
+/// at `max_linear_speed` (L + R) / 2046 and turns clockwise at `max_angular_speed` (L - R) / 511.5, with the noise and
+/// the bias of its category. Motors of walls, membranes, pogobjects and active objects do nothing.
 #ifndef POGOSIM_POGOLIB_MOTORS_H
 #define POGOSIM_POGOLIB_MOTORS_H
 

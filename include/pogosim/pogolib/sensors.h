@@ -19,8 +19,8 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number);
 /// from above), three floats each, not NULL. Clamped to +-156.9 m/s2 and +-34.9 rad/s like the real chip. The simulator
 /// has neither gravity nor tilt: acc[2], gyro[0] and gyro[1] are 0. The acceleration is the change of velocity between
 /// the last two ticks (0 at the first), divided by the robot's time between them. With a `time_step` of 10 ms (the
-/// default), ticks of 16 ms are 10 or 20 ms apart, so in a steady turn it alternates around its mean; with a `time_step`
-/// of 8 or 16 ms it does not.
+/// default), ticks of 16 ms are 10 or 20 ms apart, so in a steady turn it alternates around its mean; with a
+/// `time_step` of 8 or 16 ms it does not.
 void pogobot_imu_read(float* acc, float* gyro);
 
 /// Temperature of the chip, degrees Celsius, -40 to 85; `arena_temperature` in the simulator.

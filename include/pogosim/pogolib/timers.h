@@ -1,8 +1,8 @@
 /// @file
 /// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stops while user code runs and
-/// advances when the robot sleeps; a loop that waits for it ends nevertheless, since after a thousand clock queries in a
-/// tick, each further one takes a microsecond. Differences are clamped to the range of int32_t (35 minutes); on a real
-/// robot they wrap around after about 107 s.
+/// advances when the robot sleeps; a loop that waits for it ends nevertheless, since after a thousand clock queries in
+/// a tick, each further one takes a microsecond. Differences are clamped to the range of int32_t (35 minutes); on a
+/// real robot they wrap around after about 107 s.
 #ifndef POGOSIM_POGOLIB_TIMERS_H
 #define POGOSIM_POGOLIB_TIMERS_H
 
