@@ -218,19 +218,20 @@ def test_interface_layer_is_short_enough_to_be_read() -> None:
     assert lines < 200
 
 
+def check_does_not_compile(source: Path, variable: str, function: str, message: str) -> None:
+    """Check that a variable, given to a function, does not compile, with a message that matches."""
+    source.write_text(f'#include "pogobase.h"\nstatic {variable};\nint main(void) {{ {function}(v); return 0; }}\n')
+    with pytest.raises(AssertionError, match=message):
+        compile_program(source.with_name("program"), source, flags=[])
+
+
 @pytest.mark.parametrize("suffix", [".c", ".cpp"])
 @pytest.mark.parametrize("variable", ["int* v", "struct { int a; } v", "int v[3]", "int64_t v", "char v[9]"])
 def test_variable_that_cannot_be_read_from_the_configuration_does_not_compile_and_says_why(
     suffix: str, variable: str, tmp_path: Path
 ) -> None:
-    source = (tmp_path / "main").with_suffix(suffix)
-    source.write_text(
-        f'#include "pogobase.h"\nstatic {variable};\nint main(void) {{ init_from_configuration(v); return 0; }}\n'
-    )
-    with pytest.raises(
-        AssertionError, match=r"init_from_configuration\(\) reads variables of type bool, float, double"
-    ):
-        compile_program(tmp_path / "program", source, flags=[])
+    message = r"init_from_configuration\(\) reads variables of type bool, float, double"
+    check_does_not_compile(tmp_path / f"main{suffix}", variable, "init_from_configuration", message)
 
 
 @pytest.mark.parametrize("suffix", [".c", ".cpp"])
@@ -238,12 +239,5 @@ def test_variable_that_cannot_be_read_from_the_configuration_does_not_compile_an
 def test_array_that_cannot_be_read_from_the_configuration_does_not_compile_and_says_why(
     suffix: str, variable: str, tmp_path: Path
 ) -> None:
-    source = (tmp_path / "main").with_suffix(suffix)
-    source.write_text(
-        f'#include "pogobase.h"\nstatic {variable};\nint main(void) {{ init_array_from_configuration(v); return 0; }}\n'
-    )
-    with pytest.raises(
-        AssertionError,
-        match=r"init_array_from_configuration\(\) reads arrays of float, double or char \(texts\) whose size",
-    ):
-        compile_program(tmp_path / "program", source, flags=[])
+    message = r"init_array_from_configuration\(\) reads arrays of float, double or char \(texts\) whose size"
+    check_does_not_compile(tmp_path / f"main{suffix}", variable, "init_array_from_configuration", message)

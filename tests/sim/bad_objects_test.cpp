@@ -206,10 +206,10 @@ TEST(BadObjects, NothingStartsOutsideOfTheArenaThoughALampReachesOut) {
     std::string const lamp = "  lamp: {type: static_light, geometry: disk, radius: 300, y: 500, x: ";
     EXPECT_EQ(error_with(robots + lamp + "500}\n", "lamp"), "no error");
     for (char const* x : {"0", "-500"}) {
-        EXPECT_EQ(error_with(robots + lamp + x + "}\n", "lamp"),
-                  "x.yaml:4: initial_formation_root_object: 'lamp' reaches beyond the arena, which extends from (0.0, "
-                  "0.0) to "
-                  "(1000.0, 1000.0) mm, and some of its contents would start there; move it or make it smaller");
+        EXPECT_EQ(
+            error_with(robots + lamp + x + "}\n", "lamp"),
+            "x.yaml:4: initial_formation_root_object: 'lamp' reaches beyond the arena, which extends from (0.0, "
+            "0.0) to (1000.0, 1000.0) mm, and some of its contents would start there; move it or make it smaller");
     }
 }
 
