@@ -85,6 +85,8 @@ struct Key {
     bool (*is_used)(T const&) = nullptr;  // absent: always; asked when the keys above it in the table have been read
     std::string_view same_as{};           // the key that this is an alias of; only one of them may be set
 
+    bool has_effect(T const& values) const { return is_used == nullptr || is_used(values); }
+
     /// The same key, which means something only where this is true of the struct. Elsewhere any value of its type is
     /// accepted, and ignored.
     Key only_if(bool (*condition)(T const&)) const {

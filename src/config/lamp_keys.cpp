@@ -89,12 +89,10 @@ std::span<Key<Vec2> const> lighthouse_centre_keys() {
 }
 
 void warn_of_lone_coordinate(MapReader const& reader, std::string_view x, std::string_view y, Vec2 centre_mm) {
-    bool const has_x = reader.find(x) != nullptr;
-    if (has_x != (reader.find(y) != nullptr)) {
-        std::string_view const given = has_x ? x : y;
-        std::string_view const missing = has_x ? y : x;
-        log().warn("{}: {}: {} without {}; {} is {:g}. Specify both", reader.find(given)->where(),
-                   reader.path_of(given), given, missing, missing, has_x ? centre_mm.y : centre_mm.x);
+    if (auto const lone = reader.lone_key(x, y)) {
+        log().warn("{}: {}: {} without {}; {} is {:g}. Specify both", reader.find(lone->given)->where(),
+                   reader.path_of(lone->given), lone->given, lone->missing, lone->missing,
+                   lone->missing == y ? centre_mm.y : centre_mm.x);
     }
 }
 

@@ -90,6 +90,14 @@ Node const* MapReader::find(std::string_view key) const {
     return value == nullptr || value->kind == Node::Kind::null ? nullptr : value;
 }
 
+std::optional<MapReader::LoneKey> MapReader::lone_key(std::string_view one, std::string_view other) const {
+    bool const has_one = find(one) != nullptr;
+    if (has_one == (find(other) != nullptr)) {
+        return std::nullopt;
+    }
+    return has_one ? LoneKey{one, other} : LoneKey{other, one};
+}
+
 std::string MapReader::path_of(std::string_view key) const {
     return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }

@@ -35,6 +35,14 @@ public:
     /// The value under a key, or nullptr when it is absent or null.
     Node const* find(std::string_view key) const;
 
+    /// One of two keys that must be given together, without the other.
+    struct LoneKey {
+        std::string_view given;
+        std::string_view missing;
+    };
+    /// Nothing when both are given, or neither.
+    std::optional<LoneKey> lone_key(std::string_view one, std::string_view other) const;
+
     /// The key path of a key of this map.
     std::string path_of(std::string_view key) const;
 
@@ -88,7 +96,7 @@ template <class T>
 void MapReader::read(std::span<Key<T> const> keys, T& into) {
     for (Key<T> const& key : keys) {
         refuse_both_names(key.name, key.same_as);
-        read_one(key, key.is_used == nullptr || key.is_used(into), into);
+        read_one(key, key.has_effect(into), into);
     }
     note_values(keys, into);
 }
@@ -96,7 +104,7 @@ void MapReader::read(std::span<Key<T> const> keys, T& into) {
 template <class T>
 void MapReader::note_values(std::span<Key<T> const> keys, T const& from) {
     for (Key<T> const& key : keys) {
-        if (key.same_as.empty() && (key.is_used == nullptr || key.is_used(from))) {
+        if (key.same_as.empty() && key.has_effect(from)) {
             set_value(key.name, value_of(key, from));
         }
     }

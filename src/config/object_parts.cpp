@@ -5,7 +5,6 @@
 #include <array>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "config/lamp_keys.hpp"
 #include "config/reception_keys.hpp"
@@ -129,10 +128,9 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind) 
 void read_position(MapReader& reader, ObjectConfig& object) {
     Position position;
     reader.read(position_keys(), position);
-    if (position.x.has_value() != position.y.has_value()) {
-        auto const [given, missing] = position.x ? std::pair{"x", "y"} : std::pair{"y", "x"};
-        fail_at({*reader.find(given), reader.path_of(given)},
-                fmt::format("{} without {}; specify both or neither", given, missing));
+    if (auto const lone = reader.lone_key("x", "y")) {
+        fail_at({*reader.find(lone->given), reader.path_of(lone->given)},
+                fmt::format("{} without {}; specify both or neither", lone->given, lone->missing));
     }
     if (position.x) {
         object.position_mm = Vec2{*position.x, *position.y};

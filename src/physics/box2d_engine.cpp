@@ -270,9 +270,10 @@ private:
 }  // namespace
 
 MotionLimits box2d_motion_limits(World const& world) {
-    return {.motion_mm = kMostSubsteps * most_motion_mm(world),
+    float const most_mm = most_motion_mm(world);
+    return {.motion_mm = kMostSubsteps * most_mm,
             .turn_rad = kMostSubsteps * kMostTurnRad,
-            .is_of_rings = most_motion_mm(world) < kMostMotionMm};
+            .is_of_rings = most_mm < kMostMotionMm};
 }
 
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls) {
