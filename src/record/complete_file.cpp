@@ -1,5 +1,7 @@
 #include "record/complete_file.hpp"
 
+#include <arrow/io/file.h>
+#include <arrow/ipc/reader.h>
 #include <arrow/util/compression.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -123,6 +125,30 @@ Status CompleteFile::finish(bool sync) {
     }
     synced_ = sync;
     return Status::OK();
+}
+
+arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::copy_with(std::shared_ptr<arrow::Schema> const& schema,
+                                                                     LockedFile const& unfinished, bool sync) {
+    int const duplicate = fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+    if (duplicate < 0) {
+        return system_error(errno);
+    }
+    ARROW_ASSIGN_OR_RAISE(auto const input, arrow::io::ReadableFile::Open(duplicate));
+    auto options = arrow::ipc::IpcReadOptions::Defaults();
+    options.use_threads = false;
+    ARROW_ASSIGN_OR_RAISE(auto const reader, arrow::ipc::RecordBatchFileReader::Open(input, options));
+    // There is one scratch file at a time. Without a name, this one goes with the process.
+    if (!path_.empty()) {
+        remove_scratch_file();
+        path_.clear();
+    }
+    ARROW_ASSIGN_OR_RAISE(auto copy, start(unfinished, schema));
+    for (int i = 0; i < reader->num_record_batches(); ++i) {
+        ARROW_ASSIGN_OR_RAISE(auto const batch, reader->ReadRecordBatch(i));
+        ARROW_RETURN_NOT_OK(copy->append(*batch));
+    }
+    ARROW_RETURN_NOT_OK(copy->finish(sync));
+    return copy;
 }
 
 /// Renaming is only possible if the file then equals the unfinished one to the user: same owner, no other hard link.

@@ -36,6 +36,11 @@ public:
     /// Writes the footer; afterwards all rows are in the file. `sync`: waits until it is on the disk.
     arrow::Status finish(bool sync);
 
+    /// The same finished file with a schema that has other metadata. It gets the name of this one, which has none
+    /// afterwards, even on failure.
+    arrow::Result<std::unique_ptr<CompleteFile>> copy_with(std::shared_ptr<arrow::Schema> const& schema,
+                                                           LockedFile const& unfinished, bool sync);
+
     /// Replaces the unfinished file, even if that was removed, with the finished one: by renaming it, or else by
     /// copying its bytes. Fails if another file is there now.
     arrow::Status take_the_place_of(LockedFile const& unfinished);

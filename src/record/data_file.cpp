@@ -4,6 +4,7 @@
 #include <arrow/array/concatenate.h>
 #include <arrow/util/key_value_metadata.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -149,6 +150,8 @@ struct DataFile::Impl {
     std::int64_t flush_row_count;
     Columns columns;
     std::shared_ptr<arrow::Schema> schema;
+    std::shared_ptr<arrow::Schema> final_schema;  // of the complete file: with metadata added during the run
+    std::vector<std::string> added_keys;
     std::unique_ptr<UnfinishedFile> unfinished;
     std::unique_ptr<CompleteFile> complete;  // from the first full batch on
     Pieces unsaved;                          // not yet in the unfinished file
@@ -165,6 +168,7 @@ struct DataFile::Impl {
         : path(options.path), file(std::move(locked)), flush_row_count(options.flush_row_count), columns(options) {
         assert(flush_row_count > 0);
         schema = arrow::schema(columns.fields(), make_metadata(options));
+        final_schema = schema;
         auto started = UnfinishedFile::start(file.descriptor(), schema);
         if (!started.ok()) {
             fail(path, reason_of(started.status()));
@@ -271,9 +275,9 @@ struct DataFile::Impl {
     }
 
     /// Moves rows to the complete file.
-    Status add_to_complete() {
+    Status add_to_complete(std::shared_ptr<arrow::Schema> const& complete_schema) {
         if (!complete) {
-            ARROW_ASSIGN_OR_RAISE(complete, CompleteFile::start(file, schema));
+            ARROW_ASSIGN_OR_RAISE(complete, CompleteFile::start(file, complete_schema));
         }
         if (uncompleted.row_count == 0) {
             return Status::OK();
@@ -286,8 +290,24 @@ struct DataFile::Impl {
 
     Status finish() {
         ARROW_RETURN_NOT_OK(cut());
-        ARROW_RETURN_NOT_OK(add_to_complete());
-        return complete->finish(clock.run_is_long());
+        bool const lacks_metadata = complete && !added_keys.empty();
+        ARROW_RETURN_NOT_OK(add_to_complete(final_schema));
+        ARROW_RETURN_NOT_OK(complete->finish(clock.run_is_long()));
+        if (lacks_metadata) {
+            replace_schema_of_complete();
+        }
+        return Status::OK();
+    }
+
+    /// What was begun without the metadata is copied. Where that is impossible, all rows are there nevertheless.
+    void replace_schema_of_complete() {
+        auto copy = complete->copy_with(final_schema, file, clock.run_is_long());
+        if (copy.ok()) {
+            complete = std::move(copy).ValueUnsafe();
+        } else {
+            log().warn("the metadata of the data file '{}' lack the entry '{}': {}", path, fmt::join(added_keys, ", "),
+                       reason_of(copy.status()));
+        }
     }
 
     /// After a failure, only the unfinished file remains.
@@ -351,7 +371,7 @@ void DataFile::append(ObjectRow const& row, std::vector<CellValue> const& user) 
     impl_->count_row(row.time_s);
     if (impl_->buffered_rows + impl_->uncompleted.row_count == impl_->flush_row_count && impl_->is_writable()) {
         impl_->check(impl_->cut());
-        impl_->check(impl_->add_to_complete());
+        impl_->check(impl_->add_to_complete(impl_->schema));
         if (impl_->unsaved.row_count >= kMostUnsavedRows) {
             impl_->check(impl_->save());
         }
@@ -369,6 +389,13 @@ void DataFile::save() {
     if (impl_->is_writable()) {
         impl_->check(impl_->save());
     }
+}
+
+void DataFile::add_metadata(std::string const& key, std::string const& value) {
+    auto const metadata = impl_->final_schema->metadata()->Copy();
+    metadata->Append(key, replace_malformed(value));
+    impl_->final_schema = impl_->schema->WithMetadata(metadata);
+    impl_->added_keys.push_back(key);
 }
 
 void DataFile::close() {

@@ -80,6 +80,10 @@ public:
     /// Writes new rows to the unfinished file now.
     void save();
 
+    /// Adds an entry to the metadata of the complete file; the unfinished one does not get it. Where the complete one
+    /// has been begun, it is copied once more at the end.
+    void add_metadata(std::string const& key, std::string const& value);
+
     /// Completes the file, and checks that all of it reached the disk. Further calls do nothing.
     void close();
 

@@ -2,6 +2,7 @@
 
 #include <spdlog/sinks/ostream_sink.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -206,6 +207,31 @@ TEST_F(DataFileContent, MetadataStandsInTheSchemaInItsOrder) {
     for (std::int64_t i = 0; i < read->size(); ++i) {
         EXPECT_EQ(read->key(i), metadata[static_cast<std::size_t>(i)].first);
         EXPECT_EQ(read->value(i), metadata[static_cast<std::size_t>(i)].second);
+    }
+}
+
+TEST_F(DataFileContent, MetadataAddedDuringTheRunStandsBehindTheOther) {
+    for (int const flush_row_count : {10, 49, 50, 1000}) {  // batches before, none left, none before
+        DataFileOptions const options{.path = path("a.feather"),
+                                      .flush_row_count = flush_row_count,
+                                      .metadata = {{"program_version", "v1.2.3"}, {"configuration", "a: 1"}}};
+        DataFile file(options);
+        for (int i = 0; i < 50; ++i) {
+            file.append(robot_row(i, 0.0), {});
+        }
+        file.add_metadata("touched", "once \xFF");
+        file.close();
+
+        auto const data = read_back(path("a.feather"));
+        auto const read = data.table->schema()->metadata();
+        EXPECT_EQ(read->keys(), (std::vector<std::string>{"program_version", "configuration", "touched"}));
+        EXPECT_EQ(read->Get("touched").ValueOrDie(), "once \xEF\xBF\xBD");
+        ASSERT_EQ(data.table->num_rows(), 50);
+        for (int i = 0; i < 50; ++i) {
+            EXPECT_EQ(data.text("robot_id", i), std::to_string(i));
+        }
+        EXPECT_EQ(data.rows_of_batch.front(), std::min(flush_row_count, 50));
+        EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
     }
 }
 

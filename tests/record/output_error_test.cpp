@@ -163,6 +163,21 @@ TEST_F(OutputFailure, DiskThatFillsUpWithTheCompleteFileLeavesTheUnfinishedOne) 
     EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
 }
 
+TEST_F(OutputFailure, DiskWithoutRoomForAddedMetadataHoldsAllRowsWithoutThem) {
+    // Rows that compress well, in batches that are read again: only metadata that do not compress need room.
+    DataFile file({.path = path("a.feather"), .flush_row_count = 10, .metadata = {{"program_version", "v1.2.3"}}});
+    for (int i = 0; i < 50; ++i) {
+        file.append({.category = "robots"}, {});
+    }
+    file.add_metadata("touched", std::string(200000, 'x'));
+    FileSizeLimit const limit(100000);
+    file.close();
+    auto const data = read_back(path("a.feather"));
+    EXPECT_EQ(data.table->num_rows(), 50);
+    EXPECT_FALSE(data.table->schema()->metadata()->Contains("touched"));
+    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
+}
+
 TEST_F(OutputFailure, FileRemovedDuringTheRunIsMadeAgain) {
     DataFile file({.path = path("a.feather")});
     file.append({.category = "robots"}, {});
