@@ -1,0 +1,21 @@
+// The simulator's own threads, which never run user code.
+#pragma once
+
+#include <functional>
+#include <thread>
+
+namespace pogosim {
+
+/// Runs `body`, which must not throw, in a thread that takes no signals from outside: Ctrl-C and timers are for the
+/// thread that runs the robots. Crashes are still reported. Throws std::system_error if the system has no thread left.
+std::thread start_background_thread(std::function<void()> body);
+
+/// True in a thread that was started so.
+bool on_background_thread();
+
+/// A thread that was started so has crashed, and has been stopped where it was: nobody must wait for it. For signal
+/// handlers.
+void note_crash_of_background_thread();
+bool has_background_thread_crashed();
+
+}  // namespace pogosim
