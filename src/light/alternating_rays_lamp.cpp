@@ -24,19 +24,34 @@ enum Phase { long_white, ray_1, short_white, ray_2, phase_count };
 constexpr double kSweepRad = std::numbers::pi / 2.0;
 
 struct Lighthouse {
-    BearingOrder cells;          // as seen from its corner
+    Vec2 corner_mm;              // where it stands
+    BearingOrder cells;          // as seen from there
     double to_centre_rad = 0.0;  // direction of the box's centre
 
-    /// Cells in the beam when it has turned so far since the start of its sweep.
+    /// Direction of the beam when it has turned so far since the start of its sweep.
+    double beam_rad(AlternatingRaysSpec const& spec, double turned_rad) const {
+        return to_centre_rad - std::copysign(0.5 * kSweepRad, spec.angular_speed_rad_s) + turned_rad;
+    }
+
+    /// Cells in the beam.
     std::array<CellRun, 2> beam(AlternatingRaysSpec const& spec, double turned_rad) const {
-        double const start_rad = to_centre_rad - std::copysign(0.5 * kSweepRad, spec.angular_speed_rad_s);
-        return cells.beam(start_rad + turned_rad, spec.half_width_rad);
+        return cells.beam(beam_rad(spec, turned_rad), spec.half_width_rad);
+    }
+
+    LampMark mark(AlternatingRaysSpec const& spec, LampState const& state, bool is_on) const {
+        return {.centre_mm = corner_mm,
+                .shape = spec.shape,
+                .shape_mm = spec.centre_mm,
+                .has_beam = true,
+                .beam_rad = is_on ? wrap_angle(static_cast<float>(beam_rad(spec, state.angle_rad))) : 0.0F,
+                .beam_is_on = is_on};
     }
 };
 
 Lighthouse lighthouse_at(Vec2 corner_mm, Vec2 centre_mm, std::vector<std::uint32_t> cells, LightMap const& map) {
     Vec2 const to_centre = centre_mm - corner_mm;
-    return {.cells = BearingOrder(std::move(cells), map, corner_mm),
+    return {.corner_mm = corner_mm,
+            .cells = BearingOrder(std::move(cells), map, corner_mm),
             .to_centre_rad = std::atan2(static_cast<double>(to_centre.y), static_cast<double>(to_centre.x))};
 }
 
@@ -69,6 +84,11 @@ public:
         for (CellRun const run : lit.beam(spec_, state.angle_rad)) {
             overwrite(run, spec_.value, map, painted);
         }
+    }
+
+    void mark(LampState const& state, std::vector<LampMark>& marks) const override {
+        marks.push_back(first_.mark(spec_, state, state.phase == ray_1));
+        marks.push_back(second_.mark(spec_, state, state.phase == ray_2));
     }
 
 private:

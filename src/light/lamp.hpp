@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "geometry/arena.hpp"
+#include "world/lamp_mark.hpp"
 #include "world/specs.hpp"
 #include "world/world.hpp"
 
@@ -39,6 +40,9 @@ public:
 
     /// Puts its light on the map, and appends the cells it has written to `painted` (unless it is a still one).
     virtual void paint(LampState const& state, LightMap& map, std::vector<std::uint32_t>& painted) const = 0;
+
+    /// Appends where it stands; nothing when it has no place because its light is the same everywhere.
+    virtual void mark(LampState const& state, std::vector<LampMark>& marks) const = 0;
 };
 
 /// `map` gives the cells; its levels do not matter. All maps to paint on have the same cells.

@@ -63,6 +63,7 @@ void Lighting::update(World& world) {
     if (!any_changed) {
         return;
     }
+    ++change_count_;
 
     // Take the moving lamps off the map.
     LightMap& map = world.light;
@@ -81,6 +82,14 @@ void Lighting::update(World& world) {
             entry.lamp->paint(entry.shown, map, painted_);
         }
     }
+}
+
+std::vector<LampMark> Lighting::marks() const {
+    std::vector<LampMark> marks;
+    for (Entry const& entry : lamps_) {
+        entry.lamp->mark(entry.shown, marks);
+    }
+    return marks;
 }
 
 void Lighting::sum_still_lamps(LightMap& map) {

@@ -31,9 +31,9 @@ class RotatingRayLamp : public Lamp {
 public:
     RotatingRayLamp(RotatingRaySpec const& spec, Arena const& arena, LightMap const& map)
         : spec_(spec),
+          apex_mm_(is_everywhere(spec.shape) ? arena.bounds.centre() + spec.centre_mm : spec.centre_mm),
           cycle_s_(cycle_s(spec)),
-          cells_(lit_cells(spec.shape, spec.centre_mm, arena, map), map,
-                 is_everywhere(spec.shape) ? arena.bounds.centre() + spec.centre_mm : spec.centre_mm) {}
+          cells_(lit_cells(spec.shape, spec.centre_mm, arena, map), map, apex_mm_) {}
 
     Layer layer() const override { return Layer::overwriting; }
 
@@ -59,8 +59,19 @@ public:
         }
     }
 
+    void mark(LampState const& state, std::vector<LampMark>& marks) const override {
+        bool const is_on = state.phase == beam;
+        marks.push_back({.centre_mm = apex_mm_,
+                         .shape = spec_.shape,
+                         .shape_mm = apex_mm_,
+                         .has_beam = true,
+                         .beam_rad = is_on ? wrap_angle(static_cast<float>(state.angle_rad)) : 0.0F,
+                         .beam_is_on = is_on});
+    }
+
 private:
     RotatingRaySpec spec_;
+    Vec2 apex_mm_;
     double cycle_s_;
     BearingOrder cells_;  // as seen from where it stands
 };

@@ -72,17 +72,24 @@ public:
     Layer layer() const override { return is_seen_moving(spec_) ? Layer::moving : Layer::still; }
 
     LampState state_at(double time_s) const override {
-        Phase const phase = phase_at(spec_, time_s);
-        if (phase == dark) {
-            return {.phase = phase};
-        }
         double const turned = is_seen_moving(spec_) ? spec_.orbit.angular_speed_rad_s * time_s : 0.0;
-        return {.phase = phase, .angle_rad = std::remainder(spec_.orbit.phase_rad + turned, 2.0 * std::numbers::pi)};
+        return {.phase = phase_at(spec_, time_s),
+                .angle_rad = std::remainder(spec_.orbit.phase_rad + turned, 2.0 * std::numbers::pi)};
     }
 
     void paint(LampState const& state, LightMap& map, std::vector<std::uint32_t>& painted) const override;
 
+    void mark(LampState const& state, std::vector<LampMark>& marks) const override {
+        if (!is_everywhere(spec_.shape) || spec_.mode == LightMode::gradient) {
+            marks.push_back({.centre_mm = centre_mm(state), .shape = spec_.shape, .shape_mm = centre_mm(state)});
+        }
+    }
+
 private:
+    Vec2 centre_mm(LampState const& state) const {
+        return spec_.centre_mm + spec_.orbit.radius_mm * direction(static_cast<float>(state.angle_rad));
+    }
+
     template <class LevelAt>
     void add(Vec2 centre_mm, LevelAt const& level_at, LightMap& map, std::vector<std::uint32_t>& painted) const;
 
@@ -95,7 +102,7 @@ void SpotLamp::paint(LampState const& state, LightMap& map, std::vector<std::uin
     if (state.phase == dark) {
         return;
     }
-    Vec2 const centre = spec_.centre_mm + spec_.orbit.radius_mm * direction(static_cast<float>(state.angle_rad));
+    Vec2 const centre = centre_mm(state);
     Blend const blend(spec_.value, spec_.edge_value);
     if (state.phase == flash) {
         add(

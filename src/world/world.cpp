@@ -12,6 +12,19 @@ std::int16_t LightMap::at(Vec2 point_mm) const {
     return level[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
 }
 
+Vec2 centre_mm(World const& world, Object const& object) {
+    if (object.body == kNone) {
+        return object.fixed_mm;
+    }
+    // The first one plus the mean offset from it, so that a single body's place is exact.
+    Vec2 const first = world.bodies.position_mm[object.body];
+    Vec2 sum;
+    for (std::uint32_t k = 1; k < object.body_count; ++k) {
+        sum = sum + (world.bodies.position_mm[object.body + k] - first);
+    }
+    return first + (1.0F / static_cast<float>(object.body_count)) * sum;
+}
+
 Vec2 minimum_image(World const& world, Vec2 a, Vec2 b) {
     Vec2 d = b - a;
     if (world.periodic) {

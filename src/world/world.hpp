@@ -155,6 +155,9 @@ struct World {
     RobotSpec const& spec_of(std::size_t robot) const { return *categories[robots.category[robot]].spec.robot; }
 };
 
+/// Middle of an object: of its bodies, or where it stands when it has none. Not wrapped.
+Vec2 centre_mm(World const& world, Object const& object);
+
 /// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.
 Vec2 minimum_image(World const& world, Vec2 a, Vec2 b);
 

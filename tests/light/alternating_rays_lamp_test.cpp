@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "lit_world.hpp"
@@ -121,6 +122,28 @@ TEST(AlternatingRays, WithoutSpeedTheFirstBeamStaysAtItsStart) {
 TEST(AlternatingRays, OverwriteWhatOtherLampsShine) {
     World const world = lit_world({lighthouses(), testing::global_lamp(2000)}, 1.0);
     expect_beam(world, kCorner1, -kPi / 4.0, 0.05, 500, 2000);
+}
+
+TEST(AlternatingRays, MarksStandInTheCornersAndPointAlongTheBeams) {
+    World world = testing::dark_world();
+    Lighting lighting({lighthouses()}, world);
+    for (auto const& [time_s, first_is_on, second_is_on] :
+         {std::tuple{0.2, false, false}, {0.9, true, false}, {1.55, false, false}, {2.2, false, true}}) {
+        world.step = std::lround(time_s / world.time_step_s);
+        lighting.update(world);
+        auto const marks = lighting.marks();
+        ASSERT_EQ(marks.size(), 2U);
+        EXPECT_EQ(marks[0].centre_mm, kCorner1);
+        EXPECT_EQ(marks[1].centre_mm, kCorner2);
+        EXPECT_TRUE(marks[0].has_beam && marks[1].has_beam);
+        EXPECT_EQ(marks[0].beam_is_on, first_is_on) << time_s;
+        EXPECT_EQ(marks[1].beam_is_on, second_is_on) << time_s;
+        for (LampMark const& mark : marks) {
+            if (mark.beam_is_on) {
+                expect_beam(world, mark.centre_mm, mark.beam_rad, 0.05, 500, 0);
+            }
+        }
+    }
 }
 
 }  // namespace

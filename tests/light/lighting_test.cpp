@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/random.hpp"
@@ -143,6 +145,51 @@ TEST(Lighting, MapsNeedNotBeSquare) {
         double const y = (static_cast<double>(cell / 7) + 0.5) * 1000.0 / 200.0;
         ASSERT_EQ(world.light.level[cell], std::abs(std::atan2(y - 500.0, x - 500.0)) <= 0.3 ? 10 : 0) << cell;
     }
+}
+
+TEST(Lighting, MarkOfALampFollowsItsOrbit) {
+    SpotSpec lamp = disk_lamp(1000);
+    lamp.orbit = {.radius_mm = 100.0F, .angular_speed_rad_s = std::numbers::pi / 2.0, .phase_rad = 0.0};
+    lamp.photo_start_at_s = 1.5F;  // a dark lamp moves, too
+    World world = testing::dark_world();
+    Lighting lighting({lamp}, world);
+    for (auto const& [time_s, place] : {std::pair{0.0, Vec2{605, 505}}, {1.0, {505, 605}}, {2.0, {405, 505}}}) {
+        world.step = std::lround(time_s / world.time_step_s);
+        lighting.update(world);
+        auto const marks = lighting.marks();
+        ASSERT_EQ(marks.size(), 1U);
+        EXPECT_NEAR(marks[0].centre_mm.x, place.x, 0.01F);
+        EXPECT_NEAR(marks[0].centre_mm.y, place.y, 0.01F);
+        EXPECT_EQ(marks[0].shape_mm, marks[0].centre_mm);
+        EXPECT_EQ(marks[0].shape, lamp.shape);
+        EXPECT_FALSE(marks[0].has_beam);
+    }
+}
+
+TEST(Lighting, LightThatIsTheSameEverywhereHasNoMark) {
+    World world = testing::dark_world();
+    SpotSpec gradient = global_lamp(200);
+    gradient.mode = LightMode::gradient;
+    gradient.centre_mm = {300, 400};
+    Lighting lighting({global_lamp(200), gradient}, world);
+    lighting.update(world);
+    auto const marks = lighting.marks();
+    ASSERT_EQ(marks.size(), 1U);
+    EXPECT_EQ(marks[0].centre_mm, (Vec2{300, 400}));
+}
+
+TEST(Lighting, ChangesAreCountedWhenTheMapChanges) {
+    SpotSpec flash = global_lamp(200);
+    flash.photo_start_at_s = 0.02F;
+    flash.photo_start_duration_s = 0.01F;
+    World world = testing::dark_world();
+    Lighting lighting({flash, global_lamp(5)}, world);
+    std::vector<std::int64_t> counts;
+    for (world.step = 0; world.step < 6; ++world.step) {
+        lighting.update(world);
+        counts.push_back(lighting.change_count());
+    }
+    EXPECT_EQ(counts, (std::vector<std::int64_t>{1, 1, 2, 3, 3, 3}));
 }
 
 }  // namespace

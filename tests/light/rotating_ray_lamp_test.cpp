@@ -114,5 +114,21 @@ TEST(RotatingRay, StandsWhereItsCentreSaysFromTheMiddleOfTheMap) {
     expect_beam(lit_world({spec}, 0.8), {200, 600}, kPi * 0.7, 0.15, 500, 0);
 }
 
+TEST(RotatingRay, MarkPointsAlongTheBeam) {
+    World world = testing::dark_world();
+    Lighting lighting({lighthouse()}, world);
+    for (; world.step < 500; world.step += 7) {
+        lighting.update(world);
+        auto const marks = lighting.marks();
+        ASSERT_EQ(marks.size(), 1U);
+        EXPECT_EQ(marks[0].centre_mm, kCentre);
+        EXPECT_TRUE(marks[0].has_beam);
+        EXPECT_EQ(marks[0].beam_is_on, world.step % 210 >= 10) << world.step;
+        if (marks[0].beam_is_on) {
+            expect_beam(world, kCentre, marks[0].beam_rad, 0.15, 500, 0);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace pogosim
