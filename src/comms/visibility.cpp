@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "base/memory.hpp"
+#include "geometry/polygon.hpp"
 
 namespace pogosim {
 
@@ -31,11 +31,6 @@ float pseudo_angle(Vec2 direction) {
     return direction.y >= 0.0F ? 2.0F - side : -2.0F - side;
 }
 
-/// Distance of a robot's emitters from its centre.
-float rim_of(World const& world, std::uint32_t robot) {
-    return world.spec_of(robot).emitters == Emitters::rim ? world.bodies.radius_mm[world.robots.body[robot]] : 0.0F;
-}
-
 /// Index of the robot's outline.
 std::uint32_t outline_of(World const& world, std::uint32_t robot) {
     auto const found = std::ranges::find(world.outlines, robot, &Outline::robot);
@@ -43,6 +38,10 @@ std::uint32_t outline_of(World const& world, std::uint32_t robot) {
 }
 
 }  // namespace
+
+float emitter_radius_mm(World const& world, std::uint32_t robot) {
+    return world.spec_of(robot).emitters == Emitters::rim ? world.bodies.radius_mm[world.robots.body[robot]] : 0.0F;
+}
 
 void Visibility::update(World const& world) {
     Bodies const& bodies = world.bodies;
@@ -71,7 +70,7 @@ void Visibility::gather_candidates(World const& world, std::uint32_t robot, floa
     std::uint32_t const body = world.robots.body[robot];
     Vec2 const centre = world.bodies.position_mm[body];
     Vec2 const axis = world.bodies.axis[body];
-    float const reach_mm = rim_of(world, robot) + range_mm;
+    float const reach_mm = emitter_radius_mm(world, robot) + range_mm;
     candidates_.clear();
     float const farthest_mm = reach_mm + largest_radius_mm_;
     grid_.for_each_near(centre, farthest_mm, [&](std::uint32_t k, Vec2 position) {
@@ -88,7 +87,8 @@ void Visibility::gather_candidates(World const& world, std::uint32_t robot, floa
                                    .offset_mm = in_frame_of(offset, axis),
                                    .radius_mm = radius_mm,
                                    .nearest_mm2 = std::numeric_limits<float>::infinity(),
-                                   .from_emitter_mm = {}});
+                                   .from_emitter_mm = {},
+                                   .emitters = 0});
         }
     });
 }
@@ -112,7 +112,7 @@ void Visibility::cover(Sight const& sight) {
 }
 
 void Visibility::look(World const& world, std::uint32_t robot, int emitter, float range_mm) {
-    float const rim_mm = rim_of(world, robot);
+    float const rim_mm = emitter_radius_mm(world, robot);
     Vec2 const normal = kFaceNormals[static_cast<std::size_t>(emitter)];
 
     // Everything in range, in front of the emitter unless occlusions are ignored.
@@ -151,6 +151,7 @@ void Visibility::look(World const& world, std::uint32_t robot, int emitter, floa
 
     for (Sight const& sight : sights_) {
         Candidate& candidate = candidates_[sight.candidate];
+        candidate.emitters |= 1U << static_cast<unsigned>(emitter);
         if (sight.distance_mm2 < candidate.nearest_mm2) {
             candidate.nearest_mm2 = sight.distance_mm2;
             candidate.from_emitter_mm = rotate(sight.from_emitter_mm, normal);
@@ -160,25 +161,51 @@ void Visibility::look(World const& world, std::uint32_t robot, int emitter, floa
 
 void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm) {
     std::uint32_t const body = world.robots.body[robot];
-    float const rim_mm = rim_of(world, robot);
-    outline_reached_.assign(world.outlines.size(), false);
+    float const rim_mm = emitter_radius_mm(world, robot);
+    outline_emitters_.assign(world.outlines.size(), 0);
     auto const pieces = outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm);
     for (unsigned emitter = 0; emitter < kFaceCount; ++emitter) {
+        unsigned const bit = 1U << emitter;
+        if ((emitters & bit) == 0) {
+            continue;
+        }
         Vec2 const place = rotate(rim_mm * kFaceNormals[emitter], world.bodies.axis[body]);
         for (OutlineIndex::Piece const& piece : pieces) {
-            bool const reached = (emitters >> emitter & 1U) != 0 && !outline_reached_[piece.outline] &&
-                                 squared_distance(piece, place) <= range_mm * range_mm;
-            if (reached) {
-                outline_reached_[piece.outline] = true;
-                receivers_.push_back({.robot = world.outlines[piece.outline].robot, .from_emitter_mm = {}, .faces = 1});
+            std::uint8_t& reached = outline_emitters_[piece.outline];
+            if ((reached & bit) == 0 && squared_distance(piece, place) <= range_mm * range_mm) {
+                reached = static_cast<std::uint8_t>(reached | bit);
             }
+        }
+    }
+    for (std::uint32_t i = 0; i < outline_emitters_.size(); ++i) {
+        if (outline_emitters_[i] != 0) {
+            receivers_.push_back({.robot = world.outlines[i].robot,
+                                  .from_emitter_mm = {},
+                                  .faces = 1,
+                                  .emitters = outline_emitters_[i]});
         }
     }
 }
 
+std::optional<Vec2> Visibility::to_outline(World const& world, std::uint32_t robot, std::uint32_t outline_robot,
+                                           float radius_mm) {
+    std::uint32_t const outline = outline_of(world, outline_robot);
+    std::optional<Vec2> nearest;
+    for (OutlineIndex::Piece const& piece :
+         outlines_.near(world, world.bodies.position_mm[world.robots.body[robot]], radius_mm)) {
+        Vec2 const point = nearest_on_segment(piece.from, piece.to, {});
+        bool const is_nearest = piece.outline == outline && squared_length(point) <= radius_mm * radius_mm &&
+                                (!nearest || squared_length(point) < squared_length(*nearest));
+        if (is_nearest) {
+            nearest = point;
+        }
+    }
+    return nearest;
+}
+
 std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm) {
     std::uint32_t const body = world.robots.body[robot];
-    float const rim_mm = rim_of(world, robot);
+    float const rim_mm = emitter_radius_mm(world, robot);
     unsigned faces = 0;
     for (OutlineIndex::Piece const& piece : outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm)) {
         for (unsigned face = 0; piece.outline == outline && face < kFaceCount; ++face) {
@@ -204,7 +231,7 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
             continue;
         }
         if (std::uint8_t const faces = faces_near(world, robots_[k], outline, reach_mm); faces != 0) {
-            receivers_.push_back({.robot = robots_[k], .from_emitter_mm = {}, .faces = faces});
+            receivers_.push_back({.robot = robots_[k], .from_emitter_mm = {}, .faces = faces, .emitters = 1});
         }
     }
 }
@@ -230,7 +257,10 @@ std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_
     Vec2 const axis = world.bodies.axis[world.robots.body[robot]];
     for (Candidate const& candidate : candidates_) {
         if (std::isfinite(candidate.nearest_mm2)) {
-            receivers_.push_back({candidate.robot, rotate(candidate.from_emitter_mm, axis)});
+            receivers_.push_back({.robot = candidate.robot,
+                                  .from_emitter_mm = rotate(candidate.from_emitter_mm, axis),
+                                  .faces = 0,
+                                  .emitters = static_cast<std::uint8_t>(candidate.emitters)});
         }
     }
     if (!outlines_.empty()) {
@@ -242,7 +272,7 @@ std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_
 
 std::uint8_t faces_that_see(World const& world, std::uint32_t receiver, Vec2 emitter_mm, float range_mm) {
     std::uint32_t const body = world.robots.body[receiver];
-    float const rim_mm = rim_of(world, receiver);
+    float const rim_mm = emitter_radius_mm(world, receiver);
     Vec2 const emitter = in_frame_of(emitter_mm, world.bodies.axis[body]);
     std::uint8_t faces = 0;
     std::size_t best = 0;

@@ -18,6 +18,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct Receiver {
     Vec2 from_emitter_mm;  // from the emitter (the nearest one that sees it) to the receiver's centre
     // Bit d: its face d receives. 0 where faces_that_see() tells: only those who get the message need to know.
     std::uint8_t faces = 0;
+    std::uint8_t emitters = 0;  // bit d: emitter d reaches it, of those asked about
 };
 
 class Visibility {
@@ -45,6 +47,11 @@ public:
     /// Valid until the next call.
     std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
 
+    /// Vector from the centre of `robot`, which has a body, to the nearest point of the outline of `outline_robot`
+    /// within `radius_mm`. None: there is no such point.
+    std::optional<Vec2> to_outline(World const& world, std::uint32_t robot, std::uint32_t outline_robot,
+                                   float radius_mm);
+
 private:
     /// A robot that may be in reach, in the sender's own frame (x along its heading).
     struct Candidate {
@@ -53,6 +60,7 @@ private:
         float radius_mm;
         float nearest_mm2;     // squared distance from the nearest emitter that sees it
         Vec2 from_emitter_mm;  // in the sender's frame
+        unsigned emitters;     // bit d: emitter d sees it
     };
 
     /// A candidate as one emitter sees it; `low` and `high` are the edges of its shadow, see pseudo_angle().
@@ -78,9 +86,9 @@ private:
     void cover(Sight const& sight);
 
     OutlineIndex outlines_;
-    std::vector<bool> outline_reached_;
-    UniformGrid grid_;                   // of the robots with four emitters
-    std::vector<std::uint32_t> robots_;  // their indices
+    std::vector<std::uint8_t> outline_emitters_;  // by outline: bit d: emitter d reaches it
+    UniformGrid grid_;                            // of the robots with four emitters
+    std::vector<std::uint32_t> robots_;           // their indices
     float largest_radius_mm_ = 0.0F;
     std::vector<Vec2> positions_;
     std::vector<Candidate> candidates_;
@@ -88,6 +96,9 @@ private:
     std::vector<Interval> shadows_;  // disjoint, in no order
     std::vector<Receiver> receivers_;
 };
+
+/// Distance of a robot's emitters from its centre, mm: 0 at the centre, or for an outline.
+float emitter_radius_mm(World const& world, std::uint32_t robot);
 
 /// Faces of `receiver` that see a point at `emitter_mm` (relative to the receiver's centre, in the world's axes) within
 /// `range_mm`: bit d for face d. At least one: the face turned most towards the point.

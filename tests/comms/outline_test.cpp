@@ -13,7 +13,9 @@
 namespace pogosim {
 namespace {
 
+using testing::add_membrane;
 using testing::add_robot;
+using testing::add_wall;
 using testing::square_world;
 
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -23,37 +25,6 @@ constexpr std::uint8_t kFront = 1;
 constexpr std::uint8_t kRight = 2;
 constexpr std::uint8_t kBack = 4;
 constexpr std::uint8_t kLeft = 8;
-
-std::uint32_t add_outline(World& world, Outline outline, float range_mm) {
-    ObjectSpec spec;
-    spec.robot.emplace();
-    spec.robot->emitters = Emitters::outline;
-    spec.robot->ir.range_mm = range_mm;
-    auto const robot = static_cast<std::uint32_t>(world.robots.size());
-    world.robots.id.push_back(static_cast<std::uint16_t>(65535));
-    world.robots.category.push_back(static_cast<std::uint16_t>(world.categories.size()));
-    world.robots.body.push_back(outline.body);
-    world.robots.led.push_back({});
-    world.robots.drive.push_back({});
-    world.robots.stream.emplace_back(1, robot);
-    world.categories.push_back({"outlines", spec});
-    outline.robot = robot;
-    world.outlines.push_back(std::move(outline));
-    return robot;
-}
-
-std::uint32_t add_wall(World& world, std::vector<Polygon> polygons, float range_mm = kRange) {
-    return add_outline(world, {.robot = 0, .polygons = std::move(polygons)}, range_mm);
-}
-
-/// Add it after all robots.
-std::uint32_t add_membrane(World& world, Polygon const& dots, float range_mm = kRange) {
-    auto const first = static_cast<std::uint32_t>(world.bodies.size());
-    world.bodies.position_mm.insert(world.bodies.position_mm.end(), dots.begin(), dots.end());
-    return add_outline(
-        world, {.robot = 0, .polygons = {}, .body = first, .body_count = static_cast<std::uint32_t>(dots.size())},
-        range_mm);
-}
 
 Polygon box(Vec2 low, Vec2 high) {
     return {low, {high.x, low.y}, high, {low.x, high.y}};

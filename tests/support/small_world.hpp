@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "world/world.hpp"
@@ -51,6 +52,38 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
     std::vector<int> const sizes(world.robots.size(), spec.robot->ir.queue_size);
     world.mailboxes = Mailboxes(sizes, 382);
     return index;
+}
+
+inline std::uint32_t add_outline(World& world, Outline outline, float range_mm) {
+    ObjectSpec spec;
+    spec.robot.emplace();
+    spec.robot->emitters = Emitters::outline;
+    spec.robot->ir.range_mm = range_mm;
+    auto const robot = static_cast<std::uint32_t>(world.robots.size());
+    world.robots.id.push_back(static_cast<std::uint16_t>(65535));
+    world.robots.category.push_back(static_cast<std::uint16_t>(world.categories.size()));
+    world.robots.body.push_back(outline.body);
+    world.robots.led.push_back({});
+    world.robots.drive.push_back({});
+    world.robots.stream.emplace_back(1, robot);
+    world.categories.push_back({"outlines", spec});
+    outline.robot = robot;
+    world.outlines.push_back(std::move(outline));
+    return robot;
+}
+
+/// A robot whose outline is all of these polygons.
+inline std::uint32_t add_wall(World& world, std::vector<Polygon> polygons, float range_mm = 80.0F) {
+    return add_outline(world, {.robot = 0, .polygons = std::move(polygons)}, range_mm);
+}
+
+/// A ring of bodies at these places, without other properties. Add it after all robots.
+inline std::uint32_t add_membrane(World& world, Polygon const& dots, float range_mm = 80.0F) {
+    auto const first = static_cast<std::uint32_t>(world.bodies.size());
+    world.bodies.position_mm.insert(world.bodies.position_mm.end(), dots.begin(), dots.end());
+    return add_outline(
+        world, {.robot = 0, .polygons = {}, .body = first, .body_count = static_cast<std::uint32_t>(dots.size())},
+        range_mm);
 }
 
 }  // namespace pogosim::testing
