@@ -50,6 +50,9 @@ constexpr float kMostMassRatio = 30.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
 
+// The engine does not know where to push disks with the same centre; those that are so far apart separate.
+constexpr float kApartMm = 0.01F;
+
 /// What a body may move in a sub-step: see kMostMotionMm and kRingShare.
 float most_motion_mm(World const& world) {
     float most_mm = kMostMotionMm;
@@ -139,7 +142,48 @@ public:
         }
     }
 
+    void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) override {
+        Vec2 motion = centre_mm - pogosim::centre_mm(world, object);
+        if (meets_a_centre(world.bodies, object, motion)) {
+            motion.x += kApartMm;
+        }
+        for (std::uint32_t i = object.body; i < object.body + object.body_count; ++i) {
+            b2Body& body = *bodies_[i];
+            float const angle_rad = object.body_count == 1 ? heading_rad : body.GetAngle();
+            body.SetTransform(to_box2d(world.bodies.position_mm[i] + motion), angle_rad);
+            body.SetLinearVelocity(b2Vec2_zero);
+            body.SetAngularVelocity(0.0F);
+            write_pose(world.bodies, i);
+        }
+        // A fixed body would not wake those it lands on.
+        for (b2Body* const body : bodies_) {
+            body->SetAwake(true);
+        }
+        any_awake_ = true;
+        if (containment_) {
+            containment_->start_from(bodies_);
+        }
+        if (sides_) {
+            sides_->look_again(bodies_);
+        }
+    }
+
 private:
+    /// Whether a body of the object, moved so, has the same centre as one of another object.
+    static bool meets_a_centre(Bodies const& bodies, Object const& object, Vec2 motion_mm) {
+        std::uint32_t const end = object.body + object.body_count;
+        for (std::uint32_t i = object.body; i < end; ++i) {
+            Vec2 const place = bodies.position_mm[i] + motion_mm;
+            for (std::uint32_t k = 0; k < bodies.size(); ++k) {
+                bool const is_other = k < object.body || k >= end;
+                if (is_other && squared_length(bodies.position_mm[k] - place) < kApartMm * kApartMm) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
     void add_walls(Arena const& arena, WallSpec const& walls) {
         b2BodyDef definition;
         b2Body* const ground = engine_.CreateBody(&definition);
@@ -249,6 +293,11 @@ private:
             return;
         }
         any_awake_ = true;
+        write_pose(bodies, i);
+    }
+
+    void write_pose(Bodies& bodies, std::size_t i) const {
+        b2Body const& body = *bodies_[i];
         b2Transform const& pose = body.GetTransform();
         bodies.position_mm[i] = from_box2d(pose.p);
         bodies.axis[i] = {pose.q.c, pose.q.s};

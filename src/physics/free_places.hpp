@@ -1,0 +1,30 @@
+// Where objects can be put without standing in a wall.
+#pragma once
+
+#include "geometry/wall_index.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// A place is free for an object when the centre of each of its bodies is inside the arena, and no wall comes nearer to
+/// it than its inner radius (give or take 1 %). Other objects do not count: the engine pushes them apart. In a periodic
+/// world every place is free. Objects without a body have no free place but their own.
+class FreePlaces {
+public:
+    explicit FreePlaces(World const& world) : world_(world), walls_(world.arena) {}
+
+    /// `centre_mm`: of the object, as centre_mm().
+    bool is_free(Object const& object, Vec2 centre_mm) const;
+
+    /// `target_mm` if that is free. Else where the object comes on its way there from where it is now, when it is
+    /// stopped by walls and slides along them; where that is not free either, where it is now.
+    Vec2 nearest(Object const& object, Vec2 target_mm) const;
+
+private:
+    Vec2 slide(Object const& object, Vec2 motion_mm) const;
+
+    World const& world_;
+    WallIndex walls_;
+};
+
+}  // namespace pogosim
