@@ -32,7 +32,8 @@ extern POGO_PER_ROBOT void (*callback_export_data)(void);
 extern POGO_PER_ROBOT void (*callback_global_step)(void);
 /// For each object at the end of the run.
 extern POGO_PER_ROBOT void (*callback_robot_end)(void);
-/// When a robot is clicked in the window.
+/// For the robot that is clicked in the window, between two steps of the simulation. The data file's metadata then say
+/// that the run was touched.
 extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 
 // ---- Configuration: values under `parameters:` ----

@@ -49,6 +49,9 @@ void print_line(std::string_view line) {
         pogosim::robot_log().info("[SYSTEM] [PRINTF] {}", line);
     } else {
         pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(), line);
+        if (context.services->printed_lines != nullptr) {
+            context.services->printed_lines->add(context.robot, line);
+        }
     }
 }
 

@@ -45,6 +45,7 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
     if (!context.has_robot() || emitters == 0 || power == 0) {
         return kSent;
     }
+    ++context.computer->messages_sent;
     pogosim::Air& air = context.world->air;
     air.transmissions.push_back({.robot = context.robot,
                                  .emitters = emitters,
@@ -206,6 +207,7 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
             "pogobot_infrared_message_available() first");
         return;
     }
+    ++context.computer->messages_received;
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES).
     std::size_t const size = std::min<std::size_t>(header.payload_length, max_payload_bytes);
     header.payload_length = static_cast<std::uint16_t>(size);

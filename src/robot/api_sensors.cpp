@@ -1,11 +1,11 @@
 // pogolib/sensors.h
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <numbers>
 
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/sensing.hpp"
 
 using pogosim::context;
 using pogosim::require_argument;
@@ -14,27 +14,11 @@ using pogosim::Vec2;
 
 namespace {
 
-/// Unit vectors from the centre to the sensors, in the robot's frame: 180, 320 and 40 degrees.
-constexpr std::array<Vec2, pogosim::kPhotosensorCount> kPhotosensors{Vec2{-1.0F, 0.0F}, Vec2{0.76604444F, -0.64278761F},
-                                                                     Vec2{0.76604444F, 0.64278761F}};
-
 // Ranges of the ICM-20689 on the robot: +-16 g, +-2000 degrees per second, -40 to 85 degrees Celsius.
 constexpr float kMaxAcceleration = 16.0F * 9.80665F;
 constexpr float kMaxAngularVelocity = 2000.0F * std::numbers::pi_v<float> / 180.0F;
 constexpr float kMinTemperature = -40.0F;
 constexpr float kMaxTemperature = 85.0F;
-constexpr float kMmPerM = 1000.0F;
-
-/// Mean acceleration over the last tick in the robot's frame, m/s2: x forward, y to the right.
-Vec2 acceleration_in_body_frame() {
-    auto const& meter = context.computer->accelerometer;
-    if (meter.interval_s <= 0.0F) {
-        return {};
-    }
-    Vec2 const change = meter.current_mm_s - meter.previous_mm_s;
-    Vec2 const axis = context.world->bodies.axis[context.body()];
-    return (1.0F / (meter.interval_s * kMmPerM)) * Vec2{dot(change, axis), cross(axis, change)};
-}
 
 }  // namespace
 
@@ -50,11 +34,8 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
         return -1;
     }
     pogosim::World& world = *context.world;
-    auto const& bodies = world.bodies;
-    std::uint32_t const body = context.body();
-    Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor_number], bodies.axis[body]);
-    Vec2 const place_mm = wrapped(world, bodies.position_mm[body] + offset);
-    int level = world.light.at(place_mm) + context.computer->photosensor_bias[sensor_number];
+    int level = pogosim::light_at_sensor(world, context.body(), sensor_number) +
+                context.computer->photosensor_bias[sensor_number];
     float const noise = context.spec().photosensor_noise_stddev;
     if (noise > 0.0F) {
         level += static_cast<int>(noise * world.robots.stream[context.robot].normal());
@@ -71,7 +52,8 @@ void pogobot_imu_read(float* acc, float* gyro) {
     if (!context.has_body()) {
         return;
     }
-    Vec2 const acceleration = acceleration_in_body_frame();
+    Vec2 const acceleration =
+        pogosim::acceleration_m_s2(*context.world, context.body(), context.computer->accelerometer);
     acc[0] = std::clamp(acceleration.y, -kMaxAcceleration, kMaxAcceleration);
     acc[1] = std::clamp(acceleration.x, -kMaxAcceleration, kMaxAcceleration);
     gyro[2] = std::clamp(0.0F - context.world->bodies.angular_velocity_rad_s[context.body()], -kMaxAngularVelocity,

@@ -73,9 +73,11 @@ struct Computer {
     Accelerometer accelerometer;
     std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
     std::uint8_t ir_power = 1;
-    RandomStream random;          // rand() and srand() of the program
-    RandomStream seeds;           // getRandSeed(), from the second call on
-    std::int16_t first_seed = 0;  // its first answer, different on every robot
+    std::uint64_t messages_sent = 0;      // by whatever function
+    std::uint64_t messages_received = 0;  // taken out of its queue
+    RandomStream random;                  // rand() and srand() of the program
+    RandomStream seeds;                   // getRandSeed(), from the second call on
+    std::int16_t first_seed = 0;          // its first answer, different on every robot
     bool seed_taken = false;
     std::string printed;  // a line not yet complete
 };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "robot/computer.hpp"
+#include "robot/printed_lines.hpp"
 #include "world/data_table.hpp"
 #include "world/world.hpp"
 
@@ -54,6 +55,7 @@ struct RunServices {
     bool stop_requested = false;
     std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once
     std::vector<std::string_view> warned;           // formats of warn_once
+    PrintedLines* printed_lines = nullptr;          // gets the lines of robots; null: nobody wants them
 
     /// Logs a warning that names the running robot and its tick, the first time in the run that this format (a literal)
     /// is used.

@@ -86,7 +86,7 @@ LoopGlobals stored_globals() {
 std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
     auto const odd_factor = static_cast<std::uint16_t>(key | 1U);
     auto const offset = static_cast<std::uint16_t>(key >> 16U);
-    return static_cast<std::int16_t>(static_cast<std::uint16_t>(id * odd_factor + offset));
+    return static_cast<std::int16_t>(static_cast<std::uint16_t>(unsigned{id} * odd_factor + offset));
 }
 
 int draw_between(IntRange range, RandomStream& stream) {
@@ -335,6 +335,12 @@ void Programs::export_row(std::size_t robot) {
     call(static_cast<std::uint32_t>(robot), "export_data", computers_[robot].program.export_data);
     data.filling = false;
     data.filled_rows += data.row.exported && computers_[robot].program.export_data != nullptr ? 1 : 0;
+}
+
+bool Programs::click(std::uint32_t robot) {
+    void (*const callback)() = computers_[robot].program.click;
+    call(robot, "robot_click", callback);
+    return callback != nullptr;
 }
 
 void Programs::end() {

@@ -36,6 +36,9 @@ public:
     /// callback_export_data of one robot. Its row is in the services' data afterwards.
     void export_row(std::size_t robot);
 
+    /// callback_robot_click of one robot. False: it has none.
+    bool click(std::uint32_t robot);
+
     /// callback_robot_end of every robot.
     void end();
 
@@ -50,6 +53,14 @@ public:
 
     /// Ticks this robot has executed.
     std::uint32_t ticks(std::size_t robot) const { return computers_[robot].loop.ticks; }
+
+    /// The state of this robot's computer between two of its ticks.
+    Computer const& computer_of(std::size_t robot) const { return computers_[robot]; }
+
+    /// Reach of a message that this robot sends now, at its present emitter power, mm; 0: it sends none.
+    float ir_range_mm(std::size_t robot) const {
+        return world_.spec_of(robot).ir.range_at_mm(computers_[robot].ir_power);
+    }
 
     /// The highest main_loop_hz of all robots.
     int highest_loop_hz() const;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "base/background_thread.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "robot/caught_signals.hpp"
 #include "robot/crash_name.hpp"
@@ -21,6 +22,9 @@ Guard guard;
 namespace {
 
 constexpr double kNsPerS = 1e9;
+constexpr auto kOwnMemoryAdvice =
+    ", most likely because the user program wrote to memory it does not own; build the program with "
+    "-fsanitize=address to find out where";
 
 /// For good, without ending the program.
 [[noreturn]] void stop_this_thread() {
@@ -32,8 +36,20 @@ constexpr double kNsPerS = 1e9;
     }
 }
 
+/// The run ends as soon as the simulator's thread is back in control.
+[[noreturn]] void end_run_from_background_thread(char const* crash) {
+    note_crash_of_background_thread();
+    SignalText<512> what;
+    what << "the simulator crashed while it was drawing pictures (" << crash << ")" << kOwnMemoryAdvice;
+    request_end(what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    stop_this_thread();
+}
+
 void on_crash(int signal, siginfo_t* info, void* signal_context) {
     CrashText const what = crash_name(signal, *info, signal_context);
+    if (on_background_thread()) {
+        end_run_from_background_thread(what.c_str());
+    }
     if (is_other_thread_of_run()) {
         end_run_from_thread(what.c_str(), ExitCode::user_program);
     }
@@ -180,9 +196,7 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
 
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body) {
     if (sigsetjmp(guard.rescue_point, 0) != 0) {
-        return UserFailure{std::string("the simulator crashed (") + guard.what.c_str() +
-                               "), most likely because the user program wrote to memory it does not own; build the "
-                               "program with -fsanitize=address to find out where",
+        return UserFailure{std::string("the simulator crashed (") + guard.what.c_str() + ")" + kOwnMemoryAdvice,
                            ExitCode::user_program};
     }
     guard.rescuable = true;

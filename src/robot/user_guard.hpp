@@ -80,7 +80,10 @@ void check_end_of_thread();
 
 /// This signal requests a stop for the first time: if user code does not return soon, prints what the run is waiting
 /// for, and aborts it after `user_code_timeout` of wall-clock time. For signal handlers.
-void hurry_user_code(char const* signal_name);
+void hurry_user_code(char const* request_name);
+
+/// The same from another thread of the simulator.
+void hurry_user_code_from_thread(char const* request_name);
 
 /// Second request: aborts user code. Returns at once; does nothing outside user code. For signal handlers.
 void abandon_user_code();

@@ -38,7 +38,7 @@ struct ProcessorWatch {
 
 /// State since a stop was requested.
 struct WallClockWatch {
-    char const* signal_name = "";
+    char const* request_name = "";  // "SIGTERM"
     unsigned long calls_seen = 0;
     double call_began_s = 0.0;  // of the call of user code that was seen last
     bool told = false;
@@ -53,6 +53,8 @@ struct RescueWatch {
 ProcessorWatch busy;
 WallClockWatch waiting;
 RescueWatch rescue;
+
+std::atomic<char const*> hurry_request = nullptr;  // of another thread: hurry_user_code() with this name
 
 enum class RequestState { none, being_made, made };
 EndRequest request;
@@ -124,7 +126,7 @@ void tell_what_is_waited_for() {
     }
     waiting.told = true;
     SignalText<1024> text;
-    text << "pogosim: " << waiting.signal_name << ": stopping ";
+    text << "pogosim: " << waiting.request_name << ": stopping ";
     if (guard.inside) {
         text << "as soon as " << running_place().c_str()
              << ", returns. Send a second signal to stop now; otherwise it is aborted ";
@@ -183,6 +185,10 @@ void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
         look_after_request(signal_context, now_s);
         return;
     }
+    if (char const* const name = hurry_request.exchange(nullptr)) {
+        hurry_user_code(name);
+        return;
+    }
     if (guard.calls != waiting.calls_seen) {
         waiting.calls_seen = guard.calls;
         waiting.call_began_s = now_s;
@@ -197,9 +203,9 @@ void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
         what << "it had not returned ";
         what.number(limit_s, 6, /*kept=*/false);
         if (busy.timeout_s > 0.0) {
-            what << " s after it began (user_code_timeout), and " << waiting.signal_name << " had requested a stop";
+            what << " s after it began (user_code_timeout), and " << waiting.request_name << " had requested a stop";
         } else {
-            what << " s after " << waiting.signal_name << " requested a stop";
+            what << " s after " << waiting.request_name << " requested a stop";
         }
         what << (is_at_robots_start() ? kMoveTheLoop : "");
         request_end(what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
@@ -232,6 +238,7 @@ EndRequest const* end_request() {
 
 void start_watch(double timeout_s) {
     request_state = RequestState::none;
+    hurry_request = nullptr;
     busy = {.timeout_s = timeout_s};
     catch_signal(SIGALRM, SA_RESTART, on_look);
     if (timeout_s > 0.0) {
@@ -260,20 +267,25 @@ bool is_signal_for_this_thread(int signal) {
     return false;
 }
 
-void hurry_user_code(char const* signal_name) {
+void hurry_user_code(char const* request_name) {
     if (guard.left_by_force) {
         return;  // the run is ending, and the timer watches over the data file
     }
     double const now_s = monotonic_s();
     double const entered_s = guard.entered_s.load(std::memory_order_relaxed);
     bool const has_limit = busy.timeout_s > 0.0;
-    waiting = {.signal_name = signal_name,
+    waiting = {.request_name = request_name,
                .calls_seen = guard.calls,
                .call_began_s = guard.inside && has_limit ? entered_s : now_s};
     if (guard.inside && now_s - entered_s > kPromptReturnS) {
         tell_what_is_waited_for();
     }
     set_timer(ITIMER_REAL, kLookPeriodS);
+}
+
+void hurry_user_code_from_thread(char const* request_name) {
+    hurry_request = request_name;
+    pthread_kill(guard.thread, SIGALRM);
 }
 
 void abandon_user_code() {

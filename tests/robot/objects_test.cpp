@@ -391,5 +391,21 @@ TEST(Motion, StrongDampingSlowsARobotBetweenItsTicks) {
     EXPECT_NEAR(per_tick_mm, 100.0F / 20.0F * (1.0F - std::exp(-2.0F)), 0.15F);  // the exponential it stands for
 }
 
+/// Their ids are the largest there are: the multiplication that scatters seeds must not overflow.
+TEST(Walls, GetARandomSeedInEveryRun) {
+    static std::set<int16_t> seeds;
+    seeds.clear();
+    testing::program_main = [] {
+        _pogobot_start([] { seeds.insert(pogobot_helper_getRandSeed()); }, nullptr, "walls");
+    };
+    for (std::uint32_t seed = 0; seed < 20; ++seed) {
+        Scenario scenario = square_scene({arena_wall()});
+        scenario.seed = seed;
+        Simulation simulation(std::move(scenario), {});
+        ASSERT_FALSE(simulation.start());
+    }
+    EXPECT_GT(seeds.size(), 15U);
+}
+
 }  // namespace
 }  // namespace pogosim

@@ -1,0 +1,31 @@
+#include "robot/sensing.hpp"
+
+#include <array>
+
+namespace pogosim {
+
+namespace {
+
+/// Unit vectors from the centre to the photosensors, in the robot's frame: 180, 320 and 40 degrees.
+constexpr std::array<Vec2, kPhotosensorCount> kPhotosensors{Vec2{-1.0F, 0.0F}, Vec2{0.76604444F, -0.64278761F},
+                                                            Vec2{0.76604444F, 0.64278761F}};
+constexpr float kMmPerM = 1000.0F;
+
+}  // namespace
+
+int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor) {
+    Bodies const& bodies = world.bodies;
+    Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor], bodies.axis[body]);
+    return world.light.at(wrapped(world, bodies.position_mm[body] + offset));
+}
+
+Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter) {
+    if (meter.interval_s <= 0.0F) {
+        return {};
+    }
+    Vec2 const change = meter.current_mm_s - meter.previous_mm_s;
+    Vec2 const axis = world.bodies.axis[body];
+    return (1.0F / (meter.interval_s * kMmPerM)) * Vec2{dot(change, axis), cross(axis, change)};
+}
+
+}  // namespace pogosim

@@ -1,0 +1,17 @@
+// What the sensors of a robot would measure without noise and bias.
+#pragma once
+
+#include <cstddef>
+
+#include "robot/computer.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Light level at a photosensor (0 back, 1 front left, 2 front right) of a robot with this body, sensor counts.
+int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor);
+
+/// Mean acceleration over the last tick in the frame of the robot with this body, m/s2: x forward, y to the right.
+Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter);
+
+}  // namespace pogosim
