@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 import math
 import sys
 import textwrap
@@ -24,6 +25,7 @@ import numpy.typing as npt
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
@@ -50,18 +52,24 @@ UNKNOWN = Category("robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM))
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500
 
-PAPER = "#ffffff"
-FLOOR = "#12151c"
-WALL = "#3a4150"
-EDGE = "#05070a"
-INK = "#2b303a"
 RGB = ["rgb_0", "rgb_1", "rgb_2"]  # columns of colours
-DARK_LED = 0.42  # grey of a robot whose LED is off
-NO_LED = (0.36, 0.41, 0.50)  # of what has none
-DARK_WALL = (0.66, 0.74, 0.86)  # of a wall with a program whose LED is off
-LAMPLIGHT = (1.0, 0.87, 0.62)
-MAX_LAMPLIGHT = 0.28  # opacity over the floor where it is brightest
 LIGHT_CELLS = 240  # along either side of the arena
+
+
+# The colours of the simulator's window, too.
+PALETTE: dict[str, Any] = json.loads((Path(__file__).parent / "palette.json").read_text(encoding="utf-8"))
+PAPER: str = PALETTE["paper"]
+FLOOR: str = PALETTE["floor"]
+WALL: str = PALETTE["wall"]
+EDGE: str = PALETTE["edge"]
+INK: str = PALETTE["ink"]
+DARK_LED = to_rgb(PALETTE["dark_led"])  # of a robot whose LED is off
+NO_LED = to_rgb(PALETTE["no_led"])  # of what has none
+DARK_WALL = to_rgb(PALETTE["dark_wall"])  # of a wall with a program whose LED is off
+LAMPLIGHT = to_rgb(PALETTE["lamplight"])
+MAX_LAMPLIGHT: float = PALETTE["brightest_lamplight"]  # opacity over the floor where it is brightest
+LEDS = (PALETTE["dimmest_led"], PALETTE["brightest_led"])  # values between which brightness differs
+LEDS_ON_SCREEN = (PALETTE["dimmest_led_on_screen"], PALETTE["brightest_led_on_screen"])  # 0 to 255
 
 
 # Columns of the file that the picture uses, by what they hold.
@@ -102,7 +110,7 @@ def led_brightness(led: npt.ArrayLike) -> Floats:
     100/255 to 210/255, and more does not look brighter.
     """
     values = np.asarray(led, dtype=float)
-    lit = np.interp(values, [1.0, 25.0], [100.0, 210.0]) / 255.0
+    lit = np.interp(values, LEDS, LEDS_ON_SCREEN) / 255.0
     return np.where(values > 0, lit, 0.0)
 
 
@@ -348,7 +356,7 @@ def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
         lines = swarm.polygons
         if wall.shape.kind != "arena":
             lines = [wall.shape.outline() + np.array(wall.position_mm or (0.0, 0.0))]
-        colour = swarm.wall_colours.get(wall.name, np.full(3, DARK_LED))
+        colour = swarm.wall_colours.get(wall.name, np.array(DARK_LED))
         colour = np.array(DARK_WALL) if (colour == DARK_LED).all() else colour
         closed = [np.vstack([line, line[:1]]) for line in lines]
         for width, alpha in ((16.0, 0.10), (11.0, 0.16), (6.0, 0.28), (1.8, 1.0)):

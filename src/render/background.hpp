@@ -1,0 +1,44 @@
+// What lies below everything else: paper, floor, light, walls. It is drawn anew only when it changes.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/camera.hpp"
+#include "render/canvas.hpp"
+#include "render/snapshot.hpp"
+
+namespace pogosim {
+
+class Background {
+public:
+    /// Fills the whole canvas.
+    void draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, bool light_levels);
+
+    /// Where the floor is in the picture drawn last.
+    Coverage const& floor() const { return floor_; }
+
+private:
+    bool is_as_before(Canvas const& canvas, Camera const& camera, Snapshot const& snapshot) const;
+    void draw_floor(Canvas const& canvas, Camera const& camera, Scenery const& scenery);
+    void draw_light(Camera const& camera, Scenery const& scenery, LightMap const& light);
+    void draw_programmed_walls(Camera const& camera, Snapshot const& snapshot);
+    std::vector<Pixel> wall_colours(Snapshot const& snapshot) const;
+
+    // What the picture shows.
+    std::shared_ptr<Scenery const> scenery_;
+    Camera camera_;
+    std::shared_ptr<LightMap const> light_;
+    std::vector<Pixel> wall_colours_;  // by outline of the scenery
+
+    Canvas empty_{{0, 0}};    // paper, floor and walls
+    Canvas picture_{{0, 0}};  // with light, and the colours of walls with a program
+    Coverage floor_;
+    Coverage scratch_;
+
+    // Of the light: cells of the map whose centre is in the arena.
+    std::vector<bool> inside_;
+    std::vector<float> opacity_;  // of cells
+};
+
+}  // namespace pogosim

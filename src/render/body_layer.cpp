@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "render/layers.hpp"
+#include "render/led_colour.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr float kEdge = 0.07F;  // of all widths here: share of the object's size
+constexpr float kThinnestEdgePx = 0.7F;
+constexpr float kLeastEdgedRadiusPx = 2.0F;
+constexpr float kMark = 0.125F;
+constexpr float kThinnestMarkPx = 1.0F;
+constexpr float kGlowReach = 0.9F;  // beyond the rim
+constexpr float kGlowOpacity = 0.55F;
+constexpr float kLateralLed = 0.3F;
+constexpr float kLineOpacity = 0.45F;  // of the line through a membrane
+
+/// Distance from the origin to the border in a direction, a unit vector.
+float reach_mm(Shape const& shape, Vec2 towards) {
+    if (shape.kind == ShapeKind::disk) {
+        return shape.radius_mm;
+    }
+    Polygon const corners = outline(shape);
+    float reach = 0.0F;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        Vec2 const a = corners[i];
+        Vec2 const edge = corners[i + 1 == corners.size() ? 0 : i + 1] - a;
+        float const turn = cross(towards, edge);
+        if (std::abs(turn) > 1e-9F) {
+            float const share = cross(a, towards) / turn;  // along the edge
+            if (share >= 0.0F && share <= 1.0F) {
+                reach = std::max(reach, cross(a, edge) / turn);
+            }
+        }
+    }
+    return reach;
+}
+
+/// Pose and look of one rigid object.
+struct Figure {
+    Shape shape;
+    float radius_mm;  // of the bounding disk
+    Vec2 position_mm;
+    Vec2 axis;  // unit vector along the heading
+    bool has_axis;
+    Pixel colour;
+    bool glows;
+    Leds const* led;  // null: it runs no program
+    bool leds_turned;
+};
+
+Figure figure_of(Scene const& scene, Object const& object) {
+    Scenery const& scenery = scene.scenery();
+    Snapshot const& snapshot = scene.snapshot;
+    float const heading = snapshot.heading_rad[object.body];
+    bool const has_axis = std::isfinite(heading);
+    Figure figure{
+        .shape = scenery.body_shape[object.body],
+        .radius_mm = scenery.body_radius_mm[object.body],
+        .position_mm = snapshot.position_mm[object.body],
+        .axis = has_axis ? direction(heading) : Vec2{1.0F, 0.0F},
+        .has_axis = has_axis,
+        .colour = palette::kNoLed,
+        .glows = false,
+        .led = nullptr,
+        .leds_turned = false,
+    };
+    if (object.robot != kNone) {
+        figure.led = &snapshot.led[object.robot];
+        figure.colour = led_colour((*figure.led)[0]);
+        figure.glows = is_lit((*figure.led)[0]);
+        auto const& spec = scenery.categories[object.category].spec.robot;
+        figure.leds_turned = spec && spec->rotate_leds_45_deg;
+    }
+    return figure;
+}
+
+/// A shape with every side moved outwards by some pixels.
+void draw_shape(Scene const& scene, Figure const& figure, Vec2 at_mm, float outwards_px, Pixel colour) {
+    Vec2 const centre = scene.to_pixels(at_mm);
+    if (figure.shape.kind == ShapeKind::disk) {
+        scene.canvas.disk(centre, scene.to_pixels(figure.shape.radius_mm) + outwards_px, colour);
+        return;
+    }
+    Polygon corners = outline(inset(figure.shape, -outwards_px / scene.camera.scale_px_mm));
+    for (Vec2& corner : corners) {
+        corner = centre + scene.camera.scale_px_mm * rotate(corner, figure.axis);
+    }
+    scene.canvas.polygon(corners, colour);
+}
+
+void draw_glow(Scene const& scene, Figure const& figure) {
+    float const reach = figure.radius_mm + kGlowReach * inner_radius(figure.shape);
+    scene.for_each_image(figure.position_mm, reach, [&](Vec2 at_mm) {
+        scene.canvas.glow(scene.to_pixels(at_mm), scene.to_pixels(reach), with_opacity(figure.colour, kGlowOpacity),
+                          scene.floor);
+    });
+}
+
+void draw_lateral_leds(Scene const& scene, Figure const& figure, Vec2 at_mm, float edge_px) {
+    float const radius_px = kLateralLed * scene.to_pixels(inner_radius(figure.shape));
+    for (std::size_t k = 1; k < kLedCount; ++k) {
+        Rgb const led = (*figure.led)[k];
+        if (!is_lit(led)) {
+            continue;
+        }
+        constexpr float kRightAngle = 0.5F * std::numbers::pi_v<float>;
+        Vec2 const side = direction((static_cast<float>(k - 1) + (figure.leds_turned ? 0.5F : 0.0F)) * kRightAngle);
+        Vec2 const outwards = rotate(side, figure.axis);
+        Vec2 const centre = scene.to_pixels(at_mm + reach_mm(figure.shape, side) * outwards);
+        scene.canvas.half_disk(centre, radius_px + edge_px, -outwards, palette::kEdge);
+        scene.canvas.half_disk(centre, radius_px, -outwards, led_colour(led));
+    }
+}
+
+void draw_figure(Scene const& scene, Figure const& figure, bool lateral_leds) {
+    scene.for_each_image(figure.position_mm, figure.radius_mm, [&](Vec2 at_mm) {
+        float const size_px = scene.to_pixels(inner_radius(figure.shape));
+        float const edge_px = size_px < kLeastEdgedRadiusPx ? 0.0F : std::max(kEdge * size_px, kThinnestEdgePx);
+        if (edge_px > 0.0F) {
+            draw_shape(scene, figure, at_mm, 0.5F * edge_px, palette::kEdge);
+        }
+        draw_shape(scene, figure, at_mm, -0.5F * edge_px, figure.colour);
+        if (figure.has_axis && edge_px > 0.0F) {
+            float const reach = reach_mm(figure.shape, {1.0F, 0.0F});
+            scene.canvas.line(scene.to_pixels(at_mm + 0.25F * reach * figure.axis),
+                              scene.to_pixels(at_mm + 0.95F * reach * figure.axis),
+                              std::max(kMark * size_px, kThinnestMarkPx), Cap::butt, contrast_to(figure.colour));
+        }
+        if (lateral_leds && figure.led != nullptr) {
+            draw_lateral_leds(scene, figure, at_mm, 0.5F * edge_px);
+        }
+    });
+}
+
+/// The bodies of a ring one after the other, from the first, wherever seams are.
+Polygon unrolled(Scene const& scene, Object const& object) {
+    std::vector<Vec2> const& position = scene.snapshot.position_mm;
+    Polygon centres{position[object.body]};
+    for (std::uint32_t k = 1; k < object.body_count; ++k) {
+        centres.push_back(centres.back() + scene.from_to(centres.back(), position[object.body + k]));
+    }
+    return centres;
+}
+
+void draw_membrane(Scene const& scene, Object const& object, Coverage& scratch) {
+    RingSpec const& ring = *scene.scenery().categories[object.category].spec.ring;
+    float const half_mm = ring.segments ? 0.5F * ring.thickness_mm.value_or(ring.radius_mm) : ring.radius_mm;
+    float const dot_mm = half_mm * (ring.segments ? 0.35F : 1.0F);
+    float const line_mm = 2.0F * half_mm / (ring.segments ? 1.0F : 3.0F);
+    Pixel const colour = object.robot == kNone ? palette::kNoLed : led_colour(scene.snapshot.led[object.robot][0]);
+    Polygon const centres = unrolled(scene, object);
+    Box around = bounding_box(centres);
+    around.min = around.min - Vec2{half_mm, half_mm};
+    around.max = around.max + Vec2{half_mm, half_mm};
+    scene.for_each_image({}, around, [&](Vec2 offset_mm) {
+        Polygon corners(centres.size());
+        std::transform(centres.begin(), centres.end(), corners.begin(),
+                       [&](Vec2 centre) { return scene.to_pixels(centre + offset_mm); });
+        Box const box{scene.to_pixels(around.min + offset_mm), scene.to_pixels(around.max + offset_mm)};
+        scratch.reset(pixels_of(box, scene.canvas.clip()));
+        add_outline(scratch, corners, std::max(scene.to_pixels(line_mm), 1.0F));
+        scene.canvas.cover(scratch, with_opacity(colour, kLineOpacity));
+        float const radius_px = scene.to_pixels(dot_mm);
+        float const edge_px = radius_px < kLeastEdgedRadiusPx ? 0.0F : std::max(kEdge * radius_px, kThinnestEdgePx);
+        for (Vec2 const corner : corners) {
+            if (edge_px > 0.0F) {
+                scene.canvas.disk(corner, radius_px + 0.5F * edge_px, palette::kEdge);
+            }
+            scene.canvas.disk(corner, radius_px - 0.5F * edge_px, colour);
+        }
+    });
+}
+
+template <class Draw>
+void for_each_rigid_object(Scene const& scene, Draw const& draw) {
+    for (Object const& object : scene.scenery().objects) {
+        if (object.body != kNone && object.body_count == 1) {
+            draw(object);
+        }
+    }
+}
+
+}  // namespace
+
+void draw_membranes(Scene const& scene) {
+    Coverage scratch;
+    for (Object const& object : scene.scenery().objects) {
+        if (object.body_count > 1) {
+            draw_membrane(scene, object, scratch);
+        }
+    }
+}
+
+void draw_glows(Scene const& scene) {
+    for_each_rigid_object(scene, [&](Object const& object) {
+        Figure const figure = figure_of(scene, object);
+        if (figure.glows) {
+            draw_glow(scene, figure);
+        }
+    });
+}
+
+void draw_bodies(Scene const& scene, bool lateral_leds) {
+    for (bool const runs_program : {false, true}) {  // robots above what they push
+        for_each_rigid_object(scene, [&](Object const& object) {
+            if ((object.robot != kNone) == runs_program) {
+                draw_figure(scene, figure_of(scene, object), lateral_leds);
+            }
+        });
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,42 @@
+// The layers of a picture that change from one snapshot to the next. Each draws over what is there.
+#pragma once
+
+#include <cstdint>
+
+#include "render/scene.hpp"
+#include "render/text.hpp"
+
+namespace pogosim {
+
+/// Where robots have been, in the colour their head LED had there, fading into the past.
+void draw_trails(Scene const& scene);
+
+/// Soft rings: the line through their bodies, and these.
+void draw_membranes(Scene const& scene);
+
+/// The light of head LEDs on the floor around them.
+void draw_glows(Scene const& scene);
+
+/// Rigid objects with a mark where they head; lateral LEDs on the rim.
+void draw_bodies(Scene const& scene, bool lateral_leds);
+
+/// Lamps as small suns, the outline of what they light, and beams.
+void draw_lamps(Scene const& scene, Coverage& scratch);
+
+/// Who hears whom. The half next to a sender has the colour of its emitter; a two-way link is a whole line, a one-way
+/// link fades from the middle on and ends in an arrow head at the listener.
+void draw_links(Scene const& scene);
+
+/// A ring around a robot; a line along the outline of a wall or membrane.
+void draw_selection(Scene const& scene, std::uint32_t robot, Coverage& scratch);
+
+/// A bar of a round length, bottom left.
+void draw_scale_bar(Scene const& scene, Text& text);
+
+/// The time, top right.
+void draw_time(Scene const& scene, Text& text);
+
+/// Longest of 1, 2, 5 times a power of ten that is at most `longest`, which is above 0.
+double round_length(double longest);
+
+}  // namespace pogosim

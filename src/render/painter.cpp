@@ -1,0 +1,96 @@
+#include "render/painter.hpp"
+
+#include "render/background.hpp"
+#include "render/layers.hpp"
+#include "render/palette.hpp"
+#include "render/text.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// The trails as they were drawn last: most of the work of a picture. They stay while a snapshot has the same ones.
+class TrailLayer {
+public:
+    void draw(Scene const& scene) {
+        if (is_as_before(scene)) {
+            scene.canvas.lay_over(layer_);
+            return;
+        }
+        trails_ = scene.snapshot.trails;
+        camera_ = scene.camera;
+        clip_ = scene.canvas.clip();
+        if (layer_.size() != scene.canvas.size()) {
+            layer_.resize(scene.canvas.size());
+        }
+        layer_.clear();
+        layer_.clip_to(clip_);
+        draw_trails({layer_, scene.camera, scene.snapshot, scene.floor});
+        scene.canvas.lay_over(layer_);
+    }
+
+private:
+    bool is_as_before(Scene const& scene) const {
+        return trails_ == scene.snapshot.trails && camera_ == scene.camera && clip_ == scene.canvas.clip() &&
+               layer_.size() == scene.canvas.size();
+    }
+
+    std::shared_ptr<Trails const> trails_;
+    Camera camera_;
+    PixelBox clip_;
+    Canvas layer_{{0, 0}};
+};
+
+}  // namespace
+
+struct Painter::Impl {
+    Background background;
+    TrailLayer trails;
+    Text text;
+    Coverage scratch;
+};
+
+Painter::Painter() : impl_(std::make_unique<Impl>()) {}
+Painter::~Painter() = default;
+
+SnapshotParts parts_for(PaintOptions const& options) {
+    return {.light = options.light_levels, .links = options.links != LinkLayer::hidden, .trails = options.trails};
+}
+
+void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, PaintOptions const& options) {
+    canvas.clip_to(canvas.bounds());
+    impl_->background.draw(canvas, camera, snapshot, options.light_levels);
+    Scene const scene{canvas, camera, snapshot, impl_->background.floor()};
+
+    // What crosses a seam comes back on the other side, and shows nowhere else.
+    if (snapshot.scenery->periodic) {
+        Box const& bounds = snapshot.scenery->arena.bounds;
+        Box const seams{scene.to_pixels(bounds.min), scene.to_pixels(bounds.max)};
+        canvas.clip_to(pixels_of(seams, canvas.bounds()));
+    }
+    draw_glows(scene);
+    if (options.links == LinkLayer::below) {
+        draw_links(scene);
+    }
+    if (options.trails && snapshot.trails) {
+        impl_->trails.draw(scene);
+    }
+    draw_membranes(scene);
+    draw_bodies(scene, options.lateral_leds);
+    draw_lamps(scene, impl_->scratch);
+    if (options.selected_robot) {
+        draw_selection(scene, *options.selected_robot, impl_->scratch);
+    }
+    if (options.links == LinkLayer::above) {
+        draw_links(scene);
+    }
+    canvas.clip_to(canvas.bounds());
+    if (options.scale_bar) {
+        draw_scale_bar(scene, impl_->text);
+    }
+    if (options.time) {
+        draw_time(scene, impl_->text);
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,45 @@
+// Draws a snapshot of a world: the same picture in the window, in frames and in films.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "render/camera.hpp"
+#include "render/canvas.hpp"
+#include "render/snapshot.hpp"
+
+namespace pogosim {
+
+enum class LinkLayer { hidden, below, above };
+
+struct PaintOptions {
+    bool time = true;
+    bool scale_bar = true;
+    LinkLayer links = LinkLayer::hidden;
+    bool lateral_leds = true;
+    bool light_levels = false;
+    bool trails = false;
+    std::optional<std::uint32_t> selected_robot{};  // gets a mark around it
+};
+
+/// What a snapshot must have for a picture with these options.
+SnapshotParts parts_for(PaintOptions const& options);
+
+/// Remembers what stays from one picture to the next, such as the floor; not for several threads at once.
+class Painter {
+public:
+    Painter();
+    ~Painter();
+    Painter(Painter const&) = delete;
+    Painter& operator=(Painter const&) = delete;
+
+    /// Draws over the whole canvas.
+    void paint(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, PaintOptions const& options);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pogosim

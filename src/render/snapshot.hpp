@@ -1,0 +1,67 @@
+// What a picture shows of the world at one moment: a copy, so that pictures can be drawn while the run goes on.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "geometry/arena.hpp"
+#include "geometry/shape.hpp"
+#include "render/trails.hpp"
+#include "world/lamp_mark.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// What pictures need of a world and never changes in a run. Members as in World.
+struct Scenery {
+    Arena arena;
+    bool periodic = false;
+    std::vector<Category> categories;
+    std::vector<Object> objects;
+    std::vector<float> body_radius_mm;
+    std::vector<Shape> body_shape;
+    std::vector<std::uint32_t> robot_body;      // kNone: it has none
+    std::vector<std::uint16_t> robot_category;  // index into `categories`
+    std::vector<std::uint16_t> robot_id;
+    std::vector<Outline> outlines;  // walls and membranes that run a program
+};
+
+Scenery make_scenery(World const& world);
+
+/// Vector from one point to another; the shortest one across the seam of a periodic arena.
+Vec2 minimum_image(Scenery const& scenery, Vec2 from_mm, Vec2 to_mm);
+
+/// Two robots of which one hears the other, or both each other.
+struct Link {
+    std::uint32_t from = 0;  // indices of robots
+    std::uint32_t to = 0;
+    Vec2 from_mm;                    // on the rim of `from`, or its outline, towards `to`
+    Vec2 to_mm;                      // on that of `to`; may lie beyond the seam of a periodic arena
+    std::uint8_t emitters = 0;       // bit d: emitter d of `from` reaches `to`
+    std::uint8_t emitters_back = 0;  // bit d: emitter d of `to` reaches `from`; 0: `to` only listens
+};
+
+/// Which parts of a snapshot that cost time are wanted.
+struct SnapshotParts {
+    bool light = false;
+    bool links = false;
+    bool trails = false;
+
+    friend bool operator==(SnapshotParts const&, SnapshotParts const&) = default;
+};
+
+struct Snapshot {
+    std::shared_ptr<Scenery const> scenery;
+    std::int64_t step = 0;
+    double time_s = 0.0;
+    std::vector<Vec2> position_mm;   // of bodies; in a periodic arena inside its bounds
+    std::vector<float> heading_rad;  // of bodies
+    std::vector<Leds> led;           // of robots
+    std::vector<LampMark> lamps;
+    std::shared_ptr<LightMap const> light;  // null: not wanted
+    std::vector<Link> links;                // empty: not wanted
+    std::shared_ptr<Trails const> trails;   // null: not wanted
+};
+
+}  // namespace pogosim

@@ -1,0 +1,45 @@
+#include "render/trails.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pogosim {
+
+namespace {
+
+bool leaves_a_trail(World const& world, std::size_t robot) {
+    return world.robots.body[robot] != kNone && !world.categories[world.robots.category[robot]].spec.ring;
+}
+
+}  // namespace
+
+void Trails::follow(World const& world) {
+    std::size_t const robots = world.robots.size();
+    if (robots != robot_count()) {
+        points_.assign(robots * kLength, {});
+        count_.assign(robots, 0);
+        next_.assign(robots, 0);
+    }
+    for (std::size_t i = 0; i < robots; ++i) {
+        if (!leaves_a_trail(world, i)) {
+            continue;
+        }
+        Vec2 const position = wrapped(world, world.bodies.position_mm[world.robots.body[i]]);
+        float const moved =
+            count_[i] == 0 ? kSpacingMm : length(minimum_image(world, point(i, 0).position_mm, position));
+        if (!(moved >= kSpacingMm) || !std::isfinite(moved)) {
+            continue;
+        }
+        points_[i * kLength + next_[i]] = {position, world.robots.led[i][0]};
+        next_[i] = static_cast<std::uint16_t>((next_[i] + 1U) % kLength);
+        count_[i] = static_cast<std::uint16_t>(std::min<std::size_t>(count_[i] + 1U, kLength));
+    }
+}
+
+void Trails::clear() {
+    points_.clear();
+    count_.clear();
+    next_.clear();
+}
+
+}  // namespace pogosim

@@ -1,0 +1,41 @@
+// Where robots have been: the last positions of each, at least 2 mm apart.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+struct TrailPoint {
+    Vec2 position_mm;
+    Rgb led;  // of the head at the time
+};
+
+/// Shape: a ring buffer of kLength points per robot.
+class Trails {
+public:
+    static constexpr std::size_t kLength = 512;
+    static constexpr float kSpacingMm = 2.0F;
+
+    /// Takes the positions of the robots of a world, once a step. Robots without a body, and rings, leave no trail.
+    void follow(World const& world);
+
+    std::size_t robot_count() const { return count_.size(); }
+    /// Points of one robot, 0 to kLength.
+    std::size_t size(std::size_t robot) const { return count_[robot]; }
+    /// The point before `age` others, 0 being the newest.
+    TrailPoint const& point(std::size_t robot, std::size_t age) const {
+        return points_[robot * kLength + (next_[robot] + kLength - 1 - age) % kLength];
+    }
+    void clear();
+
+private:
+    std::vector<TrailPoint> points_;
+    std::vector<std::uint16_t> count_;  // by robot
+    std::vector<std::uint16_t> next_;   // by robot: where the next point goes in its buffer
+};
+
+}  // namespace pogosim
