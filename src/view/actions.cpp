@@ -1,0 +1,94 @@
+#include "view/actions.hpp"
+
+#include <SDL.h>
+
+#include <array>
+
+namespace pogosim {
+
+namespace {
+
+enum class Shift { any, up, down };
+
+struct Binding {
+    SDL_Keycode key;
+    Action action;
+    Shift shift = Shift::any;
+};
+
+constexpr std::array kBindings{
+    Binding{SDLK_F1, Action::help},
+    Binding{SDLK_F2, Action::trails},
+    Binding{SDLK_F3, Action::slower},
+    Binding{SDLK_F4, Action::faster},
+    Binding{SDLK_F5, Action::links},
+    Binding{SDLK_F6, Action::lateral_leds},
+    Binding{SDLK_F7, Action::light_levels},
+    Binding{SDLK_F8, Action::time_and_scale_bar},
+    Binding{SDLK_F9, Action::panels},
+    Binding{SDLK_F11, Action::full_screen},
+    Binding{SDLK_F12, Action::screenshot},
+    Binding{SDLK_ESCAPE, Action::quit},
+    Binding{SDLK_SPACE, Action::pause},
+    Binding{SDLK_KP_SPACE, Action::pause},
+    Binding{SDLK_s, Action::step},
+    Binding{SDLK_r, Action::restart, Shift::up},
+    Binding{SDLK_r, Action::restart_with_next_seed, Shift::down},
+    Binding{SDLK_LEFT, Action::pan_left},
+    Binding{SDLK_KP_4, Action::pan_left},
+    Binding{SDLK_RIGHT, Action::pan_right},
+    Binding{SDLK_KP_6, Action::pan_right},
+    Binding{SDLK_UP, Action::pan_up},
+    Binding{SDLK_KP_8, Action::pan_up},
+    Binding{SDLK_DOWN, Action::pan_down},
+    Binding{SDLK_KP_2, Action::pan_down},
+    Binding{SDLK_PLUS, Action::zoom_in},
+    Binding{SDLK_EQUALS, Action::zoom_in},  // the key of + on many keyboards
+    Binding{SDLK_KP_PLUS, Action::zoom_in},
+    Binding{SDLK_MINUS, Action::zoom_out},
+    Binding{SDLK_UNDERSCORE, Action::zoom_out},
+    Binding{SDLK_KP_MINUS, Action::zoom_out},
+    Binding{SDLK_0, Action::reset_view},
+    Binding{SDLK_KP_0, Action::reset_view},
+};
+
+constexpr std::array kHelp{
+    Help{"F1", "show or hide this help"},
+    Help{"Space", "pause, or go on"},
+    Help{"S", "pause and advance by one step"},
+    Help{"F3, F4", "slower, faster"},
+    Help{"R", "restart with the same seed (overwrites the data)"},
+    Help{"Shift R", "restart with the next seed"},
+    Help{"F2", "trails"},
+    Help{"F5", "communication channels: off, below, above the robots"},
+    Help{"F6", "lateral LEDs"},
+    Help{"F7", "light levels"},
+    Help{"F8", "time and scale bar"},
+    Help{"F9", "show or hide the panels"},
+    Help{"F11", "full screen"},
+    Help{"F12", "save a screenshot"},
+    Help{"arrows, right drag", "move the view"},
+    Help{"+, -, wheel", "zoom"},
+    Help{"0", "fit the arena"},
+    Help{"left click", "select a robot (callback_robot_click), or none"},
+    Help{"left drag", "move a robot or a passive object"},
+    Help{"Esc", "end the run"},
+};
+
+}  // namespace
+
+std::optional<Action> action_of(std::int32_t key, bool shift) {
+    for (Binding const& binding : kBindings) {
+        bool const fits = binding.shift == Shift::any || (binding.shift == Shift::down) == shift;
+        if (binding.key == key && fits) {
+            return binding.action;
+        }
+    }
+    return std::nullopt;
+}
+
+std::span<Help const> help_lines() {
+    return kHelp;
+}
+
+}  // namespace pogosim

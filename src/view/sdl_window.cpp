@@ -1,0 +1,111 @@
+#include "view/sdl_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+namespace pogosim {
+
+namespace {
+
+constexpr int kLeastSizePx = 16;
+constexpr float kPlainDotsPerInch = 96.0F;
+
+/// Without a display that it can reach, SDL draws into nothing, or to a console.
+void check_driver() {
+    char const* const driver = SDL_GetCurrentVideoDriver();
+    if (driver == nullptr || SDL_getenv("SDL_VIDEODRIVER") != nullptr) {
+        return;
+    }
+    std::string const name = driver;
+    if (name == "offscreen" || name == "dummy" || name == "evdev" || name == "KMSDRM" || name == "directfb") {
+        SDL_QuitSubSystem(SDL_INIT_VIDEO);
+        throw std::runtime_error("the display that DISPLAY or WAYLAND_DISPLAY names cannot be reached");
+    }
+}
+
+[[noreturn]] void fail() {
+    std::string const reason = SDL_GetError();
+    throw std::runtime_error(reason.empty() ? "SDL gives no reason" : reason);
+}
+
+}  // namespace
+
+SdlWindow::SdlWindow(WindowSetup const& setup) {
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C is the simulator's
+    SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
+    SDL_SetHint(SDL_HINT_APP_NAME, "Pogosim");
+    SDL_SetMainReady();
+    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) {
+        fail();
+    }
+    check_driver();
+    // Without a graphics card, drawing through OpenGL takes several times as long as shared memory.
+    if (char const* const driver = SDL_GetCurrentVideoDriver(); driver != nullptr && std::string(driver) == "x11") {
+        SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
+    }
+    bool const restored = setup.restored.has_value();
+    int const x = restored ? setup.restored->x_px : static_cast<int>(SDL_WINDOWPOS_UNDEFINED);
+    int const y = restored ? setup.restored->y_px : static_cast<int>(SDL_WINDOWPOS_UNDEFINED);
+    auto const [width, height] = restored ? setup.restored->size : setup.size;
+    window_.reset(SDL_CreateWindow(setup.title.c_str(), x, y, width, height, SDL_WINDOW_RESIZABLE));
+    if (!window_ || SDL_GetWindowSurface(window_.get()) == nullptr) {
+        std::string const reason = SDL_GetError();
+        window_.reset();
+        SDL_QuitSubSystem(SDL_INIT_VIDEO);
+        SDL_SetError("%s", reason.c_str());
+        fail();
+    }
+    SDL_SetWindowMinimumSize(window_.get(), kLeastSizePx, kLeastSizePx);
+    SDL_StopTextInput();  // keys are commands
+}
+
+// SDL stays: when it leaves the X server it hands errors back to Xlib, which ends the program for the least of them.
+SdlWindow::~SdlWindow() = default;
+
+PictureSize SdlWindow::size() const {
+    PictureSize size;
+    SDL_GetWindowSize(window_.get(), &size.width_px, &size.height_px);
+    return {std::max(size.width_px, 1), std::max(size.height_px, 1)};
+}
+
+bool SdlWindow::is_visible() const {
+    return (SDL_GetWindowFlags(window_.get()) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)) == 0;
+}
+
+void SdlWindow::show(Canvas const& canvas) {
+    SDL_Surface* const surface = SDL_GetWindowSurface(window_.get());
+    if (surface == nullptr) {
+        return;  // it is being resized; the next picture comes soon
+    }
+    int const width = std::min(surface->w, canvas.size().width_px);
+    int const height = std::min(surface->h, canvas.size().height_px);
+    int const bytes_per_row = canvas.size().width_px * static_cast<int>(sizeof(Pixel));
+    SDL_LockSurface(surface);
+    SDL_ConvertPixels(width, height, SDL_PIXELFORMAT_ARGB8888, canvas.pixels().data(), bytes_per_row,
+                      surface->format->format, surface->pixels, surface->pitch);
+    SDL_UnlockSurface(surface);
+    SDL_UpdateWindowSurface(window_.get());
+}
+
+void SdlWindow::toggle_full_screen() {
+    full_screen_ = !full_screen_;
+    SDL_SetWindowFullscreen(window_.get(), full_screen_ ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+}
+
+void SdlWindow::write_place(WindowState& state) const {
+    SDL_GetWindowPosition(window_.get(), &state.x_px, &state.y_px);
+    state.size = size();
+}
+
+float SdlWindow::text_scale() const {
+    float dots_per_inch = kPlainDotsPerInch;
+    int const display = SDL_GetWindowDisplayIndex(window_.get());
+    if (display < 0 || SDL_GetDisplayDPI(display, nullptr, &dots_per_inch, nullptr) != 0) {
+        return 1.0F;
+    }
+    return std::clamp(std::round(2.0F * dots_per_inch / kPlainDotsPerInch) / 2.0F, 1.0F, 3.0F);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,45 @@
+// A window whose pixels are drawn by us. The only place, besides input, that uses SDL.
+#pragma once
+
+#include <SDL.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "render/canvas.hpp"
+#include "view/exchange.hpp"
+
+namespace pogosim {
+
+class SdlWindow {
+public:
+    /// Throws std::runtime_error, with SDL's reason.
+    explicit SdlWindow(WindowSetup const& setup);
+    ~SdlWindow();
+    SdlWindow(SdlWindow const&) = delete;
+    SdlWindow& operator=(SdlWindow const&) = delete;
+
+    PictureSize size() const;
+    bool is_visible() const;
+
+    /// Copies the canvas into the window. Sizes may differ while the window is being resized.
+    void show(Canvas const& canvas);
+
+    void toggle_full_screen();
+
+    /// Where it is on the screen, for the next run.
+    void write_place(WindowState& state) const;
+
+    /// Pixels of text for each pixel at 96 dots per inch: 1, 1.5, 2, ...
+    float text_scale() const;
+
+private:
+    struct DestroyWindow {
+        void operator()(SDL_Window* window) const { SDL_DestroyWindow(window); }
+    };
+    std::unique_ptr<SDL_Window, DestroyWindow> window_;
+    bool full_screen_ = false;
+};
+
+}  // namespace pogosim

@@ -1,0 +1,534 @@
+#include "view/window.hpp"
+
+#include <SDL.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csetjmp>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "render/png_file.hpp"
+#include "view/actions.hpp"
+#include "view/column_history.hpp"
+#include "view/lost_display.hpp"
+#include "view/module.hpp"
+#include "view/panels.hpp"
+#include "view/pick.hpp"
+#include "view/pointer.hpp"
+#include "view/sdl_window.hpp"
+
+namespace pogosim {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPicturePeriod = std::chrono::microseconds(16667);  // 60 per second
+constexpr auto kQuietPeriod = std::chrono::milliseconds(100);      // between looks at a run in which nothing happens
+constexpr auto kMessageTime = std::chrono::seconds(3);
+constexpr int kPicturesAfterInput = 20;  // the run answers, and panels settle
+constexpr float kPickMarginPx = 6.0F;
+constexpr float kPanStepPx = 40.0F;
+constexpr float kZoomStep = 1.1F;
+constexpr double kSlower = 0.8;
+constexpr double kFaster = 1.2;
+constexpr double kSlowest = 1e-3;  // that the keys ask for
+constexpr double kFastest = 1e6;
+constexpr double kUnlimitedSlower = 10.0;  // from no limit, in simulated seconds per second
+constexpr double kTrailPeriodS = 0.1;      // of simulated time
+constexpr int kMostScreenshots = 10000;
+
+class Window {
+public:
+    Window(WindowSetup const& setup, Exchange& exchange)
+        : setup_(setup),
+          exchange_(exchange),
+          window_(setup),
+          panels_(window_.text_scale()),
+          canvas_(window_.size()),
+          history_(setup.columns.size(), setup.scenery->robot_id.size()),
+          options_(setup.restored ? setup.restored->options : setup.options) {
+        state_.setup = &setup_;
+        state_.history = &history_;
+        state_.options = &options_;
+        state_.control = setup.restored ? setup.restored->panels : setup.panels;
+        if (setup.restored) {
+            state_.plot = setup.restored->plot;
+            state_.column = std::min(setup.restored->column, std::max<std::size_t>(setup.columns.size(), 1) - 1);
+            state_.column_is_chosen = state_.plot;
+        }
+        if (options_.selected_robot.value_or(0) >= setup.scenery->robot_id.size()) {
+            options_.selected_robot.reset();
+        }
+        reset_view();
+    }
+
+    /// Until the user or the simulation closes it.
+    void run() {
+        auto next_picture = Clock::now();
+        ask();
+        while (!closed_ && !exchange_.is_closing()) {
+            wait_for_events(next_picture);
+            take_moment();
+            auto const now = Clock::now();
+            if (now < next_picture) {
+                continue;
+            }
+            next_picture = std::max(next_picture + kPicturePeriod, now);
+            state_.seconds_since_moment = std::chrono::duration<double>(now - last_moment_).count();
+            bool const is_waiting = state_.seconds_since_moment > kBusyS && now - last_drawn_ > kQuietPeriod;
+            bool const must_draw = is_stale_ || pictures_to_draw_ > 0 || message_is_over(now) || is_waiting;
+            if (window_.is_visible() && must_draw) {
+                draw(now);
+                ask();
+            } else if (now - last_asked_ > kQuietPeriod) {
+                ask();
+            }
+        }
+    }
+
+private:
+    void wait_for_events(Clock::time_point until) {
+        auto const left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
+        SDL_Event event;
+        if (SDL_WaitEventTimeout(&event, static_cast<int>(std::clamp<long long>(left.count(), 1, 16))) == 0) {
+            return;
+        }
+        do {
+            take(event);
+        } while (SDL_PollEvent(&event) != 0);
+    }
+
+    void take(SDL_Event const& event) {
+        pictures_to_draw_ = kPicturesAfterInput;
+        switch (event.type) {
+            case SDL_QUIT:
+                quit();
+                break;
+            case SDL_KEYDOWN:
+                if (auto const action = action_of(event.key.keysym.sym, (event.key.keysym.mod & KMOD_SHIFT) != 0)) {
+                    carry_out(*action, event.key.repeat != 0);
+                }
+                break;
+            case SDL_MOUSEWHEEL:
+                take_wheel(event.wheel);
+                break;
+            case SDL_MOUSEBUTTONDOWN:
+                take_press(event.button);
+                break;
+            case SDL_MOUSEBUTTONUP:
+                take_release(event.button);
+                break;
+            case SDL_MOUSEMOTION:
+                take_motion({static_cast<float>(event.motion.x), static_cast<float>(event.motion.y)});
+                break;
+            case SDL_WINDOWEVENT:
+                take_window_event(event.window);
+                break;
+            default:
+                break;
+        }
+    }
+
+    void take_window_event(SDL_WindowEvent const& event) {
+        if (event.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
+            // The arena stays in the middle; when all of it was shown, all of it is.
+            PictureSize const size = window_.size();
+            bool const was_fitted = camera_ == fitted(setup_.scenery->arena.bounds, canvas_.size());
+            canvas_.resize(size);
+            if (was_fitted) {
+                reset_view();
+            }
+        } else if (event.event == SDL_WINDOWEVENT_FOCUS_LOST || event.event == SDL_WINDOWEVENT_LEAVE) {
+            // A button may be let go elsewhere.
+            if ((SDL_GetGlobalMouseState(nullptr, nullptr) & SDL_BUTTON_LMASK) == 0) {
+                let_go();
+            }
+        }
+    }
+
+    void carry_out(Action action, bool is_repeated) {
+        bool const repeats = action == Action::step || action == Action::slower || action == Action::faster ||
+                             (action >= Action::pan_left && action <= Action::zoom_out);
+        if (is_repeated && !repeats) {
+            return;  // held down: a switch would flicker
+        }
+        switch (action) {
+            case Action::help:
+                show_help();
+                break;
+            case Action::trails:
+                options_.trails = !options_.trails;
+                break;
+            case Action::slower:
+                change_speed(kSlower);
+                break;
+            case Action::faster:
+                change_speed(kFaster);
+                break;
+            case Action::links:
+                options_.links = static_cast<LinkLayer>((static_cast<int>(options_.links) + 1) % 3);
+                break;
+            case Action::lateral_leds:
+                options_.lateral_leds = !options_.lateral_leds;
+                break;
+            case Action::light_levels:
+                options_.light_levels = !options_.light_levels;
+                break;
+            case Action::time_and_scale_bar:
+                options_.time = options_.scale_bar = !(options_.time || options_.scale_bar);
+                break;
+            case Action::panels:
+                state_.control = !state_.control;
+                break;
+            case Action::full_screen:
+                window_.toggle_full_screen();
+                break;
+            case Action::screenshot:
+                save_screenshot();
+                break;
+            case Action::quit:
+                quit();
+                break;
+            case Action::pause:
+                send(Pause{!is_paused()});
+                break;
+            case Action::step:
+                send(StepOnce{});
+                break;
+            case Action::restart:
+                restart(setup_.seed);
+                break;
+            case Action::restart_with_next_seed:
+                restart(setup_.seed + 1);
+                break;
+            case Action::pan_left:
+                pan({-kPanStepPx, 0.0F});
+                break;
+            case Action::pan_right:
+                pan({kPanStepPx, 0.0F});
+                break;
+            case Action::pan_up:
+                pan({0.0F, -kPanStepPx});
+                break;
+            case Action::pan_down:
+                pan({0.0F, kPanStepPx});
+                break;
+            case Action::zoom_in:
+                zoom(kZoomStep, canvas_.size().middle_px());
+                break;
+            case Action::zoom_out:
+                zoom(1.0F / kZoomStep, canvas_.size().middle_px());
+                break;
+            case Action::reset_view:
+                reset_view();
+                break;
+        }
+    }
+
+    bool is_paused() const { return moment_ != nullptr && moment_->status.paused; }
+
+    void send(Command const& command) {
+        if (auto const* const again = std::get_if<Restart>(&command)) {
+            restart(again->seed);
+            return;
+        }
+        // Until the simulation has taken notice, the panels show what was asked for.
+        if (moment_ != nullptr) {
+            RunStatus& status = moment_->status;
+            if (auto const* const pause = std::get_if<Pause>(&command)) {
+                status.paused = pause->on;
+            } else if (auto const* const speed = std::get_if<SetSpeedUp>(&command)) {
+                status.asked_speed_up = speed->factor;
+            }
+        }
+        exchange_.send(command);
+    }
+
+    void restart(std::uint32_t seed) {
+        WindowState state;
+        window_.write_place(state);
+        state.panels = state_.control;
+        state.speed_up = moment_ != nullptr ? moment_->status.asked_speed_up : setup_.speed_up;
+        state.options = options_;
+        state.plot = state_.plot;
+        state.column = state_.column;
+        exchange_.send(Restart{seed, state});
+        setup_.hurry("restarting");
+    }
+
+    void quit() {
+        closed_ = true;
+        exchange_.send(Quit{});
+        setup_.hurry("closing the window");
+    }
+
+    void show_help() {
+        state_.help = !state_.help;
+        if (state_.help && !help_is_logged_) {
+            help_is_logged_ = true;
+            for (Help const& line : help_lines()) {
+                exchange_.send(Note{fmt::format("{:<20} {}", line.input, line.effect)});
+            }
+        }
+    }
+
+    void change_speed(double factor) {
+        double const asked = moment_ != nullptr ? moment_->status.asked_speed_up : setup_.speed_up;
+        if (asked > 0.0) {
+            send(SetSpeedUp{std::clamp(asked * factor, std::min(asked, kSlowest), std::max(asked, kFastest))});
+        } else if (factor < 1.0) {
+            double const reached = moment_ != nullptr ? moment_->status.speed_up : 0.0;
+            send(SetSpeedUp{reached > 0.0 ? reached * factor : kUnlimitedSlower});
+        }
+    }
+
+    // The view.
+
+    void reset_view() { camera_ = fitted(setup_.scenery->arena.bounds, canvas_.size()); }
+
+    void pan(Vec2 motion_px) { camera_.centre_mm = camera_.centre_mm + (1.0F / camera_.scale_px_mm) * motion_px; }
+
+    void zoom(float factor, Vec2 fixed_px) {
+        PictureSize const size = canvas_.size();
+        camera_ = zoomed(camera_, factor, fixed_px, size, zoom_limits(setup_.scenery->arena.bounds, size));
+    }
+
+    // The mouse.
+
+    void take_wheel(SDL_MouseWheelEvent const& wheel) {
+        float const lines = static_cast<float>(wheel.direction == SDL_MOUSEWHEEL_FLIPPED ? -wheel.y : wheel.y);
+        if (panels_.has_mouse()) {
+            input_.wheel += lines;
+        } else {
+            zoom(std::pow(kZoomStep, lines), input_.mouse_px);
+        }
+    }
+
+    void take_press(SDL_MouseButtonEvent const& button) {
+        Vec2 const point_px{static_cast<float>(button.x), static_cast<float>(button.y)};
+        input_.mouse_px = point_px;
+        if (button.button != SDL_BUTTON_LEFT) {
+            if (!panels_.has_mouse()) {
+                pointer_.panned_from_px = point_px;
+            }
+            return;
+        }
+        input_.left_is_down = true;
+        if (panels_.has_mouse() || moment_ == nullptr) {
+            return;
+        }
+        Snapshot const& snapshot = moment_->snapshot;
+        Vec2 const point_mm = camera_.to_mm(point_px, canvas_.size());
+        Press press;
+        press.start_px = point_px;
+        press.object = object_at(snapshot, point_mm, 0.0F);
+        if (press.object) {
+            Object const& object = snapshot.scenery->objects[*press.object];
+            press.grip_mm = centre_of(snapshot, object) - point_mm;
+        }
+        pointer_.left = press;
+    }
+
+    void take_motion(Vec2 point_px) {
+        input_.mouse_px = point_px;
+        if (pointer_.panned_from_px) {
+            pan(*pointer_.panned_from_px - point_px);
+            pointer_.panned_from_px = point_px;
+        }
+        if (!pointer_.left) {
+            return;
+        }
+        Press& press = *pointer_.left;
+        press.is_drag = press.is_drag || length(point_px - press.start_px) > kTremblePx;
+        if (press.is_drag && press.object) {
+            send(HoldObject{*press.object, camera_.to_mm(point_px, canvas_.size()) + press.grip_mm});
+        }
+    }
+
+    void take_release(SDL_MouseButtonEvent const& button) {
+        if (button.button != SDL_BUTTON_LEFT) {
+            pointer_.panned_from_px.reset();
+            return;
+        }
+        // The panels have seen it down at least once.
+        input_.left_is_down = false;
+        left_was_pressed_ = true;
+        if (pointer_.left && !pointer_.left->is_drag) {
+            select(pointer_.left->start_px);
+        }
+        let_go();
+    }
+
+    void let_go() {
+        if (pointer_.left && pointer_.left->is_drag && pointer_.left->object) {
+            send(LetGo{});
+        }
+        pointer_.left.reset();
+        pointer_.panned_from_px.reset();
+    }
+
+    /// The nearest robot, or none; the same one again: none.
+    void select(Vec2 point_px) {
+        Vec2 const point_mm = camera_.to_mm(point_px, canvas_.size());
+        auto const robot = robot_at(moment_->snapshot, point_mm, kPickMarginPx / camera_.scale_px_mm);
+        bool const again = robot == options_.selected_robot;
+        options_.selected_robot = again ? std::nullopt : robot;
+        if (options_.selected_robot) {
+            send(ClickRobot{*options_.selected_robot});
+        }
+    }
+
+    // Pictures.
+
+    void ask() {
+        last_asked_ = Clock::now();
+        SnapshotParts parts = parts_for(options_);
+        // Drawing trails takes the most time. They are drawn anew before a robot has left the end of its own.
+        double const time_s = moment_ != nullptr ? moment_->snapshot.time_s : 0.0;
+        bool const are_fresh = trails_ != nullptr && time_s - trails_time_s_ < kTrailPeriodS && !is_paused();
+        parts.trails = options_.trails && !are_fresh;
+        exchange_.request({.parts = parts, .follow_trails = options_.trails, .robot = options_.selected_robot});
+    }
+
+    void take_moment() {
+        std::shared_ptr<Moment const> const newest = exchange_.take_moment();
+        if (newest == nullptr) {
+            return;
+        }
+        for (RecordedValues const& recorded : newest->recorded) {
+            history_.add(recorded);
+        }
+        last_moment_ = Clock::now();
+        // While the run is paused, nothing changes but by the user.
+        is_stale_ = is_stale_ || moment_ == nullptr || newest->snapshot.step != moment_->snapshot.step ||
+                    newest->status.touched != moment_->status.touched;
+        moment_ = std::make_unique<Moment>(*newest);
+        Snapshot& snapshot = moment_->snapshot;
+        if (snapshot.trails != nullptr || !options_.trails) {
+            trails_ = snapshot.trails;
+            trails_time_s_ = snapshot.time_s;
+        }
+        snapshot.trails = trails_;
+        state_.moment = moment_.get();
+    }
+
+    bool message_is_over(Clock::time_point now) const { return !state_.message.empty() && now > message_until_; }
+
+    void draw(Clock::time_point now) {
+        if (moment_ == nullptr) {
+            return;
+        }
+        if (message_is_over(now)) {
+            state_.message.clear();
+        }
+        canvas_.resize(window_.size());
+        painter_.paint(canvas_, camera_, moment_->snapshot, options_);
+        input_.seconds = std::chrono::duration<float>(now - last_drawn_).count();
+        last_drawn_ = now;
+        // A click shorter than a picture is still one.
+        bool const is_down = std::exchange(input_.left_is_down, input_.left_is_down || left_was_pressed_);
+        panels_.draw(canvas_, input_, state_, [this](Command const& command) { send(command); });
+        input_.left_is_down = is_down;
+        left_was_pressed_ = false;
+        input_.wheel = 0.0F;
+        window_.show(canvas_);
+        is_stale_ = false;
+        pictures_to_draw_ = std::max(pictures_to_draw_ - 1, 0);
+    }
+
+    void say(std::string const& text) {
+        state_.message = text;
+        message_until_ = Clock::now() + kMessageTime;
+        exchange_.send(Note{text});
+    }
+
+    void save_screenshot() {
+        namespace fs = std::filesystem;
+        std::error_code error;
+        for (int i = 1; i < kMostScreenshots; ++i) {
+            std::string const name = fmt::format("screenshot-{:03}.png", i);
+            if (fs::exists(name, error)) {
+                continue;
+            }
+            try {
+                write_png(name, canvas_);
+                say(fmt::format("saved {}", fs::absolute(name, error).string()));
+            } catch (std::exception const& problem) {
+                say(fmt::format("the screenshot {} cannot be written: {}", name, problem.what()));
+            }
+            return;
+        }
+        say("no screenshot: there are too many in this folder");
+    }
+
+    WindowSetup setup_;
+    Exchange& exchange_;
+    SdlWindow window_;
+    Panels panels_;
+    Canvas canvas_;
+    Painter painter_;
+    Camera camera_;
+    ColumnHistory history_;
+    PaintOptions options_;
+    PanelState state_;
+    PanelInput input_;
+    Pointer pointer_;
+    std::unique_ptr<Moment> moment_;        // the newest, with what was asked for since
+    std::shared_ptr<Trails const> trails_;  // the newest
+    double trails_time_s_ = 0.0;
+    bool left_was_pressed_ = false;
+    bool closed_ = false;
+    bool is_stale_ = true;
+    bool help_is_logged_ = false;
+    int pictures_to_draw_ = kPicturesAfterInput;
+    Clock::time_point last_drawn_ = Clock::now();
+    Clock::time_point last_asked_ = Clock::now();
+    Clock::time_point last_moment_ = Clock::now();
+    Clock::time_point message_until_{};
+};
+
+}  // namespace
+
+void show_window(WindowSetup const& setup, Exchange& exchange) {
+    static sigjmp_buf lost;
+    static Window* window = nullptr;  // out of reach of the jump
+    if (sigsetjmp(lost, 0) != 0) {
+        // SDL and Xlib are in the middle of something: what they hold stays held.
+        exchange.report_end(WindowEnd::display_lost, "");
+        exchange.report_opened("the display is gone");
+        return;
+    }
+    jump_when_display_is_lost(lost);
+    try {
+        window = new Window(setup, exchange);
+    } catch (std::exception const& error) {
+        exchange.report_end(WindowEnd::failed, error.what());
+        exchange.report_opened(error.what());
+        return;
+    }
+    exchange.report_opened("");
+    WindowEnd end = WindowEnd::closed;
+    std::string problem;
+    try {
+        window->run();
+    } catch (std::exception const& error) {
+        end = WindowEnd::failed;
+        problem = error.what();
+    }
+    delete window;
+    exchange.report_end(end, problem);
+}
+
+}  // namespace pogosim
+
+extern "C" __attribute__((visibility("default"))) void pogosim_show_window(pogosim::WindowSetup const& setup,
+                                                                           pogosim::Exchange& exchange) {
+    pogosim::show_window(setup, exchange);
+}
