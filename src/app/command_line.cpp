@@ -21,6 +21,10 @@ std::string is_seed(std::string const& text) {
     return fits ? "" : "expected a whole number from 0 to 4294967295, found '" + text + "'";
 }
 
+std::string is_not_empty(std::string const& text) {
+    return text.empty() ? "expected the name of a file, found ''" : "";
+}
+
 /// CLI11 parses "-nr" as "-n -r", so it is replaced by the long name.
 std::vector<std::string> normalised_arguments(int argc, char const* const* argv) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -40,6 +44,9 @@ void declare_options(CLI::App& app, CommandLine& options) {
         ->type_name("N")
         ->check(is_seed);
     app.add_flag("-P,--progress", options.progress_bar, "show a progress bar");
+    app.add_option("--video", options.video, "make a film of the run (.mp4, .webm or .gif), with ffmpeg")
+        ->type_name("FILE")
+        ->check(is_not_empty);
     app.add_option("--set", options.overrides,
                    "override a configuration entry, such as objects.robots.nb=50; may be repeated")
         ->type_name("KEY.PATH=VALUE")
@@ -93,7 +100,8 @@ std::string problem_of(CLI::App const& app, CLI::ParseError const& error) {
 
 ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
     ParsedCommandLine parsed;
-    CLI::App app{"Simulates a swarm of Pogobots running this program.", argc > 0 ? base_name(argv[0]) : "pogosim"};
+    parsed.options.program_name = argc > 0 ? base_name(argv[0]) : "pogosim";
+    CLI::App app{"Simulates a swarm of Pogobots running this program.", parsed.options.program_name};
     app.footer("Exit codes: 0 success, 2 usage, configuration or file error, 3 the program failed, 130 interrupted.");
     declare_options(app, parsed.options);
     try {

@@ -9,6 +9,7 @@
 namespace pogosim {
 
 struct CommandLine {
+    std::string program_name;  // without folders
     std::string config;
     bool no_gui = false;
     bool verbose = false;
@@ -17,6 +18,7 @@ struct CommandLine {
     bool progress_bar = false;
     bool strict = false;
     std::optional<std::uint32_t> seed;
+    std::string video;                   // file of a film; empty: none
     std::vector<std::string> overrides;  // --set, in order
 };
 

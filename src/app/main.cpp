@@ -1,12 +1,17 @@
 // The program's real main(). The user's main(), renamed robot_main, is called once for each robot.
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "app/command_line.hpp"
+#include "app/restart.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/log.hpp"
@@ -17,12 +22,19 @@
 #include "sim/interrupt.hpp"
 #include "sim/simulation.hpp"
 #include "sim/used_files.hpp"
+#include "sim/window_module.hpp"
 
 namespace {
 
 using namespace pogosim;
 
-ExitCode simulate(CommandLine const& options) {
+/// A run that has ended, and the one that the user wants instead.
+struct Ended {
+    ExitCode code = ExitCode::usage;
+    std::optional<Restart> restart{};
+};
+
+Ended simulate(CommandLine const& options, std::optional<Restart> const& restarted) {
     ignore_broken_outputs();
     // Until the configuration is read, the console follows the command line.
     LogOptions logging;
@@ -35,22 +47,29 @@ ExitCode simulate(CommandLine const& options) {
     if (options.seed) {
         scenario.seed = options.seed;
     }
-    check_used_files(scenario, options.config);
+    if (restarted) {
+        scenario.seed = restarted->seed;
+    }
+    check_used_files(scenario, options.video);
     logging.minimal = scenario.output.log_format == LogFormat::minimal;
     if (scenario.output.enable_console_logging) {
         logging.file = scenario.output.console_filename;
     }
     start_logging(logging);
 
-    if (scenario.view.gui && !options.no_gui) {
-        log().info("this version has no window yet; running without one");
+    if (restarted) {
+        log().info("restarted with seed {}", restarted->seed);
     }
-    if (scenario.view.save_video_period_s > 0.0) {
-        log().info("this version does not draw frames yet (save_video_period)");
-    }
-
-    Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar, .strict = options.strict});
-    return simulation.run();
+    bool const window = scenario.view.gui && !options.no_gui;
+    Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar,
+                                                .measure_stages = false,
+                                                .strict = options.strict,
+                                                .film = options.video,
+                                                .window = window,
+                                                .program_name = options.program_name,
+                                                .restarted = restarted});
+    ExitCode const code = simulation.run();
+    return {code, simulation.restart()};
 }
 
 /// Prints an error. Returns the exit code of a run that would otherwise have ended with `code`.
@@ -83,9 +102,12 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
     if (parsed.exit_code) {
         return *parsed.exit_code;
     }
-    ExitCode code = ExitCode::usage;
+    std::error_code unknown_folder;
+    std::filesystem::path const folder = std::filesystem::current_path(unknown_folder);
+    Ended ended;
+    ExitCode& code = ended.code;
     try {
-        code = simulate(parsed.options);
+        ended = simulate(parsed.options, take_restart());
         check_logs();
     } catch (OutOfMemory const& error) {
         end_short_of_memory(error.what());
@@ -97,7 +119,13 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
         code = report(escaped(error.what()).c_str(), code);
     }
     flush_logs();
-    if (code == ExitCode::user_program || was_left_by_force()) {
+    if (ended.restart && (code == ExitCode::done || code == ExitCode::interrupted)) {
+        std::fflush(nullptr);
+        restart_program(argv, folder, *ended.restart);
+        std::fprintf(stderr, "Error: cannot start %s again: %s\n", argv[0], std::strerror(errno));
+        return static_cast<int>(ExitCode::usage);
+    }
+    if (code == ExitCode::user_program || window_was_left_behind() || was_left_by_force()) {
         // The user's program may have corrupted memory, so skip the destructors.
         std::fflush(nullptr);
         std::_Exit(static_cast<int>(code));

@@ -46,12 +46,12 @@ struct ObjectConfig {
 /// Where the objects of the entry start, one pose for each; empty when the configuration does not say.
 std::vector<Placement> given_poses(ObjectConfig const& object);
 
-/// Window and drawing; read and kept for the window.
+/// Window and pictures.
 struct ViewConfig {
     bool gui = true;
     int window_width_px = 800;
     int window_height_px = 800;
-    double gui_speed_up = 1.0;  // simulated seconds per second of wall clock
+    double gui_speed_up = 1.0;  // simulated seconds per second of wall clock; 0: no limit
     double mm_to_pixels = 1.0;
     bool show_time = true;
     bool show_scale_bar = true;

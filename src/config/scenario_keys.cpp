@@ -155,8 +155,8 @@ std::span<Key<ViewConfig> const> view_keys() {
     using K = Key<ViewConfig>;
     static std::array const keys{
         K{"GUI", &ViewConfig::gui, any(), "", "Open the window."},
-        K{"GUI_speed_up", &ViewConfig::gui_speed_up, above(0).up_to(1e6), "",
-          "Simulated seconds per second in the window."}
+        K{"GUI_speed_up", &ViewConfig::gui_speed_up, between(0, 1e6), "",
+          "Simulated seconds per second in the window; 0: as fast as possible."}
             .only_if([](ViewConfig const& view) { return view.gui; }),
         K{"window_width", &ViewConfig::window_width_px, between(1, 16384), "pixels",
           "Width of the window and of frames."},
@@ -173,11 +173,12 @@ std::span<Key<ViewConfig> const> view_keys() {
         K{"show_light_levels", &ViewConfig::show_light_levels, any(), "", "Draw the light map."},
         K{"show_trajectory_traces", &ViewConfig::show_trajectory_traces, any(), "", "Draw the trajectories of robots."},
         K{"save_video_period", &ViewConfig::save_video_period_s, between(-1e9, 1e9), "s",
-          "Time between frames; 0 or less: no frames."},
+          "Simulated time between frames; 0 or less: no frames."},
         K{"frames_name", &ViewConfig::frames_name, any(), "",
-          "File name of a frame; its only {} field is the time in s."},
+          "File name of a frame (PNG); its only {} field is the time in s. Missing folders are created."},
         K{"delete_old_files", &ViewConfig::delete_old_files, any(), "",
-          "Delete *.png in the folder of frames_name first."},
+          "Delete all files *.png in the folder of frames_name at the start of a run that draws frames, except those "
+          "that the run itself reads or writes; not in its subfolders."},
     };
     return keys;
 }

@@ -68,7 +68,8 @@ Recorder::Recorder(Scenario const& scenario, World const& world, Programs& progr
       programs_(programs),
       export_(data),
       seed_(seed),
-      category_is_recorded_(recorded_categories(scenario, world)) {
+      category_is_recorded_(recorded_categories(scenario, world)),
+      row_times_(output().save_data_period_s, /*first=*/0) {
     if (output().enable_data_logging) {
         reserved_ = DataFile::reserve(output().data_filename);
     }
@@ -83,7 +84,15 @@ std::optional<UserFailure> Recorder::open() {
     }
     make_data_file();
     is_opened_ = true;
+    show(shown_);
     return std::nullopt;
+}
+
+void Recorder::show(RecordedRows* rows) {
+    shown_ = rows;
+    if (rows != nullptr && is_opened_) {
+        rows->open(export_.columns, output().fields);
+    }
 }
 
 void Recorder::open_without_rows() {
@@ -107,22 +116,14 @@ void Recorder::make_data_file() {
 }
 
 std::optional<UserFailure> Recorder::record_if_due() {
-    double const period_s = output().save_data_period_s;
-    bool const at_start = world_.step == 0;
-    if (!data_file_ || (period_s <= 0.0 && !at_start)) {
-        return std::nullopt;
-    }
-    // Rows belong to the first step at or after each multiple of the period.
-    double const periods = at_start ? 0.0 : world_.time_s() / period_s + kWholeTolerance;
-    if (periods < static_cast<double>(next_row_time_)) {
-        return std::nullopt;
-    }
-    next_row_time_ = static_cast<std::int64_t>(periods) + 1;
-    return record_rows();
+    return data_file_ && row_times_.reached(world_.time_s()) > 0 ? record_rows() : std::nullopt;
 }
 
 std::optional<UserFailure> Recorder::record_rows() {
     DataRow const& row = export_.row;
+    if (shown_ != nullptr) {
+        shown_->begin(world_.time_s());
+    }
     for (Object const& object : world_.objects) {
         if (!category_is_recorded_[object.category]) {
             continue;
@@ -135,9 +136,16 @@ std::optional<UserFailure> Recorder::record_rows() {
             return failure;
         }
         if (row.exported) {
-            data_file_->append(row_of(world_, object, programs_.ticks(object.robot)), row.values);
+            ObjectRow const built_in = row_of(world_, object, programs_.ticks(object.robot));
+            data_file_->append(built_in, row.values);
             record_subparts(object);
+            if (shown_ != nullptr) {
+                shown_->add(object.robot, built_in, row.values);
+            }
         }
+    }
+    if (shown_ != nullptr) {
+        shown_->end();
     }
     return std::nullopt;
 }
@@ -160,6 +168,12 @@ void Recorder::record_subparts(Object const& object) {
 void Recorder::save_if_due() {
     if (data_file_) {
         data_file_->save_if_due();
+    }
+}
+
+void Recorder::add_metadata(std::string const& key, std::string const& value) {
+    if (data_file_) {
+        data_file_->add_metadata(key, value);
     }
 }
 

@@ -11,6 +11,8 @@
 #include "record/data_file.hpp"
 #include "robot/programs.hpp"
 #include "robot/user_guard.hpp"
+#include "sim/multiples.hpp"
+#include "sim/recorded_rows.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -35,6 +37,12 @@ public:
     /// OutputError.
     void save_if_due();
 
+    /// From now on, `rows` gets what is recorded of robots; null: nobody does. `rows` outlives this.
+    void show(RecordedRows* rows);
+
+    /// One more entry in the metadata of the complete file.
+    void add_metadata(std::string const& key, std::string const& value);
+
     /// Completes the file. Throws OutputError.
     void close();
 
@@ -57,8 +65,9 @@ private:
     std::unique_ptr<DataFile> data_file_;
     bool is_opened_ = false;  // by open(): rows come into it
     bool is_complete_ = false;
-    DataRow empty_row_;               // user columns of what runs no user code
-    std::int64_t next_row_time_ = 0;  // in save periods
+    RecordedRows* shown_ = nullptr;  // null: nobody looks
+    DataRow empty_row_;              // user columns of what runs no user code
+    Multiples row_times_;
 };
 
 }  // namespace pogosim

@@ -18,6 +18,8 @@
 #include "sim/interrupt.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/progress_bar.hpp"
+#include "sim/window_driver.hpp"
+#include "sim/window_setup.hpp"
 
 namespace pogosim {
 
@@ -48,7 +50,7 @@ struct RunEnd {
 
 Simulation::Simulation(Scenario scenario, RunOptions options)
     : scenario_(std::move(scenario)),
-      options_(options),
+      options_(std::move(options)),
       seed_(seed_of(scenario_)),
       world_(build_world(scenario_, seed_)),
       parameters_(scenario_.parameters),
@@ -57,7 +59,8 @@ Simulation::Simulation(Scenario scenario, RunOptions options)
       lighting_(lamps_of(scenario_, world_), world_),
       physics_(make_physics(scenario_, world_)),
       recorder_(scenario_, world_, programs_, services_.data, seed_),
-      stages_(options.measure_stages) {}
+      pictures_(Pictures::make(scenario_, world_, programs_, lighting_, options_.film)),
+      stages_(options_.measure_stages) {}
 
 Simulation::~Simulation() = default;
 
@@ -65,8 +68,30 @@ std::int64_t Simulation::step_count() const {
     return static_cast<std::int64_t>(std::ceil(scenario_.simulation_time_s / world_.time_step_s - kWholeTolerance));
 }
 
+SnapshotTaker& Simulation::snapshots() {
+    if (!snapshots_) {
+        snapshots_ = std::make_unique<SnapshotTaker>(world_, programs_, lighting_);
+    }
+    return *snapshots_;
+}
+
+Inspector& Simulation::inspector() {
+    if (!inspector_) {
+        inspector_ = std::make_unique<Inspector>(world_, programs_);
+        services_.printed_lines = &inspector_->lines();
+        recorder_.show(&inspector_->rows());
+    }
+    return *inspector_;
+}
+
+void Simulation::stop_inspecting() {
+    services_.printed_lines = nullptr;
+    recorder_.show(nullptr);
+    inspector_.reset();
+}
+
 bool Simulation::is_over() const {
-    return world_.step >= step_count() || services_.stop_requested || interrupted();
+    return world_.step >= step_count() || services_.stop_requested || interrupted() || (window_ && window_->is_over());
 }
 
 ExitCode Simulation::run() {
@@ -113,7 +138,7 @@ ExitCode Simulation::run() {
         call_user_code([this] { programs_.print_unfinished_lines(); });
         return failure->code;
     }
-    finish();
+    bool const all_pictures_written = finish();
     programs_.warn_of_messages(channel_.receptions());
     if (!scenario_.output.categories) {  // else a column may be that of a category without rows
         programs_.tell_of_unset_columns(scenario_.output.fields);
@@ -121,9 +146,11 @@ ExitCode Simulation::run() {
     report_unread_parameters();
     if (interrupted()) {
         log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), recorder_.note());
-        return ExitCode::interrupted;
     }
-    return ExitCode::done;
+    if (!all_pictures_written) {
+        return ExitCode::usage;
+    }
+    return interrupted() ? ExitCode::interrupted : ExitCode::done;
 }
 
 void Simulation::report_unread_parameters() const {
@@ -139,10 +166,25 @@ void Simulation::report_unread_parameters() const {
 }
 
 std::optional<UserFailure> Simulation::run_steps() {
+    if (options_.window) {
+        inspector();  // it sees all lines and rows
+    }
     std::optional<UserFailure> failure = start();
     ProgressBar progress(step_count(), world_.time_step_s, options_.progress_bar);
+    if (!failure && options_.window) {
+        open_window();
+    }
     while (!failure && !is_over()) {
+        if (window_) {
+            failure = window_->wait_for_step();
+            if (failure || is_over()) {
+                break;
+            }
+        }
         failure = step();
+        if (window_) {
+            window_->note_step();
+        }
         progress.show(world_.step);
     }
     progress.finish(world_.step);
@@ -153,6 +195,32 @@ std::optional<UserFailure> Simulation::run_steps() {
         });
     }
     return failure;
+}
+
+void Simulation::open_window() {
+    try {
+        WindowSetup setup = window_setup(scenario_, world_, options_.program_name);
+        setup.columns = inspector().rows().columns();
+        setup.seed = seed_;
+        setup.restored = options_.restarted ? options_.restarted->window : std::nullopt;
+        if (setup.restored) {
+            setup.speed_up = setup.restored->speed_up;
+        }
+        setup.scenery = snapshots().scenery();
+        window_ = std::make_unique<WindowDriver>(*this, setup);
+    } catch (std::runtime_error const& error) {
+        log().warn("the run has no window: {} (-g runs without one)", error.what());
+        stop_inspecting();
+    }
+}
+
+std::optional<Restart> Simulation::restart() {
+    return window_ ? window_->restart() : std::nullopt;
+}
+
+void Simulation::save_while_waiting() {
+    recorder_.save_if_due();
+    flush_logs_if_due();
 }
 
 std::optional<UserFailure> Simulation::start() {
@@ -169,7 +237,11 @@ std::optional<UserFailure> Simulation::start() {
     if (auto failure = recorder_.open()) {
         return failure;
     }
-    return recorder_.record_if_due();
+    auto failure = recorder_.record_if_due();
+    if (pictures_) {
+        pictures_->look();
+    }
+    return failure;
 }
 
 std::optional<UserFailure> Simulation::step() {
@@ -186,14 +258,44 @@ std::optional<UserFailure> Simulation::step() {
     stages_.end(Stage::physics);
     ++world_.step;
     auto failure = recorder_.record_if_due();
+    if (pictures_) {
+        pictures_->look();
+    }
     recorder_.save_if_due();
     flush_logs_if_due();
     stages_.end(Stage::record);
     return failure;
 }
 
-void Simulation::finish() {
-    recorder_.close();
+std::optional<UserFailure> Simulation::click(std::uint32_t robot) {
+    bool has_callback = false;
+    auto failure = call_user_code([&] { has_callback = programs_.click(robot); });
+    if (has_callback || failure) {
+        touches_.add_click(world_.time_s());
+    }
+    return failure;
+}
+
+bool Simulation::move_object(std::uint32_t object, Vec2 centre_mm) {
+    if (!free_places_) {
+        free_places_.emplace(world_);
+    }
+    Object const& moved = world_.objects[object];
+    Vec2 const place_mm = free_places_->nearest(moved, centre_mm);
+    if (place_mm == pogosim::centre_mm(world_, moved)) {
+        return false;
+    }
+    physics_->set_pose(world_, moved, place_mm, world_.bodies.heading_rad[moved.body]);
+    touches_.add_move(object, world_.time_s());
+    return true;
+}
+
+bool Simulation::finish() {
+    if (std::string const touched = touches_.text(); !touched.empty()) {
+        recorder_.add_metadata("touched", touched);
+    }
+    recorder_.close();  // first: the data matter most
+    return !pictures_ || pictures_->finish();
 }
 
 void Simulation::fit_time_step() {

@@ -4,24 +4,37 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "comms/ir_channel.hpp"
 #include "config/scenario.hpp"
 #include "light/lighting.hpp"
+#include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
 #include "robot/programs.hpp"
 #include "robot/user_guard.hpp"
+#include "sim/inspector.hpp"
 #include "sim/parameters.hpp"
+#include "sim/pictures.hpp"
 #include "sim/recorder.hpp"
+#include "sim/snapshot_taker.hpp"
 #include "sim/stage_clock.hpp"
+#include "sim/touches.hpp"
+#include "view/exchange.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
+
+class WindowDriver;
 
 struct RunOptions {
     bool progress_bar = false;
     bool measure_stages = false;  // for benchmarks
     bool strict = false;          // unread parameters are an error
+    std::string film{};           // file of a film of the run; empty: none
+    bool window = false;
+    std::string program_name{};          // for the window's title
+    std::optional<Restart> restarted{};  // by the user, in the window of the run before
 };
 
 class Simulation {
@@ -34,14 +47,41 @@ public:
     Simulation& operator=(Simulation const&) = delete;
 
     /// From the first main() to the last callback: runs until the simulated time is over, the program or the user ends
-    /// it, or user code fails. Errors of user code are logged and set the exit code. Throws OutputError and, if strict,
-    /// ConfigError at the end of a run in which a parameter was not read.
+    /// it, or user code fails. Errors of user code, and of pictures, are logged and set the exit code. Throws
+    /// OutputError and, if strict, ConfigError at the end of a run in which a parameter was not read.
     ExitCode run();
 
     // The same in parts, for tests and benchmarks. start() once, then steps, then finish().
     std::optional<UserFailure> start();
     std::optional<UserFailure> step();
-    void finish();
+    /// True if all pictures were written.
+    bool finish();
+
+    /// After run(): how the user wants the run again; absent otherwise.
+    std::optional<Restart> restart();
+
+    /// While nothing happens: brings files up to date. Throws OutputError.
+    void save_while_waiting();
+
+    /// Takes pictures of the world between two steps. Made at the first call, so that it costs nothing without one.
+    SnapshotTaker& snapshots();
+
+    /// Looks into single robots between two steps. Call it before start(), so that it sees every line that robots print
+    /// and every row; a run without it does not keep any.
+    Inspector& inspector();
+    void stop_inspecting();
+
+    // What a user does in the window, between two steps. The data file says that the run was touched.
+
+    /// Calls callback_robot_click of a robot, if it has one.
+    std::optional<UserFailure> click(std::uint32_t robot);
+
+    /// Moves an object (index into World::objects) to the free place nearest to `centre_mm`, see FreePlaces. It stands
+    /// still there until its motors or others move it. False: it stays where it is.
+    bool move_object(std::uint32_t object, Vec2 centre_mm);
+
+    /// True from the first click that ran a callback, or the first move, on.
+    bool is_touched() const { return touches_.any(); }
 
     World const& world() const { return world_; }
     IrChannel const& channel() const { return channel_; }
@@ -52,6 +92,7 @@ public:
 private:
     std::optional<UserFailure> run_steps();
     void fit_time_step();
+    void open_window();
     bool is_over() const;
     void report(UserFailure const& failure) const;
     void report_unread_parameters() const;
@@ -67,7 +108,13 @@ private:
     IrChannel channel_;
     std::unique_ptr<PhysicsEngine> physics_;
     Recorder recorder_;
+    std::unique_ptr<Pictures> pictures_;  // null: none are wanted
     StageClock stages_;
+    std::unique_ptr<SnapshotTaker> snapshots_;
+    std::unique_ptr<Inspector> inspector_;
+    std::optional<FreePlaces> free_places_;  // from the first move by hand on
+    Touches touches_;
+    std::unique_ptr<WindowDriver> window_;  // null without a window
 };
 
 }  // namespace pogosim

@@ -39,7 +39,7 @@ std::vector<Case> const kCases{
      "data_logger_flush_row_count: all"},
     {"enable_data_logging: true", "enable_data_logging: false", "save_data_period: .inf", "save_data_period: never"},
     {"enable_data_logging: true", "enable_data_logging: false", "save_data_period: 1e-300", "save_data_period: never"},
-    {"GUI: true", "GUI: false", "GUI_speed_up: 0", "GUI_speed_up: slow"},
+    {"GUI: true", "GUI: false", "GUI_speed_up: -1", "GUI_speed_up: slow"},
     {kThing + "type: pogobot\n    msg_success_rate:\n      type: static",
      kThing + "type: pogobot\n    msg_success_rate:\n      type: dynamic", "      rate: 2", "      rate: often"},
     {kThing + "type: pogobot\n    msg_success_rate:\n      type: static",

@@ -1,0 +1,77 @@
+#include "app/restart.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <string>
+
+namespace pogosim {
+
+namespace {
+
+constexpr auto kVariable = "POGOSIM_RESTART";
+
+// Numbers with blanks between them.
+std::string text_of(Restart const& restart) {
+    std::string text = std::to_string(restart.seed);
+    if (restart.window) {
+        WindowState const& window = *restart.window;
+        PaintOptions const& options = window.options;
+        long const selected = options.selected_robot ? static_cast<long>(*options.selected_robot) : -1;
+        text += fmt::format(" {} {} {} {} {} {:d} {:d} {} {:d} {:d} {} {:d} {:d} {:d} {}", window.x_px, window.y_px,
+                            window.size.width_px, window.size.height_px, window.speed_up, window.panels, window.plot,
+                            window.column, options.time, options.scale_bar, static_cast<int>(options.links),
+                            options.lateral_leds, options.light_levels, options.trails, selected);
+    }
+    return text;
+}
+
+std::optional<Restart> restart_of(std::string const& text) {
+    std::istringstream numbers(text);
+    Restart restart;
+    if (!(numbers >> restart.seed)) {
+        return std::nullopt;
+    }
+    WindowState window;
+    PaintOptions& options = window.options;
+    int layer = 0;
+    long selected = -1;
+    numbers >> window.x_px >> window.y_px >> window.size.width_px >> window.size.height_px >> window.speed_up >>
+        window.panels >> window.plot >> window.column >> options.time >> options.scale_bar >> layer >>
+        options.lateral_leds >> options.light_levels >> options.trails >> selected;
+    if (numbers && layer >= 0 && layer <= static_cast<int>(LinkLayer::above)) {
+        options.links = static_cast<LinkLayer>(layer);
+        if (selected >= 0) {
+            options.selected_robot = static_cast<std::uint32_t>(selected);
+        }
+        restart.window = window;
+    }
+    return restart;
+}
+
+}  // namespace
+
+std::optional<Restart> take_restart() {
+    char const* const value = std::getenv(kVariable);
+    if (value == nullptr) {
+        return std::nullopt;
+    }
+    std::string const text = value;
+    unsetenv(kVariable);
+    return restart_of(text);
+}
+
+void restart_program(char** argv, std::filesystem::path const& folder, Restart const& restart) {
+    std::error_code ignored;
+    std::filesystem::current_path(folder, ignored);  // the program may have left it
+    setenv(kVariable, text_of(restart).c_str(), /*overwrite=*/1);
+#ifdef __linux__
+    execv("/proc/self/exe", argv);
+#endif
+    execvp(argv[0], argv);
+    unsetenv(kVariable);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,232 @@
+#include "sim/pictures.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/background_thread.hpp"
+#include "base/error.hpp"
+#include "base/escaped.hpp"
+#include "base/log.hpp"
+#include "render/film_file.hpp"
+#include "render/png_file.hpp"
+#include "sim/used_files.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr double kMostPictureBytes = 1e9;  // of the pictures that are being drawn at the same time
+
+/// One thread is left for the simulation.
+unsigned drawing_threads(PictureSize size) {
+    double const picture_bytes = static_cast<double>(sizeof(Pixel)) * size.width_px * size.height_px;
+    double const fitting = std::max(1.0, kMostPictureBytes / picture_bytes);
+    double const usable = std::max(2U, std::thread::hardware_concurrency()) - 1.0;
+    return static_cast<unsigned>(std::min(fitting, usable));
+}
+
+bool makes_frames(Scenario const& scenario) {
+    return scenario.view.save_video_period_s > 0.0;
+}
+
+[[noreturn]] void refuse_frames_name(Scenario const& scenario, std::string const& what) {
+    throw ConfigError(fmt::format("{}: frames_name: {}", where_at_top(scenario, "frames_name"), what));
+}
+
+/// Frames must not replace each other. Looks at the first ten thousand, which takes 10 ms, and the last two.
+void check_names_differ(Scenario const& scenario, FrameNames const& names) {
+    constexpr double kLooks = 10000.0;
+    double const period_s = scenario.view.save_video_period_s;
+    double const step_s = scenario.time_step_s;
+    double const count = std::floor(scenario.simulation_time_s / period_s + kWholeTolerance);
+    auto const time_s = [&](double multiple) {
+        return std::ceil(multiple * period_s / step_s - kWholeTolerance) * step_s;
+    };
+    for (double multiple = 2.0; multiple <= count; ++multiple) {
+        if (multiple > kLooks) {
+            multiple = std::max(multiple, count);
+        }
+        double const before_s = time_s(multiple - 1.0);
+        double const now_s = time_s(multiple);
+        if (before_s < now_s && names.at(before_s) == names.at(now_s)) {
+            refuse_frames_name(
+                scenario, fmt::format("the frames of t = {:.6g} s and {:.6g} s would both be '{}'; use more decimals",
+                                      before_s, now_s, names.at(now_s).string()));
+        }
+    }
+}
+
+/// Makes the folder of a frame, and a file in it, which is removed again.
+void check_frame(Scenario const& scenario, std::filesystem::path const& frame) {
+    auto const refuse = [&](std::string const& reason) {
+        refuse_frames_name(scenario, fmt::format("the frame '{}' cannot be written: {}; choose another name or folder",
+                                                 frame.string(), reason));
+    };
+    if (frame.extension() != ".png") {
+        refuse_frames_name(scenario,
+                           fmt::format("frames are PNG pictures, and '{}' does not end in .png", frame.string()));
+    }
+    std::error_code error;
+    if (frame.has_parent_path()) {
+        std::filesystem::create_directories(frame.parent_path(), error);
+    }
+    if (error) {
+        refuse(error.message());
+    }
+    if (std::filesystem::is_directory(frame, error)) {
+        refuse("it is a folder");
+    }
+    std::string const beside = unfinished_png(frame).native();
+    constexpr mode_t kNewFile = 0666;  // less the umask
+    int const descriptor = open(beside.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kNewFile);
+    if (descriptor < 0) {
+        refuse(std::generic_category().message(errno));
+    }
+    close(descriptor);
+    unlink(beside.c_str());
+}
+
+/// What can go wrong with frames is found before the run, as far as it can be.
+void check_frames(Scenario const& scenario, FrameNames const& names) {
+    if (makes_frames(scenario)) {
+        check_names_differ(scenario, names);
+        double const first_s = std::min(scenario.view.save_video_period_s, scenario.simulation_time_s);
+        check_frame(scenario, names.at(first_s));
+        check_frame(scenario, names.at(scenario.simulation_time_s));
+    }
+}
+
+std::unique_ptr<PictureWriter> make_writer(PictureFormat const& format, std::string const& film) {
+    auto film_file = film.empty() ? nullptr : std::make_unique<FilmFile>(film, format.size);
+    return std::make_unique<PictureWriter>(format, drawing_threads(format.size), std::move(film_file));
+}
+
+/// Simulated time between two pictures of the film.
+double film_period_s(Scenario const& scenario) {
+    double const speed_up = scenario.view.gui_speed_up;
+    return (speed_up > 0.0 ? speed_up : 1.0) / kFilmHz;
+}
+
+}  // namespace
+
+PictureFormat picture_format(Scenario const& scenario, World const& world) {
+    ViewConfig const& view = scenario.view;
+    PictureSize const size{view.window_width_px, view.window_height_px};
+    LinkLayer const layer = view.show_communication_channels_above_all ? LinkLayer::above : LinkLayer::below;
+    return {.size = size,
+            .camera = fitted(world.arena.bounds, size),
+            .paint = {.time = view.show_time,
+                      .scale_bar = view.show_scale_bar,
+                      .links = view.show_communication_channels ? layer : LinkLayer::hidden,
+                      .lateral_leds = view.show_lateral_leds,
+                      .light_levels = view.show_light_levels,
+                      .trails = view.show_trajectory_traces}};
+}
+
+std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& world, Programs const& programs,
+                                         Lighting const& lighting, std::string const& film) {
+    if (!makes_frames(scenario) && film.empty()) {
+        return nullptr;
+    }
+    check_frames(scenario, FrameNames(scenario.view.frames_name));
+    return std::unique_ptr<Pictures>(new Pictures(scenario, world, programs, lighting, film));
+}
+
+Pictures::Pictures(Scenario const& scenario, World const& world, Programs const& programs, Lighting const& lighting,
+                   std::string const& film)
+    : scenario_(scenario),
+      world_(world),
+      names_(scenario.view.frames_name),
+      film_(film),
+      taker_(world, programs, lighting),
+      parts_(parts_for(picture_format(scenario, world).paint)),
+      frame_times_(scenario.view.save_video_period_s, 1),
+      film_times_(film_period_s(scenario), 0),
+      writer_(make_writer(picture_format(scenario, world), film)) {}
+
+void Pictures::look() {
+    if (world_.step == 0 && makes_frames(scenario_) && scenario_.view.delete_old_files) {
+        delete_old_frames();
+    }
+    if (parts_.trails) {
+        taker_.follow_trails();
+    }
+    double const time_s = world_.time_s();
+    bool const frame_is_due = frame_times_.reached(time_s) > 0;
+    std::int64_t const film_pictures = film_.empty() ? 0 : film_times_.reached(time_s);
+    if (!frame_is_due && film_pictures == 0) {
+        return;
+    }
+    std::filesystem::path frame;
+    if (frame_is_due) {
+        frame = names_.at(time_s);
+        if (!names_.folder()) {  // a new one for each frame; writing it says what is wrong
+            std::error_code ignored;
+            std::filesystem::create_directories(frame.parent_path(), ignored);
+        }
+    }
+    writer_->add({.snapshot = taker_.take(parts_), .frame = std::move(frame), .film_pictures = film_pictures});
+}
+
+void Pictures::delete_old_frames() const {
+    std::optional<std::filesystem::path> const folder = names_.folder();
+    if (!folder) {
+        return;
+    }
+    std::error_code error;
+    std::vector<std::filesystem::path> old;  // deleting during the iteration may skip some
+    for (auto entry = std::filesystem::directory_iterator(*folder, error);
+         !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+        std::error_code unknown;
+        if (entry->path().extension() == ".png" &&
+            entry->symlink_status(unknown).type() == std::filesystem::file_type::regular &&
+            !is_used_file(scenario_, film_, entry->path())) {
+            old.push_back(entry->path());
+        }
+    }
+    for (std::filesystem::path const& path : old) {
+        std::filesystem::remove(path, error);
+        if (error) {
+            throw OutputError(
+                fmt::format("delete_old_files: '{}' cannot be deleted: {}", path.string(), error.message()));
+        }
+    }
+    if (!old.empty()) {
+        log().info("delete_old_files: deleted {} *.png in '{}'", old.size(), folder->string());
+    }
+}
+
+bool Pictures::finish() {
+    if (is_finished_) {
+        return all_written_;
+    }
+    is_finished_ = true;
+    if (has_background_thread_crashed()) {
+        [[maybe_unused]] PictureWriter const* const used_by_stopped_threads = writer_.release();
+        all_written_ = false;
+        return false;
+    }
+    PictureErrors const& errors = writer_->finish();
+    if (!errors.lost_frame.empty()) {
+        log().error("the frame '{}' could not be written: {}; {} of {} frames were written",
+                    escaped(errors.lost_frame.string()), errors.frame_error, errors.frames_written, errors.frames);
+    }
+    if (!errors.film_error.empty()) {
+        log().error("the film '{}' could not be written: {}", escaped(film_), escaped(errors.film_error));
+    }
+    all_written_ = errors.lost_frame.empty() && errors.film_error.empty();
+    return all_written_;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,56 @@
+// The pictures of a run: frames (save_video_period) and a film (--video). Drawn from copies of the world in other
+// threads, so that the run goes on meanwhile; it changes nothing of it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "config/scenario.hpp"
+#include "light/lighting.hpp"
+#include "render/frame_names.hpp"
+#include "render/picture_writer.hpp"
+#include "robot/programs.hpp"
+#include "sim/multiples.hpp"
+#include "sim/snapshot_taker.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// What pictures of a world show, as the configuration says.
+PictureFormat picture_format(Scenario const& scenario, World const& world);
+
+class Pictures {
+public:
+    /// Null if the run makes no pictures. `film`: empty for none. All references outlive it. Throws ConfigError if
+    /// frames or the film cannot be written, and OutOfMemory.
+    static std::unique_ptr<Pictures> make(Scenario const& scenario, World const& world, Programs const& programs,
+                                          Lighting const& lighting, std::string const& film);
+
+    /// At the start of the run and after each step: hands over the pictures that are due. Throws OutputError, at the
+    /// start, if old frames cannot be deleted.
+    void look();
+
+    /// Waits until all pictures are written, and logs an error if some could not be. False then. When a thread that
+    /// draws has crashed, nothing waits for it: pictures may be missing.
+    bool finish();
+
+private:
+    Pictures(Scenario const& scenario, World const& world, Programs const& programs, Lighting const& lighting,
+             std::string const& film);
+
+    void delete_old_frames() const;
+
+    Scenario const& scenario_;
+    World const& world_;
+    FrameNames names_;
+    std::string film_;
+    SnapshotTaker taker_;
+    SnapshotParts parts_;
+    Multiples frame_times_;
+    Multiples film_times_;
+    std::unique_ptr<PictureWriter> writer_;
+    bool is_finished_ = false;
+    bool all_written_ = true;
+};
+
+}  // namespace pogosim

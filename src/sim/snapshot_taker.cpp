@@ -1,0 +1,55 @@
+#include "sim/snapshot_taker.hpp"
+
+#include <algorithm>
+
+namespace pogosim {
+
+SnapshotTaker::SnapshotTaker(World const& world, Programs const& programs, Lighting const& lighting)
+    : world_(world),
+      programs_(programs),
+      lighting_(lighting),
+      scenery_(std::make_shared<Scenery const>(make_scenery(world))) {}
+
+Snapshot SnapshotTaker::take(SnapshotParts parts) {
+    Bodies const& bodies = world_.bodies;
+    Snapshot snapshot{.scenery = scenery_,
+                      .step = world_.step,
+                      .time_s = world_.time_s(),
+                      .position_mm = bodies.position_mm,
+                      .heading_rad = bodies.heading_rad,
+                      .led = world_.robots.led,
+                      .lamps = lighting_.marks(),
+                      .light = parts.light ? light() : nullptr,
+                      .links = {},
+                      .trails = parts.trails ? std::make_shared<Trails const>(trails_) : nullptr};
+    if (world_.periodic) {
+        std::ranges::transform(bodies.position_mm, snapshot.position_mm.begin(),
+                               [this](Vec2 position_mm) { return wrapped(world_, position_mm); });
+    }
+    if (parts.links) {
+        range_mm_.clear();
+        for (std::size_t robot = 0; robot < world_.robots.size(); ++robot) {
+            range_mm_.push_back(programs_.ir_range_mm(robot));
+        }
+        snapshot.links = link_finder_.find(world_, range_mm_);
+    }
+    return snapshot;
+}
+
+std::shared_ptr<LightMap const> SnapshotTaker::light() {
+    if (!light_ || light_change_ != lighting_.change_count()) {
+        light_ = std::make_shared<LightMap const>(world_.light);
+        light_change_ = lighting_.change_count();
+    }
+    return light_;
+}
+
+void SnapshotTaker::follow_trails() {
+    trails_.follow(world_);
+}
+
+void SnapshotTaker::clear_trails() {
+    trails_.clear();
+}
+
+}  // namespace pogosim

@@ -1,0 +1,45 @@
+// Copies of the world for pictures.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "light/lighting.hpp"
+#include "render/snapshot.hpp"
+#include "robot/programs.hpp"
+#include "sim/link_finder.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+class SnapshotTaker {
+public:
+    /// All references outlive this.
+    SnapshotTaker(World const& world, Programs const& programs, Lighting const& lighting);
+
+    std::shared_ptr<Scenery const> const& scenery() const { return scenery_; }
+
+    /// The world as it is between two steps. It changes nothing that a result depends on. Walls and membranes are
+    /// included in the links; every sender counts at its present emitter power.
+    Snapshot take(SnapshotParts parts);
+
+    /// Adds the present positions to the trails. Call it after each step from which trails are wanted.
+    void follow_trails();
+    void clear_trails();
+
+private:
+    std::shared_ptr<LightMap const> light();
+
+    World const& world_;
+    Programs const& programs_;
+    Lighting const& lighting_;
+    std::shared_ptr<Scenery const> scenery_;
+    std::shared_ptr<LightMap const> light_;  // the last one handed out
+    std::int64_t light_change_ = 0;          // Lighting::change_count() of it
+    Trails trails_;
+    LinkFinder link_finder_;
+    std::vector<float> range_mm_;  // of robots, at their present power
+};
+
+}  // namespace pogosim

@@ -1,0 +1,175 @@
+#include "sim/window_driver.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+#include <variant>
+
+#include "base/log.hpp"
+#include "sim/interrupt.hpp"
+#include "sim/simulation.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLookPeriod{50};  // for Ctrl-C, while nothing happens
+
+template <class... Handlers>
+struct Overloaded : Handlers... {
+    using Handlers::operator()...;
+};
+template <class... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
+
+}  // namespace
+
+WindowDriver::WindowDriver(Simulation& simulation, WindowSetup const& setup)
+    : simulation_(simulation),
+      taker_(simulation.snapshots()),
+      pacer_(setup.speed_up),
+      window_(std::make_unique<OpenWindow>(setup)) {}
+
+WindowDriver::~WindowDriver() = default;
+
+std::optional<UserFailure> WindowDriver::wait_for_step() {
+    while (is_open() && !is_over_ && !interrupted()) {
+        if (auto failure = carry_out_commands()) {
+            return failure;
+        }
+        show_if_wanted();
+        look_for_its_end();
+        auto const now = Pacer::Clock::now();
+        World const& world = simulation_.world();
+        bool const may_step = !paused_ || steps_asked_ > 0;
+        auto const due = may_step && !paused_ ? pacer_.due(world.time_s(), world.time_step_s, now) : now;
+        if (may_step && due <= now) {
+            break;
+        }
+        simulation_.save_while_waiting();
+        if (is_open()) {
+            window_->exchange().wait_until(std::min(may_step ? due : now + kLookPeriod, now + kLookPeriod));
+        }
+    }
+    return std::nullopt;
+}
+
+void WindowDriver::note_step() {
+    if (!is_open()) {
+        return;
+    }
+    steps_asked_ = std::max(steps_asked_ - 1, 0);
+    pacer_.note_step(simulation_.world().time_s(), Pacer::Clock::now());
+    hold();
+    if (follows_trails_) {
+        taker_.follow_trails();
+    }
+}
+
+std::optional<Restart> WindowDriver::restart() {
+    if (is_open()) {
+        for (Command const& command : window_->exchange().take_commands()) {
+            if (auto const* const asked = std::get_if<Restart>(&command)) {
+                restart_ = *asked;
+            }
+        }
+    }
+    return restart_;
+}
+
+void WindowDriver::hold() {
+    if (held_) {
+        simulation_.move_object(held_->object, held_->centre_mm);
+    }
+}
+
+void WindowDriver::look_for_its_end() {
+    auto const end = window_->exchange().end();
+    if (!end) {
+        return;
+    }
+    if (*end == WindowEnd::closed) {
+        is_over_ = true;
+    } else if (*end == WindowEnd::display_lost) {
+        log().warn("the display is gone at t = {:.4f} s; the run goes on without a window",
+                   simulation_.world().time_s());
+    } else {
+        log().warn("the window failed at t = {:.4f} s: {}; the run goes on without it", simulation_.world().time_s(),
+                   window_->exchange().error());
+    }
+    window_.reset();
+    held_.reset();
+    simulation_.stop_inspecting();
+}
+
+std::optional<UserFailure> WindowDriver::carry_out_commands() {
+    for (Command const& command : window_->exchange().take_commands()) {
+        if (auto failure = carry_out(command)) {
+            return failure;
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
+    std::optional<UserFailure> failure;
+    auto const pause = [this](bool on) {
+        paused_ = on;
+        steps_asked_ = 0;
+        pacer_.start_anew();
+    };
+    std::visit(Overloaded{[&](Pause const& asked) { pause(asked.on); },
+                          [&](StepOnce const&) {
+                              int const steps = paused_ ? steps_asked_ : 0;
+                              pause(true);
+                              steps_asked_ = steps + 1;
+                          },
+                          [&](SetSpeedUp const& asked) { pacer_.set_speed_up(asked.factor); },
+                          [&](ClickRobot const& asked) { failure = simulation_.click(asked.robot); },
+                          [&](HoldObject const& asked) {
+                              held_ = asked;
+                              hold();
+                          },
+                          [&](LetGo const&) { held_.reset(); },
+                          [&](Restart const& asked) {
+                              restart_ = asked;
+                              is_over_ = true;
+                          },
+                          [&](Quit const&) {
+                              is_over_ = true;
+                              World const& world = simulation_.world();
+                              log().info("ended at t = {:.4f} s of {:g} s by closing the window", world.time_s(),
+                                         static_cast<double>(simulation_.step_count()) * world.time_step_s);
+                          },
+                          [&](Note const& note) { log().info("{}", note.text); }},
+               command);
+    return failure;
+}
+
+void WindowDriver::show_if_wanted() {
+    auto const wish = window_->exchange().take_wish();
+    if (!wish) {
+        return;
+    }
+    if (!wish->follow_trails) {
+        taker_.clear_trails();
+    } else if (!follows_trails_) {
+        taker_.follow_trails();
+    }
+    follows_trails_ = wish->follow_trails;
+    auto moment = std::make_shared<Moment>();
+    moment->snapshot = taker_.take(wish->parts);
+    moment->status = {.paused = paused_,
+                      .asked_speed_up = pacer_.speed_up(),
+                      .speed_up = pacer_.reached(),
+                      .too_slow = pacer_.is_too_slow(),
+                      .touched = simulation_.is_touched()};
+    if (wish->robot) {
+        moment->inspection = simulation_.inspector().inspect(*wish->robot);
+    }
+    moment->recorded = simulation_.inspector().rows().take();
+    window_->exchange().publish(std::move(moment));
+}
+
+}  // namespace pogosim

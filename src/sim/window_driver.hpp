@@ -1,0 +1,63 @@
+// A run with a window: keeps it at a speed to watch, shows it, and does what the user asks for between two steps.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/user_guard.hpp"
+#include "sim/pacer.hpp"
+#include "sim/snapshot_taker.hpp"
+#include "sim/window_module.hpp"
+#include "view/exchange.hpp"
+
+namespace pogosim {
+
+class Simulation;
+
+class WindowDriver {
+public:
+    /// Opens the window. `simulation` has been started and outlives this. Throws std::runtime_error, with the reason
+    /// why there is no window.
+    WindowDriver(Simulation& simulation, WindowSetup const& setup);
+    ~WindowDriver();
+
+    WindowDriver(WindowDriver const&) = delete;
+    WindowDriver& operator=(WindowDriver const&) = delete;
+
+    /// Call it before each step: returns when the step may begin, or when the run is over.
+    std::optional<UserFailure> wait_for_step();
+
+    /// Call it after each step.
+    void note_step();
+
+    /// The user has ended the run.
+    bool is_over() const { return is_over_; }
+
+    /// At the end of the run: how the user wants it again, even if the last step was aborted for it.
+    std::optional<Restart> restart();
+
+private:
+    bool is_open() const { return window_ != nullptr; }
+    void look_for_its_end();
+    std::optional<UserFailure> carry_out_commands();
+    std::optional<UserFailure> carry_out(Command const& command);
+    /// Puts the object in the hand where the hand is.
+    void hold();
+    void show_if_wanted();
+
+    Simulation& simulation_;
+    SnapshotTaker& taker_;
+    Pacer pacer_;
+    std::unique_ptr<OpenWindow> window_;  // null: it has gone
+    bool follows_trails_ = false;
+    std::optional<HoldObject> held_;
+    bool paused_ = false;
+    int steps_asked_ = 0;  // while paused
+    bool is_over_ = false;
+    std::optional<Restart> restart_;
+};
+
+}  // namespace pogosim

@@ -1,0 +1,15 @@
+// How the window of a run begins.
+#pragma once
+
+#include <string>
+
+#include "config/scenario.hpp"
+#include "view/exchange.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// All but the scenery, the seed and the place, which the run knows.
+WindowSetup window_setup(Scenario const& scenario, World const& world, std::string const& program_name);
+
+}  // namespace pogosim
