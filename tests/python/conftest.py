@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -15,6 +16,10 @@ sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs
 from running import PROGRAMS, compile_program  # noqa: E402
 
 Compile = Callable[[str], Path]
+
+# Windows are opened on a display of their own, see display.py.
+for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+    os.environ.pop(name, None)
 
 # Programs inherit what is ignored: SIGHUP under nohup, SIGINT and SIGQUIT in the background of a shell.
 for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2):

@@ -28,7 +28,10 @@ PAGES = [
 # Pages whose commands are run word for word, in a tree with the program of the README.
 PAGES_WITH_COMMANDS = [
     README,
-    *(ROOT / "docs" / f"{name}.md" for name in ("command_line", "data_file", "examples", "installing")),
+    *(
+        ROOT / "docs" / f"{name}.md"
+        for name in ("command_line", "data_file", "examples", "installing", "pictures", "window")
+    ),
 ]
 SCRIPTS = ("build.sh", "demo.sh", "test.sh")  # run by test.sh itself
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)]*)?\)")
@@ -248,6 +251,26 @@ def test_page_of_the_command_line_has_every_option(tmp_path: Path) -> None:
 def table(page: Path) -> list[str]:
     """Return the first cells of all tables of a page."""
     return re.findall(r"^\|(.*?)\|", page.read_text(), re.MULTILINE)
+
+
+def test_page_of_the_window_lists_the_keys_that_the_window_helps_with() -> None:
+    page = (ROOT / "docs" / "window.md").read_text()
+    section = page[page.index("## Keys and mouse") : page.index("## Speed")]
+    listed = re.findall(r"^\| (.*?) \|", section, re.MULTILINE)[1:]
+    help_lines = re.findall(r'Help\{"(.*?)", ', (ROOT / "src" / "view" / "actions.cpp").read_text())
+    assert len(help_lines) > 10
+    assert listed == help_lines
+
+
+def test_callback_of_the_page_of_the_window_works_in_the_program_of_the_readme(tmp_path: Path) -> None:
+    function, call = blocks(ROOT / "docs" / "window.md", "c")
+    program = blocks(README, "c")[0].replace("#endif\n", f"{function}#endif\n")
+    program = program.replace("    return 0;\n}\n", f"{call}    return 0;\n}}\n")
+    assert function in program
+    assert call in program
+    (source := tmp_path / "main.c").write_text(program)
+    result = run(compile_program(tmp_path / "program", source), tmp_path / "run", {"simulation_time": 1.0})
+    assert (result.code, result.errors) == (0, "")
 
 
 def anchors(page: Path) -> set[str]:

@@ -9,8 +9,16 @@ import pytest
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 
-# Libraries that one room alone may include.
-PRIVATE_LIBRARIES = {"yaml-cpp/": "config", "box2d/": "physics", "arrow/": "record", "CLI/": "app"}
+# Libraries, and the rooms that alone may include them.
+PRIVATE_LIBRARIES = {
+    "yaml-cpp/": {"config"},
+    "box2d/": {"physics"},
+    "arrow/": {"record"},
+    "CLI/": {"app"},
+    "imgui": {"render", "view"},
+    "png.h": {"render"},
+    "SDL": {"view"},
+}
 
 
 def declared_rooms() -> dict[str, set[str]]:
@@ -18,7 +26,7 @@ def declared_rooms() -> dict[str, set[str]]:
     text = (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
     rooms = {}
     for name, body in re.findall(r"^pogosim_room\((\w+)\n(.*?)\)", text, re.MULTILINE | re.DOTALL):
-        listed = re.search(r"ROOMS ([\w\s]*?)(?=LIBRARIES|$)", body, re.DOTALL)
+        listed = re.search(r"ROOMS ([\w\s]*?)(?=LIBRARIES|APART|$)", body, re.DOTALL)
         rooms[name] = set(listed.group(1).split()) if listed else set()
     return rooms
 
@@ -51,10 +59,10 @@ def test_room_declares_only_what_it_includes(room: str) -> None:
 
 
 @pytest.mark.parametrize("library", sorted(PRIVATE_LIBRARIES))
-def test_library_is_included_by_its_room_alone(library: str) -> None:
+def test_library_is_included_by_its_rooms_alone(library: str) -> None:
     for room in declared_rooms():
         for file, _ in includes(room, rf"^#include <({re.escape(library)})"):
-            assert room == PRIVATE_LIBRARIES[library], f"{room}/{file} includes {library}"
+            assert room in PRIVATE_LIBRARIES[library], f"{room}/{file} includes {library}"
 
 
 def test_declared_arrows_make_no_circle() -> None:
