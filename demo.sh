@@ -26,4 +26,4 @@ size_of() { du -h "$1" | cut -f1; }
 echo
 echo "Made $data ($(size_of "$data")): the positions of all robots, ten times per second"
 echo "     $picture ($(size_of "$picture")): trajectories and final LED colours"
-echo "To run it in a window (not available in this version yet):  ./examples/hanabi/hanabi -c conf/demo.yaml"
+echo "To watch it in a window (F1 shows the keys):  ./examples/hanabi/hanabi -c conf/demo.yaml"

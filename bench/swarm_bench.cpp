@@ -62,12 +62,13 @@ std::uint64_t hash_of(World const& world) {
 
 Scenario scenario_of(int robots) {
     std::string const source = POGOSIM_SOURCE_DIR;
-    return load_scenario(source + "/conf/simple.yaml",
-                         {.overrides = {fmt::format("objects.robots.nb={}", robots),
-                                        fmt::format("arena_surface={}", robots * kAreaPerRobotMm2),
-                                        "arena_file=" + source + "/arenas/square.csv", "initial_formation=random",
-                                        "enable_data_logging=false", "enable_console_logging=false", "seed=1"},
-                          .strict = true});
+    return load_scenario(
+        source + "/conf/simple.yaml",
+        {.overrides = {fmt::format("objects.robots.nb={}", robots),
+                       fmt::format("arena_surface={}", robots * kAreaPerRobotMm2),
+                       "arena_file=" + source + "/arenas/square.csv", "initial_formation=random",
+                       "enable_data_logging=false", "enable_console_logging=false", "save_video_period=-1", "seed=1"},
+         .strict = true});
 }
 
 void step_or_die(Simulation& simulation) {

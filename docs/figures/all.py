@@ -22,10 +22,11 @@ import gallery
 import lamps
 import reception
 import swarm
+import window
 from pictures import DOCS, difference, keep
 
 SCRIPTS: dict[str, ModuleType] = {
-    script.__name__: script for script in (first_program, formations, gallery, lamps, reception, swarm)
+    script.__name__: script for script in (first_program, formations, gallery, lamps, reception, swarm, window)
 }
 
 
