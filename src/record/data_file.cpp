@@ -12,6 +12,7 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,6 +42,16 @@ std::string reason_of(Status const& status) {
         return "there is not enough memory for its rows";
     }
     return status.IsIOError() ? status.message() : "the rows cannot be stored: " + status.message();
+}
+
+/// The action's status. Arrow reports most allocations that fail, but throws where the small ones do.
+template <typename Action>
+Status status_of(Action const& action) {
+    try {
+        return action();
+    } catch (std::bad_alloc const&) {
+        return Status::OutOfMemory("no memory");
+    }
 }
 
 constexpr auto kNotAFile =
@@ -262,7 +273,7 @@ struct DataFile::Impl {
             Moment const& last = left[count - 1];
             auto const end = std::min(last.row_end, row_end);
             auto const rows = piece.Slice(written_end - first_row, end - written_end);
-            if (unfinished->append(*rows).ok()) {
+            if (status_of([&] { return unfinished->append(*rows); }).ok()) {
                 written_end = end;
                 note_saved({end == last.row_end ? last.time_s : saved_time_s, end});
                 left = left.subspan(count);
@@ -311,14 +322,16 @@ struct DataFile::Impl {
     }
 
     /// After a failure, only the unfinished file remains.
-    void check(Status const& status) {
+    template <typename Action>
+    void check(Action const& action) {
+        auto const status = status_of(action);
         if (status.ok()) {
             return;
         }
         open = false;
         complete.reset();  // makes room on a full disk
         std::string const reason = reason_of(status);
-        [[maybe_unused]] auto const last_try = save_what_fits();
+        [[maybe_unused]] auto const last_try = status_of([this] { return save_what_fits(); });
         if (saved_rows == 0) {
             fail(path, reason);
         }
@@ -367,13 +380,13 @@ DataFile::~DataFile() {
 
 void DataFile::append(ObjectRow const& row, std::vector<CellValue> const& user) {
     assert(impl_->open);
-    impl_->check(impl_->columns.append(row, user));
+    impl_->check([&] { return impl_->columns.append(row, user); });
     impl_->count_row(row.time_s);
     if (impl_->buffered_rows + impl_->uncompleted.row_count == impl_->flush_row_count && impl_->is_writable()) {
-        impl_->check(impl_->cut());
-        impl_->check(impl_->add_to_complete(impl_->schema));
+        impl_->check([&] { return impl_->cut(); });
+        impl_->check([&] { return impl_->add_to_complete(impl_->schema); });
         if (impl_->unsaved.row_count >= kMostUnsavedRows) {
-            impl_->check(impl_->save());
+            impl_->check([&] { return impl_->save(); });
         }
     }
 }
@@ -387,7 +400,7 @@ void DataFile::save_if_due() {
 
 void DataFile::save() {
     if (impl_->is_writable()) {
-        impl_->check(impl_->save());
+        impl_->check([&] { return impl_->save(); });
     }
 }
 
@@ -405,9 +418,9 @@ void DataFile::close() {
     save_progress().bytes = impl_->byte_count();
     bool const is_ours = !impl_->unfinished->somebody_changed_it();
     if (is_ours) {
-        impl_->check(impl_->save());
+        impl_->check([&] { return impl_->save(); });
     }
-    impl_->check(impl_->finish());
+    impl_->check([&] { return impl_->finish(); });
     impl_->open = false;
     if (!is_ours) {
         impl_->fail_beside("its size is not what was written; did another program change it?");

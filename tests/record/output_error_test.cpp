@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "record/data_file.hpp"
 #include "scratch.hpp"
+#include "support/file_size_limit.hpp"
 
 namespace pogosim {
 namespace {
@@ -271,6 +272,80 @@ TEST_F(OutputFailure, RowsThatFindNoMemoryTogetherAreSavedInParts) {
     expect_says(message, {"there is not enough memory for its rows", "up to t = 299999.0000 s"});
     EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), kRows);
 }
+
+/// Takes what the process can still get, but for `bytes_left`.
+class MemoryHog {
+public:
+    explicit MemoryHog(std::size_t bytes_left) {
+        blocks_.reserve(kMostBlocks);
+        for (std::size_t size = 1U << 20U; size >= kLeast; size /= 2) {
+            while (void* const block = blocks_.size() < kMostBlocks ? std::malloc(size) : nullptr) {
+                blocks_.push_back(block);
+            }
+        }
+        std::free(blocks_.front());  // of the largest ones
+        blocks_.front() = std::malloc((1U << 20U) - bytes_left);
+    }
+    ~MemoryHog() {
+        for (void* const block : blocks_) {
+            std::free(block);
+        }
+    }
+    MemoryHog(MemoryHog const&) = delete;
+    MemoryHog& operator=(MemoryHog const&) = delete;
+
+private:
+    static constexpr std::size_t kMostBlocks = 100000;
+    static constexpr std::size_t kLeast = 16;
+    std::vector<void*> blocks_;
+};
+
+/// Whichever allocation of a save fails, large or small.
+class MemoryOfASave : public OutputFailure, public testing::WithParamInterface<int> {};
+
+TEST_P(MemoryOfASave, RunsShortWithoutALossOfRowsThatWereSaved) {
+    constexpr int kRows = 20000;
+    DataFileOptions options{.path = path("a.feather"), .flush_row_count = kRows};
+    for (int i = 0; i < 40; ++i) {
+        options.user_columns.push_back({fmt::format("column {}", i), ColumnType::float64});
+    }
+    DataFile file(options);
+    std::vector<CellValue> const cells(options.user_columns.size(), 0.5);
+    for (int i = 0; i < 3 * kRows + 10; ++i) {
+        file.append({.time_s = static_cast<float>(i), .category = "robots", .id = i}, cells);
+        if (i == 9) {
+            file.save();
+        }
+    }
+    std::string message;
+    {
+        AddressSpaceLimit const limit(static_cast<std::size_t>(GetParam()) << 10U);
+        message = output_error([&file] { file.save(); });
+    }
+    auto const rows = read_unfinished(path("a.feather"))->num_rows();
+    EXPECT_GE(rows, 10);
+    if (message.empty()) {
+        EXPECT_EQ(rows, 3 * kRows + 10);
+    } else {
+        expect_says(message, {"there is not enough memory for its rows", fmt::format("up to t = {}.0000 s", rows - 1)});
+    }
+}
+
+TEST_F(OutputFailure, SmallestAllocationsThatFailAreReportedAsTooLittleMemory) {
+    DataFile file({.path = path("a.feather")});
+    for (int i = 0; i < 1000; ++i) {
+        file.append({.time_s = static_cast<float>(i), .category = "robots", .id = i}, {});
+    }
+    std::string message;
+    {
+        AddressSpaceLimit const limit(4U << 20U);
+        MemoryHog const hog(40000);
+        message = output_error([&file] { file.save(); });
+    }
+    expect_says(message, {"there is not enough memory for its rows"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Kilobytes, MemoryOfASave, testing::Range(0, 24000, 900));
 
 #endif
 

@@ -1,13 +1,11 @@
-// A folder for the files of one test, a disk that fills up, and reading a data file back with Arrow itself.
+// A folder for the files of one test, and reading a data file back with Arrow itself.
 #pragma once
 
 #include <arrow/api.h>
 #include <arrow/io/file.h>
 #include <arrow/ipc/reader.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -30,26 +28,6 @@ protected:
 
 private:
     TemporaryFolder folder_;
-};
-
-/// No file of this process can grow beyond this, as on a full disk.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t bytes) : handler_before_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &before_);
-        rlimit const limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    FileSizeLimit(FileSizeLimit const&) = delete;
-    FileSizeLimit& operator=(FileSizeLimit const&) = delete;
-    ~FileSizeLimit() {
-        setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_before_);
-    }
-
-private:
-    void (*handler_before_)(int);
-    rlimit before_{};
 };
 
 /// An environment variable of this process, for as long as this object is there.

@@ -14,6 +14,7 @@
 #include "record/data_file.hpp"
 #include "record/unfinished_file.hpp"
 #include "scratch.hpp"
+#include "support/file_size_limit.hpp"
 
 namespace pogosim {
 namespace {
