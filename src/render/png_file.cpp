@@ -1,5 +1,6 @@
 #include "render/png_file.hpp"
 
+#include <fcntl.h>
 #include <png.h>
 #include <unistd.h>
 
@@ -83,6 +84,17 @@ bool encode(PngOutput& output, Canvas const& picture, std::uint8_t* const row) {
     return true;
 }
 
+/// A file of its own: what a killed process of the same number has left, be it a link or a pipe, is not written to.
+int open_unfinished(std::filesystem::path const& path) {
+    constexpr mode_t kNewFile = 0666;  // less the umask
+    unlink(path.c_str());
+    int const descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewFile);
+    if (descriptor < 0) {
+        fail_with_errno(errno);
+    }
+    return descriptor;
+}
+
 [[noreturn]] void fail(std::filesystem::path const& unfinished, PngOutput const& output) {
     unlink(unfinished.c_str());
     if (output.error_number != 0) {
@@ -101,9 +113,10 @@ void write_png(std::filesystem::path const& path, Canvas const& picture) {
     std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(picture.size().width_px));
     std::filesystem::path const unfinished = unfinished_png(path);
     PngOutput output;
-    output.file = std::fopen(unfinished.c_str(), "wbe");
+    output.file = fdopen(open_unfinished(unfinished), "wb");
     if (output.file == nullptr) {
-        fail_with_errno(errno);
+        output.error_number = errno;
+        fail(unfinished, output);
     }
     bool const encoded = encode(output, picture, row.data());
     if (std::fclose(output.file) != 0 && encoded) {

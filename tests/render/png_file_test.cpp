@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/locked_file.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pogosim {
@@ -51,9 +52,9 @@ std::string bytes_of(std::string const& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-std::string error_at(std::string const& path) {
+std::string error_at(std::string const& path, PictureSize size = {5, 5}) {
     try {
-        write_png(path, colourful({5, 5}));
+        write_png(path, colourful(size));
     } catch (FileError const& error) {
         return error.what();
     }
@@ -100,14 +101,26 @@ TEST(PngFile, SystemsReasonIsGivenAndNothingIsLeft) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"a.png"});
 }
 
-#ifdef __linux__
-TEST(PngFile, FullDiskIsAnError) {
+TEST(PngFile, FullDiskIsAnErrorAndNothingIsLeft) {
     TemporaryFolder const folder;
-    ASSERT_EQ(symlink("/dev/full", unfinished_png(folder / "a.png").c_str()), 0);
-    EXPECT_EQ(error_at(folder / "a.png"), "No space left on device");
+    FileSizeLimit const limit(1000);
+    EXPECT_EQ(error_at(folder / "a.png", {100, 50}), "File too large");
     EXPECT_TRUE(folder.names().empty());
 }
-#endif
+
+TEST(PngFile, NothingIsWrittenToWhatStandsAtItsNameOnTheWay) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "kept") << "kept";
+    for (int const kind : {0, 1}) {
+        std::string const on_the_way = unfinished_png(folder / "a.png");
+        ASSERT_EQ(kind == 0 ? symlink((folder / "kept").c_str(), on_the_way.c_str()) : mkfifo(on_the_way.c_str(), 0600),
+                  0);
+        write_png(folder / "a.png", colourful({7, 5}));
+        EXPECT_EQ(read_png(folder / "a.png").image.width, 7U);
+        EXPECT_EQ(bytes_of(folder / "kept"), "kept");
+        EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.png", "kept"}));
+    }
+}
 
 }  // namespace
 }  // namespace pogosim
