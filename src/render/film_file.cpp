@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <span>
 #include <string>
@@ -24,6 +25,18 @@ constexpr std::size_t kLongestMessage = 400;
 [[noreturn]] void refuse(std::filesystem::path const& path, std::string const& reason) {
     throw ConfigError(
         fmt::format("--video: the film '{}' cannot be written: {}; choose another file", path.string(), reason));
+}
+
+/// ffmpeg's own bound on pictures (av_image_check_size), which it would only tell of with the first one.
+void check_size(PictureSize size) {
+    constexpr std::int64_t kMargin = 128;
+    constexpr std::int64_t kMostPixels = (std::int64_t{1} << 31U) / 8;
+    if ((size.width_px + kMargin) * (size.height_px + kMargin) >= kMostPixels) {
+        throw ConfigError(fmt::format(
+            "--video: pictures of {} x {} pixels (window_width, window_height) are too large for ffmpeg, which takes "
+            "some 16000 x 16000; make them smaller",
+            size.width_px, size.height_px));
+    }
 }
 
 /// Opens the file in which the film is put together. Throws ConfigError.
@@ -93,6 +106,7 @@ std::filesystem::path FilmFile::path_beside(std::filesystem::path const& path) {
 
 FilmFile::FilmFile(std::filesystem::path const& path, PictureSize size) : path_(path), target_(real_path(path)) {
     FilmFormat const& format = film_format(path);
+    check_size(size);
     check_ffmpeg(format);
     unfinished_ = open_beside(path, target_);
     try {

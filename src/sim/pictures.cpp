@@ -118,6 +118,20 @@ double film_period_s(Scenario const& scenario) {
     return (speed_up > 0.0 ? speed_up : 1.0) / kFilmHz;
 }
 
+/// A film in extreme slow motion would show each step for minutes.
+void check_film_speed(Scenario const& scenario) {
+    constexpr double kMostPicturesPerStep = 1000.0;
+    double const least_speed_up = scenario.time_step_s * kFilmHz / kMostPicturesPerStep;
+    double const speed_up = scenario.view.gui_speed_up;
+    if (speed_up > 0.0 && speed_up < least_speed_up) {
+        throw ConfigError(fmt::format(
+            "{}: GUI_speed_up: at {:g}, the film would show each step of time_step {:g} s for more than {:g} "
+            "pictures; expected at least {:g}, or 0 for real time",
+            where_at_top(scenario, "GUI_speed_up"), speed_up, scenario.time_step_s, kMostPicturesPerStep,
+            least_speed_up));
+    }
+}
+
 }  // namespace
 
 PictureFormat picture_format(Scenario const& scenario, World const& world) {
@@ -140,6 +154,9 @@ std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& 
         return nullptr;
     }
     check_frames(scenario, FrameNames(scenario.view.frames_name));
+    if (!film.empty()) {
+        check_film_speed(scenario);
+    }
     return std::unique_ptr<Pictures>(new Pictures(scenario, world, programs, lighting, film));
 }
 
@@ -155,7 +172,7 @@ Pictures::Pictures(Scenario const& scenario, World const& world, Programs const&
       film_times_(film_period_s(scenario), 0),
       writer_(make_writer(picture_format(scenario, world), film)) {}
 
-void Pictures::look() {
+void Pictures::record_if_due() {
     if (world_.step == 0 && makes_frames(scenario_) && scenario_.view.delete_old_files) {
         delete_old_frames();
     }

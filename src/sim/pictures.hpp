@@ -28,7 +28,7 @@ public:
 
     /// At the start of the run and after each step: hands over the pictures that are due. Throws OutputError, at the
     /// start, if old frames cannot be deleted.
-    void look();
+    void record_if_due();
 
     /// Waits until all pictures are written, and logs an error if some could not be. False then. When a thread that
     /// draws has crashed, nothing waits for it: pictures may be missing.

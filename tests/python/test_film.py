@@ -121,6 +121,21 @@ def test_film_that_cannot_be_written_is_refused(tmp_path: Path, name: str, reaso
     assert refused(tmp_path, name) == expected
 
 
+@pytest.mark.parametrize(
+    ("settings", "reason"),
+    [
+        ({"window_width": 16384, "window_height": 16384}, "too large for ffmpeg"),
+        ({"GUI_speed_up": 1e-6}, "expected at least 0.0003, or 0 for real time"),
+        ({"GUI_speed_up": 1e-300}, "expected at least 0.0003, or 0 for real time"),
+    ],
+)
+def test_film_that_no_encoder_takes_or_nobody_watches_is_refused(
+    tmp_path: Path, settings: dict[str, object], reason: str
+) -> None:
+    assert reason in refused(tmp_path, "a.mp4", settings)
+    assert run(example("helloworld"), tmp_path, {"GUI_speed_up": 1e-300}).code == 0
+
+
 def test_film_is_no_other_file_of_the_run(tmp_path: Path) -> None:
     same = refused(tmp_path, "a.mp4", {"data_filename": "./a.mp4"})
     assert same.startswith("Error: --video: 'a.mp4' is the same file as data_filename './a.mp4' (scene.yaml:")
