@@ -267,8 +267,8 @@ def test_frames_cannot_take_the_place_of_the_configuration_or_the_console_file(t
 # Errors during the run.
 
 
-def test_folder_that_is_removed_during_the_run_costs_no_data(tmp_path: Path) -> None:
-    program = program_with(tmp_path, 'if (system("rm -r frames") != 0) { abort(); }')
+def test_folder_that_is_moved_away_during_the_run_costs_no_data(tmp_path: Path) -> None:
+    program = program_with(tmp_path, 'if (rename("frames", "gone") != 0) { abort(); }')
     result = run(program, tmp_path, {**FRAMES, "save_video_period": 0.02})
     assert result.code == 2
     (line,) = result.errors.splitlines()
