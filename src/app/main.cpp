@@ -1,4 +1,6 @@
 // The program's real main(). The user's main(), renamed robot_main, is called once for each robot.
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +10,7 @@
 #include <new>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "app/command_line.hpp"
@@ -34,7 +37,25 @@ struct Ended {
     std::optional<Restart> restart{};
 };
 
-Ended simulate(CommandLine const& options, std::optional<Restart> const& restarted) {
+/// Why the program cannot be started again as it was in `folder`; empty if it can.
+std::string restart_problem(CommandLine const& options, std::filesystem::path const& folder) {
+    std::error_code error;
+    if (std::filesystem::current_path(error) != folder) {
+        return "";  // the program has left it; the new run will see
+    }
+    if (!std::filesystem::is_regular_file(options.config, error)) {
+        return fmt::format("the configuration '{}' is not a file that can be read again", escaped(options.config));
+    }
+    try {
+        load_scenario(options.config, {.overrides = options.overrides, .strict = options.strict});
+        return "";
+    } catch (std::exception const& problem) {
+        return escaped(problem.what());
+    }
+}
+
+Ended simulate(CommandLine const& options, std::filesystem::path const& folder,
+               std::optional<Restart> const& restarted) {
     ignore_broken_outputs();
     // Until the configuration is read, the console follows the command line.
     LogOptions logging;
@@ -67,7 +88,8 @@ Ended simulate(CommandLine const& options, std::optional<Restart> const& restart
                                                 .film = options.video,
                                                 .window = window,
                                                 .program_name = options.program_name,
-                                                .restarted = restarted});
+                                                .restarted = restarted,
+                                                .restart_problem = [&] { return restart_problem(options, folder); }});
     ExitCode const code = simulation.run();
     return {code, simulation.restart()};
 }
@@ -107,7 +129,7 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
     Ended ended;
     ExitCode& code = ended.code;
     try {
-        ended = simulate(parsed.options, take_restart());
+        ended = simulate(parsed.options, folder, take_restart());
         check_logs();
     } catch (OutOfMemory const& error) {
         end_short_of_memory(error.what());

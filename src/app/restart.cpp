@@ -12,6 +12,7 @@ namespace pogosim {
 namespace {
 
 constexpr auto kVariable = "POGOSIM_RESTART";
+constexpr Camera kWholeArena{.centre_mm = {}, .scale_px_mm = 0.0F};  // stands for no camera
 
 // Numbers with blanks between them.
 std::string text_of(Restart const& restart) {
@@ -20,10 +21,14 @@ std::string text_of(Restart const& restart) {
         WindowState const& window = *restart.window;
         PaintOptions const& options = window.options;
         long const selected = options.selected_robot ? static_cast<long>(*options.selected_robot) : -1;
-        text += fmt::format(" {} {} {} {} {} {:d} {:d} {} {:d} {:d} {} {:d} {:d} {:d} {}", window.x_px, window.y_px,
-                            window.size.width_px, window.size.height_px, window.speed_up, window.panels, window.plot,
-                            window.column, options.time, options.scale_bar, static_cast<int>(options.links),
-                            options.lateral_leds, options.light_levels, options.trails, selected);
+        Camera const camera = window.camera.value_or(kWholeArena);
+        text += fmt::format(" {} {} {} {} {:d} {} {} {} {:d} {} {:d} {:d} {}", window.x_px, window.y_px,
+                            window.size.width_px, window.size.height_px, window.full_screen, camera.centre_mm.x,
+                            camera.centre_mm.y, camera.scale_px_mm, window.paused, window.speed_up, window.panels,
+                            window.plot, window.column);
+        text += fmt::format(" {:d} {:d} {} {:d} {:d} {:d} {}", options.time, options.scale_bar,
+                            static_cast<int>(options.links), options.lateral_leds, options.light_levels, options.trails,
+                            selected);
     }
     return text;
 }
@@ -38,13 +43,18 @@ std::optional<Restart> restart_of(std::string const& text) {
     PaintOptions& options = window.options;
     int layer = 0;
     long selected = -1;
-    numbers >> window.x_px >> window.y_px >> window.size.width_px >> window.size.height_px >> window.speed_up >>
+    Camera camera;
+    numbers >> window.x_px >> window.y_px >> window.size.width_px >> window.size.height_px >> window.full_screen >>
+        camera.centre_mm.x >> camera.centre_mm.y >> camera.scale_px_mm >> window.paused >> window.speed_up >>
         window.panels >> window.plot >> window.column >> options.time >> options.scale_bar >> layer >>
         options.lateral_leds >> options.light_levels >> options.trails >> selected;
     if (numbers && layer >= 0 && layer <= static_cast<int>(LinkLayer::above)) {
         options.links = static_cast<LinkLayer>(layer);
         if (selected >= 0) {
             options.selected_robot = static_cast<std::uint32_t>(selected);
+        }
+        if (camera.scale_px_mm > 0.0F) {
+            window.camera = camera;
         }
         restart.window = window;
     }

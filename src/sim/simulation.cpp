@@ -206,6 +206,7 @@ void Simulation::open_window() {
         if (setup.restored) {
             setup.speed_up = setup.restored->speed_up;
         }
+        setup.restart_problem = options_.restart_problem;
         setup.scenery = snapshots().scenery();
         window_ = std::make_unique<WindowDriver>(*this, setup);
     } catch (std::runtime_error const& error) {
@@ -239,7 +240,7 @@ std::optional<UserFailure> Simulation::start() {
     }
     auto failure = recorder_.record_if_due();
     if (pictures_) {
-        pictures_->look();
+        pictures_->record_if_due();
     }
     return failure;
 }
@@ -259,7 +260,7 @@ std::optional<UserFailure> Simulation::step() {
     ++world_.step;
     auto failure = recorder_.record_if_due();
     if (pictures_) {
-        pictures_->look();
+        pictures_->record_if_due();
     }
     recorder_.save_if_due();
     flush_logs_if_due();

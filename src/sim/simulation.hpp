@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,8 @@ struct RunOptions {
     bool window = false;
     std::string program_name{};          // for the window's title
     std::optional<Restart> restarted{};  // by the user, in the window of the run before
+    // Why the user cannot start the run again, empty if it is possible. Called in the window's thread.
+    std::function<std::string()> restart_problem = [] { return std::string(); };
 };
 
 class Simulation {

@@ -29,6 +29,7 @@ WindowDriver::WindowDriver(Simulation& simulation, WindowSetup const& setup)
     : simulation_(simulation),
       taker_(simulation.snapshots()),
       pacer_(setup.speed_up),
+      paused_(setup.restored && setup.restored->paused),
       window_(std::make_unique<OpenWindow>(setup)) {}
 
 WindowDriver::~WindowDriver() = default;
@@ -61,7 +62,7 @@ void WindowDriver::note_step() {
     }
     steps_asked_ = std::max(steps_asked_ - 1, 0);
     pacer_.note_step(simulation_.world().time_s(), Pacer::Clock::now());
-    hold();
+    drag();
     if (follows_trails_) {
         taker_.follow_trails();
     }
@@ -78,9 +79,9 @@ std::optional<Restart> WindowDriver::restart() {
     return restart_;
 }
 
-void WindowDriver::hold() {
-    if (held_) {
-        simulation_.move_object(held_->object, held_->centre_mm);
+void WindowDriver::drag() {
+    if (dragged_) {
+        simulation_.move_object(dragged_->object, dragged_->centre_mm);
     }
 }
 
@@ -99,7 +100,7 @@ void WindowDriver::look_for_its_end() {
                    window_->exchange().error());
     }
     window_.reset();
-    held_.reset();
+    dragged_.reset();
     simulation_.stop_inspecting();
 }
 
@@ -127,11 +128,11 @@ std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
                           },
                           [&](SetSpeedUp const& asked) { pacer_.set_speed_up(asked.factor); },
                           [&](ClickRobot const& asked) { failure = simulation_.click(asked.robot); },
-                          [&](HoldObject const& asked) {
-                              held_ = asked;
-                              hold();
+                          [&](DragObject const& asked) {
+                              dragged_ = asked;
+                              drag();
                           },
-                          [&](LetGo const&) { held_.reset(); },
+                          [&](DropObject const&) { dragged_.reset(); },
                           [&](Restart const& asked) {
                               restart_ = asked;
                               is_over_ = true;
@@ -148,25 +149,25 @@ std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
 }
 
 void WindowDriver::show_if_wanted() {
-    auto const wish = window_->exchange().take_wish();
-    if (!wish) {
+    auto const request = window_->exchange().take_request();
+    if (!request) {
         return;
     }
-    if (!wish->follow_trails) {
+    if (!request->follow_trails) {
         taker_.clear_trails();
     } else if (!follows_trails_) {
         taker_.follow_trails();
     }
-    follows_trails_ = wish->follow_trails;
+    follows_trails_ = request->follow_trails;
     auto moment = std::make_shared<Moment>();
-    moment->snapshot = taker_.take(wish->parts);
+    moment->snapshot = taker_.take(request->parts);
     moment->status = {.paused = paused_,
                       .asked_speed_up = pacer_.speed_up(),
                       .speed_up = pacer_.reached(),
                       .too_slow = pacer_.is_too_slow(),
                       .touched = simulation_.is_touched()};
-    if (wish->robot) {
-        moment->inspection = simulation_.inspector().inspect(*wish->robot);
+    if (request->robot) {
+        moment->inspection = simulation_.inspector().inspect(*request->robot);
     }
     moment->recorded = simulation_.inspector().rows().take();
     window_->exchange().publish(std::move(moment));

@@ -45,16 +45,16 @@ private:
     std::optional<UserFailure> carry_out_commands();
     std::optional<UserFailure> carry_out(Command const& command);
     /// Puts the object in the hand where the hand is.
-    void hold();
+    void drag();
     void show_if_wanted();
 
     Simulation& simulation_;
     SnapshotTaker& taker_;
     Pacer pacer_;
+    bool paused_ = false;
     std::unique_ptr<OpenWindow> window_;  // null: it has gone
     bool follows_trails_ = false;
-    std::optional<HoldObject> held_;
-    bool paused_ = false;
+    std::optional<DragObject> dragged_;
     int steps_asked_ = 0;  // while paused
     bool is_over_ = false;
     std::optional<Restart> restart_;

@@ -153,7 +153,9 @@ void draw_message(std::string const& text) {
     ImGui::Begin("##message", nullptr,
                  kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoInputs |
                      ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PushTextWrapPos(std::max(size.x - 6.0F * kMarginPx, kMarginPx));
     ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
     ImGui::End();
 }
 

@@ -59,6 +59,9 @@ SdlWindow::SdlWindow(WindowSetup const& setup) {
     }
     SDL_SetWindowMinimumSize(window_.get(), kLeastSizePx, kLeastSizePx);
     SDL_StopTextInput();  // keys are commands
+    if (restored && setup.restored->full_screen) {
+        toggle_full_screen();
+    }
 }
 
 // SDL stays: when it leaves the X server it hands errors back to Xlib, which ends the program for the least of them.
@@ -90,11 +93,19 @@ void SdlWindow::show(Canvas const& canvas) {
 }
 
 void SdlWindow::toggle_full_screen() {
+    write_place(windowed_);
     full_screen_ = !full_screen_;
     SDL_SetWindowFullscreen(window_.get(), full_screen_ ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
 }
 
 void SdlWindow::write_place(WindowState& state) const {
+    state.full_screen = full_screen_;
+    if (full_screen_) {
+        state.x_px = windowed_.x_px;
+        state.y_px = windowed_.y_px;
+        state.size = windowed_.size;
+        return;
+    }
     SDL_GetWindowPosition(window_.get(), &state.x_px, &state.y_px);
     state.size = size();
 }

@@ -28,7 +28,7 @@ public:
 
     void toggle_full_screen();
 
-    /// Where it is on the screen, for the next run.
+    /// Writes where it is on the screen, for the next run.
     void write_place(WindowState& state) const;
 
     /// Pixels of text for each pixel at 96 dots per inch: 1, 1.5, 2, ...
@@ -40,6 +40,7 @@ private:
     };
     std::unique_ptr<SDL_Window, DestroyWindow> window_;
     bool full_screen_ = false;
+    WindowState windowed_;  // its place before it was full screen
 };
 
 }  // namespace pogosim

@@ -31,8 +31,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPicturePeriod = std::chrono::microseconds(16667);  // 60 per second
 constexpr auto kQuietPeriod = std::chrono::milliseconds(100);      // between looks at a run in which nothing happens
-constexpr auto kMessageTime = std::chrono::seconds(3);
-constexpr int kPicturesAfterInput = 20;  // the run answers, and panels settle
+constexpr auto kMessageTime = std::chrono::seconds(2);
+constexpr auto kReadingTime = std::chrono::milliseconds(50);  // for each byte of a message
+constexpr int kPicturesAfterInput = 20;                       // the run answers, and panels settle
 constexpr float kPickMarginPx = 6.0F;
 constexpr float kPanStepPx = 40.0F;
 constexpr float kZoomStep = 1.1F;
@@ -67,6 +68,9 @@ public:
             options_.selected_robot.reset();
         }
         reset_view();
+        if (setup.restored && setup.restored->camera) {
+            camera_ = *setup.restored->camera;
+        }
     }
 
     /// Until the user or the simulation closes it.
@@ -140,7 +144,7 @@ private:
         if (event.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
             // The arena stays in the middle; when all of it was shown, all of it is.
             PictureSize const size = window_.size();
-            bool const was_fitted = camera_ == fitted(setup_.scenery->arena.bounds, canvas_.size());
+            bool const was_fitted = is_fitted();
             canvas_.resize(size);
             if (was_fitted) {
                 reset_view();
@@ -148,7 +152,7 @@ private:
         } else if (event.event == SDL_WINDOWEVENT_FOCUS_LOST || event.event == SDL_WINDOWEVENT_LEAVE) {
             // A button may be let go elsewhere.
             if ((SDL_GetGlobalMouseState(nullptr, nullptr) & SDL_BUTTON_LMASK) == 0) {
-                let_go();
+                drop();
             }
         }
     }
@@ -252,8 +256,16 @@ private:
     }
 
     void restart(std::uint32_t seed) {
+        if (std::string const problem = setup_.restart_problem(); !problem.empty()) {
+            say("cannot restart: " + problem);
+            return;
+        }
         WindowState state;
         window_.write_place(state);
+        if (!is_fitted()) {
+            state.camera = camera_;
+        }
+        state.paused = is_paused();
         state.panels = state_.control;
         state.speed_up = moment_ != nullptr ? moment_->status.asked_speed_up : setup_.speed_up;
         state.options = options_;
@@ -290,6 +302,8 @@ private:
     }
 
     // The view.
+
+    bool is_fitted() const { return camera_ == fitted(setup_.scenery->arena.bounds, canvas_.size()); }
 
     void reset_view() { camera_ = fitted(setup_.scenery->arena.bounds, canvas_.size()); }
 
@@ -348,7 +362,7 @@ private:
         Press& press = *pointer_.left;
         press.is_drag = press.is_drag || length(point_px - press.start_px) > kTremblePx;
         if (press.is_drag && press.object) {
-            send(HoldObject{*press.object, camera_.to_mm(point_px, canvas_.size()) + press.grip_mm});
+            send(DragObject{*press.object, camera_.to_mm(point_px, canvas_.size()) + press.grip_mm});
         }
     }
 
@@ -363,12 +377,12 @@ private:
         if (pointer_.left && !pointer_.left->is_drag) {
             select(pointer_.left->start_px);
         }
-        let_go();
+        drop();
     }
 
-    void let_go() {
+    void drop() {
         if (pointer_.left && pointer_.left->is_drag && pointer_.left->object) {
-            send(LetGo{});
+            send(DropObject{});
         }
         pointer_.left.reset();
         pointer_.panned_from_px.reset();
@@ -445,7 +459,7 @@ private:
 
     void say(std::string const& text) {
         state_.message = text;
-        message_until_ = Clock::now() + kMessageTime;
+        message_until_ = Clock::now() + kMessageTime + static_cast<int>(text.size()) * kReadingTime;
         exchange_.send(Note{text});
     }
 

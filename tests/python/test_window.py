@@ -290,7 +290,7 @@ def test_restarted_window_shows_what_the_one_before_showed(
     settings = {**STILL, **FOUR, "objects.lamp": lamp, "window_width": 500}
     with shown(display, window_program, tmp_path, settings) as window:
         display.xdotool("windowsize", window.window, "620", "640")
-        window.keys("F5", "F5", "F6", "F7", "F8")
+        window.keys("F5", "F5", "F6", "F7", "F8", "plus", "Right", "space")
         before = settled(window)
         window.keys("r")
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
@@ -305,6 +305,20 @@ def test_restart_finds_its_files_when_the_program_has_left_its_folder(
         window.keys("r")
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
         window.find_window()
+
+
+def test_run_goes_on_when_it_cannot_be_restarted(display: Display, window_program: Path, tmp_path: Path) -> None:
+    with shown(display, window_program, tmp_path, {**LONG, **FOUR}) as window:
+        (tmp_path / "scene.yaml").write_text("simulation_time: ten\n")
+        window.keys("r")
+        wait_for(lambda: "cannot restart: scene.yaml:1" in window.text(), "the reason")
+        (tmp_path / "scene.yaml").unlink()
+        window.keys("R")
+        wait_for(lambda: "'scene.yaml' is not a file that can be read again" in window.text(), "the reason")
+        seen = window.shot()
+        wait_for(lambda: differ(window.shot(), seen), "the run to go on")
+        ended(window)
+    assert len(Run(0, "", "", tmp_path).table()) > 4
 
 
 def test_restart_ends_a_step_that_never_returns(display: Display, window_program: Path, tmp_path: Path) -> None:

@@ -23,11 +23,11 @@ TEST(Exchange, CommandsComeInTheirOrder) {
 TEST(Exchange, OfADragOnlyTheLastPlaceCounts) {
     Exchange exchange;
     for (int i = 0; i < 1000; ++i) {
-        exchange.send(HoldObject{3, {static_cast<float>(i), 0.0F}});
+        exchange.send(DragObject{3, {static_cast<float>(i), 0.0F}});
     }
     auto const commands = exchange.take_commands();
     ASSERT_EQ(commands.size(), 1U);
-    EXPECT_EQ(std::get<HoldObject>(commands[0]).centre_mm.x, 999.0F);
+    EXPECT_EQ(std::get<DragObject>(commands[0]).centre_mm.x, 999.0F);
 }
 
 TEST(Exchange, AMomentIsTakenOnce) {

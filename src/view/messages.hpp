@@ -1,0 +1,109 @@
+// What the simulation and its window tell each other.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "render/camera.hpp"
+#include "render/inspection.hpp"
+#include "render/painter.hpp"
+#include "render/snapshot.hpp"
+
+namespace pogosim {
+
+struct Pause {
+    bool on = true;
+};
+/// One step, then a pause.
+struct StepOnce {};
+struct SetSpeedUp {
+    double factor = 1.0;  // simulated seconds per second; 0: as fast as possible
+};
+/// callback_robot_click of a robot that has been selected.
+struct ClickRobot {
+    std::uint32_t robot = 0;
+};
+/// The object stays there until it is let go.
+struct DragObject {
+    std::uint32_t object = 0;  // index into Scenery::objects
+    Vec2 centre_mm;            // where the mean of its bodies is to be
+};
+struct DropObject {};
+/// How a window looks and runs, for one that takes its place.
+struct WindowState {
+    int x_px = 0;
+    int y_px = 0;
+    PictureSize size;
+    bool full_screen = false;        // place and size are those without
+    std::optional<Camera> camera{};  // absent: the whole arena
+    bool paused = false;
+    bool panels = true;
+    bool plot = false;
+    std::size_t column = 0;  // in the plot
+    double speed_up = 1.0;
+    PaintOptions options;
+};
+/// Ends the run and starts it again with this seed.
+struct Restart {
+    std::uint32_t seed = 0;
+    std::optional<WindowState> window{};  // that the new run has
+};
+struct Quit {};
+/// A line for the log.
+struct Note {
+    std::string text;
+};
+using Command = std::variant<Pause, StepOnce, SetSpeedUp, ClickRobot, DragObject, DropObject, Restart, Quit, Note>;
+
+/// What the window wants to show next.
+struct MomentRequest {
+    SnapshotParts parts;
+    bool follow_trails = false;            // so that they are there when `parts` ask for them
+    std::optional<std::uint32_t> robot{};  // to inspect
+};
+
+struct RunStatus {
+    bool paused = false;
+    double asked_speed_up = 1.0;  // 0: as fast as possible
+    double speed_up = 0.0;        // reached in the last second; 0: not known yet
+    bool too_slow = false;        // the machine cannot keep the asked one
+    bool touched = false;         // by the user's hand: the run is no longer that of its seed alone
+};
+
+/// One moment of the run.
+struct Moment {
+    Snapshot snapshot;
+    RunStatus status;
+    std::optional<Inspection> inspection{};
+    std::vector<RecordedValues> recorded{};  // since the moment before
+};
+
+/// What stays the same while the window is open.
+struct WindowSetup {
+    std::string title;
+    PictureSize size;
+    std::optional<WindowState> restored{};  // of the run before, instead of what is said below
+    std::shared_ptr<Scenery const> scenery;
+    PaintOptions options;  // at the start
+    bool panels = true;    // shown at the start
+    std::uint32_t seed = 0;
+    double duration_s = 0.0;  // of the whole run
+    double time_step_s = 0.01;
+    double speed_up = 1.0;             // asked for, at the start
+    std::vector<std::string> columns;  // of RecordedValues
+    // Called in the window's thread once the run is to end, be it in a long step; says by what.
+    std::function<void(char const* what)> hurry;
+    // Why the run cannot be started again, such as a configuration that is wrong by now; empty if it can. Called in the
+    // window's thread.
+    std::function<std::string()> restart_problem;
+};
+
+/// How a window ended.
+enum class WindowEnd { closed, display_lost, failed };
+
+}  // namespace pogosim
