@@ -92,16 +92,16 @@ void draw_messages(Inspection const& robot) {
 
 }  // namespace
 
-void draw_inspector(Inspection const& robot, float scale) {
+void draw_inspector(Inspection const& robot, float scale, bool in_its_corner) {
     ImVec2 const size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({size.x - kMarginPx, kTopPx * scale}, ImGuiCond_Always, {1.0F, 0.0F});
+    ImGui::SetNextWindowPos({size.x - kMarginPx, kTopPx * scale}, in_its_corner ? ImGuiCond_Always : ImGuiCond_Once,
+                            {1.0F, 0.0F});
     ImGui::SetNextWindowSizeConstraints({kWidthPx * scale, 0.0F},
                                         {kWidthPx * scale, size.y - kTopPx * scale - kMarginPx});
     ImGui::SetNextWindowSize({kWidthPx * scale, 0.0F});
     std::string const title = fmt::format("Robot {} ({})###inspector", robot.id, robot.category);
-    constexpr ImGuiWindowFlags flags =
-        ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings;
-    if (ImGui::Begin(title.c_str(), nullptr, flags)) {
+    if (ImGui::Begin(title.c_str(), nullptr,
+                     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings)) {
         table("motion", [&] { draw_motion(robot); });
         if (ImGui::CollapsingHeader("Messages", ImGuiTreeNodeFlags_DefaultOpen)) {
             table("messages", [&] { draw_messages(robot); });

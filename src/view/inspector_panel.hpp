@@ -5,6 +5,7 @@
 
 namespace pogosim {
 
-void draw_inspector(Inspection const& robot, float scale);
+/// `in_its_corner`: top right, else where the user has put it.
+void draw_inspector(Inspection const& robot, float scale, bool in_its_corner);
 
 }  // namespace pogosim

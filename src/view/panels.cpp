@@ -195,7 +195,9 @@ void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state,
     if (state.control && has_room) {
         draw_control(state, scale_, send);
         if (state.moment != nullptr && state.moment->inspection) {
-            draw_inspector(*state.moment->inspection, scale_);
+            bool const was_resized = inspector_size_ != canvas.size();
+            inspector_size_ = canvas.size();
+            draw_inspector(*state.moment->inspection, scale_, was_resized);
         }
         if (state.plot) {
             draw_plot(state, scale_);

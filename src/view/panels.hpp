@@ -63,6 +63,7 @@ private:
     std::unique_ptr<ImGuiContext, DestroyContext> context_;
     GlyphAtlas atlas_;
     float scale_;
+    PictureSize inspector_size_{0, 0};  // of the window in which the inspector was last shown
 };
 
 }  // namespace pogosim
