@@ -15,6 +15,7 @@ namespace {
 constexpr float kWidthPx = 262.0F;
 constexpr float kTopPx = 44.0F;  // below the time
 constexpr float kMarginPx = 10.0F;
+constexpr float kRoomyPx = 700.0F;  // in lower windows, the sections are closed at first: robots are under them
 constexpr float kDegreesPerRad = 180.0F / std::numbers::pi_v<float>;
 constexpr std::size_t kLongestValue = 500;   // bytes of a text
 constexpr std::size_t kMostNeighbours = 40;  // named
@@ -102,21 +103,22 @@ void draw_inspector(Inspection const& robot, float scale, bool in_its_corner) {
     std::string const title = fmt::format("Robot {} ({})###inspector", robot.id, robot.category);
     if (ImGui::Begin(title.c_str(), nullptr,
                      ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings)) {
+        ImGuiTreeNodeFlags const open = size.y < kRoomyPx * scale ? 0 : ImGuiTreeNodeFlags_DefaultOpen;
         table("motion", [&] { draw_motion(robot); });
-        if (ImGui::CollapsingHeader("Messages", ImGuiTreeNodeFlags_DefaultOpen)) {
+        if (ImGui::CollapsingHeader("Messages", open)) {
             table("messages", [&] { draw_messages(robot); });
             if (!robot.neighbours.empty()) {
                 ImGui::TextUnformatted(neighbour_text(robot).c_str());
             }
         }
-        if (!robot.columns.empty() && ImGui::CollapsingHeader("Data columns", ImGuiTreeNodeFlags_DefaultOpen)) {
+        if (!robot.columns.empty() && ImGui::CollapsingHeader("Data columns", open)) {
             table("columns", [&] {
                 for (auto const& [name, value] : robot.columns) {
                     row(name.c_str(), value);
                 }
             });
         }
-        if (!robot.lines.empty() && ImGui::CollapsingHeader("Printed", ImGuiTreeNodeFlags_DefaultOpen)) {
+        if (!robot.lines.empty() && ImGui::CollapsingHeader("Printed", open)) {
             ImGui::PushTextWrapPos(0.0F);
             for (std::string const& line : robot.lines) {
                 ImGui::TextUnformatted(line.c_str());

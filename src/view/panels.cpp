@@ -46,7 +46,7 @@ std::string speed_text(double speed_up) {
 }
 
 void draw_speed(PanelState const& state, std::function<void(Command const&)> const& send) {
-    RunStatus const& status = state.moment->status;
+    RunStatus const& status = state.status;
     constexpr float kSlowest = 0.05F;
     constexpr float kFastest = 1000.0F;
     bool unlimited = status.asked_speed_up == 0.0;
@@ -104,7 +104,7 @@ void draw_control(PanelState& state, float scale, std::function<void(Command con
     ImGui::SetNextWindowPos({kMarginPx, kMarginPx}, ImGuiCond_Once);
     ImGui::SetNextWindowSize({kControlWidthPx * scale, 0.0F});
     if (ImGui::Begin("Run", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize) && state.moment != nullptr) {
-        RunStatus const& status = state.moment->status;
+        RunStatus const& status = state.status;
         if (ImGui::Button(status.paused ? "Run" : "Pause", {66.0F * scale, 0.0F})) {
             send(Pause{!status.paused});
         }

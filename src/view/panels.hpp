@@ -30,6 +30,7 @@ struct PanelInput {
 struct PanelState {
     WindowSetup const* setup = nullptr;
     Moment const* moment = nullptr;  // null: none yet
+    RunStatus status;                // of the run, or what the user has asked of it since
     ColumnHistory const* history = nullptr;
     PaintOptions* options = nullptr;
     bool help = false;

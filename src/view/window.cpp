@@ -58,6 +58,7 @@ public:
         state_.setup = &setup_;
         state_.history = &history_;
         state_.options = &options_;
+        state_.status = {.paused = setup.restored && setup.restored->paused, .asked_speed_up = setup.speed_up};
         state_.control = setup.restored ? setup.restored->panels : setup.panels;
         if (setup.restored) {
             state_.plot = setup.restored->plot;
@@ -201,7 +202,7 @@ private:
                 quit();
                 break;
             case Action::pause:
-                send(Pause{!is_paused()});
+                send(Pause{!state_.status.paused});
                 break;
             case Action::step:
                 send(StepOnce{});
@@ -236,21 +237,16 @@ private:
         }
     }
 
-    bool is_paused() const { return moment_ != nullptr && moment_->status.paused; }
-
     void send(Command const& command) {
         if (auto const* const again = std::get_if<Restart>(&command)) {
             restart(again->seed);
             return;
         }
         // Until the simulation has taken notice, the panels show what was asked for.
-        if (moment_ != nullptr) {
-            RunStatus& status = moment_->status;
-            if (auto const* const pause = std::get_if<Pause>(&command)) {
-                status.paused = pause->on;
-            } else if (auto const* const speed = std::get_if<SetSpeedUp>(&command)) {
-                status.asked_speed_up = speed->factor;
-            }
+        if (auto const* const pause = std::get_if<Pause>(&command)) {
+            state_.status.paused = pause->on;
+        } else if (auto const* const speed = std::get_if<SetSpeedUp>(&command)) {
+            state_.status.asked_speed_up = speed->factor;
         }
         exchange_.send(command);
     }
@@ -265,9 +261,9 @@ private:
         if (!is_fitted()) {
             state.camera = camera_;
         }
-        state.paused = is_paused();
+        state.paused = state_.status.paused;
         state.panels = state_.control;
-        state.speed_up = moment_ != nullptr ? moment_->status.asked_speed_up : setup_.speed_up;
+        state.speed_up = state_.status.asked_speed_up;
         state.options = options_;
         state.plot = state_.plot;
         state.column = state_.column;
@@ -292,11 +288,11 @@ private:
     }
 
     void change_speed(double factor) {
-        double const asked = moment_ != nullptr ? moment_->status.asked_speed_up : setup_.speed_up;
+        double const asked = state_.status.asked_speed_up;
         if (asked > 0.0) {
             send(SetSpeedUp{std::clamp(asked * factor, std::min(asked, kSlowest), std::max(asked, kFastest))});
         } else if (factor < 1.0) {
-            double const reached = moment_ != nullptr ? moment_->status.speed_up : 0.0;
+            double const reached = state_.status.speed_up;
             send(SetSpeedUp{reached > 0.0 ? reached * factor : kUnlimitedSlower});
         }
     }
@@ -406,7 +402,7 @@ private:
         SnapshotParts parts = parts_for(options_);
         // Drawing trails takes the most time. They are drawn anew before a robot has left the end of its own.
         double const time_s = moment_ != nullptr ? moment_->snapshot.time_s : 0.0;
-        bool const are_fresh = trails_ != nullptr && time_s - trails_time_s_ < kTrailPeriodS && !is_paused();
+        bool const are_fresh = trails_ != nullptr && time_s - trails_time_s_ < kTrailPeriodS && !state_.status.paused;
         parts.trails = options_.trails && !are_fresh;
         exchange_.request({.parts = parts, .follow_trails = options_.trails, .robot = options_.selected_robot});
     }
@@ -424,6 +420,7 @@ private:
         is_stale_ = is_stale_ || moment_ == nullptr || newest->snapshot.step != moment_->snapshot.step ||
                     newest->status.touched != moment_->status.touched;
         moment_ = std::make_unique<Moment>(*newest);
+        state_.status = newest->status;
         Snapshot& snapshot = moment_->snapshot;
         if (snapshot.trails != nullptr || !options_.trails) {
             trails_ = snapshot.trails;
@@ -494,7 +491,7 @@ private:
     PanelState state_;
     PanelInput input_;
     Pointer pointer_;
-    std::unique_ptr<Moment> moment_;        // the newest, with what was asked for since
+    std::unique_ptr<Moment> moment_;        // the newest; null: none yet
     std::shared_ptr<Trails const> trails_;  // the newest
     double trails_time_s_ = 0.0;
     bool left_was_pressed_ = false;
