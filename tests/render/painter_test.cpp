@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -489,6 +491,415 @@ TEST(ScaleBar, AndTimeAreWrittenInTheirCorners) {
     };
     EXPECT_EQ(changed_in({.time = true, .scale_bar = false}), std::set<int>{1});
     EXPECT_EQ(changed_in({.time = false, .scale_bar = true}), std::set<int>{2});
+}
+
+// What is drawn where, and above what.
+
+/// A picture that shows paper alone, but for what is written into it.
+constexpr Camera kFarAway{.centre_mm = {1e5F, 1e5F}, .scale_px_mm = 0.38F};
+
+/// The smallest box with all pixels that are not of the background.
+PixelBox box_of_drawn(Canvas const& canvas, PixelBox const& within, Pixel background = palette::kPaper) {
+    PixelBox box{within.right, within.bottom, within.left, within.top};
+    for (int y = within.top; y < within.bottom; ++y) {
+        for (int x = within.left; x < within.right; ++x) {
+            if (at(canvas, x, y) != background) {
+                box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x + 1),
+                       std::max(box.bottom, y + 1)};
+            }
+        }
+    }
+    return box;
+}
+
+std::vector<Pixel> cut_out(Canvas const& canvas, PixelBox const& box) {
+    std::vector<Pixel> pixels;
+    for (int y = box.top; y < box.bottom; ++y) {
+        for (int x = box.left; x < box.right; ++x) {
+            pixels.push_back(at(canvas, x, y));
+        }
+    }
+    return pixels;
+}
+
+/// The pixels of a text in the ink and the smallest font of pictures.
+std::vector<Pixel> written(std::string const& text) {
+    Canvas canvas({200, 40});
+    canvas.fill(palette::kPaper);
+    Text().draw(canvas, text, 11, 20, 10, palette::kInk);
+    return cut_out(canvas, box_of_drawn(canvas, canvas.bounds()));
+}
+
+Canvas painted_far_away(Snapshot const& snapshot, Camera const& camera, PaintOptions const& options) {
+    Canvas canvas(kSize);
+    Painter().paint(canvas, camera, snapshot, options);
+    return canvas;
+}
+
+TEST(ScaleBar, IsAsLongAsItSays) {
+    Snapshot const snapshot = snapshot_of(square_world());
+    struct Case {
+        float scale_px_mm;
+        double length_mm;
+        char const* label;
+    };
+    for (auto const& [scale, length_mm, label] :
+         {Case{0.38F, 200, "200 mm"}, Case{0.09F, 1000, "1 m"}, Case{0.04F, 2000, "2 m"}, Case{0.0015F, 50000, "50 m"},
+          Case{7.0F, 10, "10 mm"}, Case{150.0F, 0.5, "0.5 mm"}}) {
+        Camera camera = kFarAway;
+        camera.scale_px_mm = scale;
+        if (scale < 0.01F) {
+            camera.centre_mm = {1e8F, 1e8F};
+        }
+        Canvas const canvas = painted_far_away(snapshot, camera, {.time = false, .scale_bar = true});
+        PixelBox const all = box_of_drawn(canvas, canvas.bounds());
+        // The bar, then the label in the middle below it.
+        int bar_bottom = all.top;
+        while (box_of_drawn(canvas, {0, bar_bottom, 400, bar_bottom + 1}).left < 400) {
+            ++bar_bottom;
+        }
+        PixelBox const bar = box_of_drawn(canvas, {0, all.top, 400, bar_bottom});
+        PixelBox const text = box_of_drawn(canvas, {0, bar_bottom, 400, 400});
+        EXPECT_NEAR(bar.right - bar.left, length_mm * static_cast<double>(scale), 0.51) << label;
+        for (Pixel const pixel : cut_out(canvas, bar)) {
+            EXPECT_EQ(pixel, palette::kInk) << label;
+        }
+        EXPECT_EQ(cut_out(canvas, text), written(label)) << label;
+        EXPECT_NEAR(text.left + text.right, bar.left + bar.right, 3) << label;
+        EXPECT_LT(all.left, 20) << label;
+        EXPECT_GT(all.bottom, 380) << label;
+    }
+}
+
+TEST(Time, IsWrittenInSecondsWithTwoDigits) {
+    Snapshot snapshot = snapshot_of(square_world());
+    for (auto const& [time_s, label] :
+         {std::pair{0.0, "t = 0.00 s"}, std::pair{12.5, "t = 12.50 s"}, std::pair{1234.567, "t = 1234.57 s"}}) {
+        snapshot.time_s = time_s;
+        Canvas const canvas = painted_far_away(snapshot, kFarAway, {.time = true, .scale_bar = false});
+        PixelBox const text = box_of_drawn(canvas, canvas.bounds());
+        EXPECT_EQ(cut_out(canvas, text), written(label));
+        EXPECT_GT(text.right, 385);
+        EXPECT_LT(text.top, 15);
+    }
+}
+
+TEST(Time, AndScaleBarLieOnAPlateAboveRobots) {
+    World world = square_world();
+    add_robot(world, {60, 960});
+    add_robot(world, {960, 25});
+    world.robots.led[0][0] = world.robots.led[1][0] = kRed;
+    Snapshot const snapshot = snapshot_of(world);
+    Canvas const without = painted(snapshot);
+    Canvas const with = painted(snapshot, {});
+    EXPECT_EQ(at_mm(without, {60, 972}), kLitRed);
+    EXPECT_GT(at_mm(with, {60, 972}) & 0xFFU, 180U);  // almost white
+    EXPECT_EQ(at_mm(without, {945, 12}), kLitRed);
+    EXPECT_NE(at_mm(with, {945, 12}), kLitRed);
+}
+
+TEST(Robot, HasAMarkFromNearItsMiddleToItsRimAlongItsHeading) {
+    for (int i = 0; i < 12; ++i) {
+        World world = square_world();
+        Vec2 const axis = direction(0.2F + 0.5F * static_cast<float>(i));
+        Vec2 const beside{-axis.y, axis.x};
+        add_robot(world, {500, 500}, 0.2F + 0.5F * static_cast<float>(i));
+        world.robots.led[0][0] = kGreen;
+        Canvas const canvas = painted(snapshot_of(world), kNothingWritten, {1600, 1600});
+        for (float const along : {8.5F, 13.0F, 18.0F, 24.0F}) {
+            EXPECT_EQ(at_mm(canvas, Vec2{500, 500} + along * axis), palette::kEdge) << along;
+            EXPECT_EQ(at_mm(canvas, Vec2{500, 500} - along * axis), kLitGreen) << along;
+            EXPECT_EQ(at_mm(canvas, Vec2{500, 500} + along * axis + 4.0F * beside), kLitGreen) << along;
+            EXPECT_EQ(at_mm(canvas, Vec2{500, 500} + along * axis - 4.0F * beside), kLitGreen) << along;
+        }
+        EXPECT_EQ(at_mm(canvas, Vec2{500, 500} + 4.0F * axis), kLitGreen);
+    }
+}
+
+TEST(LateralLed, IsTheInnerHalfOfADiskOnTheRim) {
+    for (bool const is_turned : {false, true}) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            World world = square_world();
+            add_robot(world, {500, 500}, 0.3F);
+            world.categories[0].spec.robot->rotate_leds_45_deg = is_turned;
+            world.robots.led[0][k + 1] = kRed;
+            Canvas const canvas = painted(snapshot_of(world), kNothingWritten, {1600, 1600});
+            float const quarters = static_cast<float>(k) + (is_turned ? 0.5F : 0.0F);
+            Vec2 const outwards = direction(0.3F + quarters * 0.5F * std::numbers::pi_v<float>);
+            Vec2 const along{-outwards.y, outwards.x};
+            Vec2 const on_rim = Vec2{500, 500} + 26.5F * outwards;
+            // A radius of 0.3 of the robot's: 8 mm.
+            for (float const angle : {0.2F, 1.0F, 1.6F, 2.2F, 2.9F}) {
+                Vec2 const inwards = std::cos(angle) * along - std::sin(angle) * outwards;
+                EXPECT_EQ(at_mm(canvas, on_rim + 6.5F * inwards), kLitRed) << k << angle;
+                EXPECT_NE(at_mm(canvas, on_rim + 10.0F * inwards), kLitRed) << k << angle;
+                EXPECT_NE(at_mm(canvas, on_rim - 3.0F * inwards), kLitRed) << k << angle;
+            }
+            double const area_px = 0.5 * std::numbers::pi * 7.95 * 7.95 * 1.52 * 1.52;
+            EXPECT_NEAR(static_cast<double>(pixels_like(canvas, kLitRed)) / area_px, 0.9, 0.1);
+        }
+    }
+}
+
+TEST(Light, HasItsFirstRowAtTheTopAndItsFirstColumnOnTheLeft) {
+    Snapshot snapshot = snapshot_of(square_world());
+    PaintOptions options = kNothingWritten;
+    options.light_levels = true;
+    for (std::size_t lit = 0; lit < 6; ++lit) {
+        LightMap map{.columns = 3, .rows = 2, .origin_mm = {0, 0}, .cell_mm = {1000.0F / 3.0F, 500}, .level = {}};
+        map.level.assign(6, 0);
+        map.level[lit] = 100;
+        snapshot.light = std::make_shared<LightMap const>(map);
+        Canvas const canvas = painted(snapshot, options);
+        for (std::size_t cell = 0; cell < 6; ++cell) {
+            Vec2 const centre{1000.0F / 6.0F + static_cast<float>(cell % 3) * 1000.0F / 3.0F,
+                              cell < 3 ? 250.0F : 750.0F};
+            EXPECT_EQ(at_mm(canvas, centre) > at_mm(canvas, {500, 500}), cell == lit) << lit << cell;
+        }
+    }
+}
+
+TEST(Link, HasTheColourOfTheFirstEmitterOfEachSender) {
+    PaintOptions options = kNothingWritten;
+    options.links = LinkLayer::above;
+    for (std::size_t face = 0; face < kFaceCount; ++face) {
+        std::size_t const back = (face + 1) % kFaceCount;
+        auto const bit = static_cast<std::uint8_t>(1U << face);
+        auto const bit_back = static_cast<std::uint8_t>(1U << back);
+        Canvas const both = painted(linked_world(bit, bit_back), options, {1600, 1600});
+        for (float const x : {240.0F, 350.0F, 490.0F}) {
+            EXPECT_TRUE(looks_like(at_mm(both, {x, 500}), palette::kLinkByEmitter[face])) << face;
+            EXPECT_TRUE(looks_like(at_mm(both, {1000 - x, 500}), palette::kLinkByEmitter[back])) << face;
+        }
+        Canvas const one_way = painted(linked_world(bit, 0), options, {1600, 1600});
+        EXPECT_TRUE(looks_like(at_mm(one_way, {350, 500}), palette::kLinkByEmitter[face])) << face;
+        EXPECT_TRUE(looks_like(at_mm(one_way, {768, 500}), palette::kLinkByEmitter[face])) << face;
+    }
+}
+
+TEST(Link, OfOneWayHasItsArrowHeadAtTheListenerAlone) {
+    PaintOptions options = kNothingWritten;
+    options.links = LinkLayer::below;
+    Snapshot snapshot = snapshot_of(square_world());
+    for (int i = 0; i < 8; ++i) {
+        Vec2 const towards = direction(0.1F + 0.8F * static_cast<float>(i));
+        Vec2 const beside{-towards.y, towards.x};
+        Vec2 const from = Vec2{500, 500} - 200.0F * towards;
+        Vec2 const to = Vec2{500, 500} + 200.0F * towards;
+        snapshot.links = {{.from = 0, .to = 1, .from_mm = from, .to_mm = to, .emitters = 1}};
+        Canvas const canvas = painted(snapshot, options, {1600, 1600});
+        for (float const side : {-3.5F, 3.5F}) {  // beyond the line's own width
+            EXPECT_TRUE(looks_like(at_mm(canvas, to - 9.0F * towards + side * beside), palette::kLinkByEmitter[0]));
+            EXPECT_EQ(at_mm(canvas, to - 16.0F * towards + side * beside), palette::kFloor);
+            EXPECT_EQ(at_mm(canvas, from + 9.0F * towards + side * beside), palette::kFloor);
+        }
+        EXPECT_TRUE(looks_like(at_mm(canvas, to - 3.0F * towards), palette::kLinkByEmitter[0]));
+        EXPECT_EQ(at_mm(canvas, to + 3.0F * towards), palette::kFloor);
+        EXPECT_EQ(at_mm(canvas, from - 3.0F * towards), palette::kFloor);
+    }
+}
+
+/// The trail of robot 0, which goes through these places, one after the other.
+std::shared_ptr<Trails const> trail_through(World& world, std::vector<Vec2> const& places) {
+    Trails trails;
+    for (Vec2 const place : places) {
+        world.bodies.position_mm[0] = place;
+        trails.follow(world);
+    }
+    return std::make_shared<Trails const>(trails);
+}
+
+std::vector<Vec2> line_of_places(Vec2 from_mm, Vec2 step_mm, int count) {
+    std::vector<Vec2> places;
+    for (int i = 0; i < count; ++i) {
+        places.push_back(from_mm + static_cast<float>(i) * step_mm);
+    }
+    return places;
+}
+
+TEST(Trail, FadesAndThinsTowardsItsEnd) {
+    World world = square_world();
+    add_robot(world, {10, 500});
+    world.robots.led[0][0] = kGreen;
+    std::vector<Vec2> const places = line_of_places({10, 500}, {2, 0}, 480);
+    auto const trails = trail_through(world, places);
+    Snapshot snapshot = snapshot_of(world);
+    snapshot.trails = trails;
+    PaintOptions options = kNothingWritten;
+    options.trails = true;
+    Canvas const canvas = painted(snapshot, options, {1600, 1600});
+    auto const green = [&](float x_mm) { return static_cast<int>(at_mm(canvas, {x_mm, 500}) >> 8U & 0xFFU); };
+    auto const width_px = [&](float x_mm) {
+        int width = 0;
+        for (int y = 780; y < 820; ++y) {
+            width += at(canvas, static_cast<int>(800 + (x_mm - 500) * 1.52F), y) != palette::kFloor ? 1 : 0;
+        }
+        return width;
+    };
+    EXPECT_GT(green(900), 0x15 + (210 - 0x15) / 2);
+    EXPECT_LT(green(100), 0x15 + (210 - 0x15) / 5);
+    for (float x = 150; x < 900; x += 100) {
+        EXPECT_GT(green(x + 100), green(x)) << x;
+    }
+    EXPECT_GT(green(20), 0x15);  // its end is still there
+    EXPECT_GT(width_px(900), width_px(30));
+    EXPECT_LE(width_px(900), 7);
+}
+
+TEST(Trail, IsBrokenAtBothSeamsOfAPeriodicArena) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    world.robots.led[0][0] = kGreen;
+    for (Vec2 const step : {Vec2{2, 0}, Vec2{0, 2}, Vec2{-2, 0}, Vec2{0, -2}}) {
+        world.periodic = true;
+        std::vector<Vec2> places = line_of_places({500, 500}, step, 400);
+        for (Vec2& place : places) {
+            place = wrapped(world, place);
+        }
+        auto const trails = trail_through(world, places);
+        Snapshot snapshot = snapshot_of(world);
+        snapshot.trails = trails;
+        PaintOptions options = kNothingWritten;
+        options.trails = true;
+        Vec2 const ahead = 0.5F * step;
+        Canvas const canvas = painted(snapshot, options);
+        for (float const along : {100.0F, 300.0F, 480.0F}) {
+            EXPECT_NE(at_mm(canvas, Vec2{500, 500} + along * ahead), palette::kFloor);
+        }
+        EXPECT_NE(at_mm(canvas, Vec2{500, 500} - 480.0F * ahead), palette::kFloor);  // beyond the seam
+        EXPECT_EQ(at_mm(canvas, Vec2{500, 500} - 100.0F * ahead), palette::kFloor);  // a line across would show here
+    }
+}
+
+TEST(Selection, IsARingAroundTheSelectedRobotAndNothingElse) {
+    World world = square_world();
+    add_robot(world, {300, 300});
+    add_robot(world, {700, 600});
+    add_robot(world, {780, 600});
+    Snapshot const snapshot = snapshot_of(world);
+    PaintOptions options = kNothingWritten;
+    Canvas const without = painted(snapshot, options, {1600, 1600});
+    options.selected_robot = 1;
+    Canvas const with = painted(snapshot, options, {1600, 1600});
+    Vec2 const centre = fitted(world.arena.bounds, with.size()).to_pixels({700, 600}, with.size());
+    float const radius = 26.5F * 1.52F;
+    std::set<int> directions;
+    for (int y = 0; y < 1600; ++y) {
+        for (int x = 0; x < 1600; ++x) {
+            if (at(with, x, y) != at(without, x, y)) {
+                Vec2 const offset = Vec2{static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F} - centre;
+                ASSERT_GT(length(offset), radius) << x << ' ' << y;
+                ASSERT_LT(length(offset), radius + 18.0F) << x << ' ' << y;
+                directions.insert(static_cast<int>(std::floor(std::atan2(offset.y, offset.x) * 10.0F)));
+            }
+        }
+    }
+    EXPECT_EQ(directions.size(), 64U);
+    EXPECT_GT(pixels_like(with, palette::kSelection), pixels_like(without, palette::kSelection) + 500U);
+    EXPECT_GT(pixels_like(with, palette::kSelectionRim), 500U);
+}
+
+TEST(Selection, OfAWallOrAMembraneIsALineAlongItsOutline) {
+    World world = square_world();
+    std::uint32_t const wall = testing::add_wall(world, {{{300, 300}, {500, 300}, {400, 500}}});
+    Polygon dots;
+    for (int i = 0; i < 40; ++i) {
+        dots.push_back(Vec2{700, 700} + 100.0F * direction(0.157F * static_cast<float>(i)));
+    }
+    std::uint32_t const membrane = testing::add_membrane(world, dots);
+    Snapshot snapshot = snapshot_of(world);
+    snapshot.heading_rad.resize(snapshot.position_mm.size());
+    Vec2 const on_wall[] = {{400, 300}, {450, 400}, {350, 400}};
+    PaintOptions options = kNothingWritten;
+    options.selected_robot = wall;
+    Canvas const wall_selected = painted(snapshot, options, {1600, 1600});
+    options.selected_robot = membrane;
+    Canvas const membrane_selected = painted(snapshot, options, {1600, 1600});
+    for (Vec2 const place : on_wall) {
+        EXPECT_EQ(at_mm(wall_selected, place), palette::kSelection);
+        EXPECT_NE(at_mm(membrane_selected, place), palette::kSelection);
+    }
+    for (Vec2 const dot : {dots[0], dots[13], dots[39]}) {
+        EXPECT_EQ(at_mm(membrane_selected, dot), palette::kSelection);
+        EXPECT_NE(at_mm(wall_selected, dot), palette::kSelection);
+    }
+}
+
+/// Two robots far apart that hear each other, one between them whose trail crosses their link, and a lamp.
+class Layers : public ::testing::Test {
+protected:
+    void SetUp() override {
+        add_robot(world_, {500, 700});
+        add_robot(world_, {350, 500});
+        world_.robots.led[0][0] = kGreen;
+        world_.robots.led[1][0] = kRed;
+        snapshot_ = snapshot_of(world_);
+        world_.robots.led[0][0] = kRed;  // as long as it moved
+        snapshot_.trails = trail_through(world_, line_of_places({500, 300}, {0, 2}, 200));
+        snapshot_.links.push_back(
+            {.from = 0, .to = 1, .from_mm = {200, 500}, .to_mm = {800, 500}, .emitters = 2, .emitters_back = 2});
+        options_.trails = true;
+    }
+
+    Canvas paint() const { return painted(snapshot_, options_, {1600, 1600}); }
+    void add_lamp(Vec2 centre_mm) { snapshot_.lamps.push_back({.centre_mm = centre_mm, .shape = {}}); }
+    static int red(Pixel pixel) { return static_cast<int>(pixel >> 16U & 0xFFU); }
+    static int blue(Pixel pixel) { return static_cast<int>(pixel & 0xFFU); }
+
+    World world_ = square_world();
+    Snapshot snapshot_;
+    PaintOptions options_ = kNothingWritten;
+};
+
+constexpr Vec2 kCrossing{500, 500};  // of the link and the trail
+constexpr Vec2 kBody{343, 500};      // of a link and a robot, beside its mark
+
+TEST_F(Layers, LinksBelowAreCoveredByTrailsAndRobots) {
+    options_.links = LinkLayer::below;
+    Canvas const canvas = paint();
+    EXPECT_TRUE(looks_like(at_mm(canvas, {650, 500}), palette::kLinkByEmitter[1]));
+    EXPECT_EQ(at_mm(canvas, kBody), kLitRed);
+    // The trail takes away from the link's blue.
+    EXPECT_LT(blue(at_mm(canvas, kCrossing)), blue(at_mm(canvas, {650, 500})) - 30);
+}
+
+TEST_F(Layers, LinksAboveCoverTrailsRobotsLampsAndTheSelection) {
+    options_.links = LinkLayer::above;
+    options_.selected_robot = 1;
+    add_lamp({600, 500});
+    Canvas const canvas = paint();
+    for (Vec2 const place : {kCrossing, kBody, Vec2{350 - 31, 500}, Vec2{600, 500}}) {
+        EXPECT_TRUE(looks_like(at_mm(canvas, place), palette::kLinkByEmitter[1])) << place.x;
+    }
+}
+
+TEST_F(Layers, TrailsAreCoveredByRobotsAndCoverGlows) {
+    Canvas const canvas = paint();
+    EXPECT_EQ(at_mm(canvas, {500, 690}), kLitGreen);
+    EXPECT_GT(red(at_mm(canvas, {500, 650})), red(at_mm(canvas, {550, 700})) + 30);
+}
+
+TEST_F(Layers, LampsCoverRobotsAndAreCoveredByTheSelection) {
+    add_lamp({350, 500});
+    Canvas canvas = paint();
+    EXPECT_EQ(at_mm(canvas, {350, 500}), palette::kLamp);
+    snapshot_.lamps.clear();
+    add_lamp({350 - 31, 500});  // where the ring will be
+    canvas = paint();
+    EXPECT_EQ(at_mm(canvas, {350 - 31, 500}), palette::kLamp);
+    options_.selected_robot = 1;
+    EXPECT_EQ(at_mm(paint(), {350 - 31, 500}), palette::kSelection);
+}
+
+TEST_F(Layers, RobotsCoverWhatTheyPushAndMembranes) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    add_robot(world, {520, 500});
+    world.robots.led[0][0] = kGreen;
+    world.objects[1].robot = kNone;
+    Canvas const canvas = painted(snapshot_of(world), kNothingWritten, {1600, 1600});
+    EXPECT_EQ(at_mm(canvas, {505, 515}), kLitGreen);  // within both
+    EXPECT_EQ(at_mm(canvas, {535, 515}), palette::kNoLed);
 }
 
 TEST(Text, HasWidthsThatAddUpAndLetters) {
