@@ -245,6 +245,8 @@ private:
         // Until the simulation has taken notice, the panels show what was asked for.
         if (auto const* const pause = std::get_if<Pause>(&command)) {
             state_.status.paused = pause->on;
+        } else if (std::holds_alternative<StepOnce>(command)) {
+            state_.status.paused = true;
         } else if (auto const* const speed = std::get_if<SetSpeedUp>(&command)) {
             state_.status.asked_speed_up = speed->factor;
         }
@@ -420,7 +422,11 @@ private:
         is_stale_ = is_stale_ || moment_ == nullptr || newest->snapshot.step != moment_->snapshot.step ||
                     newest->status.touched != moment_->status.touched;
         moment_ = std::make_unique<Moment>(*newest);
+        // Only the user changes these two, and the moment may be from before the simulation has taken notice.
+        RunStatus const asked = state_.status;
         state_.status = newest->status;
+        state_.status.paused = asked.paused;
+        state_.status.asked_speed_up = asked.asked_speed_up;
         Snapshot& snapshot = moment_->snapshot;
         if (snapshot.trails != nullptr || !options_.trails) {
             trails_ = snapshot.trails;
