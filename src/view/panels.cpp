@@ -187,8 +187,8 @@ void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state,
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(canvas.size().width_px), static_cast<float>(canvas.size().height_px)};
     io.DeltaTime = std::max(input.seconds, 1e-4F);
-    io.MousePos = {input.mouse_px.x, input.mouse_px.y};
-    io.MouseDown[0] = input.left_is_down;
+    io.MousePos = {input.mouse.point_px.x, input.mouse.point_px.y};
+    io.MouseDown[0] = input.mouse.left_is_down;
     io.MouseWheel = input.wheel;
     ImGui::NewFrame();
     bool const has_room = io.DisplaySize.x >= kLeastWidthPx && io.DisplaySize.y >= kLeastHeightPx;

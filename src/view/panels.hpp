@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "view/column_history.hpp"
-#include "view/exchange.hpp"
+#include "view/messages.hpp"
+#include "view/mouse_states.hpp"
 #include "view/panel_raster.hpp"
 
 namespace pogosim {
@@ -18,10 +19,9 @@ namespace pogosim {
 /// A step that takes longer is worth a word.
 inline constexpr double kBusyS = 0.5;
 
-/// The mouse, as the panels see it.
+/// What the panels see of the user.
 struct PanelInput {
-    Vec2 mouse_px;
-    bool left_is_down = false;
+    MouseState mouse;
     float wheel = 0.0F;    // lines up
     float seconds = 0.0F;  // since the last picture
 };

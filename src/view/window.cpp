@@ -317,22 +317,22 @@ private:
     void take_wheel(SDL_MouseWheelEvent const& wheel) {
         float const lines = static_cast<float>(wheel.direction == SDL_MOUSEWHEEL_FLIPPED ? -wheel.y : wheel.y);
         if (panels_.has_mouse()) {
-            input_.wheel += lines;
+            wheel_ += lines;
         } else {
-            zoom(std::pow(kZoomStep, lines), input_.mouse_px);
+            zoom(std::pow(kZoomStep, lines), mouse_.last().point_px);
         }
     }
 
     void take_press(SDL_MouseButtonEvent const& button) {
         Vec2 const point_px{static_cast<float>(button.x), static_cast<float>(button.y)};
-        input_.mouse_px = point_px;
+        mouse_.move(point_px);
         if (button.button != SDL_BUTTON_LEFT) {
             if (!panels_.has_mouse()) {
                 pointer_.panned_from_px = point_px;
             }
             return;
         }
-        input_.left_is_down = true;
+        mouse_.set_left(point_px, true);
         if (panels_.has_mouse() || moment_ == nullptr) {
             return;
         }
@@ -349,7 +349,7 @@ private:
     }
 
     void take_motion(Vec2 point_px) {
-        input_.mouse_px = point_px;
+        mouse_.move(point_px);
         if (pointer_.panned_from_px) {
             pan(*pointer_.panned_from_px - point_px);
             pointer_.panned_from_px = point_px;
@@ -369,9 +369,7 @@ private:
             pointer_.panned_from_px.reset();
             return;
         }
-        // The panels have seen it down at least once.
-        input_.left_is_down = false;
-        left_was_pressed_ = true;
+        mouse_.set_left({static_cast<float>(button.x), static_cast<float>(button.y)}, false);
         if (pointer_.left && !pointer_.left->is_drag) {
             select(pointer_.left->start_px);
         }
@@ -447,14 +445,11 @@ private:
         }
         canvas_.resize(window_.size());
         painter_.paint(canvas_, camera_, moment_->snapshot, options_);
-        input_.seconds = std::chrono::duration<float>(now - last_drawn_).count();
+        PanelInput const input{.mouse = mouse_.take(),
+                               .wheel = std::exchange(wheel_, 0.0F),
+                               .seconds = std::chrono::duration<float>(now - last_drawn_).count()};
         last_drawn_ = now;
-        // A click shorter than a picture is still one.
-        bool const is_down = std::exchange(input_.left_is_down, input_.left_is_down || left_was_pressed_);
-        panels_.draw(canvas_, input_, state_, [this](Command const& command) { send(command); });
-        input_.left_is_down = is_down;
-        left_was_pressed_ = false;
-        input_.wheel = 0.0F;
+        panels_.draw(canvas_, input, state_, [this](Command const& command) { send(command); });
         window_.show(canvas_);
         is_stale_ = false;
         pictures_to_draw_ = std::max(pictures_to_draw_ - 1, 0);
@@ -495,12 +490,12 @@ private:
     ColumnHistory history_;
     PaintOptions options_;
     PanelState state_;
-    PanelInput input_;
+    MouseStates mouse_;
+    float wheel_ = 0.0F;  // lines up since the last picture, over a panel
     Pointer pointer_;
     std::unique_ptr<Moment> moment_;        // the newest; null: none yet
     std::shared_ptr<Trails const> trails_;  // the newest
     double trails_time_s_ = 0.0;
-    bool left_was_pressed_ = false;
     bool closed_ = false;
     bool is_stale_ = true;
     bool help_is_logged_ = false;
