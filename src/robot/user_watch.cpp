@@ -54,6 +54,7 @@ ProcessorWatch busy;
 WallClockWatch waiting;
 RescueWatch rescue;
 
+std::atomic<bool> is_watching = false;             // a run is going on
 std::atomic<char const*> hurry_request = nullptr;  // of another thread: hurry_user_code() with this name
 
 enum class RequestState { none, being_made, made };
@@ -240,6 +241,7 @@ void start_watch(double timeout_s) {
     request_state = RequestState::none;
     hurry_request = nullptr;
     busy = {.timeout_s = timeout_s};
+    is_watching = true;
     catch_signal(SIGALRM, SA_RESTART, on_look);
     if (timeout_s > 0.0) {
         busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
@@ -255,6 +257,7 @@ void watch_rescue() {
 }
 
 void stop_watch() {
+    is_watching = false;
     set_timer(ITIMER_PROF, 0.0);
     set_timer(ITIMER_REAL, 0.0);
 }
@@ -268,8 +271,8 @@ bool is_signal_for_this_thread(int signal) {
 }
 
 void hurry_user_code(char const* request_name) {
-    if (guard.left_by_force) {
-        return;  // the run is ending, and the timer watches over the data file
+    if (guard.left_by_force || !is_watching) {
+        return;  // the timer watches over the data file, or the run is over: nobody would stop it
     }
     double const now_s = monotonic_s();
     double const entered_s = guard.entered_s.load(std::memory_order_relaxed);
