@@ -5,8 +5,9 @@ from __future__ import annotations
 import ast
 import json
 import logging
-import re
+import os
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,55 +21,19 @@ from pyarrow import feather
 
 from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
-
-INTEGER = "tag:yaml.org,2002:int"
-FLOAT = "tag:yaml.org,2002:float"
-
-# Tags that PyYAML (YAML 1.1) resolves and the simulator does not.
-ONLY_IN_YAML_1_1 = (INTEGER, FLOAT, "tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
+from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
+from pogosim.yaml_1_2 import parse_yaml
 
 
-class ConfigurationLoader(yaml.SafeLoader):
-    """YAML with the numbers of YAML 1.2, as the simulator reads them: 2.22e6 and 1e3 are numbers, 010 is ten."""
-
-    # Resolvers that are added to a class are added to a copy of this.
-    yaml_implicit_resolvers = {  # noqa: RUF012
-        first: [(tag, pattern) for tag, pattern in resolvers if tag not in ONLY_IN_YAML_1_1]
-        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
-    }
-
-
-def construct_integer(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int:
-    """Construct a decimal, hexadecimal (0x1F) or octal (0o17) integer."""
-    text = loader.construct_scalar(node).lower()
-    bases = {"0x": 16, "0o": 8}
-    return int(text, bases.get(text.lstrip("+-")[:2], 10))
-
-
-ConfigurationLoader.add_implicit_resolver(
-    INTEGER, re.compile(r"[-+]?([0-9]+|0[xX][0-9a-fA-F]+|0o[0-7]+)$"), list("-+0123456789")
-)
-ConfigurationLoader.add_implicit_resolver(
-    FLOAT,
-    re.compile(
-        r"""[-+]?([0-9]+\.[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$
-        |[-+]?[0-9]+[eE][-+]?[0-9]+$
-        |[-+]?\.(inf|Inf|INF)$
-        |\.(nan|NaN|NAN)$""",
-        re.VERBOSE,
-    ),
-    list("-+.0123456789"),
-)
-ConfigurationLoader.add_constructor(INTEGER, construct_integer)
-
-
-def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
-    """Read a data file.
+def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Read a data file, or several.
 
     The file of an active or killed run is read up to its last complete rows, with a warning (RuntimeWarning).
 
     Args:
-        path: Feather file, written by the simulator or by a batch of runs.
+        path: Feather file, written by the simulator or by a batch of runs. Several files, as a list or as a pattern
+            such as "results/*.feather" (`**` also searches subfolders), are joined, see
+            `pogosim.several_files.join_files`: they get columns with their number, seed and varied parameters.
 
     Returns:
         The rows (one per object and save time; lengths in mm, times in s, angles in rad), and the
@@ -78,12 +43,28 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
         included; not there if the file has none.
         "arena_polygons": a list of outlines, each an array of shape (corners, 2) with x and y in mm;
         it remains a string if it is not a list of polygons.
+        "combinations": of a batch, a list with a dictionary per combination of options.
+        "files": of several files, the list of their names.
+        The `attrs` of the dataframe are a copy of the metadata, with lists in place of arrays.
 
     Raises:
-        FileNotFoundError: There is no such file.
-        ValueError: The file is damaged, or neither a complete Feather file nor an unfinished one of the simulator.
+        FileNotFoundError: There is no such file, or none that fits the pattern.
+        ValueError: A file is damaged, or neither a complete Feather file nor an unfinished one of the simulator; or the
+            list is empty.
     """
-    table = read_table(Path(path))
+    if not isinstance(path, (str, os.PathLike)):
+        rows, metadata = join_files([(Path(file), *load_file(Path(file))) for file in path])
+    elif is_pattern(path):
+        rows, metadata = join_files([(file, *load_file(file)) for file in files_that_fit(path)])
+    else:
+        rows, metadata = load_file(Path(path))
+    rows.attrs = plain(metadata)
+    return rows, metadata
+
+
+def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Read one data file: what `load_dataframe` does with it."""
+    table = read_table(path)
     try:
         rows = table.to_pandas()
     except DAMAGED as error:
@@ -97,6 +78,8 @@ def load_dataframe(path: PathLike) -> tuple[pd.DataFrame, dict[str, Any]]:
         metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])
     if "arena_polygons" in metadata:
         metadata["arena_polygons"] = parse_polygons(metadata["arena_polygons"])
+    if "combinations" in metadata:
+        metadata["combinations"] = parse_combinations(metadata["combinations"])
     return rows, metadata
 
 
@@ -123,14 +106,14 @@ def read_table(path: Path) -> pyarrow.Table:
     warnings.warn(
         f"{path} is incomplete: its run is still going on, or was killed. Read {unfinished.up_to}; {hint}",
         RuntimeWarning,
-        stacklevel=3,
+        stacklevel=4,
     )
     return unfinished.table
 
 
-def parse_yaml(text: str) -> Any:
-    """Parse YAML, with numbers as the simulator reads them."""
-    return yaml.load(text, Loader=ConfigurationLoader)
+def polygons_of(polygons: Any) -> list[npt.NDArray[np.float64]]:
+    """Convert sequences of sequences of {x, y} to arrays of shape (corners, 2)."""
+    return [np.array([[p["x"], p["y"]] for p in polygon], dtype=np.float64) for polygon in polygons]
 
 
 def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
@@ -140,11 +123,24 @@ def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
         Arrays of shape (corners, 2) in the unit of the file (mm); the text itself if it cannot be parsed.
     """
     try:
-        polygons = parse_yaml(text) or []
-        arrays = [np.array([[p["x"], p["y"]] for p in polygon], dtype=np.float64) for polygon in polygons]
+        arrays = polygons_of(parse_yaml(text) or [])
     except (yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError):
         return text
     return arrays if all(array.ndim == 2 for array in arrays) else text
+
+
+def parse_combinations(text: str) -> list[dict[str, Any]] | str:
+    """Parse what a batch says about its combinations: YAML, a sequence of maps; else the text itself."""
+    try:
+        combinations = parse_yaml(text)
+    except (yaml.YAMLError, ValueError, RecursionError):
+        return text
+    if not isinstance(combinations, list) or not all(isinstance(entry, dict) for entry in combinations):
+        return text
+    for entry in combinations:
+        if "arena_polygons" in entry:
+            entry["arena_polygons"] = polygons_of(entry["arena_polygons"])
+    return combinations
 
 
 def parse_configuration(text: str) -> dict[str, Any]:

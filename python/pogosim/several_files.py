@@ -1,0 +1,132 @@
+"""Several data files as one table: which run each row is of, and what differs between the runs."""
+
+from __future__ import annotations
+
+import glob
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.outputs import PathLike
+
+Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
+
+# What differs between any two runs without being a parameter.
+NO_PARAMETERS = ("seed", "data_filename", "console_filename", "frames_name")
+
+MISSING = object()
+
+
+def is_pattern(path: PathLike) -> bool:
+    """Tell whether a path stands for the files that fit it; a file of that very name comes first."""
+    return glob.has_magic(str(path)) and not Path(path).exists()
+
+
+def files_that_fit(pattern: PathLike) -> list[Path]:
+    """Return the files that fit a pattern, sorted: numbers in names by value, so 2.feather comes before 10.feather.
+
+    Raises:
+        FileNotFoundError: There is none.
+    """
+    files = [path for path in map(Path, glob.glob(str(pattern), recursive=True)) if path.is_file()]  # noqa: PTH207
+    if not files:
+        raise FileNotFoundError(f"no file fits the pattern '{pattern}'")
+    return sorted(files, key=lambda path: (natural_order(str(path)), str(path)))
+
+
+def natural_order(text: str) -> list[tuple[int, int, str]]:
+    """Return a sort key in which numbers in the text count as numbers."""
+    parts: list[tuple[int, int, str]] = []
+    digits = ""
+    for character in [*text, ""]:
+        if character.isdecimal():
+            digits += character
+            continue
+        if digits:
+            parts.append((0, int(digits), ""))
+            digits = ""
+        parts.append((1, 0, character))
+    return parts
+
+
+def leaves(node: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of a configuration with their dotted paths; a list is one value."""
+    if isinstance(node, dict) and node:
+        for key, value in node.items():
+            yield from leaves(value, f"{path}.{key}" if path else str(key))
+    elif path:
+        yield path, node
+
+
+def configuration_of(metadata: dict[str, Any]) -> dict[str, Any]:
+    """Return the configuration with all defaults if the file has it, otherwise the one that was given."""
+    configuration: dict[str, Any] = metadata.get("resolved_configuration") or metadata.get("configuration") or {}
+    return configuration
+
+
+def varied_parameters(configurations: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
+    """Return what differs between configurations: dotted paths, with a value for each (None: not there)."""
+    flat = [dict(leaves(configuration)) for configuration in configurations]
+    paths = list(dict.fromkeys(path for leaf in flat for path in leaf if path not in NO_PARAMETERS))
+    values = {path: [leaf.get(path) for leaf in flat] for path in paths}
+    return {path: found for path, found in values.items() if any(value != found[0] for value in found[1:])}
+
+
+def plain(value: Any) -> Any:
+    """Copy nested dictionaries and lists; arrays become lists, which pandas can compare and save."""
+    if isinstance(value, dict):
+        return {key: plain(child) for key, child in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(child) for child in value]
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def in_common(values: Sequence[Any]) -> Any:
+    """Return what values have in common: the value, of maps the common entries; MISSING if there is nothing."""
+    first = values[0]
+    if all(isinstance(value, dict) for value in values):
+        keys = [key for key in first if all(key in value for value in values)]
+        common = {key: in_common([value[key] for value in values]) for key in keys}
+        kept = {key: value for key, value in common.items() if value is not MISSING}
+        return kept if kept or not first else MISSING
+    return first if all(plain(value) == plain(first) for value in values[1:]) else MISSING
+
+
+def scalar(value: Any) -> Any:
+    """Return a value that fits into one cell: lists and maps as text."""
+    return str(value) if isinstance(value, (list, dict)) else value
+
+
+def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Join the rows of several data files.
+
+    Args:
+        files: Path, rows and metadata of each, as `load_dataframe` reads one of them.
+
+    Returns:
+        All rows, in the order of the files, with these columns in addition, unless the file has them:
+        `run`, the number of the file (0, 1, ...); `seed`; and for each key whose value differs between the files, its
+        dotted path (`objects.robots.nb`). Null where a file has no such key; lists as text.
+        And the metadata that all files have in common, `files` with the names of the files, and `configuration` with
+        the common entries.
+
+    Raises:
+        ValueError: There are no files.
+    """
+    if not files:
+        raise ValueError("there are no files to read: the list is empty")
+    configurations = [configuration_of(metadata) for _, _, metadata in files]
+    varied = varied_parameters(configurations)
+    parts = []
+    for number, (_, rows, _) in enumerate(files):
+        added = {"run": number, "seed": configurations[number].get("seed")}
+        added |= {path: scalar(found[number]) for path, found in varied.items()}
+        parts.append(rows.assign(**{name: value for name, value in added.items() if name not in rows.columns}))
+    metadata: dict[str, Any] = in_common([metadata for _, _, metadata in files])
+    metadata = {} if metadata is MISSING else metadata
+    metadata.setdefault("configuration", {})
+    metadata["files"] = [str(path) for path, _, _ in files]
+    return pd.concat(parts, ignore_index=True), metadata

@@ -1,0 +1,71 @@
+"""YAML with the values of YAML 1.2, as the simulator reads and writes it."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import yaml
+
+INTEGER = "tag:yaml.org,2002:int"
+FLOAT = "tag:yaml.org,2002:float"
+
+# Tags that PyYAML (YAML 1.1) resolves and the simulator does not.
+ONLY_IN_YAML_1_1 = (INTEGER, FLOAT, "tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
+
+
+class ConfigurationLoader(yaml.SafeLoader):
+    """YAML with the numbers of YAML 1.2, as the simulator reads them: 2.22e6 and 1e3 are numbers, 010 is ten."""
+
+    # Resolvers that are added to a class are added to a copy of this.
+    yaml_implicit_resolvers = {  # noqa: RUF012
+        first: [(tag, pattern) for tag, pattern in resolvers if tag not in ONLY_IN_YAML_1_1]
+        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+
+
+def construct_integer(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int:
+    """Construct a decimal, hexadecimal (0x1F) or octal (0o17) integer."""
+    text = loader.construct_scalar(node).lower()
+    bases = {"0x": 16, "0o": 8}
+    return int(text, bases.get(text.lstrip("+-")[:2], 10))
+
+
+ConfigurationLoader.add_implicit_resolver(
+    INTEGER, re.compile(r"[-+]?([0-9]+|0[xX][0-9a-fA-F]+|0o[0-7]+)$"), list("-+0123456789")
+)
+ConfigurationLoader.add_implicit_resolver(
+    FLOAT,
+    re.compile(
+        r"""[-+]?([0-9]+\.[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$
+        |[-+]?[0-9]+[eE][-+]?[0-9]+$
+        |[-+]?\.(inf|Inf|INF)$
+        |\.(nan|NaN|NAN)$""",
+        re.VERBOSE,
+    ),
+    list("-+.0123456789"),
+)
+ConfigurationLoader.add_constructor(INTEGER, construct_integer)
+
+
+def parse_yaml(text: str) -> Any:
+    """Parse YAML, with numbers as the simulator reads them."""
+    return yaml.load(text, Loader=ConfigurationLoader)
+
+
+class ConfigurationDumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # type: ignore[misc]
+    """Writes YAML that the simulator and ConfigurationLoader read back as the same values."""
+
+    yaml_implicit_resolvers = {  # noqa: RUF012
+        first: list(resolvers) for first, resolvers in ConfigurationLoader.yaml_implicit_resolvers.items()
+    }
+
+    def ignore_aliases(self, data: Any) -> bool:  # noqa: ARG002
+        """Write repeated values in full."""
+        return True
+
+
+def dump_yaml(value: Any) -> str:
+    """Write a value as YAML, in the order of its keys; a single value on one line."""
+    text: str = yaml.dump(value, Dumper=ConfigurationDumper, sort_keys=False, allow_unicode=True, width=1 << 30)
+    return text.removesuffix("...\n")

@@ -1,0 +1,89 @@
+"""Several data files are read as one table, with what distinguishes their runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+from pogosim.several_files import natural_order
+from pogosim.utils import load_dataframe
+
+SQUARE = "- [{x: 0, y: 0}, {x: 10, y: 0}, {x: 10, y: 10}]\n"
+
+
+def write(path: Path, configuration: dict[str, object], rows: int = 2, polygons: str = SQUARE) -> Path:
+    """Write a data file as a run does."""
+    import pyarrow as pa
+    from pyarrow import feather
+
+    table = pa.table({"time": pa.array(np.arange(rows), pa.float32()), "robot_id": pa.array([0] * rows, pa.int32())})
+    metadata = {"configuration": yaml.safe_dump(configuration), "arena_polygons": polygons, "program_version": "v1"}
+    feather.write_feather(table.replace_schema_metadata(metadata), str(path))
+    return path
+
+
+def world(seed: int, **robots: object) -> dict[str, object]:
+    return {"seed": seed, "data_filename": f"{seed}.feather", "objects": {"robots": {"type": "pogobot", **robots}}}
+
+
+def test_files_of_a_pattern_get_columns_with_number_seed_and_varied_parameters(tmp_path: Path) -> None:
+    for seed in (2, 10):
+        write(tmp_path / f"{seed}.feather", world(seed, nb=seed * 5, radius=26.5))
+    rows, metadata = load_dataframe(tmp_path / "*.feather")
+    assert list(rows.columns) == ["time", "robot_id", "run", "seed", "objects.robots.nb"]
+    assert rows[["run", "seed", "objects.robots.nb"]].to_numpy().tolist() == [[0, 2, 10]] * 2 + [[1, 10, 50]] * 2
+    assert rows.index.tolist() == [0, 1, 2, 3]
+    assert metadata["files"] == [str(tmp_path / "2.feather"), str(tmp_path / "10.feather")]
+    assert metadata["configuration"] == {"objects": {"robots": {"type": "pogobot", "radius": 26.5}}}
+    assert metadata["program_version"] == "v1"
+    assert [polygon.shape for polygon in metadata["arena_polygons"]] == [(3, 2)]
+
+
+def test_files_of_a_list_keep_its_order_and_keys_that_some_lack_are_null(tmp_path: Path) -> None:
+    first = write(tmp_path / "a.feather", world(1, nb=3, poses=[[1, 2]]))
+    second = write(tmp_path / "b.feather", world(1, nb=3), polygons="[]")
+    rows, metadata = load_dataframe([second, str(first)])
+    assert rows["objects.robots.poses"].tolist()[2:] == ["[[1, 2]]"] * 2
+    assert rows["objects.robots.poses"].isna().tolist() == [True, True, False, False]
+    assert "arena_polygons" not in metadata
+    assert load_dataframe([first])[0]["seed"].tolist() == [1, 1]
+
+
+def test_file_whose_name_looks_like_a_pattern_is_that_file(tmp_path: Path) -> None:
+    write(tmp_path / "[1].feather", world(7))
+    write(tmp_path / "1.feather", world(8))
+    assert load_dataframe(tmp_path / "[1].feather")[1]["configuration"]["seed"] == 7
+
+
+def test_pattern_without_a_file_and_an_empty_list_are_errors(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"no file fits the pattern '.*\*\.feather'"):
+        load_dataframe(tmp_path / "*.feather")
+    with pytest.raises(ValueError, match="the list is empty"):
+        load_dataframe([])
+
+
+def test_attributes_of_the_dataframe_are_the_metadata_and_survive_pandas(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.feather", world(1))
+    rows, metadata = load_dataframe(path)
+    assert rows.attrs["configuration"] == metadata["configuration"]
+    assert rows.attrs["arena_polygons"] == [[[0, 0], [10, 0], [10, 10]]]
+    joined = pd.concat([rows, load_dataframe(path)[0]])
+    assert joined[joined["time"] > 0].attrs["program_version"] == "v1"
+    rows.to_parquet(tmp_path / "a.parquet")
+    metadata["configuration"]["seed"] = 2
+    assert rows.attrs["configuration"]["seed"] == 1
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (["10", "9", "1"], ["1", "9", "10"]),
+        (["b2", "b10", "a3"], ["a3", "b2", "b10"]),
+        (["x1y10", "x1y9", "x01y1"], ["x01y1", "x1y9", "x1y10"]),
+    ],
+)
+def test_numbers_in_names_sort_by_value(names: list[str], expected: list[str]) -> None:
+    assert sorted(names, key=natural_order) == expected
