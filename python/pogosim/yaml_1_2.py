@@ -65,7 +65,9 @@ class ConfigurationDumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # typ
         return True
 
 
-def dump_yaml(value: Any) -> str:
-    """Write a value as YAML, in the order of its keys; a single value on one line."""
-    text: str = yaml.dump(value, Dumper=ConfigurationDumper, sort_keys=False, allow_unicode=True, width=1 << 30)
+def dump_yaml(value: Any, is_flow: bool = False, dumper: Any = ConfigurationDumper) -> str:
+    """Write a value as YAML, in the order of its keys; a single value on one line, and with `is_flow` any value."""
+    text: str = yaml.dump(
+        value, Dumper=dumper, sort_keys=False, allow_unicode=True, width=1 << 30, default_flow_style=is_flow
+    )
     return text.removesuffix("...\n")

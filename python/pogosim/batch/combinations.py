@@ -1,0 +1,159 @@
+"""All combinations of the options in a configuration.
+
+The product is taken in the order of appearance: the option that comes last in the file varies fastest. Maps are merged
+as the simulator does for a single run.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from pogosim.batch.configuration import HIERARCHICAL_OPTIONS
+from pogosim.batch.options import OptionsError, expand_batch_options, offers_options, shown
+
+# In the configuration of a combination: the names of the chosen alternatives, by the dotted path of their map.
+CHOICES = "_batch_choice_names"
+
+NAME = "name"
+DEFAULT_ALTERNATIVE = "default"
+# Keys that are no part of a run's world.
+NOT_EXPANDED = ("result_filename_format", "result_new_columns", "optimization", CHOICES)
+MAX_COMBINATIONS = 1_000_000
+MAX_DEPTH = 200
+
+Choices = dict[str, str]
+# The value of a node in one combination, the alternatives chosen in it, and the keys that name them.
+Variant = tuple[Any, Choices, Choices]
+
+
+class CombinationsError(OptionsError):
+    """Options are wrong, or too many.
+
+    Attributes:
+        path: Where: keys from the top level on.
+    """
+
+    def __init__(self, path: tuple[str, ...], message: str) -> None:
+        super().__init__(message)
+        self.path = path
+
+    def __str__(self) -> str:
+        """Return the path and what is wrong there."""
+        return f"{'.'.join(self.path)}: {self.args[0]}" if self.path else str(self.args[0])
+
+
+def overlay(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    """Return a map with another one laid over it: maps are merged key by key, anything else is replaced."""
+    merged = dict(below)
+    for key, value in above.items():
+        under = merged.get(key)
+        if isinstance(under, dict) and isinstance(value, dict) and not offers_options(under):
+            merged[key] = overlay(under, value)
+        else:
+            merged[key] = value
+    return merged
+
+
+def alternatives_of(node: dict[str, Any], path: tuple[str, ...]) -> Iterator[tuple[str, str | None, dict[str, Any]]]:
+    """Yield the alternatives of a map: name, key that the name is given in, and the merged map."""
+    options = node[HIERARCHICAL_OPTIONS]
+    path = (*path, HIERARCHICAL_OPTIONS)
+    if not isinstance(options, dict):
+        raise CombinationsError(path, f"expected a map of alternatives, found {shown(options)}")
+    key = options.get(NAME)
+    if key is not None and (not isinstance(key, str) or not key):
+        raise CombinationsError((*path, NAME), f"expected the name of a key, found {shown(key)}")
+    names = [name for name in options if name not in (NAME, DEFAULT_ALTERNATIVE)]
+    if not names and DEFAULT_ALTERNATIVE not in options:
+        raise CombinationsError(path, "expected at least one alternative, found none")
+    siblings = {name: value for name, value in node.items() if name != HIERARCHICAL_OPTIONS}
+    for name in names or [DEFAULT_ALTERNATIVE]:
+        chosen = {} if options[name] is None else options[name]
+        if not isinstance(chosen, dict):
+            raise CombinationsError((*path, str(name)), f"expected a map of keys and values, found {shown(chosen)}")
+        yield str(name), key, overlay(siblings, chosen)
+
+
+def variants_of(node: Any, path: tuple[str, ...]) -> list[Variant]:
+    """Return all variants of a node, in order."""
+    if len(path) > MAX_DEPTH:
+        raise CombinationsError(path[:3], f"nested deeper than {MAX_DEPTH} levels")
+    if isinstance(node, dict) and HIERARCHICAL_OPTIONS in node:
+        found = []
+        for name, key, merged in alternatives_of(node, path):
+            chosen = {".".join(path): name} if path else {}
+            named = {key: name} if key else {}
+            found += [
+                (value, {**chosen, **choices}, {**named, **names})
+                for value, choices, names in variants_of(merged, path)
+            ]
+        return found
+    if offers_options(node):
+        try:
+            values = expand_batch_options(node)
+        except OptionsError as error:
+            raise CombinationsError(path, str(error)) from None
+        return [
+            variant for value in values for variant in ([(node, {}, {})] if value is node else variants_of(value, path))
+        ]
+    if isinstance(node, dict):
+        children = [
+            (key, [(value, {}, {})] if not path and key in NOT_EXPANDED else variants_of(value, (*path, str(key))))
+            for key, value in node.items()
+        ]
+        return product(children, path, dict)
+    if isinstance(node, list):
+        items = [(number, variants_of(value, (*path, str(number)))) for number, value in enumerate(node)]
+        return product(items, path, lambda pairs: [value for _, value in pairs])
+    return [(node, {}, {})]
+
+
+def product(
+    children: list[tuple[Any, list[Variant]]], path: tuple[str, ...], build: Callable[[list[tuple[Any, Any]]], Any]
+) -> list[Variant]:
+    """Return the product of the variants of children; that of the last child varies fastest."""
+    count = math.prod(len(variants) for _, variants in children)
+    if count > MAX_COMBINATIONS:
+        raise CombinationsError(path, f"{count} combinations are more than {MAX_COMBINATIONS}; remove some options")
+    rows: list[tuple[list[tuple[Any, Any]], Choices, Choices]] = [([], {}, {})]
+    for key, variants in children:
+        if len(variants) == 1:
+            value, choices, names = variants[0]
+            for pairs, chosen, named in rows:
+                pairs.append((key, value))
+                chosen.update(choices)
+                named.update(names)
+            continue
+        rows = [
+            ([*pairs, (key, value)], {**chosen, **choices}, {**named, **names})
+            for pairs, chosen, named in rows
+            for value, choices, names in variants
+        ]
+    return [(build(pairs), choices, names) for pairs, choices, names in rows]
+
+
+def combinations_of(configuration: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the configuration of every combination of options, in order of appearance.
+
+    Args:
+        configuration: Configuration with options; it is not changed.
+
+    Returns:
+        At least one configuration. Where alternatives were chosen (`batch_hierarchical_options`), the key
+        `_batch_choice_names` has their names by dotted path, and the key called like their `name` has the name.
+
+    Raises:
+        CombinationsError: Options are wrong, or there are more than a million combinations.
+    """
+    combinations = []
+    for value, choices, names in variants_of(configuration, ()):
+        combination = copy.deepcopy(value)
+        for key, name in names.items():
+            combination[key] = name
+        if choices:
+            combination[CHOICES] = choices
+        combinations.append(combination)
+    return combinations

@@ -1,0 +1,158 @@
+"""The command `pogobatch`."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+from typing import NoReturn
+
+import pogosim
+from pogosim.batch.errors import BatchError, NothingSelectedError, reason, tell
+from pogosim.batch.runner import PogobotBatchRunner
+
+DONE = 0
+NO_SUCH_OUTPUT = 1
+WRONG = 2
+RUNS_FAILED = 3
+INTERRUPTED = 130
+
+EPILOG = """Finished runs of a batch that was interrupted are kept in the folder for temporary files: the same command
+continues it. Exit codes: 0 all runs are done; 1 --config or --simulator-binary is missing, or no combination has the
+output of --only-output; 2 usage, configuration or file error; 3 runs failed; 130 interrupted."""
+
+log = logging.getLogger("pogobatch")
+
+
+class Parser(argparse.ArgumentParser):
+    """Ends with one line about what is wrong, and one about the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print what is wrong and exit: 1 if required options are missing, otherwise 2."""
+        is_missing = "required" in message
+        print(f"pogobatch: {message}", file=sys.stderr)
+        print(
+            "Usage: pogobatch -c CONFIG -S PROGRAM [-r RUNS] [-t TEMP] [-o FOLDER]; -h lists all options",
+            file=sys.stderr,
+        )
+        sys.exit(NO_SUCH_OUTPUT if is_missing else WRONG)
+
+
+def parser() -> Parser:
+    """Return the parser of the command line."""
+    options = Parser(
+        prog="pogobatch",
+        description="Runs a program with every combination of the options in a configuration, several times each, "
+        "and joins the data files.",
+        epilog=EPILOG,
+        allow_abbrev=False,
+    )
+    add = options.add_argument
+    add("-c", "--config", required=True, help="configuration with options (YAML)")
+    add("-S", "--simulator-binary", metavar="PROGRAM", help="program compiled for Pogosim")
+    add("-r", "--runs", type=int, default=1, help="runs per combination (1)")
+    add("-t", "--temp-base", metavar="FOLDER", default="tmp", help="folder for temporary files (tmp)")
+    add("-o", "--output-dir", metavar="FOLDER", default=".", help="folder of the results (.)")
+    add("-j", "--workers", type=int, metavar="N", help="runs at the same time (one per processor)")
+    add("-R", "--retries", type=int, default=5, help="how many times a failed run is repeated (5)")
+    add(
+        "--seed-from",
+        metavar="run|config",
+        default="run",
+        help="the seed of a run is its number, 0, 1, ... (run), or "
+        "derived from the configuration's seed and the number (config)",
+    )
+    add("--backend", default="multiprocessing", help="multiprocessing (default), sequential or dask")
+    add("--scheduler", metavar="tcp://...", help="let the workers of this Dask scheduler do the runs")
+    add("--only-output", metavar="NAME", default="", help="do only combinations whose results have this name or path")
+    add("--list-outputs", action="store_true", help="print the paths of all results, and exit")
+    add("--keep-temp", action="store_true", help="keep the folders of single runs")
+    add("--gui", action="store_true", help="let each run open its window")
+    add("-v", "--verbose", action="store_true", help="say more")
+    add("-V", "--version", action="version", version=f"pogobatch {pogosim.__version__}")
+    return options
+
+
+def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
+    """End the batch as Ctrl-C does."""
+    raise KeyboardInterrupt
+
+
+def catch_signals() -> None:
+    """Let the signals with which batch systems and terminals end a program end it in good order."""
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, interrupt)
+
+
+def start_logging(verbose: bool) -> None:
+    """Print messages on standard error."""
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("pogobatch: %(message)s"))
+    log.handlers = [handler]
+    log.propagate = False
+    log.setLevel(logging.DEBUG if verbose else logging.INFO)
+
+
+def run_batch(arguments: argparse.Namespace) -> int:
+    """Do what the command line says; returns the exit code.
+
+    Raises:
+        BatchError: It cannot be done.
+    """
+    runner = PogobotBatchRunner(
+        arguments.config,
+        arguments.runs,
+        arguments.simulator_binary or "",
+        arguments.temp_base,
+        arguments.output_dir,
+        backend=arguments.backend,
+        keep_temp=arguments.keep_temp,
+        verbose=arguments.verbose,
+        retries=arguments.retries,
+        gui=arguments.gui,
+        only_output=arguments.only_output,
+        seed_from=arguments.seed_from,
+        workers=arguments.workers,
+        scheduler=arguments.scheduler,
+    )
+    if arguments.list_outputs:
+        for output in runner.list_outputs():
+            tell(output)
+        return DONE
+    outputs = runner.run_all()
+    unwritten = {output for output in outputs if not os.path.exists(output)}  # noqa: PTH110
+    tell("Batch run completed. Generated output files:")
+    for output in outputs:
+        if output not in unwritten:
+            tell(f" - {output}")
+    return RUNS_FAILED if runner.failures else DONE
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command. Returns its exit code, see its help."""
+    options = parser()
+    parsed = options.parse_args(arguments)
+    if not parsed.simulator_binary and not parsed.list_outputs:
+        options.error("the following arguments are required: -S/--simulator-binary")
+    start_logging(parsed.verbose)
+    catch_signals()
+    try:
+        return run_batch(parsed)
+    except NothingSelectedError as error:
+        log.error("%s", error)
+        return NO_SUCH_OUTPUT
+    except BatchError as error:
+        log.error("%s", error)
+    except OSError as error:
+        log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+    except MemoryError:
+        log.error("not enough memory for this many combinations and runs; make several batches")
+    except KeyboardInterrupt:
+        log.error("interrupted; finished runs are kept in %s: the same command continues", parsed.temp_base)
+        return INTERRUPTED
+    return WRONG

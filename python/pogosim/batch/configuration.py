@@ -1,0 +1,148 @@
+"""Reading a configuration with options, as the simulator reads it."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.yaml_1_2 import ConfigurationDumper, ConfigurationLoader, dump_yaml
+
+HIERARCHICAL_OPTIONS = "batch_hierarchical_options"
+
+log = logging.getLogger("pogobatch")
+
+
+class BatchLoader(ConfigurationLoader):
+    """Only true and false are booleans: yes, no, on and off reach the program as they are written."""
+
+    yaml_implicit_resolvers = {  # noqa: RUF012
+        first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
+        for first, resolvers in ConfigurationLoader.yaml_implicit_resolvers.items()
+    }
+
+
+BatchLoader.add_implicit_resolver(
+    "tag:yaml.org,2002:bool", re.compile(r"(true|True|TRUE|false|False|FALSE)$"), list("tTfF")
+)
+
+
+class BatchDumper(ConfigurationDumper):
+    """Writes words such as "on" as BatchLoader reads them, without quotation marks."""
+
+    yaml_implicit_resolvers = {  # noqa: RUF012
+        first: list(resolvers) for first, resolvers in BatchLoader.yaml_implicit_resolvers.items()
+    }
+
+
+def dump_configuration(entries: dict[str, Any]) -> str:
+    """Write a configuration for the simulator."""
+    return dump_yaml(entries, dumper=BatchDumper)
+
+
+class Configuration:
+    """A configuration file: its text, its entries, and the lines they stand on."""
+
+    def __init__(self, path: str | Path) -> None:
+        """Read a file.
+
+        Raises:
+            BatchError: It cannot be read, or is no YAML map.
+        """
+        self.path = Path(path)
+        try:
+            self.text = self.path.read_bytes().decode()
+        except OSError as error:
+            raise cannot("read the configuration", path, error) from None
+        except UnicodeDecodeError:
+            raise BatchError(f"{path} is not a configuration: it is not text in UTF-8") from None
+        loader = BatchLoader(self.text)
+        try:
+            self.root = loader.get_single_node()
+            if isinstance(self.root, yaml.MappingNode):
+                self.take_repeated_keys(self.root, ())
+                self.entries: dict[str, Any] = loader.construct_document(self.root)
+        except yaml.MarkedYAMLError as error:
+            line = error.problem_mark.line + 1 if error.problem_mark else 1
+            raise BatchError(f"{path}:{line}: not valid YAML: {one_line(error.problem)}") from None
+        except (yaml.YAMLError, ValueError, RecursionError) as error:
+            what = "it refers to itself" if isinstance(error, RecursionError) else one_line(error)
+            raise BatchError(f"{path} is not valid YAML: {what}") from None
+        finally:
+            loader.dispose()
+        if self.root is None:
+            raise BatchError(f"{path} is empty; a configuration needs at least arena_file and objects")
+        if not isinstance(self.root, yaml.MappingNode):
+            raise BatchError(f"{path} is not a configuration: expected a map of keys and values")
+
+    def take_repeated_keys(self, node: yaml.Node, path: tuple[str, ...]) -> None:
+        """Make a list of categories with the same name; of other keys that are repeated, the last one counts."""
+        if isinstance(node, yaml.SequenceNode):
+            for number, item in enumerate(node.value):
+                self.take_repeated_keys(item, (*path, str(number)))
+        if not isinstance(node, yaml.MappingNode):
+            return
+        entries: dict[str, tuple[yaml.Node, yaml.Node]] = {}
+        merged = [pair for pair in node.value if pair[0].tag == "tag:yaml.org,2002:merge"]
+        for key, value in node.value:
+            name = str(key.value)
+            if key.tag == "tag:yaml.org,2002:merge":
+                continue
+            if name in entries and is_in_objects(path) and not name.startswith("batch_"):
+                entries[name] = (key, joined(entries[name][1], value))
+            else:
+                if name in entries:
+                    log.warning("%s:%d: duplicate key '%s'; the last one is used", self.path, line_of(key), name)
+                entries[name] = (key, value)
+        node.value = [*merged, *entries.values()]
+        for name, (_, value) in entries.items():
+            self.take_repeated_keys(value, (*path, name))
+
+    def where(self, path: Sequence[str]) -> str:
+        """Return where an entry stands: "conf/a.yaml:12: objects.robots.nb"."""
+        node, line = self.root, 1
+        for step in path:
+            if isinstance(node, yaml.MappingNode):
+                pair = next(((key, value) for key, value in node.value if str(key.value) == step), None)
+                if pair is None:
+                    break
+                line, node = line_of(pair[0]), pair[1]
+            elif isinstance(node, yaml.SequenceNode) and step.isdecimal() and int(step) < len(node.value):
+                node = node.value[int(step)]
+                line = line_of(node)
+            else:
+                break
+        return f"{self.path}:{line}: {'.'.join(path)}"
+
+
+def line_of(node: yaml.Node) -> int:
+    """Return the line of a node, from 1 on."""
+    return int(node.start_mark.line) + 1
+
+
+def joined(first: yaml.Node, second: yaml.Node) -> yaml.SequenceNode:
+    """Return a list of both: the entries of lists, and anything else as an entry."""
+    items = [item for node in (first, second) for item in (node.value if is_list(node) else [node])]
+    return yaml.SequenceNode("tag:yaml.org,2002:seq", items, first.start_mark, second.end_mark)
+
+
+def is_list(node: yaml.Node) -> bool:
+    """Tell whether a node is a list."""
+    return isinstance(node, yaml.SequenceNode)
+
+
+def is_in_objects(path: Sequence[str]) -> bool:
+    """Tell whether the entries at a path are categories: those of `objects`, or of its alternatives."""
+    kept: list[str] = []
+    steps = iter(path)
+    for step in steps:
+        if step == HIERARCHICAL_OPTIONS:
+            next(steps, None)  # the name of the alternative
+        else:
+            kept.append(step)
+    return kept == ["objects"]

@@ -1,0 +1,38 @@
+"""How a batch says what keeps it from going on."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+
+from pogosim.outputs import say
+
+
+class BatchError(Exception):
+    """The batch cannot be done. The message is one line: where, what, what was expected, what to do."""
+
+
+class NothingSelectedError(BatchError):
+    """No combination has the output that was asked for."""
+
+
+def one_line(text: object) -> str:
+    """Return a message without line breaks."""
+    return " ".join(str(text).split())
+
+
+def reason(error: OSError) -> str:
+    """Return what the system says about a file: "No space left on device"."""
+    return os.strerror(error.errno) if error.errno else one_line(error)
+
+
+def cannot(task: str, path: str | Path, error: OSError) -> BatchError:
+    """Return the error of a file that cannot be read or written: "cannot write results/a.feather: ..."."""
+    return BatchError(f"cannot {task} {path}: {reason(error)}")
+
+
+def tell(text: str) -> None:
+    """Print a line; a batch goes on when nobody reads it."""
+    with contextlib.suppress(OSError):
+        say(text)

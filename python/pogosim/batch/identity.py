@@ -1,0 +1,133 @@
+"""What makes two runs the same run: configuration, seed, program and library."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from pogosim.batch.combinations import CHOICES
+from pogosim.batch.errors import BatchError, cannot
+from pogosim.batch.names import COLUMNS, FORMAT
+from pogosim.yaml_1_2 import dump_yaml
+
+# Keys that say where results go, not what they are.
+NOT_IN_THE_WORLD = ("data_filename", "console_filename", "frames_name", FORMAT, COLUMNS, "optimization", CHOICES)
+LIBRARY = re.compile(r"^\s*(?:\S+ => )?(/\S*libpogosim[^/\s]*)", re.MULTILINE)
+
+# Every program of the simulator mentions its library, or contains it.
+MARK = b"pogosim"
+EXECUTABLES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
+
+
+def find_program(name: str) -> Path:
+    """Return the absolute path of a simulator: a file, or else a command on the PATH.
+
+    Raises:
+        BatchError: There is none, or it is not a program of the simulator.
+    """
+    path = Path(name)
+    if not path.exists() and "/" not in name and (found := shutil.which(name)):
+        path = Path(found)
+    expected = "expected a program compiled for Pogosim, such as ./examples/hanabi/hanabi"
+    try:
+        if not path.is_file():
+            what = "is a folder" if path.is_dir() else "does not exist"
+            raise BatchError(f"the simulator {name} {what}; {expected}")
+        with path.open("rb") as file:
+            content = file.read()
+    except OSError as error:
+        raise cannot("read the simulator", name, error) from None
+    is_script = content.startswith(b"#!")
+    if not is_script and not (content.startswith(EXECUTABLES) and MARK in content):
+        raise BatchError(f"{name} is not a simulator; {expected}")
+    if shutil.which(str(path.absolute())) is None:
+        raise BatchError(f"the simulator {name} is not executable; chmod +x {name}")
+    return path.absolute()
+
+
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    with path.open("rb") as file:
+        digest = hashlib.sha256()
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def program_digest(program: Path) -> str:
+    """Return a digest of a program and of the simulator's library that it loads.
+
+    Raises:
+        BatchError: A file cannot be read.
+    """
+    lister = ["otool", "-L"] if sys.platform == "darwin" else ["ldd"]
+    libraries: list[Path] = []
+    if shutil.which(lister[0]):
+        listed = subprocess.run([*lister, str(program)], capture_output=True, text=True, check=False, errors="replace")
+        libraries = [Path(found) for found in LIBRARY.findall(listed.stdout)]
+    try:
+        return " ".join(digest_of(path) for path in [program, *libraries] if path.is_file())
+    except OSError as error:
+        raise cannot("read", error.filename or program, error) from None
+
+
+def file_digest(path: Path) -> str:
+    """Return the digest of a file that a configuration names; empty if it cannot be read."""
+    try:
+        return digest_of(path) if path.is_file() else ""
+    except OSError:
+        return ""
+
+
+def texts_in(node: Any) -> Iterator[str]:
+    """Yield all strings in a configuration."""
+    if isinstance(node, dict):
+        for value in node.values():
+            yield from texts_in(value)
+    elif isinstance(node, list):
+        for value in node:
+            yield from texts_in(value)
+    elif isinstance(node, str):
+        yield node
+
+
+def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: dict[Path, str]) -> str:
+    """Return a digest of the configuration of a run, and of the files that it names (arenas, formations).
+
+    Args:
+        entries: The configuration.
+        folders: Where relative names are searched, in this order.
+        digests: Digests of files, to read each once in a batch; found ones are added.
+    """
+    world = {key: value for key, value in entries.items() if key not in NOT_IN_THE_WORLD}
+    digest = hashlib.sha256(dump_yaml(world).encode(errors="surrogatepass"))
+    for text in texts_in(world):
+        if 0 < len(text) < 1024 and "\0" not in text:
+            for path in [folder / text for folder in folders]:
+                if path not in digests:
+                    digests[path] = file_digest(path)
+                if digests[path]:
+                    digest.update(digests[path].encode())
+                    break
+    return digest.hexdigest()
+
+
+def run_key(world: str, program: str, seed: int) -> str:
+    """Return the name of a run: the same for the same configuration, program, library and seed."""
+    return hashlib.sha256(f"{world} {program} {seed}".encode()).hexdigest()[:32]
+
+
+def seed_of(configured: int, run: int) -> int:
+    """Return a seed derived from the seed of a configuration and the number of a run.
+
+    Both 0 to 2^32-1, and so is the result. Runs of one configuration all have different seeds; configurations with
+    neighbouring seeds do not share them.
+    """
+    start = int.from_bytes(hashlib.sha256(str(configured).encode()).digest()[:4], "little")
+    return (start + run) % 2**32

@@ -1,0 +1,127 @@
+"""What distinguishes combinations in the results: names of files and constant columns."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
+
+from pogosim.batch.combinations import CHOICES
+from pogosim.batch.options import shown
+from pogosim.batch.paths import get_by_dotted_path
+from pogosim.yaml_1_2 import dump_yaml
+
+FORMAT = "result_filename_format"
+COLUMNS = "result_new_columns"
+DEFAULT_FORMAT = "result.feather"
+FILE_SUFFIXES = {".csv", ".feather", ".json", ".png", ".svg", ".txt", ".yaml", ".yml"}
+
+
+class NamesError(ValueError):
+    """A format or a list of columns is wrong; says what was expected.
+
+    Attributes:
+        key: The key of the configuration that is wrong.
+    """
+
+    def __init__(self, key: str, message: str) -> None:
+        super().__init__(f"{key}: {message}")
+        self.key = key
+
+
+def without_folder(value: Any) -> Any:
+    """Return the stem of a path, "disk" of "arenas/disk.csv"; any other value as it is."""
+    if not isinstance(value, str):
+        return value
+    path = PurePath(value)
+    is_path = "/" in value or path.suffix.lower() in FILE_SUFFIXES
+    return path.stem if is_path and path.stem else value
+
+
+def value_at(combination: dict[str, Any], path: str) -> Any:
+    """Return what stands for a key in results: the name of the chosen alternative, the stem of a path, or the value.
+
+    Raises:
+        KeyError: There is no such key.
+    """
+    choices = combination.get(CHOICES)
+    if isinstance(choices, dict) and path in choices:
+        return choices[path]
+    return without_folder(get_by_dotted_path(combination, path))
+
+
+class DottedFormatter(string.Formatter):
+    """Formats with dotted paths as fields: "result_{objects.robots.nb:03d}.feather"."""
+
+    def get_field(self, field_name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:  # noqa: ARG002
+        """Return the value of a field."""
+        if not field_name or field_name.isdecimal():
+            raise NamesError(FORMAT, "a field without a name; write a key in it, such as {objects.robots.nb}")
+        try:
+            value = value_at(dict(kwargs), field_name)
+        except KeyError:
+            raise NamesError(
+                FORMAT,
+                f"there is no key '{field_name}' in the configuration; expected the dotted path of a key, "
+                "such as {objects.robots.nb}",
+            ) from None
+        if isinstance(value, (dict, list)):
+            raise NamesError(FORMAT, f"'{field_name}' is not a single value but {shown(value)}; choose a key below it")
+        return value, field_name
+
+
+def file_name(combination: dict[str, Any]) -> str:
+    """Return the name of the file with the results of a combination.
+
+    Raises:
+        NamesError: `result_filename_format` is wrong.
+    """
+    pattern = combination.get(FORMAT, DEFAULT_FORMAT)
+    if not isinstance(pattern, str) or not pattern:
+        raise NamesError(
+            FORMAT, f"expected a name such as result_{{objects.robots.nb}}.feather, found {shown(pattern)}"
+        )
+    try:
+        name = DottedFormatter().vformat(pattern, (), combination)
+    except NamesError:
+        raise
+    except (ValueError, TypeError, AttributeError, KeyError, IndexError) as error:
+        raise NamesError(FORMAT, f"'{pattern}' is not a format of Python: {error}") from None
+    if not name or name.endswith("/") or "\0" in name:
+        raise NamesError(FORMAT, f"'{pattern}' gives no name of a file")
+    return name
+
+
+def new_columns(combination: dict[str, Any]) -> dict[str, Any]:
+    """Return the constant columns of a combination: names (dotted paths), and values (None: it has no such key).
+
+    Raises:
+        NamesError: `result_new_columns` is wrong.
+    """
+    names = combination.get(COLUMNS)
+    if names is None:
+        return {}
+    if isinstance(names, str):
+        names = [names]
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise NamesError(COLUMNS, f"expected a list of keys, such as [arena_file], found {shown(names)}")
+    return {name: cell(combination, name) for name in names}
+
+
+def cell(combination: dict[str, Any], path: str) -> Any:
+    """Return what a column has for a key: a single value, lists and maps as YAML, or None if there is no such key."""
+    try:
+        value = value_at(combination, path)
+    except KeyError:
+        return None
+    return dump_yaml(value, is_flow=True).strip() if isinstance(value, (dict, list)) else value
+
+
+def has_key(combination: dict[str, Any], path: str) -> bool:
+    """Tell whether a combination has a key, or an alternative chosen there."""
+    try:
+        value_at(combination, path)
+    except KeyError:
+        return False
+    return True

@@ -1,0 +1,342 @@
+"""Runs joined into one file: rows of one run after the other, with constant columns, whatever order the runs ended in.
+
+Rows go through in pieces of at most 65536, so that memory does not grow with the number or length of the runs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+from pyarrow import ipc
+
+from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.outputs import OutputError, real_output
+from pogosim.recover import DAMAGED, RecoverError, check_replaceable, reraise_system_error
+from pogosim.yaml_1_2 import dump_yaml, parse_yaml
+
+RUN = "run"
+ROWS_PER_BATCH = 65536
+RESOLVED = "resolved_configuration"
+POLYGONS = "arena_polygons"
+
+# What differs between the runs of one configuration.
+OF_ONE_RUN = ("seed", "data_filename", "console_filename", "frames_name")
+
+
+@dataclass(frozen=True)
+class RunFile:
+    """The data file of a finished run."""
+
+    path: Path
+    run: int
+
+
+@dataclass(frozen=True)
+class Part:
+    """The runs of one combination."""
+
+    columns: dict[str, Any]  # constant columns
+    runs: Sequence[RunFile]
+    failed: Sequence[int] = ()  # runs without a data file
+
+
+@dataclass(frozen=True)
+class Written:
+    """A file of results."""
+
+    path: str
+    rows: Sequence[int]  # of each part
+
+
+def open_run(file: Any, path: Path) -> ipc.RecordBatchFileReader:
+    """Open the data file of a run.
+
+    Raises:
+        BatchError: It is damaged.
+    """
+    try:
+        return ipc.open_file(file)
+    except DAMAGED as error:
+        reraise_system_error(error)
+        raise BatchError(f"{path} is damaged: {one_line(error)}; remove it, then give the same command again") from None
+
+
+def schema_of(path: Path) -> pa.Schema:
+    """Return columns and metadata of the data file of a run."""
+    with pa.OSFile(str(path)) as file, open_run(file, path) as reader:
+        return reader.schema
+
+
+def check_columns(schema: pa.Schema, columns: Sequence[str], program: str) -> None:
+    """Check that constant columns take the place of none of the program's own.
+
+    Raises:
+        BatchError: There is one of that name.
+    """
+    for name in (RUN, *columns):
+        if name in schema.names:
+            what = "a batch adds" if name == RUN else "result_new_columns adds"
+            raise BatchError(f"{program} writes a column '{name}', and {what} one of that name; rename one of them")
+
+
+def column_type(values: Sequence[Any]) -> pa.DataType:
+    """Return the type of a column with these values: bool, int64, float64, or string if they are of several kinds."""
+    kinds = {type(value) for value in values if value is not None}
+    if kinds == {bool}:
+        return pa.bool_()
+    if kinds == {int} and all(abs(value) < 2**63 for value in values if value is not None):
+        return pa.int64()
+    if kinds and kinds <= {int, float}:
+        return pa.float64()
+    return pa.string()
+
+
+def as_type(value: Any, kind: pa.DataType) -> Any:
+    """Return a value for a column of a type."""
+    if value is None:
+        return None
+    if pa.types.is_string(kind) and not isinstance(value, str):
+        return dump_yaml(value, is_flow=True).strip()
+    return float(value) if pa.types.is_floating(kind) else value
+
+
+def joint_schema(schemas: Sequence[pa.Schema]) -> pa.Schema:
+    """Return all columns of several files, in order of appearance.
+
+    Raises:
+        BatchError: A column has types that do not fit together.
+    """
+    distinct = list(dict.fromkeys(schema.remove_metadata() for schema in schemas))
+    try:
+        return pa.unify_schemas(distinct, promote_options="permissive")
+    except pa.ArrowException as error:
+        raise BatchError(f"runs have columns that do not fit together: {one_line(error)}") from None
+
+
+def batches_of(path: Path) -> Iterator[pa.RecordBatch]:
+    """Yield the rows of a data file in pieces."""
+    with pa.memory_map(str(path)) as file, open_run(file, path) as reader:
+        for i in range(reader.num_record_batches):
+            try:
+                batch = reader.get_batch(i)
+            except DAMAGED as error:
+                reraise_system_error(error)
+                raise BatchError(f"{path} is damaged: {one_line(error)}; remove it, then try again") from None
+            for start in range(0, batch.num_rows, ROWS_PER_BATCH):
+                yield batch.slice(start, ROWS_PER_BATCH)
+
+
+def with_columns(batch: pa.RecordBatch, schema: pa.Schema, constants: dict[str, Any]) -> pa.RecordBatch:
+    """Return rows with all columns of a schema: constant ones, and null where the run has no such column."""
+    own = {name: batch.column(i) for i, name in enumerate(batch.schema.names)}
+    columns = []
+    for field in schema:
+        if field.name in constants:
+            columns.append(pa.repeat(pa.scalar(constants[field.name], field.type), batch.num_rows))
+        elif field.name in own:
+            column = own[field.name]
+            columns.append(column if column.type == field.type else column.cast(field.type))
+        else:
+            columns.append(pa.nulls(batch.num_rows, field.type))
+    return pa.RecordBatch.from_arrays(columns, schema=schema)
+
+
+class Pieces:
+    """Writes rows in batches of a fixed size, so that the bytes depend on the rows alone."""
+
+    def __init__(self, writer: ipc.RecordBatchFileWriter) -> None:
+        self.writer = writer
+        self.waiting: list[pa.RecordBatch] = []
+        self.rows = 0
+
+    def add(self, batch: pa.RecordBatch) -> None:
+        """Add rows."""
+        self.waiting.append(batch)
+        self.rows += batch.num_rows
+        if self.rows >= ROWS_PER_BATCH:
+            self.write(ROWS_PER_BATCH)
+
+    def write(self, count: int) -> None:
+        """Write the first rows."""
+        table = pa.Table.from_batches(self.waiting)
+        self.writer.write_table(table.slice(0, count).combine_chunks())
+        rest = table.slice(count)
+        # A copy of the rest, so that what is written can be forgotten.
+        self.waiting = rest.combine_chunks().to_batches() if rest.num_rows else []
+        self.rows = rest.num_rows
+
+    def finish(self) -> None:
+        """Write what remains."""
+        if self.rows:
+            self.write(self.rows)
+
+
+def metadata_of(schemas: Sequence[Sequence[pa.Schema]], text: str) -> dict[str, bytes]:
+    """Return the metadata of a file of results.
+
+    They are what all runs have in common, with `configuration`, the configuration with all its options, and
+    `resolved_configuration`, the entries that are the same in all runs. `summary` adds what differs.
+    """
+    all_metadata = [schema.metadata or {} for part in schemas for schema in part]
+    first = all_metadata[0]
+    skipped = (b"configuration", RESOLVED.encode())
+    common = {
+        key: value
+        for key, value in first.items()
+        if key not in skipped and all(metadata.get(key) == value for metadata in all_metadata)
+    }
+    metadata = {key.decode(errors="replace"): value for key, value in common.items()}
+    metadata["configuration"] = text.encode()
+    resolved = [configuration_in(part[0].metadata or {}) for part in schemas if part]
+    if shared := shared_entries(resolved):
+        metadata[RESOLVED] = dump_yaml(shared).encode()
+    return metadata
+
+
+def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
+    """Return the configuration with all defaults of a run, without what only that run has."""
+    try:
+        entries = parse_yaml(metadata.get(RESOLVED.encode(), b"").decode())
+    except (ValueError, RecursionError):
+        return {}
+    return {key: value for key, value in entries.items() if key not in OF_ONE_RUN} if isinstance(entries, dict) else {}
+
+
+def shared_entries(maps: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return the entries that several maps have in common, at any depth."""
+    first, *others = maps
+    shared: dict[str, Any] = {}
+    for key, value in first.items():
+        if not all(key in other for other in others):
+            continue
+        found = [other[key] for other in others]
+        if isinstance(value, dict) and all(isinstance(entry, dict) for entry in found):
+            entries = shared_entries([value, *found])
+            if entries or not value:
+                shared[key] = entries
+        elif all(entry == value for entry in found):
+            shared[key] = value
+    return shared
+
+
+def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows: Sequence[int]) -> bytes:
+    """Return the metadata entry `combinations`, in YAML.
+
+    A list with the columns of each combination, its number of runs and rows, the runs that failed, and, if they are
+    not the same everywhere, the polygons of its arena.
+    """
+    polygons = [(part[0].metadata or {}).get(POLYGONS.encode()) if part else None for part in schemas]
+    differ = len({text for text in polygons if text is not None}) > 1
+    entries = []
+    for i, part in enumerate(parts):
+        entry = {"columns": part.columns, "runs": len(part.runs), "rows": rows[i], "failed_runs": list(part.failed)}
+        text = polygons[i]
+        if differ and text is not None:
+            entry[POLYGONS] = parse_yaml(text.decode())
+        entries.append(entry)
+    return dump_yaml(entries).encode()
+
+
+def check_output(path: str) -> Path:
+    """Return the real path of a file of results; its folder is made.
+
+    Raises:
+        BatchError: It cannot be written, or there is a file that is no data file.
+    """
+    folder = Path(path).parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        real = real_output(path)
+        if real.exists() and real.stat().st_size > 0:
+            check_replaceable(real)
+        if not os.access(real.parent, os.W_OK):
+            raise BatchError(f"cannot write {path}: no permission to write in {real.parent}")
+    except OSError as error:
+        raise cannot("write", path, error) from None
+    except OutputError as error:
+        raise BatchError(str(error)) from None
+    except RecoverError:
+        raise BatchError(
+            f"{path} is there and is no data file of the simulator; it will not be overwritten: choose another output"
+        ) from None
+    return real
+
+
+@contextlib.contextmanager
+def replacement(path: Path) -> Iterator[Any]:
+    """Open a file beside another one, which takes its place when all is written, and goes away if it cannot be.
+
+    Raises:
+        BatchError: Another batch is writing it.
+    """
+    scratch = path.with_name(f".{path.name}.pogobatch-new")
+    with scratch.open("ab") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise BatchError(
+                f"{path} is being written by another batch; wait for it, or choose another folder"
+            ) from None
+        except OSError:
+            pass  # no locks on this file system
+        try:
+            file.truncate(0)
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+            scratch.replace(path)
+        except BaseException:
+            scratch.unlink(missing_ok=True)
+            raise
+
+
+def write_results(path: str, parts: Sequence[Part], text: str) -> Written:
+    """Join runs into one Feather file.
+
+    Args:
+        path: File of results. It appears complete or not at all; a data file that is there is replaced.
+        parts: Combinations, each with its finished runs; at least one run in all.
+        text: Configuration with all options, for the metadata.
+
+    Returns:
+        What was written.
+
+    Raises:
+        BatchError: A file cannot be read or written, or columns do not fit together.
+    """
+    real = check_output(path)
+    try:
+        schemas = [[schema_of(run.path) for run in part.runs] for part in parts]
+        rows = [sum(rows_in(run.path) for run in part.runs) for part in parts]
+        own = joint_schema([schema for part in schemas for schema in part])
+        names = list(dict.fromkeys(name for part in parts for name in part.columns))
+        types = {name: column_type([part.columns.get(name) for part in parts]) for name in names}
+        schema = pa.schema([*own, pa.field(RUN, pa.int64()), *(pa.field(name, kind) for name, kind in types.items())])
+        metadata = metadata_of(schemas, text)
+        schema = schema.with_metadata({**metadata, "combinations": summary(parts, schemas, rows)})
+        with replacement(real) as file:
+            options = ipc.IpcWriteOptions(compression="zstd")
+            with ipc.new_file(file, schema, options=options) as writer:
+                pieces = Pieces(writer)
+                for part in parts:
+                    constants = {name: as_type(part.columns.get(name), kind) for name, kind in types.items()}
+                    for run in part.runs:
+                        for batch in batches_of(run.path):
+                            pieces.add(with_columns(batch, schema, {**constants, RUN: run.run}))
+                pieces.finish()
+    except OSError as error:
+        raise cannot("write", path, error) from None
+    return Written(path, rows)
+
+
+def rows_in(path: Path) -> int:
+    """Return the number of rows of a data file."""
+    with pa.memory_map(str(path)) as file, open_run(file, path) as reader:
+        return sum(reader.get_batch(i).num_rows for i in range(reader.num_record_batches))

@@ -1,0 +1,258 @@
+"""One run: a folder of its own, a simulator in it, its data file kept under the name of the run."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pogosim.batch.errors import reason
+from pogosim.recover import DAMAGED, is_complete
+
+LOG = "log.txt"
+LOG_LINES = 10
+DISK_FULL = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
+
+# Dies with the thread that starts it, whatever ends that one; and starts nothing if that has happened already.
+WATCHED = ("setpriv", "--pdeathsig", "KILL", "sh", "-c", '[ "$PPID" = "$0" ] && exec "$@"')
+
+
+class StoppedError(Exception):
+    """The batch ends; the run was not done."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A run to do. All paths are absolute."""
+
+    key: str
+    run: int
+    seed: int
+    program: str
+    text: str  # configuration, without the names of its outputs
+    outputs: tuple[tuple[str, str], ...]  # keys of the configuration, and the basenames of the files
+    data: str  # basename of the data file
+    working_folder: str
+    temp_folder: str
+    done_folder: str
+    batch: str
+    retries: int
+    gui: bool
+    keep_temp: bool
+
+    @property
+    def result(self) -> Path:
+        """Where the data file is when the run is done."""
+        return Path(self.done_folder) / f"{self.key}.feather"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a run."""
+
+    key: str
+    problem: str = ""  # empty: it is done
+    is_fatal: bool = False  # other runs would end in the same way
+    command: str = ""
+    log: str = ""  # its last lines
+    folder: str = ""  # what a failure leaves
+    simulator_s: float = 0.0  # wall-clock time of its simulators
+
+
+class Simulators:
+    """The simulators of this process, so that they can be ended."""
+
+    def __init__(self) -> None:
+        self.running: set[subprocess.Popen[bytes]] = set()
+        self.lock = threading.Lock()
+        self.is_stopping = False
+
+    def run(self, command: Sequence[str], folder: str, log: Path) -> int:
+        """Run a program to its end; returns its exit code, or minus the signal that ended it.
+
+        Raises:
+            OSError: It cannot be started.
+            StoppedError: The batch ends.
+        """
+        if self.is_stopping:
+            raise StoppedError
+        with log.open("wb") as output:
+            process = subprocess.Popen(
+                [*watch(), *command],
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,  # Ctrl-C reaches the batch alone
+            )
+        with self.lock:
+            self.running.add(process)
+        if self.is_stopping:
+            kill(process)
+        try:
+            code = process.wait()
+        except BaseException:
+            kill(process)
+            process.wait()
+            raise
+        finally:
+            with self.lock:
+                self.running.discard(process)
+        if self.is_stopping:
+            raise StoppedError
+        return code
+
+    def stop(self) -> None:
+        """End all simulators, and let none begin."""
+        self.is_stopping = True
+        with self.lock:
+            for process in self.running:
+                kill(process)
+
+
+simulators = Simulators()
+
+
+def kill(process: subprocess.Popen[bytes]) -> None:
+    """End a program and what it has started."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+def watch() -> list[str]:
+    """Return the start of a command line with which a program ends when this process does; empty where it cannot."""
+    if sys.platform != "linux" or shutil.which(WATCHED[0]) is None:
+        return []
+    return [*WATCHED, str(os.getpid())]
+
+
+def tail(path: Path) -> str:
+    """Return the last lines of a log."""
+    try:
+        with path.open("rb") as file:
+            file.seek(0, os.SEEK_END)
+            file.seek(max(0, file.tell() - 20_000))
+            lines = file.read().decode(errors="replace").splitlines()
+    except OSError:
+        return ""
+    shown = ["".join(c if c.isprintable() or c == "\t" else "?" for c in line) for line in lines]
+    return "\n".join(shown[-LOG_LINES:])
+
+
+def ending(code: int) -> str:
+    """Return how a program ended: "exit code 3", "killed by SIGSEGV"."""
+    if code >= 0:
+        return f"exit code {code}"
+    try:
+        return f"killed by {signal.Signals(-code).name}"
+    except ValueError:
+        return f"killed by signal {-code}"
+
+
+def write_configuration(task: Task, folder: Path) -> Path:
+    """Write the configuration of a run, whose outputs go to `frames` in its folder."""
+    lines = "".join(f"{key}: {quoted(folder / 'frames' / name)}\n" for key, name in task.outputs)
+    path = folder / "test.yaml"
+    path.write_text(task.text + lines)
+    return path
+
+
+def quoted(path: Path) -> str:
+    """Return a path as a YAML string."""
+    return "'" + str(path).replace("'", "''") + "'"
+
+
+def attempt(task: Task, number: int) -> Outcome:
+    """Do a run once. Its folder stays if it fails, or if folders are kept.
+
+    Raises:
+        OSError: A file cannot be written, or the program not be started.
+        StoppedError: The batch ends.
+    """
+    prefix = f"sim_{task.run}_try{number}_{task.batch}_"
+    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=task.temp_folder))
+    is_kept = task.keep_temp
+    try:
+        (folder / "frames").mkdir()
+        arguments = ["-c", str(write_configuration(task, folder)), "-nr", "-q", "--seed", str(task.seed)]
+        command = [task.program, *arguments, *([] if task.gui else ["-g"])]
+        started_s = time.monotonic()
+        code = simulators.run(command, task.working_folder, folder / LOG)
+        simulator_s = time.monotonic() - started_s
+        data = folder / "frames" / task.data
+        problem, is_fatal = "", False
+        log = ""
+        if code != 0:
+            log = tail(folder / LOG)
+            problem = ending(code)
+            is_fatal = any(words in log for words in DISK_FULL)
+            if is_fatal:
+                problem = f"the disk of {task.temp_folder} is full; free space, then give the same command again"
+        elif not data.is_file():
+            problem = f"it ended without writing its data file: is {task.program} a program compiled for Pogosim?"
+            is_fatal = True
+        elif not is_complete_data(data):
+            problem = "its data file is damaged"
+        else:
+            keep(data, task.result, as_copy=task.keep_temp)
+        is_kept |= bool(problem)
+        line = shlex.join(command)
+        return Outcome(task.key, problem, is_fatal, line, log, str(folder) if is_kept else "", simulator_s)
+    finally:
+        if not is_kept:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def is_complete_data(path: Path) -> bool:
+    """Tell whether a data file can be read."""
+    try:
+        return is_complete(path)
+    except DAMAGED:
+        return False
+
+
+def keep(data: Path, result: Path, as_copy: bool) -> None:
+    """Put a data file where finished runs are; it appears there as a whole."""
+    if as_copy:
+        scratch = result.with_suffix(".copy")
+        scratch.unlink(missing_ok=True)
+        try:
+            os.link(data, scratch)
+        except OSError:
+            shutil.copyfile(data, scratch)
+        data = scratch
+    data.replace(result)
+
+
+def do_run(task: Task) -> Outcome:
+    """Do a run, again after each failure; what remains of a failure is the folder of the last attempt.
+
+    Raises:
+        StoppedError: The batch ends.
+    """
+    outcome = Outcome(task.key)
+    simulator_s = 0.0
+    for number in range(task.retries + 1):
+        if outcome.folder and not task.keep_temp:
+            shutil.rmtree(outcome.folder, ignore_errors=True)
+        try:
+            outcome = attempt(task, number)
+        except OSError as error:
+            full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+            what = error.filename or task.program
+            outcome = Outcome(task.key, f"{what}: {reason(error)}", is_fatal=full or error.errno == errno.ENOEXEC)
+        simulator_s += outcome.simulator_s
+        if not outcome.problem or outcome.is_fatal:
+            break
+    return replace(outcome, simulator_s=simulator_s)
