@@ -12,7 +12,7 @@ from typing import Any
 from pogosim.batch.errors import BatchError, one_line
 from pogosim.batch.run import Outcome, Task, do_run
 
-CONNECT_S = 10
+CONNECT_S = 5
 INSTALL = "install it: pip install 'pogosim[dask]'"
 
 

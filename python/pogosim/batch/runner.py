@@ -6,12 +6,13 @@ import contextlib
 import fcntl
 import hashlib
 import logging
+import os
 import shutil
 import sys
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from tqdm import tqdm
 
@@ -260,8 +261,12 @@ class PogobotBatchRunner:
 
     def check_columns_exist(self, configs: Sequence[dict[str, Any]]) -> None:
         """Check that each of the new columns is a key in some combination."""
-        for name in configs[0].get(COLUMNS) or []:
-            if not any(has_key(config, str(name)) for config in configs):
+        try:
+            names = new_columns(configs[0])
+        except NamesError as error:
+            raise self.names_error(error) from None
+        for name in names:
+            if not any(has_key(config, name) for config in configs):
                 raise BatchError(
                     f"{self.configuration.where((COLUMNS,))}: there is no key '{name}' in the configuration; expected "
                     "the dotted paths of keys, such as objects.robots.nb"
@@ -409,9 +414,7 @@ class PogobotBatchRunner:
     ) -> None:
         """Do runs, and show how many are done."""
         left = {task.key: task for task in tasks}
-        bar = tqdm(
-            total=len(tasks), unit="run", disable=not (tasks and sys.stderr.isatty()), file=sys.stderr, smoothing=0.05
-        )
+        bar = progress_bar(len(tasks))
         try:
             for outcome in outcomes:
                 task = left.pop(outcome.key)
@@ -477,6 +480,15 @@ class PogobotBatchRunner:
             Path(path).unlink(missing_ok=True)
         with contextlib.suppress(OSError):
             self.temp.rmdir()  # if nothing else is in it
+
+
+def progress_bar(total: int) -> tqdm[NoReturn]:
+    """Return a bar with the time left, on standard error if that is a terminal."""
+    is_shown = total > 0 and sys.stderr.isatty()
+    # Some terminals have no size; the bar would be empty.
+    has_size = is_shown and os.get_terminal_size(sys.stderr.fileno()).columns > 0
+    size = {"dynamic_ncols": True} if has_size else {"ncols": 80, "nrows": 24}
+    return tqdm(total=total, unit="run", disable=not is_shown, file=sys.stderr, smoothing=0.05, **size)
 
 
 def at_least(smallest: int, value: int, name: str) -> int:

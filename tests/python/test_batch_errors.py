@@ -1,0 +1,182 @@
+"""What is wrong with a batch is said in one line, with the place and what to do."""
+
+from __future__ import annotations
+
+import os
+import pty
+import subprocess
+from pathlib import Path
+
+import pytest
+from batches import COMMAND, ENVIRONMENT, arguments, batch, batch_apart, ended, results, run_main, script, write_options
+from pogosim.batch.identity import seed_of
+from running import example
+
+
+def one_line(folder: Path, *more: str, program: Path | None = None, code: int = 2) -> str:
+    """Run a batch that cannot be done; returns the line."""
+    result = batch(folder, *more, program=program)
+    assert result.code == code, result.text
+    assert result.errors.count("\n") == 1, result.errors
+    assert "Batch run completed" not in result.output
+    return result.errors
+
+
+@pytest.mark.parametrize(
+    ("changes", "what"),
+    [
+        ({"result_filename_format": "{objects.robot.nb}.feather"}, ":13: result_filename_format: there is no key"),
+        ({"result_filename_format": "{objects.robots.nb:x.y}"}, "not a format of Python"),
+        (
+            {"result_new_columns": ["objects.robots.number"]},
+            ": result_new_columns: there is no key 'objects.robots.number'",
+        ),
+        ({"result_new_columns": 5}, "result_new_columns: expected a list of keys"),
+        ({"objects.robots.nb": {"batch_options": 5}}, ":13: objects.robots.nb: batch_options: expected a list"),
+        ({"objects.robots.nb": {"batch_options_range": {"start": 1, "stop": 9}}}, "'step' is missing"),
+        ({"enable_data_logging": False}, "enable_data_logging: is false, so runs write no data"),
+    ],
+)
+def test_wrong_configuration_is_one_line_with_its_place(changes: dict[str, object], what: str, tmp_path: Path) -> None:
+    write_options(tmp_path, changes)
+    line = one_line(tmp_path)
+    assert line.startswith("pogobatch: many.yaml:")
+    assert what.replace(":13:", ":") in line
+
+
+def test_missing_empty_and_foreign_configurations_are_refused(tmp_path: Path) -> None:
+    assert "cannot read the configuration many.yaml: No such file" in one_line(tmp_path)
+    (tmp_path / "many.yaml").touch()
+    assert "many.yaml is empty" in one_line(tmp_path)
+    (tmp_path / "many.yaml").write_bytes(example("helloworld").read_bytes()[:1000])
+    assert "many.yaml" in one_line(tmp_path)
+    (tmp_path / "many.yaml").unlink()
+    (tmp_path / "many.yaml").mkdir()
+    assert "Is a directory" in one_line(tmp_path)
+
+
+def test_program_that_is_no_simulator_is_refused_before_anything_is_touched(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "result.feather").write_bytes(b"")
+    text = tmp_path / "text"
+    text.write_text("hello\n")
+    locked = script(tmp_path / "locked", "")
+    locked.chmod(0o644)
+    for program, what in (
+        (Path("/bin/ls"), "/bin/ls is not a simulator; expected a program compiled for Pogosim"),
+        (text, "is not a simulator"),
+        (tmp_path, "is a folder"),
+        (tmp_path / "nothing", "does not exist"),
+        (locked, "is not executable; chmod +x"),
+    ):
+        assert what in one_line(tmp_path, program=program)
+        assert list(results(tmp_path)) == ["result.feather"]
+
+
+def test_program_that_writes_no_data_ends_the_batch_at_once(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    line = one_line(tmp_path, "-r", "3", program=script(tmp_path / "silent", "exit 0"))
+    assert "it ended without writing its data file: is " in line
+
+
+def test_full_disk_ends_the_batch_with_one_line(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    full = script(tmp_path / "full", "echo 'Error: cannot write: No space left on device'; exit 2")
+    line = one_line(tmp_path, "-r", "3", program=full)
+    assert f"the disk of {tmp_path}/tmp is full; free space, then give the same command again" in line
+
+
+@pytest.mark.parametrize(
+    ("flags", "what"),
+    [
+        (["--backend", "slurm"], "--backend: expected one of multiprocessing, sequential, dask; found 'slurm'"),
+        (["-r", "0"], "--runs: expected a whole number of at least 1; found 0"),
+        (["-R", "-1"], "--retries: expected a whole number of at least 0; found -1"),
+        (["-j", "0"], "--workers: expected a whole number of at least 1; found 0"),
+        (["--seed-from", "time"], "--seed-from: expected run or config; found 'time'"),
+        (["--seed-from", "config"], "--seed-from config needs a whole number"),
+        (["--backend", "sequential", "--scheduler", "tcp://127.0.0.1:1"], "--scheduler goes with --backend dask"),
+        (["-o", "many.yaml"], "cannot write many.yaml/result.feather"),
+        (["-t", "many.yaml"], "many.yaml"),
+    ],
+)
+def test_wrong_flag_is_one_line(flags: list[str], what: str, tmp_path: Path) -> None:
+    write_options(tmp_path, {"seed": None})
+    assert what in one_line(tmp_path, *flags)
+
+
+def test_scheduler_that_does_not_answer_is_one_line_and_old_results_stay(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert batch(tmp_path).code == 0
+    before = results(tmp_path)
+    result = batch_apart(tmp_path, "--scheduler", "tcp://127.0.0.1:1")
+    assert result.code == 2
+    assert result.errors.count("\n") == 1
+    assert "no Dask scheduler answers at tcp://127.0.0.1:1" in result.errors
+    assert results(tmp_path) == before
+
+
+def test_dask_that_is_not_installed_is_one_line(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    hidden = tmp_path / "hidden"
+    hidden.mkdir()
+    (hidden / "distributed.py").write_text("raise ImportError('not installed')\n")
+    command = ["env", f"PYTHONPATH={hidden}", *arguments(example("helloworld"), "--backend", "dask")]
+    result = ended(command, tmp_path)
+    assert (result.code, result.errors) == (
+        2,
+        "pogobatch: --backend dask needs the Python package 'distributed'; install it: pip install 'pogosim[dask]'\n",
+    )
+
+
+def test_result_that_is_no_data_file_is_not_overwritten(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "result.feather").write_text("my notes\n")
+    assert "is no data file of the simulator; it will not be overwritten" in one_line(tmp_path)
+    assert (tmp_path / "results" / "result.feather").read_text() == "my notes\n"
+
+
+def test_missing_options_are_exit_code_1_and_unknown_ones_2(tmp_path: Path) -> None:
+    path = write_options(tmp_path)
+    for options in (["-c", str(path)], ["-S", "x"], []):
+        result = run_main(tmp_path, options)
+        assert (result.code, result.output) == (1, "")
+        assert "Usage: pogobatch -c CONFIG -S PROGRAM" in result.errors
+    assert run_main(tmp_path, ["-c", str(path), "-S", "x", "--run"]).code == 2
+    assert run_main(tmp_path, ["-V"]).code == 0
+
+
+def test_bar_with_the_time_left_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert batch(tmp_path, "-r", "2").errors == ""
+    leader, follower = pty.openpty()
+    command = arguments(example("helloworld"), "-r", "2")
+    process = subprocess.Popen(command, cwd=tmp_path, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=follower)
+    os.close(follower)
+    shown = b""
+    try:
+        while block := os.read(leader, 1000):
+            shown += block
+    except OSError:
+        pass  # the other side has closed the terminal
+    os.close(leader)
+    assert process.wait() == 0
+    assert b"4/4 [" in shown
+    assert b"<" in shown
+
+
+def test_output_that_nobody_reads_does_not_end_a_batch(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    command = " ".join([*COMMAND, "-c many.yaml -S", str(example("helloworld")), "-t tmp -o results"])
+    result = ended(["bash", "-c", f"{command} | true; exit ${{PIPESTATUS[0]}}"], tmp_path)
+    assert (result.code, result.errors) == (0, "")
+    assert list(results(tmp_path)) == ["result.feather"]
+
+
+def test_derived_seeds_are_in_range_and_those_of_neighbours_do_not_meet() -> None:
+    seeds = [seed_of(configured, run) for configured in range(20) for run in range(1000)]
+    assert len(set(seeds)) == len(seeds)
+    assert all(0 <= seed < 2**32 for seed in seeds)
+    assert seed_of(1, 0) == seed_of(1, 2**32)
