@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 import pty
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
 from batches import COMMAND, ENVIRONMENT, arguments, batch, batch_apart, ended, results, run_main, script, write_options
+from pogosim.batch.command_line import parser
 from pogosim.batch.identity import seed_of
-from running import example
+from running import ROOT, example
 
 
 def one_line(folder: Path, *more: str, program: Path | None = None, code: int = 2) -> str:
@@ -180,3 +182,11 @@ def test_derived_seeds_are_in_range_and_those_of_neighbours_do_not_meet() -> Non
     assert len(set(seeds)) == len(seeds)
     assert all(0 <= seed < 2**32 for seed in seeds)
     assert seed_of(1, 0) == seed_of(1, 2**32)
+
+
+def test_page_of_batches_has_every_flag() -> None:
+    page = (ROOT / "docs" / "batches.md").read_text()
+    listed = set(re.findall(r"`(-{1,2}[A-Za-z][\w-]*)", "\n".join(re.findall(r"^\| `-.*", page, re.MULTILINE))))
+    known = {flag for action in parser()._actions for flag in action.option_strings}
+    assert known - listed <= {"--help", "--verbose", "--version"}
+    assert listed <= known

@@ -30,7 +30,7 @@ PAGES_WITH_COMMANDS = [
     README,
     *(
         ROOT / "docs" / f"{name}.md"
-        for name in ("command_line", "data_file", "examples", "installing", "pictures", "window")
+        for name in ("batches", "command_line", "data_file", "examples", "installing", "pictures", "window")
     ),
 ]
 SCRIPTS = ("build.sh", "demo.sh", "test.sh")  # run by test.sh itself
