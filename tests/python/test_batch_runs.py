@@ -6,6 +6,7 @@ import contextlib
 import os
 import random
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -18,6 +19,16 @@ from pogosim.utils import load_dataframe
 # Long enough to be killed on the way: some tenths of a second of wall-clock time.
 LONG: dict[str, object] = {"simulation_time": 1000.0, "save_data_period": 10.0}
 RUNS = ("-r", "3", "-j", "2")
+
+# A cluster of two workers, whose address is printed.
+DASK = """
+import sys
+from distributed import LocalCluster
+if __name__ == "__main__":
+    cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0")
+    print(cluster.scheduler_address, flush=True)
+    sys.stdin.read()
+"""
 
 linux_only = pytest.mark.skipif(sys.platform != "linux", reason="needs /proc and parent-death signals")
 
@@ -195,3 +206,27 @@ def test_killed_dask_worker_loses_no_run(tmp_path: Path, undisturbed: dict[str, 
     assert (process.returncode, errors) == (0, "")
     assert results(tmp_path) == undisturbed
     assert simulators_in(tmp_path) == []
+
+
+@linux_only
+def test_killed_scheduler_is_one_line_and_its_runs_count(tmp_path: Path, undisturbed: dict[str, bytes]) -> None:
+    write(tmp_path, LONG)
+    with (tmp_path / "dask.log").open("w") as log:
+        command = [sys.executable, "-c", DASK]
+        cluster = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, stdin=subprocess.PIPE, text=True)
+    assert cluster.stdout is not None
+    assert cluster.stdin is not None
+    address = cluster.stdout.readline().strip()
+    process = start_batch(tmp_path, *RUNS, "--scheduler", address)
+    wait_for_simulators(tmp_path, process)
+    cluster.kill()
+    _, errors = process.communicate(timeout=60)
+    cluster.communicate()
+    assert process.returncode == 2
+    assert errors.count("\n") == 1, errors
+    assert "the Dask scheduler ended before the batch; finished runs are kept" in errors
+    wait_until_gone(tmp_path)
+    (tmp_path / "dask.log").unlink()
+    final = batch(tmp_path, *RUNS)
+    assert (final.code, final.errors) == (0, "")
+    assert results(tmp_path) == undisturbed

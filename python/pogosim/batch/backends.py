@@ -23,13 +23,21 @@ def processors() -> int:
 
 def sequential(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Outcomes:  # noqa: ARG001
     """Do runs one after the other."""
-    yield from parallel(tasks, 1, None)
+    return by_threads(tasks, workers=1, threads=1)
 
 
 def parallel(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Outcomes:  # noqa: ARG001
-    """Do runs in parallel. Each is a process of its own, which a thread waits for."""
-    simulators.is_stopping = False
-    pool = ThreadPoolExecutor(max(1, min(workers, len(tasks))))
+    """Do runs in parallel. Each is a process of its own, which a thread waits for.
+
+    Some more threads prepare and clean up while all the simulators run that may.
+    """
+    return by_threads(tasks, workers, threads=workers + workers // 8 + 1)
+
+
+def by_threads(tasks: Sequence[Task], workers: int, threads: int) -> Outcomes:
+    """Do runs in threads, with at most `workers` simulators at the same time."""
+    simulators.begin(workers)
+    pool = ThreadPoolExecutor(max(1, min(threads, len(tasks))))
     is_done = False
     try:
         futures = [pool.submit(do_run, task) for task in tasks]

@@ -24,14 +24,15 @@ def connected(workers: int, scheduler: str | None) -> tuple[Any, Any]:
     """
     try:
         settings: Any = importlib.import_module("dask")
+        # Read when distributed is imported.
+        settings.config.set({"logging": dict.fromkeys(("distributed", "distributed.client", "tornado"), "critical")})
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise BatchError(f"--backend dask needs the Python package 'distributed'; {INSTALL}") from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
     settings.config.set({"distributed.comm.timeouts.connect": f"{CONNECT_S}s"})
     if scheduler is None:
         cluster = distributed.LocalCluster(
-            n_workers=workers, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+            n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0", silence_logs=logging.CRITICAL
         )
         return distributed.Client(cluster), cluster
     try:

@@ -77,14 +77,30 @@ class Simulators:
         self.running: set[subprocess.Popen[bytes]] = set()
         self.lock = threading.Lock()
         self.is_stopping = False
+        self.slots: contextlib.AbstractContextManager[object] = contextlib.nullcontext()
 
-    def run(self, command: Sequence[str], folder: str, log: Path) -> int:
-        """Run a program to its end; returns its exit code, or minus the signal that ended it.
+    def begin(self, at_once: int) -> None:
+        """Let this number of simulators run at the same time; others wait for their turn."""
+        self.is_stopping = False
+        self.slots = threading.BoundedSemaphore(at_once)
+
+    def run(self, command: Sequence[str], folder: str, log: Path) -> tuple[int, float]:
+        """Run a program to its end.
+
+        Returns:
+            Its exit code, or minus the signal that ended it; and its wall-clock time in s.
 
         Raises:
             OSError: It cannot be started.
             StoppedError: The batch ends.
         """
+        with self.slots:
+            started_s = time.monotonic()
+            code = self.run_now(command, folder, log)
+            return code, time.monotonic() - started_s
+
+    def run_now(self, command: Sequence[str], folder: str, log: Path) -> int:
+        """Do what `run` does, at once; returns the exit code."""
         if self.is_stopping:
             raise StoppedError
         with log.open("wb") as output:
@@ -187,9 +203,7 @@ def attempt(task: Task, number: int) -> Outcome:
         (folder / "frames").mkdir()
         arguments = ["-c", str(write_configuration(task, folder)), "-nr", "-q", "--seed", str(task.seed)]
         command = [task.program, *arguments, *([] if task.gui else ["-g"])]
-        started_s = time.monotonic()
-        code = simulators.run(command, task.working_folder, folder / LOG)
-        simulator_s = time.monotonic() - started_s
+        code, simulator_s = simulators.run(command, task.working_folder, folder / LOG)
         data = folder / "frames" / task.data
         problem, is_fatal = "", False
         log = ""
