@@ -125,8 +125,18 @@ def test_seeds_from_the_configuration_are_all_different_and_others_than_the_numb
     found = [load_dataframe(path)[1]["configuration"]["seed"] for path in (tmp_path / "tmp").glob("done_*/*.feather")]
     assert len(set(found)) == 6
     assert all(seed > 2 for seed in found)
-    rows = load_dataframe(tmp_path / "results" / "result.feather")[0]
+    rows, metadata = load_dataframe(tmp_path / "results" / "result.feather")
     assert rows.groupby(["seed", "run"]).ngroups == 6
+    assert {seed for entry in metadata["combinations"] for seed in entry["seeds"]} == set(found)
+
+
+def test_warnings_of_runs_are_shown_once(tmp_path: Path) -> None:
+    write_options(tmp_path, {"parameters": {"never_read": 1}})
+    result = batch(tmp_path, "-r", "3")
+    assert result.code == 0
+    assert result.errors == (
+        "pogobatch: warning of a run: parameters never read by the program: never_read (the configuration)\n"
+    )
 
 
 def test_kept_folders_have_the_files_of_the_article_and_the_name_of_the_data_file_is_free(tmp_path: Path) -> None:

@@ -36,6 +36,7 @@ class RunFile:
 
     path: Path
     run: int
+    seed: int | None = None
 
 
 @dataclass(frozen=True)
@@ -229,14 +230,16 @@ def shared_entries(maps: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows: Sequence[int]) -> bytes:
     """Return the metadata entry `combinations`, in YAML.
 
-    A list with the columns of each combination, its number of runs and rows, the runs that failed, and, if they are
-    not the same everywhere, the polygons of its arena.
+    A list with the columns of each combination, its number of runs and rows, the runs that failed, the seeds of the
+    others if they are not their numbers, and the polygons of its arena if they are not the same everywhere.
     """
     polygons = [(part[0].metadata or {}).get(POLYGONS.encode()) if part else None for part in schemas]
     differ = len({text for text in polygons if text is not None}) > 1
     entries = []
     for i, part in enumerate(parts):
         entry = {"columns": part.columns, "runs": len(part.runs), "rows": rows[i], "failed_runs": list(part.failed)}
+        if any(run.seed is not None and run.seed != run.run for run in part.runs):
+            entry["seeds"] = [run.seed for run in part.runs]
         text = polygons[i]
         if differ and text is not None:
             entry[POLYGONS] = parse_yaml(text.decode())
@@ -286,6 +289,8 @@ def replacement(path: Path) -> Iterator[Any]:
             ) from None
         except OSError:
             pass  # no locks on this file system
+        if not (scratch.exists() and os.path.samestat(scratch.stat(), os.fstat(file.fileno()))):
+            raise BatchError(f"{path} has just been written by another batch; choose another folder")
         try:
             file.truncate(0)
             yield file

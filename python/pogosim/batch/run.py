@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -65,7 +66,7 @@ class Outcome:
     problem: str = ""  # empty: it is done
     is_fatal: bool = False  # other runs would end in the same way
     command: str = ""
-    log: str = ""  # its last lines
+    log: str = ""  # its last lines; of a run that is done, its warnings
     folder: str = ""  # what a failure leaves
     simulator_s: float = 0.0  # wall-clock time of its simulators
 
@@ -166,6 +167,15 @@ def tail(path: Path) -> str:
     return "\n".join(shown[-LOG_LINES:])
 
 
+def warnings_in(folder: Path) -> str:
+    """Return the warnings in the log of a run, one per line, without dates and places in its configuration."""
+    lines = [line for line in tail(folder / LOG).splitlines() if "[warning] " in line]
+    texts = [line.partition("[warning] ")[2] for line in lines]
+    return "\n".join(
+        re.sub(re.escape(str(folder)) + r"/test\.yaml(:\d+)?", "the configuration", text) for text in texts
+    )
+
+
 def ending(code: int) -> str:
     """Return how a program ended: "exit code 3", "killed by SIGSEGV"."""
     if code >= 0:
@@ -219,6 +229,7 @@ def attempt(task: Task, number: int) -> Outcome:
         elif not is_complete_data(data):
             problem = "its data file is damaged"
         else:
+            log = warnings_in(folder)
             keep(data, task.result, as_copy=task.keep_temp)
         is_kept |= bool(problem)
         line = shlex.join(command)

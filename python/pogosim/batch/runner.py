@@ -30,6 +30,7 @@ log = logging.getLogger("pogobatch")
 OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
 FILES_BESIDE = ("arena_file", "formation_filename")
 SHOWN_FAILURES = 5
+SHOWN_WARNINGS = 10
 
 
 @dataclass
@@ -307,7 +308,10 @@ class PogobotBatchRunner:
                 except OSError:
                     pass  # no locks on this file system
                 self.remove_leftovers()
-                yield
+                try:
+                    yield
+                finally:
+                    self.tidy()
         except OSError as error:
             raise cannot("use", error.filename or self.temp, error) from None
 
@@ -414,12 +418,14 @@ class PogobotBatchRunner:
     ) -> None:
         """Do runs, and show how many are done."""
         left = {task.key: task for task in tasks}
+        warnings: dict[str, None] = {}
         bar = progress_bar(len(tasks))
         try:
             for outcome in outcomes:
                 task = left.pop(outcome.key)
                 self.simulator_s += outcome.simulator_s
                 if not outcome.problem:
+                    warnings.update(dict.fromkeys(outcome.log.splitlines()))
                     self.check_run(task, combination_of[task.key], checked)
                 elif outcome.is_fatal:
                     raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
@@ -430,6 +436,8 @@ class PogobotBatchRunner:
         finally:
             bar.close()
             outcomes.close()
+            for line in list(warnings)[:SHOWN_WARNINGS]:
+                log.warning("warning of a run: %s", line)
 
     def report_failures(self) -> None:
         """Say which runs failed, with what is needed to repeat them."""
@@ -454,7 +462,7 @@ class PogobotBatchRunner:
         parts = [
             Part(
                 combination.columns,
-                [RunFile(task.result, task.run) for task in combination.tasks if task.key not in failed],
+                [RunFile(task.result, task.run, task.seed) for task in combination.tasks if task.key not in failed],
                 [task.run for task in combination.tasks if task.key in failed],
             )
             for combination in combinations
@@ -470,14 +478,20 @@ class PogobotBatchRunner:
             is_new = False
 
     def clean(self) -> None:
-        """Remove temporary files, except after a failure, or if they are kept."""
+        """Forget the finished runs, except after a failure, or if they are kept."""
         if self.failures:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
-        if self.failures or self.keep_temp:
+        elif not self.keep_temp:
+            shutil.rmtree(self.done, ignore_errors=True)
+
+    def tidy(self) -> None:
+        """Remove what no later batch needs: configurations of combinations, and folders without a finished run."""
+        if self.keep_temp:
             return
-        shutil.rmtree(self.done, ignore_errors=True)
         for path in self.written:
             Path(path).unlink(missing_ok=True)
+        if self.done.exists() and not any(self.done.glob("*.feather")):
+            shutil.rmtree(self.done, ignore_errors=True)
         with contextlib.suppress(OSError):
             self.temp.rmdir()  # if nothing else is in it
 
