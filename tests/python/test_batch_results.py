@@ -242,7 +242,7 @@ def test_disk_that_fills_up_is_one_line_and_leaves_no_half_file(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.fsync", full)
-    with pytest.raises(BatchError, match=r"^cannot write .*out\.feather: No space left on device$"):
+    with pytest.raises(BatchError, match=r"^cannot write .*out\.feather: No space left on device; free space, then"):
         write_results(str(out), [Part({}, [run])], "other")
     assert out.read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "out.feather"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 from pathlib import Path
 
@@ -29,7 +30,9 @@ def reason(error: OSError) -> str:
 
 def cannot(task: str, path: str | Path, error: OSError) -> BatchError:
     """Return the error of a file that cannot be read or written: "cannot write results/a.feather: ..."."""
-    return BatchError(f"cannot {task} {path}: {reason(error)}")
+    is_full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+    advice = "; free space, then give the same command again: finished runs are kept" if is_full else ""
+    return BatchError(f"cannot {task} {path}: {reason(error)}{advice}")
 
 
 def tell(text: str) -> None:
