@@ -90,8 +90,8 @@ public:
             bool const is_waiting = state_.seconds_since_moment > kBusyS && now - last_drawn_ > kQuietPeriod;
             bool const must_draw = is_stale_ || pictures_to_draw_ > 0 || message_is_over(now) || is_waiting;
             if (window_.is_visible() && must_draw) {
+                ask();  // the simulation answers while this one is being drawn
                 draw(now);
-                ask();
             } else if (now - last_asked_ > kQuietPeriod) {
                 ask();
             }
