@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "view/exchange.hpp"
+#include "view/messages.hpp"
 
 namespace pogosim {
 

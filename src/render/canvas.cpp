@@ -77,6 +77,12 @@ Span centres_between(float low, float high, int first, int end) {
     return {floor_within(std::ceil(low - 0.5F), first, end), floor_within(high + 0.5F, first, end)};
 }
 
+/// Pixels of a row, `down` below the centre of a disk, whose centres are in it.
+Span columns_of_disk(float centre_x, float radius, float down, int first, int end) {
+    float const reach = std::sqrt(std::max(radius * radius - down * down, 0.0F));
+    return centres_between(centre_x - reach, centre_x + reach, first, end);
+}
+
 /// The interval of numbers t with |slope t + offset - middle| <= half, cut out of one that is there.
 struct Interval {
     float low = -std::numeric_limits<float>::infinity();
@@ -246,12 +252,10 @@ void Canvas::disk(Vec2 centre, float radius, Pixel colour) {
     Span const rows = centres_between(centre.y - outer, centre.y + outer, clip_.top, clip_.bottom);
     for (int y = rows.first; y < rows.end; ++y) {
         float const down = static_cast<float>(y) + 0.5F - centre.y;
-        float const reach = std::sqrt(std::max(outer * outer - down * down, 0.0F));
-        Span const touched = centres_between(centre.x - reach, centre.x + reach, clip_.left, clip_.right);
+        Span const touched = columns_of_disk(centre.x, outer, down, clip_.left, clip_.right);
         Span full{touched.end, touched.end};
         if (inner > std::abs(down)) {
-            float const filled = std::sqrt(inner * inner - down * down);
-            full = centres_between(centre.x - filled, centre.x + filled, touched.first, touched.end);
+            full = columns_of_disk(centre.x, inner, down, touched.first, touched.end);
         }
         Pixel* const pixel = row(y);
         auto const edge = [&](int first, int end) {
@@ -286,8 +290,7 @@ void Canvas::half_disk(Vec2 centre, float radius, Vec2 facing, Pixel colour) {
     Span const rows = centres_between(centre.y - outer, centre.y + outer, clip_.top, clip_.bottom);
     for (int y = rows.first; y < rows.end; ++y) {
         float const down = static_cast<float>(y) + 0.5F - centre.y;
-        float const reach = std::sqrt(std::max(outer * outer - down * down, 0.0F));
-        Span const touched = centres_between(centre.x - reach, centre.x + reach, clip_.left, clip_.right);
+        Span const touched = columns_of_disk(centre.x, outer, down, clip_.left, clip_.right);
         for (int x = touched.first; x < touched.end; ++x) {
             float const right = static_cast<float>(x) + 0.5F - centre.x;
             float const side = clamp01(right * facing.x + down * facing.y + 0.5F);
@@ -307,12 +310,10 @@ void Canvas::ring(Vec2 centre, float radius, float width, Pixel colour) {
     Span const rows = centres_between(centre.y - outer, centre.y + outer, clip_.top, clip_.bottom);
     for (int y = rows.first; y < rows.end; ++y) {
         float const down = static_cast<float>(y) + 0.5F - centre.y;
-        float const reach = std::sqrt(std::max(outer * outer - down * down, 0.0F));
-        Span const touched = centres_between(centre.x - reach, centre.x + reach, clip_.left, clip_.right);
+        Span const touched = columns_of_disk(centre.x, outer, down, clip_.left, clip_.right);
         Span hole{touched.end, touched.end};
         if (inner > std::abs(down)) {
-            float const open = std::sqrt(inner * inner - down * down);
-            hole = centres_between(centre.x - open, centre.x + open, touched.first, touched.end);
+            hole = columns_of_disk(centre.x, inner, down, touched.first, touched.end);
         }
         auto const draw = [&](int first, int end) {
             for (int x = first; x < end; ++x) {

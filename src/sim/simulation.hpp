@@ -21,7 +21,7 @@
 #include "sim/snapshot_taker.hpp"
 #include "sim/stage_clock.hpp"
 #include "sim/touches.hpp"
-#include "view/exchange.hpp"
+#include "view/messages.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "config/scenario.hpp"
-#include "view/exchange.hpp"
+#include "view/messages.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {

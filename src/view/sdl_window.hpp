@@ -8,7 +8,7 @@
 #include <string>
 
 #include "render/canvas.hpp"
-#include "view/exchange.hpp"
+#include "view/messages.hpp"
 
 namespace pogosim {
 
