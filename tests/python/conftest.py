@@ -1,11 +1,11 @@
-"""What all Python tests share: modules beside them, and test programs compiled once."""
+"""What all Python tests share: modules beside them, test programs compiled once, and a display."""
 
 from __future__ import annotations
 
 import os
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs/figures")]
 
+from display import Display, open_display  # noqa: E402
 from running import PROGRAMS, compile_program  # noqa: E402
 
 Compile = Callable[[str], Path]
@@ -39,3 +40,15 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Compile:
         return compiled[name]
 
     return compile_once
+
+
+@pytest.fixture(scope="module")
+def display() -> Iterator[Display]:
+    """One X server for all tests that leave it alone."""
+    with open_display() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def window_program(program: Compile) -> Path:
+    return program("window.c")

@@ -212,3 +212,23 @@ def shown(
     finally:
         process.kill()
         process.wait()
+
+
+SCALE = 0.95 * 800 / 1000  # pixels per mm of a square of 1 m in a window of 800 x 800 pixels
+
+
+def pixel_of(x_mm: float, y_mm: float) -> tuple[float, float]:
+    """Where a point of the square of 1 m is in a window of 800 x 800 pixels."""
+    return 400 + (x_mm - 500) * SCALE, 400 + (y_mm - 500) * SCALE
+
+
+def differ(a: Picture, b: Picture) -> bool:
+    return a.shape != b.shape or bool((a != b).any())
+
+
+def ended(window: Shown) -> str:
+    """Text of a run that the user ends with Esc."""
+    window.keys("Escape")
+    code, text = window.end()
+    assert code == 0, text
+    return text

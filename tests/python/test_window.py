@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Compile
-from display import Display, Picture, Shown, open_display, shown, wait_for
+from display import Display, Picture, Shown, differ, ended, open_display, pixel_of, shown, wait_for
 from PIL import Image
 from running import Run, build_folder, run, run_command, write_scene
 from window_pictures import FOLDER, PICTURES, PLACES, difference, settled, take
@@ -29,31 +28,9 @@ FLOOR = (0x12, 0x15, 0x1C)
 RED = (210, 0, 0)
 
 
-@pytest.fixture(scope="module")
-def display() -> Iterator[Display]:
-    """One X server for all tests that leave it alone."""
-    with open_display() as opened:
-        yield opened
-
-
-@pytest.fixture(scope="module")
-def window_program(program: Compile) -> Path:
-    return program("window.c")
-
-
-def pixel_of(x_mm: float, y_mm: float) -> tuple[float, float]:
-    """Where a point of the square of 1 m is in a window of 800 x 800 pixels."""
-    scale = 0.95 * 800 / 1000
-    return 400 + (x_mm - 500) * scale, 400 + (y_mm - 500) * scale
-
-
 def colour_at(picture: Picture, x_mm: float, y_mm: float) -> tuple[int, ...]:
     x, y = pixel_of(x_mm, y_mm)
     return tuple(int(value) for value in picture[round(y), round(x)])
-
-
-def differ(a: Picture, b: Picture) -> bool:
-    return a.shape != b.shape or bool((a != b).any())
 
 
 def press(window: Shown, key: str, what: str) -> Picture:
@@ -61,14 +38,6 @@ def press(window: Shown, key: str, what: str) -> Picture:
     before = window.shot()
     window.keys(key)
     return window.wait_for_picture(lambda picture: differ(picture, before), what)
-
-
-def ended(window: Shown) -> str:
-    """Text of a run that the user ends with Esc."""
-    window.keys("Escape")
-    code, text = window.end()
-    assert code == 0, text
-    return text
 
 
 def test_window_changes_no_byte_of_the_data_file(display: Display, window_program: Path, tmp_path: Path) -> None:

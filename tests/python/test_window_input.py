@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
-from conftest import Compile
-from display import Display, Picture, Shown, open_display, shown, wait_for
+from display import Display, Picture, Shown, differ, ended, pixel_of, shown, wait_for
 from running import Run
 from window_pictures import PLACES, settled
 
@@ -40,7 +39,6 @@ RUNNING: dict[str, object] = {**SCENE, "GUI_speed_up": 1.0}
 FLOOR = (0x12, 0x15, 0x1C)
 RED, GREEN = (210, 0, 0), (0, 210, 0)
 LAMP = (0xFF, 0xD1, 0x66)
-SCALE = 0.95 * 800 / 1000  # pixels per mm of the whole arena
 
 # Pixels of the panel "Run".
 BUTTONS = {"pause": (52, 49), "step": (111, 49), "restart": (165, 49), "fastest": (168, 101), "max": (187, 101)}
@@ -60,39 +58,10 @@ TIME = np.s_[10:28, 715:790]
 BESIDE_PANELS = np.s_[:, 250:]
 
 
-@pytest.fixture(scope="module")
-def display() -> Iterator[Display]:
-    """One X server for all tests."""
-    with open_display() as opened:
-        yield opened
-
-
-@pytest.fixture(scope="module")
-def window_program(program: Compile) -> Path:
-    return program("window.c")
-
-
-def pixel_of(x_mm: float, y_mm: float) -> tuple[float, float]:
-    """Where a point of the square of 1 m is in a window of 800 x 800 pixels."""
-    return 400 + (x_mm - 500) * SCALE, 400 + (y_mm - 500) * SCALE
-
-
-def differ(a: Picture, b: Picture) -> bool:
-    return a.shape != b.shape or bool((a != b).any())
-
-
 def centre_of(picture: Picture, colour: tuple[int, int, int]) -> npt.NDArray[np.float64]:
     """Mean place (x, y) of the pixels of a colour; far away when there are none."""
     rows, columns = np.nonzero((picture == colour).all(axis=-1))
     return np.array([columns.mean(), rows.mean()]) if len(rows) else np.array([-1.0e6, -1.0e6])
-
-
-def ended(window: Shown) -> str:
-    """Text of a run that the user ends with Esc."""
-    window.keys("Escape")
-    code, text = window.end()
-    assert code == 0, text
-    return text
 
 
 def recorded_times(folder: Path) -> npt.NDArray[np.float64]:
