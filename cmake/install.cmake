@@ -6,13 +6,20 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# The installed library finds what is not in a system folder where it was at build time. CMake leaves folders inside of
-# the project out of that, such as the one of the Arrow in .venv, so this one is named.
-set_target_properties(pogosim PROPERTIES
-    VERSION "${PROJECT_VERSION}"
-    SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
-    INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}"
-    INSTALL_RPATH_USE_LINK_PATH ON)
+if(SKBUILD)
+    # A Python package: in site-packages/pogosim/simulator/lib, with pyarrow beside pogosim. Wheels cannot hold links, so the
+    # library has no versions in its name.
+    set_target_properties(pogosim PROPERTIES
+        INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>/../../../pyarrow")
+else()
+    # The installed library finds what is not in a system folder where it was at build time. CMake leaves folders inside of
+    # the project out of that, such as the one of the Arrow in .venv, so this one is named.
+    set_target_properties(pogosim PROPERTIES
+        VERSION "${PROJECT_VERSION}"
+        SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+        INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}"
+        INSTALL_RPATH_USE_LINK_PATH ON)
+endif()
 target_include_directories(pogosim INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 
 install(TARGETS pogosim EXPORT pogosimTargets
@@ -44,13 +51,15 @@ install(FILES
     "${PROJECT_BINARY_DIR}/cmake/pogosimConfigVersion.cmake"
     DESTINATION "${package_dir}")
 
-# pogosim.pc, once for each of the two places. The installed one is relative to itself: the tree may be moved, and
-# `cmake --install --prefix` may choose the place late. Blanks in paths are escaped as pkg-config wants it.
-function(pogosim_pkg_config output)
+# How programs are compiled: pogosim.pc for pkg-config, and the same in pogosim.mk for make, which needs no pkg-config. Once
+# for each of the two places. The installed ones are relative to themselves: the tree may be moved, and `cmake --install
+# --prefix` may choose the place late. Blanks in paths are escaped as pkg-config and shells want it.
+function(pogosim_build_settings folder)
     foreach(place includedir libdir interfacedir shared_state template)
         string(REPLACE " " "\\ " ${place} "${${place}}")
     endforeach()
-    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${output}" @ONLY)
+    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${folder}/pogosim.pc" @ONLY)
+    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.mk.in" "${folder}/pogosim.mk" @ONLY)
 endfunction()
 
 file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
@@ -60,8 +69,9 @@ set(libdir "${prefix}${CMAKE_INSTALL_LIBDIR}")
 set(interfacedir "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/interface")
 set(shared_state "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-shared-state")
 set(template "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/template_prj")
-pogosim_pkg_config("${PROJECT_BINARY_DIR}/cmake/pogosim.pc")
-install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+pogosim_build_settings("${PROJECT_BINARY_DIR}/cmake")
+install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" "${PROJECT_BINARY_DIR}/cmake/pogosim.mk"
+    DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 set(includedir "${PROJECT_SOURCE_DIR}/include")
 get_target_property(libdir pogosim LIBRARY_OUTPUT_DIRECTORY)
@@ -71,4 +81,4 @@ endif()
 set(interfacedir "${PROJECT_SOURCE_DIR}/src/interface")
 set(shared_state "${PROJECT_BINARY_DIR}/tools/pogosim-shared-state")
 set(template "${PROJECT_SOURCE_DIR}/template_prj")
-pogosim_pkg_config("${PROJECT_BINARY_DIR}/pogosim.pc")
+pogosim_build_settings("${PROJECT_BINARY_DIR}")

@@ -17,7 +17,13 @@ CLEAN = {
     name: value
     for name, value in os.environ.items()
     if not name.startswith(("POGO", "PKG_CONFIG", "MAKE", "CFLAGS", "CXXFLAGS"))
-} | {"PKG_CONFIG_LIBDIR": "/nowhere", "LC_ALL": "C"}
+} | {
+    "PKG_CONFIG_LIBDIR": "/nowhere",
+    "LC_ALL": "C",
+    "PATH": os.pathsep.join(
+        folder for folder in os.environ["PATH"].split(os.pathsep) if not Path(folder, "pogosim").exists()
+    ),
+}
 
 
 def copy_template(folder: Path, template: Path = TEMPLATE) -> Path:
