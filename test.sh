@@ -100,7 +100,7 @@ release_tests() {
 
 python_tests() {
     suite "Python tests" "$reports/python.xml" \
-        "$python" -m pytest -q -c python/pyproject.toml --rootdir . --numprocesses "$(processors)" --dist loadfile \
+        "$python" -m pytest -q -c pyproject.toml --rootdir . --numprocesses "$(processors)" --dist loadfile \
         tests/python --junitxml "$reports/python.xml"
 }
 
@@ -149,15 +149,15 @@ clang_tidy() {
 }
 
 style_checks() {
-    local ruff="$python -m ruff" sources="python tests/python scripts bench docs/figures"
+    local ruff="$python -m ruff" sources="python tests/python cmake scripts bench docs/figures"
     check "C++ formatting (clang-format 14)" clang_format || true
     # shellcheck disable=SC2086 # a command with arguments, a list of words
-    check "Python style (ruff)" $ruff check --config python/pyproject.toml $sources || true
+    check "Python style (ruff)" $ruff check --config pyproject.toml $sources || true
     # shellcheck disable=SC2086
-    check "Python formatting (ruff)" $ruff format --check --config python/pyproject.toml $sources || true
+    check "Python formatting (ruff)" $ruff format --check --config pyproject.toml $sources || true
     # shellcheck disable=SC2086
     check "Python types (mypy --strict)" env MYPYPATH=python:tests/python \
-        "$python" -m mypy --config-file python/pyproject.toml $sources || true
+        "$python" -m mypy --config-file pyproject.toml $sources || true
 }
 
 release_tests

@@ -126,7 +126,7 @@ def simulate_all(
     totals: dict[Setting, Count] = {}
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         counts = pool.map(lambda run: simulate(run[0], run[1], simulation_time_s), runs)
-        for done, ((setting, _), count) in enumerate(zip(runs, counts), start=1):
+        for done, ((setting, _), count) in enumerate(zip(runs, counts, strict=True), start=1):
             total = totals.get(setting, Count(0, 0))
             totals[setting] = Count(total.sent + count.sent, total.received + count.received)
             if progress:

@@ -1,15 +1,20 @@
 # Finds Apache Arrow C++ (10 or later): the system's, else the one inside the pyarrow wheel of a Python environment.
 #
-# Input:   POGOSIM_PYTHON     Python that has pyarrow (default: the project's own .venv, which ./build.sh makes)
+# Input:   POGOSIM_PYTHON     Python that has pyarrow (default: the project's own .venv, which ./build.sh makes; in a build of
+#                            the Python package, the Python of that build, whose pyarrow is always used)
 # Output:  pogosim::arrow     target to link: headers (as system headers) and library
 #          PogosimArrow_FOUND, PogosimArrow_VERSION, PogosimArrow_ORIGIN
 #          PogosimArrow_LIBRARY_DIR   folder of the wheel's library, for RPATHs; empty for the system's
 
-set(POGOSIM_PYTHON "${PROJECT_SOURCE_DIR}/.venv/bin/python" CACHE FILEPATH
-    "Python whose pyarrow package is used if the system has no Apache Arrow")
+if(SKBUILD)
+    set(POGOSIM_PYTHON "${Python_EXECUTABLE}")
+else()
+    set(POGOSIM_PYTHON "${PROJECT_SOURCE_DIR}/.venv/bin/python" CACHE FILEPATH
+        "Python whose pyarrow package is used if the system has no Apache Arrow")
+    set(_isolated -I)  # keeps PYTHONPATH out, by which pip's builds find their packages
+    find_package(Arrow CONFIG QUIET)  # the system's own
+endif()
 
-# The system's own.
-find_package(Arrow CONFIG QUIET)
 if(Arrow_FOUND AND Arrow_VERSION VERSION_GREATER_EQUAL 10)
     if(TARGET Arrow::arrow_shared)
         set(_arrow_target Arrow::arrow_shared)
@@ -19,9 +24,9 @@ if(Arrow_FOUND AND Arrow_VERSION VERSION_GREATER_EQUAL 10)
     set(PogosimArrow_VERSION "${Arrow_VERSION}")
     set(PogosimArrow_ORIGIN "${Arrow_DIR}")
 elseif(EXISTS "${POGOSIM_PYTHON}")
-    # Asked anew at each configuration: the wheel may have been replaced by another version. -I keeps PYTHONPATH out.
+    # Asked anew at each configuration: the wheel may have been replaced by another version.
     execute_process(
-        COMMAND "${POGOSIM_PYTHON}" -I -c
+        COMMAND "${POGOSIM_PYTHON}" ${_isolated} -c
             "import pyarrow; print(pyarrow.__version__, pyarrow.get_include(), *pyarrow.get_library_dirs(), sep=';', end='')"
         OUTPUT_VARIABLE _pyarrow RESULT_VARIABLE _pyarrow_result ERROR_VARIABLE _pyarrow_error)
     if(_pyarrow_result EQUAL 0)

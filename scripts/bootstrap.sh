@@ -127,13 +127,13 @@ trim_venv() {
 make_venv() {
     local root extra="" stamp=.venv/stamp-$1 key python
     root=$(pwd -P)
-    key="$(cat python/pyproject.toml scripts/bootstrap.sh | cksum) $root"
+    key="$(cat pyproject.toml scripts/bootstrap.sh | cksum) $root"
     if [ "$(cat "$stamp" 2>/dev/null)" = "$key" ] && .venv/bin/python -c '' 2>/dev/null; then
         return
     fi
 
     if [ "$(cat .venv/root 2>/dev/null)" != "$root" ] || ! .venv/bin/python -m pip --version >/dev/null 2>&1; then
-        python=$(system_python) || fail "python3 not found" "Install Python 3.9 or later"
+        python=$(system_python) || fail "python3 not found" "Install Python 3.10 or later"
         say "Making .venv with $python"
         "$python" -m venv --clear .venv || fail "$python -m venv" "See Python's message above; remove .venv and try again"
         printf '%s' "$root" >.venv/root
@@ -144,8 +144,8 @@ make_venv() {
     say "Installing Python packages in .venv"
     # Python compiles modules when it imports them; compiling all of them takes half a minute and 100 MB.
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --no-compile \
-        --editable "./python$extra" ||
-        fail "pip install ./python$extra" "See pip's message above: check the network, then try again"
+        --config-settings wheel.cmake=false --editable ".$extra" ||
+        fail "pip install .$extra" "See pip's message above: check the network, then try again"
     trim_venv
     printf '%s' "$key" | tee .venv/stamp-build >"$stamp"
 }

@@ -92,7 +92,7 @@ def draw(folder: Path) -> dict[str, Picture]:
     spread = ("chessboard", {"formation_cluster_at_center": False})
     drawn = []
     (folder / "spiral.csv").write_text(spiral(), encoding="utf-8")
-    for axes, (name, options) in zip(panels, [*((name, {}) for name in FORMATIONS), spread]):
+    for axes, (name, options) in zip(panels, [*((name, {}) for name in FORMATIONS), spread], strict=True):
         drawn.append(draw_swarm(axes, place(folder, name, options)))
         axes.set_title("\n".join([name, *(f"{k}: {str(v).lower()}" for k, v in options.items())]), fontsize=8)
     return {"formations.png": from_figure(figure, 85, *drawn)}

@@ -53,7 +53,7 @@ def draw(folder: Path) -> dict[str, Picture]:
     """Run all and draw them in one figure."""
     figure = Figure(figsize=(12, 8.6), facecolor=PAPER, layout="constrained")
     drawn = []
-    for axes, example in zip(figure.subplots(2, 3).flat, EXAMPLES):
+    for axes, example in zip(figure.subplots(2, 3).flat, EXAMPLES, strict=True):
         data = folder / f"{example.name}.feather"
         run(example, data)
         swarm = read_swarm(data)

@@ -141,10 +141,10 @@ def draw(folder: Path) -> dict[str, Picture]:
     grid = figure.subplots(len(SCENES), 4)
     program = compile_probe(folder)
     drawn = []
-    for panels, (title, lamps, times_s) in zip(grid, SCENES):
+    for panels, (title, lamps, times_s) in zip(grid, SCENES, strict=True):
         measured = levels(program, folder, lamps, max(times_s))
         drawn.append(measured)
-        for axes, time_s in zip(panels, times_s):
+        for axes, time_s in zip(panels, times_s, strict=True):
             level = measured.loc[np.isclose(measured.index, time_s)].to_numpy().reshape(CELLS, CELLS)
             axes.imshow(level, cmap="inferno", vmin=0, vmax=BRIGHTEST, extent=(0, SIDE_MM, SIDE_MM, 0))
             axes.set_title(f"{time_s:.1f} s", fontsize=8)

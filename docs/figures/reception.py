@@ -67,7 +67,7 @@ def draw_panels(measured: pd.DataFrame) -> Figure:
     figure = Figure(figsize=(9.0, 3.2), layout="constrained")
     panels = figure.subplots(1, len(NEIGHBOURS), sharey=True)
     p = np.linspace(0.0, 1.0, 201)
-    for axes, neighbours in zip(panels, NEIGHBOURS):
+    for axes, neighbours in zip(panels, NEIGHBOURS, strict=True):
         for payload, colour in COLOURS.items():
             rows = measured[(measured["nb_neighbors"] == neighbours) & (measured["payload_size"] == payload)]
             axes.plot(p, reception_probability(SHORT_HEADER_BYTES + payload, p, 1 + neighbours), color=colour)

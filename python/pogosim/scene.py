@@ -217,7 +217,7 @@ def read_lamp(settings: dict[str, Any]) -> Lamp:
     orbits = type_of(settings) != "static_light"
     centre = [value(axis, 0.0) for axis in ("x", "y")]
     if orbits:
-        centre = [value(f"center_{axis}", own) for axis, own in zip(("x", "y"), centre)]
+        centre = [value(f"center_{axis}", own) for axis, own in zip(("x", "y"), centre, strict=True)]
     return Lamp(
         shape=shape_of(settings),
         centre_mm=(centre[0], centre[1]),

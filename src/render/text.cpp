@@ -2,11 +2,12 @@
 
 #include <imgui.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
+
+#include "base/library_folder.hpp"
 
 namespace pogosim {
 
@@ -25,6 +26,9 @@ constexpr std::array kFonts{
     "/System/Library/Fonts/SFNS.ttf",
     "/System/Library/Fonts/Supplemental/Arial.ttf",
     "/Library/Fonts/Arial.ttf",
+#ifdef POGOSIM_FONT_FROM_LIBRARY
+    POGOSIM_FONT_FROM_LIBRARY,
+#endif
 };
 
 /// Takes the first character off the text; '?' for what Latin-1 does not have, or is no UTF-8.
@@ -46,12 +50,15 @@ ImWchar next_character(std::string_view& text) {
 }  // namespace
 
 std::string_view system_font() {
-    static std::string_view const found = [] {
+    static std::string const found = [] {
         std::error_code ignored;
-        auto const* const font = std::find_if(kFonts.begin(), kFonts.end(), [&](char const* path) {
-            return std::filesystem::is_regular_file(path, ignored);
-        });
-        return font == kFonts.end() ? std::string_view{} : std::string_view{*font};
+        for (char const* const font : kFonts) {
+            std::filesystem::path const path = library_folder() / font;  // an absolute path stays as it is
+            if (std::filesystem::is_regular_file(path, ignored)) {
+                return path.string();
+            }
+        }
+        return std::string{};
     }();
     return found;
 }

@@ -1,6 +1,5 @@
 #include "sim/find_file.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,20 +8,21 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/library_folder.hpp"
 
 namespace pogosim {
 
 namespace {
 
-/// Folders with the bundled arenas: of the installed library, wherever it has been moved to, and of the sources.
+/// Folders with the bundled arenas: of the installed library, and of the sources.
 std::vector<std::filesystem::path> data_folders() {
     std::vector<std::filesystem::path> folders;
-    Dl_info library = {};
-    if (dladdr(reinterpret_cast<void const*>(&find_file), &library) != 0 && library.dli_fname != nullptr) {
-        std::filesystem::path const folder = std::filesystem::path(library.dli_fname).parent_path();
-        folders.push_back(folder / POGOSIM_DATA_FROM_LIBRARY);
+    if (std::filesystem::path const library = library_folder(); !library.empty()) {
+        folders.push_back(library / POGOSIM_DATA_FROM_LIBRARY);
     }
-    folders.emplace_back(POGOSIM_SOURCE_DATA_DIR);
+    if (std::filesystem::path sources = POGOSIM_SOURCE_DATA_DIR; !sources.empty()) {
+        folders.push_back(std::move(sources));
+    }
     return folders;
 }
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "base/background_thread.hpp"
+#include "base/library_folder.hpp"
 #include "view/module.hpp"
 
 namespace pogosim {
@@ -20,15 +21,6 @@ constexpr std::chrono::seconds kLongestOpening{20};
 constexpr std::chrono::seconds kLongestClosing{2};
 
 std::atomic<bool> left_behind = false;
-
-/// Beside this library: where it is built, and where it is installed.
-std::filesystem::path module_path() {
-    Dl_info here;
-    if (dladdr(reinterpret_cast<void*>(&left_behind), &here) == 0) {
-        return kModuleFile;
-    }
-    return std::filesystem::path(here.dli_fname).parent_path() / kModuleFile;
-}
 
 /// SDL says little of a missing display.
 void check_display() {
@@ -44,7 +36,7 @@ void check_display() {
 }
 
 ShowWindow load_module() {
-    std::string const path = module_path().string();
+    std::string const path = (library_folder() / kModuleFile).string();  // where it is built, and where it is installed
     void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (module == nullptr) {
         throw std::runtime_error(fmt::format("the module of the window cannot be loaded: {}", dlerror()));

@@ -149,7 +149,7 @@ class Shown:
         time.sleep(0.1)
         self.display.xdotool("mousedown", str(button))
         for i in range(1, steps + 1):
-            self.move_mouse(*(a + (b - a) * i / steps for a, b in zip(start, end)))
+            self.move_mouse(*(a + (b - a) * i / steps for a, b in zip(start, end, strict=True)))
             time.sleep(0.05)
         time.sleep(0.1)
         self.display.xdotool("mouseup", str(button))

@@ -100,13 +100,13 @@ def test_output_is_that_of_the_article(tmp_path: Path) -> None:
     lines = many.output.splitlines()
     outputs = [f"results/result_{nb}.feather" for nb in (50, 100, 150)]
     assert lines[0] == "Found 6 combination(s) to run."
-    for line, output in zip(lines[1:7], outputs * 2):
+    for line, output in zip(lines[1:7], outputs * 2, strict=True):
         assert line.startswith(f"Task: Config file {tmp_path}/tmp/combo_")
         assert line.endswith(f".yaml -> Output: {output}")
     assert lines[7] == "Removed stale result file: results/result_50.feather"
     assert lines[8:14] == [
         line
-        for output, count in zip(outputs, (100, 200, 300))
+        for output, count in zip(outputs, (100, 200, 300), strict=True)
         for line in (f"Created {output} with {count} rows", f"Appended {count} rows to {output}")
     ]
     assert lines[14:] == ["Batch run completed. Generated output files:", *(f" - {output}" for output in outputs * 2)]

@@ -37,7 +37,7 @@ def polygons(result: Run) -> list[npt.NDArray[np.float64]]:
 
 def distance_to_walls(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     nearest = np.full(len(points), np.inf)
-    for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         along = np.clip((points - a) @ (b - a) / np.dot(b - a, b - a), 0, 1)
         nearest = np.minimum(nearest, np.hypot(*(points - a - along[:, None] * (b - a)).T))
     return nearest

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -137,7 +138,7 @@ def test_coverage_runs_take_times_of_the_chosen_law(law: str, longer_than_twice:
     durations: list[float] = []
     for robot in state.T:
         starts = np.flatnonzero(np.diff(robot)) + 1
-        durations += [0.05 * (b - a) for a, b in zip(starts[:-1], starts[1:], strict=True) if robot[a] == RUN]
+        durations += [0.05 * (b - a) for a, b in itertools.pairwise(starts) if robot[a] == RUN]
     assert len(durations) > 1000
     assert min(durations) > 0.5
     assert max(durations) < 6.1

@@ -106,7 +106,7 @@ def test_categories_choose_rows(program: Compile, tmp_path: Path) -> None:
     both = {"objects.robots.nb": 2, "objects.others": OTHERS}
     frame = columns(program, tmp_path, **both).frame()
     first = frame[frame["time"] == 0]
-    assert list(zip(first["robot_category"], first["robot_id"])) == [
+    assert list(zip(first["robot_category"], first["robot_id"], strict=True)) == [
         ("robots", 0),
         ("robots", 1),
         ("others", 2),

@@ -136,7 +136,7 @@ def test_rows_stand_in_order_of_creation_at_every_time(mixed: Run) -> None:
     times = frame["time"].unique()
     np.testing.assert_array_equal(times, np.arange(301, dtype=np.float32))
     for _, now in frame.groupby("time"):
-        assert list(zip(now["robot_category"], now["subpart_id"])) == expected
+        assert list(zip(now["robot_category"], now["subpart_id"], strict=True)) == expected
 
 
 def test_everything_has_a_place_and_what_bends_has_no_angle(mixed: Run) -> None:

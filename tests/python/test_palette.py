@@ -51,9 +51,3 @@ def test_swarm_picture_uses_it() -> None:
     assert colours["floor"] == swarm_picture.FLOOR
     assert colours["paper"] == swarm_picture.PAPER
     assert tuple(swarm_picture.led_colours([0])[0]) == pytest.approx(swarm_picture.DARK_LED)
-
-
-def test_is_part_of_the_installed_package() -> None:
-    settings = (PROJECT / "python" / "pyproject.toml").read_text(encoding="utf-8")
-    listed = re.search(r"^\[tool\.setuptools\.package-data\]\npogosim = \[(.*)\]$", settings, re.MULTILINE)
-    assert listed and f'"{PALETTE.name}"' in listed.group(1)

@@ -77,7 +77,7 @@ def test_rounds_come_15_times_a_second_once_the_neighbours_are_known(grid: pd.Da
 def test_robots_count_their_neighbours(grid: pd.DataFrame) -> None:
     near = neighbors_on_grid(grid)
     end = grid[grid["time"] == 60]
-    for robot, listed, total in zip(end["robot_id"], end["neighbors_list"], end["total_neighbors"]):
+    for robot, listed, total in zip(end["robot_id"], end["neighbors_list"], end["total_neighbors"], strict=True):
         assert {int(text) for text in listed.split(",")} == set(np.flatnonzero(near[robot]))
         assert total == near[robot].sum()
 
@@ -94,7 +94,7 @@ def test_one_way_links_do_not_change_the_mean(tmp_path: Path, seed: int) -> None
     settings: dict[str, object] = {"initial_formation": "random", "arena_surface": 5.0e5, "seed": seed}
     frame = run(tmp_path, NEVER_LOST, **settings)
     end = frame[frame["time"] == 60]
-    heard = zip(end["robot_id"], end["neighbors_list"].str.split(","))
+    heard = zip(end["robot_id"], end["neighbors_list"].str.split(","), strict=True)
     links = {(int(other), int(robot)) for robot, others in heard for other in others}
     assert len({(a, b) for a, b in links if (b, a) not in links}) > 5
     np.testing.assert_allclose(by_robot(frame, "w_value").sum(axis=1), NB, rtol=1e-6)

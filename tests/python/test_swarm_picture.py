@@ -179,7 +179,7 @@ class Map:
         self.origin = (red[0] - 50 * self.pixels_per_mm, red[1] - 100 * self.pixels_per_mm)
 
     def at(self, x: float, y: float) -> npt.NDArray[np.float64]:
-        row, column = (round(start + self.pixels_per_mm * mm) for start, mm in zip(self.origin, (y, x)))
+        row, column = (round(start + self.pixels_per_mm * mm) for start, mm in zip(self.origin, (y, x), strict=True))
         return np.asarray(self.image[row, column])
 
     def brightness(self, x: float, y: float) -> float:

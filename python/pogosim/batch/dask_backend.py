@@ -60,7 +60,7 @@ def outcomes_of(tasks: Sequence[Task], client: Any, cluster: Any) -> Generator[O
     try:
         as_completed: Any = importlib.import_module("distributed").as_completed
         futures = [client.submit(do_run, task, key=f"pogosim-{task.batch}-{task.key}", pure=False) for task in tasks]
-        left = {future.key: task for future, task in zip(futures, tasks)}
+        left = {future.key: task for future, task in zip(futures, tasks, strict=True)}
         for future in as_completed(futures, raise_errors=False):
             task = left.pop(future.key)
             if future.status == "finished":

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Union
+from typing import Any
 
-Path = Union[str, Sequence[str]]
+Path = str | Sequence[str]
 
 
 def steps_of(path: Path) -> list[str]:
