@@ -16,7 +16,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
@@ -288,10 +288,10 @@ def copy_over(scratch: Path, target: Path) -> None:
         raise RecoverError(f"{target} cannot be overwritten: {error.strerror}. All rows are in {scratch}") from error
 
 
-def main(arguments: list[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") -> int:
     """Run the command. Returns its exit code: 0 done, 2 nothing could be done, or nothing be said of it."""
     parser = argparse.ArgumentParser(
-        prog="pogosim-recover", description="Makes a complete Feather file of a data file whose run was killed."
+        prog=prog, description="Makes a complete Feather file of a data file whose run was killed."
     )
     parser.add_argument("file", help="data file of the run")
     parser.add_argument("-o", "--output", help="file to write; without it, the data file is replaced")
@@ -299,22 +299,22 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         unfinished = recover(options.file, options.output)
     except (RecoverError, OutputError) as error:
-        print(f"pogosim-recover: {error}", file=sys.stderr)
+        print(f"{prog}: {error}", file=sys.stderr)
         return 2
     except OSError as error:
         reason = os.strerror(error.errno) if error.errno else error
-        print(f"pogosim-recover: {error.filename or options.file}: {reason}", file=sys.stderr)
+        print(f"{prog}: {error.filename or options.file}: {reason}", file=sys.stderr)
         return 2
     except (pa.ArrowException, MemoryError) as error:
         reason = "there is not enough memory for its rows" if isinstance(error, MemoryError) else error
-        print(f"pogosim-recover: {options.file} cannot be recovered: {reason}", file=sys.stderr)
+        print(f"{prog}: {options.file} cannot be recovered: {reason}", file=sys.stderr)
         return 2
     target = options.output or options.file
     try:
         say(f"{target}: {unfinished.up_to}")
     except OSError as error:
         print(
-            f"pogosim-recover: {target} is complete, but the standard output cannot be written: {error.strerror}",
+            f"{prog}: {target} is complete, but the standard output cannot be written: {error.strerror}",
             file=sys.stderr,
         )
         return 2

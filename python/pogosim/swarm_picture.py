@@ -15,6 +15,7 @@ import json
 import math
 import sys
 import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -231,7 +232,7 @@ def coloured(rows: pd.DataFrame, categories: dict[str, Category]) -> pd.DataFram
         colours[rows["robot_category"].isin(passive).to_numpy()] = NO_LED
     else:
         colours = category_colours(rows["robot_category"])
-    return rows.assign(**dict(zip(RGB, colours.T)))
+    return rows.assign(**dict(zip(RGB, colours.T, strict=True)))
 
 
 def box_around(rows: pd.DataFrame, categories: dict[str, Category]) -> Floats:
@@ -624,9 +625,9 @@ def make_picture(data: str, picture: str, dpi: float, tail_s: float | None) -> N
     path.write_bytes(rendered(figure, picture, dpi))
 
 
-def main(arguments: list[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None, prog: str = "swarm_picture") -> int:
     """Run the command line; returns the exit code: 0, or 2 if the picture could not be made."""
-    parser = argparse.ArgumentParser(prog="swarm_picture", description=(__doc__ or "").splitlines()[0])
+    parser = argparse.ArgumentParser(prog=prog, description=(__doc__ or "").splitlines()[0])
     parser.add_argument("data", metavar="DATA.feather", help="data file of a run")
     parser.add_argument("picture", metavar="OUT.png", help=f"picture to write ({', '.join(PICTURES)})")
     parser.add_argument("--dpi", type=positive, default=150.0, help="dots per inch (150)")
@@ -635,14 +636,14 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         make_picture(options.data, options.picture, options.dpi, options.tail)
     except (PictureError, OutputError) as error:
-        print(f"swarm_picture: {error}", file=sys.stderr)
+        print(f"{prog}: {error}", file=sys.stderr)
         return 2
     except OSError as error:
         is_data = str(error.filename) == options.data
         task = f"read '{options.data}'" if is_data else f"write '{options.picture}'"
         is_missing = is_data and isinstance(error, FileNotFoundError)
         reason = "no such file" if is_missing else (error.strerror or str(error)).lower()
-        print(f"swarm_picture: cannot {task}: {reason}", file=sys.stderr)
+        print(f"{prog}: cannot {task}: {reason}", file=sys.stderr)
         return 2
     return 0
 

@@ -1,0 +1,1 @@
+"""The command `pogosim` and its subcommands, one module each."""

@@ -1,0 +1,212 @@
+"""`pogosim doctor`: tries what works on this machine, and says what is missing for what."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pogosim
+from pogosim.command.parser import Parser
+from pogosim.installation import Installation, InstallationError, find_installation
+from pogosim.outputs import say
+
+PROGRAM = """#include "pogobase.h"
+typedef struct { int n; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+void user_init(void) {}
+void user_step(void) { mydata->n++; }
+int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+"""
+CONFIGURATION = """arena_file: arenas/disk.csv
+simulation_time: 0.5
+data_filename: data.feather
+console_filename: console.txt
+objects: {robots: {type: pogobot, nb: 3}}
+"""
+# Loads a library as a program does; Python's own would tell less.
+LOAD = "import ctypes, sys; ctypes.CDLL(sys.argv[1])"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found about one thing that users want to do."""
+
+    purpose: str
+    is_fine: bool
+    found: str
+    advice: str = ""
+
+
+def first_line(*command: str) -> str:
+    """Return the first line that a command prints; raises OSError if it cannot be run, or fails."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise OSError(f"{command[0]} fails: {last_line(done)}")
+    return done.stdout.strip().splitlines()[0] if done.stdout.strip() else ""
+
+
+def last_line(done: subprocess.CompletedProcess[str]) -> str:
+    """Return the last line that a command has printed."""
+    lines = (done.stdout + done.stderr).strip().splitlines()
+    return lines[-1] if lines else f"exit code {done.returncode}"
+
+
+def compiler(variable: str, usual: str) -> list[str]:
+    """Return the command of a compiler, as make would take it."""
+    return shlex.split(os.environ.get(variable) or usual)
+
+
+def check_programs(found: Installation, purpose: str, suffix: str, command: Sequence[str], advice: str) -> Finding:
+    """Compile and run a program, the only check that counts."""
+    if shutil.which(command[0]) is None:
+        return Finding(purpose, False, f"the compiler '{command[0]}' is not installed", advice)
+    with tempfile.TemporaryDirectory(prefix="pogosim-doctor-") as folder:
+        source = Path(folder, f"main{suffix}")
+        source.write_text(PROGRAM)
+        Path(folder, "test.yaml").write_text(CONFIGURATION)
+        flags = [*found.compiler_flags, "-lpogosim", "-lm"]
+        done = subprocess.run(
+            [*command, source, "-o", "main", *flags], cwd=folder, capture_output=True, text=True, check=False
+        )
+        if done.returncode != 0:
+            return Finding(purpose, False, f"a test program does not compile: {last_line(done)}", advice)
+        done = subprocess.run(
+            ["./main", "-c", "test.yaml", "-g", "-q"], cwd=folder, capture_output=True, text=True, check=False
+        )
+    if done.returncode != 0:
+        reinstall = "install pyarrow in the version that pip show pogosim requires" if "libarrow" in done.stderr else ""
+        return Finding(purpose, False, f"a test program does not run: {last_line(done)}", reinstall)
+    return Finding(purpose, True, f"compiled and ran a test program with {first_line(*command, '--version')}")
+
+
+def check_make() -> Finding:
+    """Look for make."""
+    if shutil.which("make") is None:
+        return Finding("Projects", False, "make is not installed", "apt install make")
+    return Finding("Projects", True, first_line("make", "--version"))
+
+
+def check_shared_state(found: Installation) -> Finding:
+    """Try the tool that finds variables shared by mistake."""
+    purpose = "Shared variables"
+    if not found.shared_state.is_file():
+        return Finding(
+            purpose, False, "this Pogosim has no pogosim-shared-state", "apt install libdw-dev, then build it again"
+        )
+    done = subprocess.run([found.shared_state, "--help"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        return Finding(purpose, False, f"pogosim-shared-state does not run: {last_line(done)}", "apt install libdw1")
+    return Finding(purpose, True, "checked at every make sim")
+
+
+def check_window(found: Installation) -> Finding:
+    """Load the module of the window, and look for a display."""
+    modules = sorted(found.library.glob("libpogosim_view-v*"))
+    if not modules:
+        return Finding("Window", False, f"there is no libpogosim_view in {found.library}", "install Pogosim again")
+    done = subprocess.run([sys.executable, "-c", LOAD, modules[0]], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        return Finding("Window", False, last_line(done), "apt install libsdl2-2.0-0")
+    has_display = any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"))
+    if not has_display and platform.system() != "Darwin":
+        found_none = "no display: neither DISPLAY nor WAYLAND_DISPLAY is set"
+        return Finding("Window", False, found_none, "run with -g, or connect with ssh -X; films need no display")
+    return Finding("Window", True, "the display and SDL are there")
+
+
+def check_films() -> Finding:
+    """Look for ffmpeg."""
+    if shutil.which("ffmpeg") is None:
+        return Finding("Films", False, "ffmpeg is not installed", "apt install ffmpeg")
+    version = " ".join(first_line("ffmpeg", "-version").split()[:3])
+    encoders = subprocess.run(["ffmpeg", "-hide_banner", "-encoders"], capture_output=True, text=True, check=False)
+    lacking = [name for name in ("libx264", "libvpx-vp9") if name not in encoders.stdout]
+    if lacking:
+        return Finding("Films", False, f"{version} has no {' and no '.join(lacking)}", "only some formats work")
+    return Finding("Films", True, f"{version}, mp4, webm and gif")
+
+
+def check_batches() -> Finding:
+    """Count processors."""
+    can_tell = hasattr(os, "sched_getaffinity")
+    count = len(os.sched_getaffinity(0)) if can_tell else os.cpu_count() or 1
+    return Finding("Batches", True, f"{count} runs at the same time, one per processor")
+
+
+def check_clusters() -> Finding:
+    """Look for the packages and programs that batches on several machines need."""
+    lacking = [name for name in ("distributed", "dask_jobqueue") if importlib.util.find_spec(name) is None]
+    slurm = "SLURM's sbatch is there" if shutil.which("sbatch") else "no sbatch of SLURM"
+    if "distributed" in lacking:
+        return Finding("Clusters", False, f"Dask is not installed; {slurm}", 'pip install "pogosim[dask]"')
+    jobqueue = "without dask-jobqueue" if lacking else "with dask-jobqueue"
+    return Finding("Clusters", True, f"Dask is installed, {jobqueue}; {slurm}")
+
+
+def check_robots() -> Finding:
+    """Look for the robots' compiler and SDK."""
+    name = "riscv64-unknown-elf-gcc"
+    if shutil.which(name) is None:
+        advice = "apt install gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf"
+        return Finding("Real robots", False, f"their compiler, {name}, is not installed", advice)
+    sdk = os.environ.get("POGO_SDK")
+    if not sdk:
+        return Finding(
+            "Real robots", False, f"{name} is there, POGO_SDK is not set", "export POGO_SDK=<folder of the SDK>"
+        )
+    if not Path(sdk, "tools", "variables.mak").is_file():
+        return Finding("Real robots", False, f"there is no Pogobot SDK in POGO_SDK={sdk}", "set POGO_SDK to its folder")
+    return Finding("Real robots", True, f"{first_line(name, '--version')}; SDK in {sdk}")
+
+
+def findings(found: Installation) -> Iterator[Finding]:
+    """Try everything, what is most important first."""
+    yield check_programs(found, "C programs", ".c", [*compiler("CC", "cc"), "-std=gnu11"], "apt install gcc")
+    yield check_programs(found, "C++ programs", ".cpp", [*compiler("CXX", "c++"), "-std=gnu++20"], "apt install g++")
+    yield check_make()
+    yield check_shared_state(found)
+    yield check_window(found)
+    yield check_films()
+    yield check_batches()
+    yield check_clusters()
+    yield check_robots()
+
+
+def show(finding: Finding) -> None:
+    """Print a finding as one line, and a second one with the advice."""
+    mark = "ok" if finding.is_fine else "missing"
+    say(f"{finding.purpose:17} {mark:8} {finding.found}")
+    if finding.advice:
+        say(f"{'':27}{finding.advice}")
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim doctor") -> int:
+    """Run the command. Returns its exit code: 0 programs in C can be compiled and run, 2 they cannot."""
+    Parser(
+        prog=prog,
+        description="Tries what works on this machine, and says what is missing for what. "
+        "Exit code: 0 if C programs can be compiled and run, otherwise 2.",
+    ).parse_args(arguments)
+    python = platform.python_version()
+    try:
+        found = find_installation()
+    except InstallationError as error:
+        say(f"Pogosim {pogosim.__version__}, Python {python}")
+        show(Finding("Simulator", False, str(error)))
+        return 2
+    say(f"Pogosim {found.version} in {found.folder}, Python {python}, {platform.platform(terse=True)}")
+    done = []
+    for finding in findings(found):
+        show(finding)
+        done.append(finding)
+    return 0 if done[0].is_fine else 2

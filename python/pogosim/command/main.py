@@ -1,0 +1,89 @@
+"""The command `pogosim`: finds the subcommand and leaves the rest of the command line to it."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import pogosim
+from pogosim.outputs import say
+
+WRONG_USAGE = 2
+INTERRUPTED = 130
+
+
+class Subcommand(NamedTuple):
+    """A subcommand; its module has `main(arguments, prog) -> exit code`, and is imported when it is called."""
+
+    module: str
+    summary: str
+
+
+SUBCOMMANDS = {
+    "new": Subcommand("pogosim.command.new", "make a project: a program, a configuration and a Makefile"),
+    "run": Subcommand("pogosim.command.run", "compile a project or a source file, and run it"),
+    "batch": Subcommand("pogosim.pogobatch", "run a program many times, with every combination of options"),
+    "picture": Subcommand("pogosim.swarm_picture", "draw the trajectories of a run"),
+    "recover": Subcommand("pogosim.recover", "make a complete data file of a run that was killed"),
+    "doctor": Subcommand("pogosim.command.doctor", "say what works on this machine, and what is missing for what"),
+    "path": Subcommand("pogosim.command.path", "print the folder of the simulator, POGOSIM_DIR of Makefiles"),
+}
+
+
+def usage() -> str:
+    """Return what `pogosim --help` prints."""
+    width = max(map(len, SUBCOMMANDS))
+    listed = [f"  {name:{width}}  {command.summary}" for name, command in SUBCOMMANDS.items()]
+    return "\n".join(
+        [
+            "Usage: pogosim COMMAND [OPTIONS]",
+            "",
+            "Simulates swarms of Pogobots.",
+            "",
+            "Commands:",
+            *listed,
+            "",
+            "Options:",
+            "  -h, --help     print this help; pogosim COMMAND --help: that of a command",
+            "  -V, --version  print the version",
+        ]
+    )
+
+
+def unknown(name: str) -> str:
+    """Return what is said of a name that is no subcommand."""
+    if name.startswith("-"):
+        return f"pogosim: there is no option {name} before the command; pogosim --help lists all commands"
+    near = difflib.get_close_matches(name, SUBCOMMANDS, n=1)
+    question = f"; did you mean '{near[0]}'?" if near else "; pogosim --help lists all commands"
+    return f"pogosim: there is no command '{name}'{question}"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line. Returns the exit code, which is 2 for wrong usage."""
+    name, *rest = list(sys.argv[1:] if arguments is None else arguments) or [""]
+    if name in ("-h", "--help", "help"):
+        say(usage())
+        return 0
+    if name in ("-V", "--version"):
+        say(f"pogosim {pogosim.__version__}")
+        return 0
+    if not name:
+        print(usage(), file=sys.stderr)
+        return WRONG_USAGE
+    if name not in SUBCOMMANDS:
+        print(unknown(name), file=sys.stderr)
+        return WRONG_USAGE
+    module = importlib.import_module(SUBCOMMANDS[name].module)
+    try:
+        code: int = module.main(rest, f"pogosim {name}")
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,130 @@
+"""`pogosim run`: compiles a project or a source file, and runs it."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from pogosim.command.parser import Parser, complain
+from pogosim.installation import Installation, InstallationError, find_installation
+
+STANDARDS = {".c": ("CC", "cc", "CFLAGS", "gnu11"), ".cpp": ("CXX", "c++", "CXXFLAGS", "gnu++20")}
+EPILOG = """All other options are the simulator's: -c CONFIG, -g (no window), -s SEED, --set KEY=VALUE and others.
+Without -c, a project is run with its conf/test.yaml. Paths are relative to the working folder."""
+
+
+class RunError(Exception):
+    """There is nothing to run, or it cannot be compiled; says why."""
+
+
+def compile_file(source: Path, pogosim: Installation) -> Path:
+    """Compile a program of one file; returns the program: build/NAME beside the source.
+
+    Raises:
+        RunError: It does not compile. The compiler has said why.
+    """
+    program = source.parent / "build" / source.stem
+    program.parent.mkdir(exist_ok=True)
+    variable, compiler, flags, standard = STANDARDS[source.suffix]
+    command = [
+        *shlex.split(os.environ.get(variable) or compiler),
+        f"-std={standard}",
+        *("-g", "-O2", "-Wall", "-Wextra"),
+        *shlex.split(os.environ.get(flags, "")),
+        str(source),
+        *("-o", str(program)),
+        *pogosim.compiler_flags,
+        *("-lpogosim", "-lm"),
+    ]
+    try:
+        code = subprocess.run(command, check=False).returncode
+    except FileNotFoundError:
+        raise RunError(
+            f"the compiler '{command[0]}' is not installed (Debian, Ubuntu: apt install gcc g++ make)"
+        ) from None
+    if code != 0:
+        raise RunError(f"{source} does not compile; see the compiler's messages above")
+    if pogosim.shared_state.is_file():
+        subprocess.run([pogosim.shared_state, program], check=False)
+    return program
+
+
+def make_project(folder: Path, pogosim: Installation) -> Path:
+    """Run `make sim` in a project; returns its program.
+
+    Raises:
+        RunError: It fails. make has said why.
+    """
+    if not (folder / "Makefile").is_file():
+        raise RunError(f"{folder} is not a project: it has no Makefile (pogosim new NAME makes a project)")
+    command = ["make", "--silent", "--no-print-directory", "-C", str(folder), "sim"]
+    has_own = (folder / "pogosim").exists() or "POGOSIM_DIR" in os.environ
+    environment = os.environ | ({} if has_own else {"POGOSIM_DIR": str(pogosim.folder)})
+    try:
+        code = subprocess.run(command, check=False, env=environment, stdout=sys.stderr).returncode
+    except FileNotFoundError:
+        raise RunError("make is not installed (Debian, Ubuntu: apt install make)") from None
+    if code != 0:
+        raise RunError(f"{folder} cannot be built; see the messages above")
+    return folder / folder.resolve().name
+
+
+def program_of(what: Path, pogosim: Installation) -> Path:
+    """Return the program of a project's folder, a source file or a program; compiles the first two.
+
+    Raises:
+        RunError: There is none.
+    """
+    if what.is_dir():
+        return make_project(what, pogosim)
+    if not what.exists():
+        raise RunError(f"there is no project, source file or program {what}")
+    if what.suffix in STANDARDS:
+        return compile_file(what, pogosim)
+    if not os.access(what, os.X_OK):
+        raise RunError(f"{what} is neither a folder, a .c or .cpp file, nor a program")
+    return what
+
+
+def has_configuration(options: Sequence[str]) -> bool:
+    """Tell whether the simulator's options name a configuration, or ask for something that needs none."""
+    return any(
+        option.startswith(("-c", "--config")) or option in ("-h", "--help", "-V", "--version") for option in options
+    )
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim run") -> int:
+    """Run the command. Returns 2 if there is nothing to run; otherwise, the program takes the place of this process."""
+    parser = Parser(
+        prog=prog,
+        usage=f"{prog} [PROJECT] [OPTIONS OF THE SIMULATOR]",
+        description="Compiles a project or a source file, and runs it.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        add_help=False,
+    )
+    parser.add_argument("project", metavar="PROJECT", help="folder of a project, .c or .cpp file, or program (.)")
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    what, options = (Path(given[0]), given[1:]) if given and not given[0].startswith("-") else (Path(), given)
+    if given[:1] in (["-h"], ["--help"]):
+        parser.print_help()
+        return 0
+    try:
+        program = program_of(what, find_installation())
+    except (InstallationError, RunError) as error:
+        return complain(prog, error)
+    except OSError as error:
+        return complain(prog, f"cannot build {what}: {error.strerror}")
+    configuration = what / "conf" / "test.yaml"
+    if not has_configuration(options) and configuration.is_file():
+        options = ["-c", str(configuration), *options]
+    sys.stdout.flush()
+    try:
+        os.execv(program, [str(program), *options])
+    except OSError as error:
+        return complain(prog, f"cannot run {program}: {error.strerror}")
