@@ -20,13 +20,15 @@ import first_program
 import formations
 import gallery
 import lamps
+import parameter_study
 import reception
 import swarm
 import window
 from pictures import DOCS, difference, keep
 
 SCRIPTS: dict[str, ModuleType] = {
-    script.__name__: script for script in (first_program, formations, gallery, lamps, reception, swarm, window)
+    script.__name__: script
+    for script in (first_program, formations, gallery, lamps, parameter_study, reception, swarm, window)
 }
 
 

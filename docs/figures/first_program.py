@@ -10,49 +10,34 @@ they print must be in their output. `make bin` is left out unless POGO_SDK says 
 from __future__ import annotations
 
 import os
-import re
-import subprocess
 import sys
 from pathlib import Path
 
+from pages import check_printed, code_blocks, run
 from pictures import DOCS, ROOT, Picture, fingerprint
 from pogosim.utils import load_dataframe
 
-BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
 PLACES = {"~/pogosim": str(ROOT), "~/pogobot-sdk": os.environ.get("POGO_SDK", "")}
 FILES = {"c": "main.c", "yaml": "conf/crowds.yaml", "python": "plot.py"}
 NAMES = ("first_program_run.png", "first_program_plot.png")
 
 
-def run(commands: str, folder: Path) -> str:
-    """Run shell commands; return what they printed."""
+def commanded(commands: str, folder: Path) -> str:
+    """Run shell commands of the page; return what they printed."""
     for place, here in PLACES.items():
         commands = commands.replace(place, here)
-    environment = {**os.environ, "POGOSIM_DIR": str(ROOT)}
-    done = subprocess.run(
-        ["bash", "-euc", commands],
-        cwd=folder,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    if done.returncode != 0:
-        sys.exit(f"{commands}\n{done.stdout}")
-    return done.stdout
+    return run(commands, folder, {**os.environ, "POGOSIM_DIR": str(ROOT)}, timeout_s=120)
 
 
 def follow(page: Path, folder: Path) -> None:
     """Do all that the page says, in a folder."""
     project = folder / "crowds"
     output = ""
-    for language, text in BLOCK.findall(page.read_text(encoding="utf-8")):
+    for language, text in code_blocks(page):
         if language == "sh" and ("POGO_SDK" not in text or "POGO_SDK" in os.environ):
-            output = run(text, project if project.exists() else folder)
-        elif language == "" and not set(text.splitlines()) <= set(output.splitlines()):
-            sys.exit(f"The page says\n{text}but this was printed:\n{output}")
+            output = commanded(text, project if project.exists() else folder)
+        elif language == "":
+            check_printed(text, output)
         elif language in FILES and (language != "c" or "int main(void)" in text):
             (project / FILES[language]).write_text(text, encoding="utf-8")
 

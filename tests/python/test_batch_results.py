@@ -152,6 +152,31 @@ def test_kept_folders_have_the_files_of_the_article_and_the_name_of_the_data_fil
     assert "2 of 2 runs are done already" in again.output
 
 
+def test_values_and_runs_added_to_a_batch_that_was_kept_are_the_only_new_ones(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert batch(tmp_path, "-r", "2", "--keep-temp").code == 0
+    more = {"objects.robots.nb": {"batch_options": [2, 3, 4], "default_option": 3}}
+    write_options(tmp_path, dict(more))
+    added = batch(tmp_path, "-r", "3", "--keep-temp")
+    assert "4 of 9 runs are done already" in added.output
+    kept = (tmp_path / "results" / "result.feather").read_bytes()
+
+    write_options(tmp_path / "anew", dict(more))
+    assert batch(tmp_path / "anew", "-r", "3").code == 0
+    assert (tmp_path / "anew" / "results" / "result.feather").read_bytes() == kept
+
+
+def test_results_of_values_added_in_a_batch_of_their_own_are_read_together(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert batch(tmp_path, "-r", "2").code == 0
+    more = {"objects.robots.nb": {"batch_options": [4]}, "result_filename_format": "more.feather"}
+    write_options(tmp_path, dict(more))
+    assert "done already" not in batch(tmp_path, "-r", "2").output
+    rows, _ = load_dataframe([tmp_path / "results" / name for name in ("result.feather", "more.feather")])
+    robots = rows[rows["time"] == 0].groupby(["objects.robots.nb", "run"]).size()
+    assert robots.to_dict() == {(nb, run): nb for nb in (2, 3, 4) for run in (0, 1)}
+
+
 def test_file_beside_the_configuration_is_found_as_by_a_single_run(tmp_path: Path) -> None:
     path = write_options(tmp_path / "conf", {"arena_file": "mine.csv"})
     (tmp_path / "conf" / "mine.csv").write_text("0,0\n3,0\n3,1\n0,1\n")
