@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -102,6 +103,21 @@ def test_one_combination_can_be_run_alone(folder: Path) -> None:
     rows, _ = load_dataframe(folder / "alone" / "first.feather")
     assert set(rows["run"]) == {0, 1, 2}
     assert set(rows["objects.robots.nb"]) == {2}
+
+
+def test_combination_run_alone_is_run_again_when_the_program_has_changed(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_options(folder, {"objects.robots.nb": 2})
+    program = Path(shutil.copy(PROGRAM, folder / "program"))
+    launcher = PogobotLauncher(1, "many.yaml", "one.feather", str(program), keep_temp=True)
+    done = []
+    for change in (b"", b"", b"changed"):
+        with program.open("ab") as file:
+            file.write(change)
+        launcher.launch_all()
+        done.append("1 of 1 runs are done already" in capsys.readouterr().out)
+    assert done == [False, True, False]
 
 
 def test_launcher_runs_one_configuration_with_chosen_seeds(folder: Path) -> None:

@@ -192,12 +192,11 @@ class PogobotBatchRunner:
         Returns:
             `output_file`.
         """
-        combination = self.combination_of(temp_config_path, output_file)
         if self.queue is not None:
-            self.queue.append(combination)
+            self.queue.append(self.combination_of(temp_config_path, output_file))
         else:
             with self.prepared():
-                self.do_all([combination])
+                self.do_all([self.combination_of(temp_config_path, output_file)])
         return output_file
 
     # ---- The batch ----
