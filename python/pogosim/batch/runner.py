@@ -3,52 +3,28 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import hashlib
 import logging
-import os
-import shutil
-import sys
 from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NoReturn
-
-from tqdm import tqdm
+from typing import Any
 
 from pogosim.batch.backends import BACKENDS, processors
 from pogosim.batch.combinations import CombinationsError, combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
-from pogosim.batch.errors import BatchError, NothingSelectedError, cannot, tell
-from pogosim.batch.identity import find_program, program_digest, run_key, seed_of, world_digest
-from pogosim.batch.names import COLUMNS, NamesError, file_name, has_key, new_columns
-from pogosim.batch.results import Part, RunFile, check_columns, check_output, schema_of, write_results
-from pogosim.batch.run import Outcome, Task, is_complete_data
+from pogosim.batch.errors import BatchError, cannot, tell
+from pogosim.batch.execution import Execution
+from pogosim.batch.identity import find_program, program_digest, seed_of
+from pogosim.batch.joining import join, remove_stale
+from pogosim.batch.names import NamesError, file_name, new_columns
+from pogosim.batch.reports import Failure, report_failures
+from pogosim.batch.results import check_output
+from pogosim.batch.run import Outcome, Task
+from pogosim.batch.selection import check_columns_exist, with_output
+from pogosim.batch.tasks import Combination, RunSettings, tasks_of
+from pogosim.batch.temporary import TemporaryFolder, batch_name
 
 log = logging.getLogger("pogobatch")
-
-OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
-FILES_BESIDE = ("arena_file", "formation_filename")
-SHOWN_FAILURES = 5
-SHOWN_WARNINGS = 10
-
-
-@dataclass
-class Combination:
-    """What is done with one combination of options."""
-
-    output: str
-    columns: dict[str, Any]
-    tasks: list[Task] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A run that failed, again and again."""
-
-    task: Task
-    outcome: Outcome
-    output: str
 
 
 class PogobotBatchRunner:
@@ -119,9 +95,7 @@ class PogobotBatchRunner:
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
         self.queue: list[Combination] | None = None
-        self.program_digest = ""
-        self.digests: dict[Path, str] = {}  # of files that configurations name
-        self.program = Path(self.simulator_binary)
+        self.run_settings: RunSettings | None = None
         # Configurations of combinations that were written: their text and entries by path.
         self.written: dict[str, tuple[str, dict[str, Any]]] = {}
         if self.backend not in BACKENDS:
@@ -170,7 +144,7 @@ class PogobotBatchRunner:
         """Write the configuration of a combination into the folder for temporary files; returns its path."""
         text = dump_configuration(comb_config)
         name = hashlib.sha256(text.encode(errors="surrogatepass")).hexdigest()[:8]
-        path = Path(self.temp_base).absolute() / f"combo_{name}.yaml"
+        path = self.temporary.path / f"combo_{name}.yaml"
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
@@ -213,7 +187,10 @@ class PogobotBatchRunner:
             missing in the results and listed in `failures`.
         """
         selected = self.selected()
-        self.check_columns_exist([config for config, _ in selected])
+        try:
+            check_columns_exist([config for config, _ in selected])
+        except NamesError as error:
+            raise self.names_error(error) from None
         with self.prepared():
             for output in dict.fromkeys(output for _, output in selected):
                 check_output(output)
@@ -231,11 +208,56 @@ class PogobotBatchRunner:
             self.do_all(queue)
         return outputs
 
+    def do_all(self, combinations: Sequence[Combination]) -> None:
+        """Do the runs that are not done yet, and write the results."""
+        execution = Execution(combinations, self.simulator_binary)
+        self.failures, self.simulator_s = execution.failures, 0.0
+        outputs = list(dict.fromkeys(combination.output for combination in combinations))
+        waiting = execution.waiting(self.temporary)
+        outcomes = self.started(waiting)
+        for output in outputs:
+            remove_stale(output)
+        try:
+            execution.take(outcomes, len(waiting))
+        finally:
+            self.simulator_s = execution.simulator_s
+        report_failures(self.failures)
+        for output in outputs:
+            of_output = [combination for combination in combinations if combination.output == output]
+            join(of_output, self.failures, self.configuration.text)
+        if self.failures:
+            log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
+        else:
+            self.temporary.forget_finished_runs()
+
+    def started(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
+        """Make the backend ready for runs, which begin when their outcomes are asked for."""
+        if self.backend == "ray":
+            log.warning("--backend ray is replaced by --backend dask")
+        return BACKENDS[self.backend](tasks, self.workers, self.scheduler)
+
     # ---- Its parts ----
 
-    def names_error(self, error: NamesError) -> BatchError:
-        """Return the error of a wrong name, with its place."""
-        return BatchError(f"{self.configuration.where((error.key,))}{str(error).removeprefix(error.key)}")
+    @property
+    def temporary(self) -> TemporaryFolder:
+        """The folder for temporary files."""
+        batch = batch_name([self.multi_config_file, self.output_dir, self.simulator_binary])
+        return TemporaryFolder(Path(self.temp_base).absolute(), batch, self.keep_temp)
+
+    @contextlib.contextmanager
+    def prepared(self) -> Iterator[None]:
+        """Look at the program, and keep the folder for temporary files for this batch meanwhile."""
+        program = find_program(self.simulator_binary)
+        beside = Path(self.multi_config_file).absolute().parent
+        self.run_settings = RunSettings(
+            program, program_digest(program), beside, self.temporary, retries=self.retries, gui=self.gui
+        )
+        with self.temporary.locked():
+            self.temporary.remove_leftovers()
+            try:
+                yield
+            finally:
+                self.temporary.tidy(self.written)
 
     def selected(self) -> list[tuple[dict[str, Any], str]]:
         """Return the combinations to do, each with its file of results.
@@ -244,81 +266,9 @@ class PogobotBatchRunner:
             NothingSelectedError: None has the output that was asked for.
         """
         combinations = self.get_combinations(self.configuration.entries)
-        named = [(config, self.compute_output_filename(config)) for config in combinations]
-        wanted = self.only_output
-        if not wanted:
-            return named
-        kept = [
-            (config, output)
-            for config, output in named
-            if wanted in (output, Path(output).name) or Path(output).absolute() == Path(wanted).absolute()
-        ]
-        if not kept:
-            raise NothingSelectedError(
-                f"--only-output: no combination has the output '{wanted}'; --list-outputs shows those that there are"
-            )
-        return kept
-
-    def check_columns_exist(self, configs: Sequence[dict[str, Any]]) -> None:
-        """Check that each of the new columns is a key in some combination."""
-        try:
-            names = new_columns(configs[0])
-        except NamesError as error:
-            raise self.names_error(error) from None
-        for name in names:
-            if not any(has_key(config, name) for config in configs):
-                raise BatchError(
-                    f"{self.configuration.where((COLUMNS,))}: there is no key '{name}' in the configuration; expected "
-                    "the dotted paths of keys, such as objects.robots.nb"
-                )
-
-    @property
-    def batch(self) -> str:
-        """The name of this batch in names of temporary files: the same whenever the same command is given."""
-        paths = [Path(path).absolute() for path in (self.multi_config_file, self.output_dir, self.simulator_binary)]
-        return hashlib.sha256("\n".join(map(str, paths)).encode()).hexdigest()[:8]
-
-    @property
-    def temp(self) -> Path:
-        """The folder for temporary files."""
-        return Path(self.temp_base).absolute()
-
-    @property
-    def done(self) -> Path:
-        """The folder of finished runs."""
-        return self.temp / f"done_{self.batch}"
-
-    @contextlib.contextmanager
-    def prepared(self) -> Iterator[None]:
-        """Look at the program, and keep other batches from using the same folder of finished runs meanwhile."""
-        self.digests = {}
-        self.program = find_program(self.simulator_binary)
-        self.program_digest = program_digest(self.program)
-        try:
-            self.done.mkdir(parents=True, exist_ok=True)
-            with (self.done / "lock").open("a") as file:
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
-                    raise BatchError(
-                        f"the same batch is running already, with its files in {self.done}; wait for it, or choose "
-                        "another folder with --temp-base"
-                    ) from None
-                except OSError:
-                    pass  # no locks on this file system
-                self.remove_leftovers()
-                try:
-                    yield
-                finally:
-                    self.tidy()
-        except OSError as error:
-            raise cannot("use", error.filename or self.temp, error) from None
-
-    def remove_leftovers(self) -> None:
-        """Remove what runs of an interrupted batch have left, unless folders are kept."""
-        if not self.keep_temp:
-            for folder in self.temp.glob(f"sim_*_try*_{self.batch}_*"):
-                shutil.rmtree(folder, ignore_errors=True)
+        return with_output(
+            [(config, self.compute_output_filename(config)) for config in combinations], self.only_output
+        )
 
     def combination_of(self, path: str, output: str) -> Combination:
         """Return the runs of a combination."""
@@ -331,177 +281,14 @@ class PogobotBatchRunner:
         if entries.get("enable_data_logging") is False:
             where = self.configuration.where(("enable_data_logging",))
             raise BatchError(f"{where}: is false, so runs write no data to join; set it to true")
-        combination = Combination(output, self.compute_new_columns(entries))
-        world = {key: value for key, value in entries.items() if key not in OUTPUTS}
-        for key in FILES_BESIDE:
-            if key in world:
-                world[key] = self.found_beside(world[key])
-        outputs = {key: basename(entries.get(key), default) for key, default in OUTPUTS.items()}
-        text = dump_configuration(world) if world else ""
-        folders = (Path.cwd(), Path(self.multi_config_file).absolute().parent)
-        digest = world_digest(world, folders, self.digests)
-        for run in range(self.runs):
-            seed = self.compute_seed(entries, run)
-            task = Task(
-                key=run_key(digest, self.program_digest, seed),
-                run=run,
-                seed=seed,
-                program=str(self.program),
-                text=text,
-                outputs=tuple(outputs.items()),
-                data=outputs["data_filename"],
-                working_folder=str(Path.cwd()),
-                temp_folder=str(self.temp),
-                done_folder=str(self.done),
-                batch=self.batch,
-                retries=self.retries,
-                gui=self.gui,
-                keep_temp=self.keep_temp,
-            )
-            combination.tasks.append(task)
-        return combination
+        assert self.run_settings is not None  # within prepared()
+        columns = self.compute_new_columns(entries)
+        seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
+        return Combination(output, columns, tasks_of(entries, seeds, self.run_settings))
 
-    def found_beside(self, name: Any) -> Any:
-        """Return the path of a file that a single run would find beside the configuration; else the name as it is."""
-        if not isinstance(name, str) or not name or Path(name).exists():
-            return name
-        beside = Path(self.multi_config_file).absolute().parent / name
-        return str(beside) if beside.exists() else name
-
-    def do_all(self, combinations: Sequence[Combination]) -> None:
-        """Do the runs that are not done yet, and write the results."""
-        self.failures = []
-        self.simulator_s = 0.0
-        first_of = {task.key: combination for combination in reversed(combinations) for task in combination.tasks}
-        tasks = {task.key: task for combination in combinations for task in combination.tasks}
-        outputs = list(dict.fromkeys(combination.output for combination in combinations))
-        checked: set[Any] = set()
-        waiting = [task for task in tasks.values() if not self.is_done(task)]
-        for key in tasks.keys() - {task.key for task in waiting}:
-            self.check_run(tasks[key], first_of[key], checked)
-        if len(waiting) < len(tasks):
-            tell(f"{len(tasks) - len(waiting)} of {len(tasks)} runs are done already, in {self.done}")
-        outcomes = self.started(waiting)
-        for output in outputs:
-            remove_stale(output)
-        self.do_runs(waiting, outcomes, first_of, checked)
-        self.report_failures()
-        for output in outputs:
-            self.join([combination for combination in combinations if combination.output == output])
-        self.clean()
-
-    def is_done(self, task: Task) -> bool:
-        """Tell whether a run is done already."""
-        return task.result.is_file() and is_complete_data(task.result)
-
-    def check_run(self, task: Task, combination: Combination, checked: set[Any]) -> None:
-        """Check the columns of a finished run."""
-        schema = schema_of(task.result)
-        names = (*schema.names, None, *combination.columns)
-        if names not in checked:
-            checked.add(names)
-            check_columns(schema, list(combination.columns), self.simulator_binary)
-
-    def started(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
-        """Make the backend ready for runs, which begin when their outcomes are asked for."""
-        if self.backend == "ray":
-            log.warning("--backend ray is replaced by --backend dask")
-        return BACKENDS[self.backend](tasks, self.workers, self.scheduler)
-
-    def do_runs(
-        self,
-        tasks: Sequence[Task],
-        outcomes: Generator[Outcome, None, None],
-        combination_of: dict[str, Combination],
-        checked: set[Any],
-    ) -> None:
-        """Do runs, and show how many are done."""
-        left = {task.key: task for task in tasks}
-        warnings: dict[str, None] = {}
-        bar = progress_bar(len(tasks))
-        try:
-            for outcome in outcomes:
-                task = left.pop(outcome.key)
-                self.simulator_s += outcome.simulator_s
-                if not outcome.problem:
-                    warnings.update(dict.fromkeys(outcome.log.splitlines()))
-                    self.check_run(task, combination_of[task.key], checked)
-                elif outcome.is_fatal:
-                    raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
-                else:
-                    self.failures.append(Failure(task, outcome, combination_of[task.key].output))
-                    log.debug("run %d failed: %s", task.run, outcome.problem)
-                bar.update()
-        finally:
-            bar.close()
-            outcomes.close()
-            for line in list(warnings)[:SHOWN_WARNINGS]:
-                log.warning("warning of a run: %s", line)
-
-    def report_failures(self) -> None:
-        """Say which runs failed, with what is needed to repeat them."""
-        self.failures.sort(key=lambda failure: (failure.output, failure.task.run, failure.task.key))
-        for failure in self.failures[:SHOWN_FAILURES]:
-            task, outcome = failure.task, failure.outcome
-            times = f"{task.retries + 1} time{'s' if task.retries else ''}"
-            log.error(
-                "run %d of %s, seed %d, failed %s: %s", task.run, failure.output, task.seed, times, outcome.problem
-            )
-            if outcome.command:
-                log.error("  command: %s", outcome.command)
-            for line in outcome.log.splitlines():
-                log.error("  | %s", line)
-        if len(self.failures) > SHOWN_FAILURES:
-            seeds = ", ".join(str(failure.task.seed) for failure in self.failures[SHOWN_FAILURES:][:20])
-            log.error("%d more runs failed, with the seeds %s", len(self.failures) - SHOWN_FAILURES, seeds)
-
-    def join(self, combinations: Sequence[Combination]) -> None:
-        """Write one file of results."""
-        failed = {failure.task.key for failure in self.failures}
-        parts = [
-            Part(
-                combination.columns,
-                [RunFile(task.result, task.run, task.seed) for task in combination.tasks if task.key not in failed],
-                [task.run for task in combination.tasks if task.key in failed],
-            )
-            for combination in combinations
-        ]
-        output = combinations[0].output
-        if not any(part.runs for part in parts):
-            log.error("%s is not written: none of its runs ended well", output)
-            return
-        written = write_results(output, parts, self.configuration.text)
-        is_new = True
-        for rows in written.rows:
-            tell(f"Created {output} with {rows} rows" if is_new else f"Appended {rows} rows to {output}")
-            is_new = False
-
-    def clean(self) -> None:
-        """Forget the finished runs, except after a failure, or if they are kept."""
-        if self.failures:
-            log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
-        elif not self.keep_temp:
-            shutil.rmtree(self.done, ignore_errors=True)
-
-    def tidy(self) -> None:
-        """Remove what no later batch needs: configurations of combinations, and folders without a finished run."""
-        if self.keep_temp:
-            return
-        for path in self.written:
-            Path(path).unlink(missing_ok=True)
-        if self.done.exists() and not any(self.done.glob("*.feather")):
-            shutil.rmtree(self.done, ignore_errors=True)
-        with contextlib.suppress(OSError):
-            self.temp.rmdir()  # if nothing else is in it
-
-
-def progress_bar(total: int) -> tqdm[NoReturn]:
-    """Return a bar with the time left, on standard error if that is a terminal."""
-    is_shown = total > 0 and sys.stderr.isatty()
-    # Some terminals have no size; the bar would be empty.
-    has_size = is_shown and os.get_terminal_size(sys.stderr.fileno()).columns > 0
-    size = {"dynamic_ncols": True} if has_size else {"ncols": 80, "nrows": 24}
-    return tqdm(total=total, unit="run", disable=not is_shown, file=sys.stderr, smoothing=0.05, **size)
+    def names_error(self, error: NamesError) -> BatchError:
+        """Return the error of a wrong name, with its place."""
+        return BatchError(f"{self.configuration.where((error.key,))}{str(error).removeprefix(error.key)}")
 
 
 def at_least(smallest: int, value: int, name: str) -> int:
@@ -513,23 +300,3 @@ def at_least(smallest: int, value: int, name: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < smallest:
         raise BatchError(f"{name}: expected a whole number of at least {smallest}; found {value}")
     return value
-
-
-def basename(name: Any, default: str) -> str:
-    """Return the last part of a path."""
-    return (Path(name).name or default) if isinstance(name, str) else default
-
-
-def remove_stale(output: str) -> None:
-    """Remove results of an earlier batch.
-
-    Raises:
-        BatchError: They cannot be removed.
-    """
-    real = check_output(output)
-    try:
-        if real.exists():
-            real.unlink()
-            tell(f"Removed stale result file: {output}")
-    except OSError as error:
-        raise cannot("remove", output, error) from None

@@ -1,0 +1,81 @@
+"""The runs of a batch: which there are, which are done already, and what became of the others."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Generator, Sequence
+
+from pogosim.batch.errors import BatchError, tell
+from pogosim.batch.reports import Failure, progress_bar, report_warnings
+from pogosim.batch.results import check_columns, schema_of
+from pogosim.batch.run import Outcome, Task
+from pogosim.batch.tasks import Combination
+from pogosim.batch.temporary import TemporaryFolder
+
+log = logging.getLogger("pogobatch")
+
+
+class Execution:
+    """The runs of several combinations; one that they share is done once.
+
+    Attributes:
+        failures: Runs that failed.
+        simulator_s: Wall-clock time of simulators, in s, added up.
+    """
+
+    def __init__(self, combinations: Sequence[Combination], program: str) -> None:
+        self.tasks = {task.key: task for combination in combinations for task in combination.tasks}
+        self.first_of = {task.key: combination for combination in reversed(combinations) for task in combination.tasks}
+        self.program = program  # its name in messages
+        self.checked: set[tuple[str | None, ...]] = set()  # names of columns
+        self.failures: list[Failure] = []
+        self.simulator_s = 0.0
+
+    def waiting(self, temporary: TemporaryFolder) -> list[Task]:
+        """Return the runs that are not done yet, in order.
+
+        Raises:
+            BatchError: The columns of one that is done are wrong.
+        """
+        waiting = [task for task in self.tasks.values() if not temporary.has_finished(task)]
+        for key in self.tasks.keys() - {task.key for task in waiting}:
+            self.check_run(self.tasks[key])
+        if len(waiting) < len(self.tasks):
+            tell(f"{len(self.tasks) - len(waiting)} of {len(self.tasks)} runs are done already, in {temporary.done}")
+        return waiting
+
+    def take(self, outcomes: Generator[Outcome, None, None], total: int) -> None:
+        """Let a backend do runs, and show how many are done.
+
+        Raises:
+            BatchError: The others would fail in the same way as one that did; or its columns are wrong.
+        """
+        warnings: dict[str, None] = {}
+        bar = progress_bar(total)
+        try:
+            for outcome in outcomes:
+                task = self.tasks[outcome.key]
+                self.simulator_s += outcome.simulator_s
+                if not outcome.problem:
+                    warnings.update(dict.fromkeys(outcome.log.splitlines()))
+                    self.check_run(task)
+                elif outcome.is_fatal:
+                    raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
+                else:
+                    self.failures.append(Failure(task, outcome, self.first_of[task.key].output))
+                    log.debug("run %d failed: %s", task.run, outcome.problem)
+                bar.update()
+        finally:
+            bar.close()
+            outcomes.close()
+            report_warnings(warnings)
+        self.failures.sort(key=lambda failure: (failure.output, failure.task.run, failure.task.key))
+
+    def check_run(self, task: Task) -> None:
+        """Check the columns of a finished run; those that many runs have are checked once."""
+        combination = self.first_of[task.key]
+        schema = schema_of(task.result)
+        names = (*schema.names, None, *combination.columns)
+        if names not in self.checked:
+            self.checked.add(names)
+            check_columns(schema, list(combination.columns), self.program)

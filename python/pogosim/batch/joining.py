@@ -1,0 +1,59 @@
+"""The files of results of a batch: combinations with the same one are joined in it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+
+from pogosim.batch.errors import cannot, tell
+from pogosim.batch.reports import Failure
+from pogosim.batch.results import Part, RunFile, check_output, write_results
+from pogosim.batch.tasks import Combination
+
+log = logging.getLogger("pogobatch")
+
+
+def remove_stale(output: str) -> None:
+    """Remove results of an earlier batch.
+
+    Raises:
+        BatchError: They cannot be removed.
+    """
+    real = check_output(output)
+    try:
+        if real.exists():
+            real.unlink()
+            tell(f"Removed stale result file: {output}")
+    except OSError as error:
+        raise cannot("remove", output, error) from None
+
+
+def join(combinations: Sequence[Combination], failures: Sequence[Failure], text: str) -> None:
+    """Write one file of results.
+
+    Args:
+        combinations: Those whose results are in it, at least one.
+        failures: Runs that are missing.
+        text: Configuration of the batch.
+
+    Raises:
+        BatchError: It cannot be written.
+    """
+    failed = {failure.task.key for failure in failures}
+    parts = [
+        Part(
+            combination.columns,
+            [RunFile(task.result, task.run, task.seed) for task in combination.tasks if task.key not in failed],
+            [task.run for task in combination.tasks if task.key in failed],
+        )
+        for combination in combinations
+    ]
+    output = combinations[0].output
+    if not any(part.runs for part in parts):
+        log.error("%s is not written: none of its runs ended well", output)
+        return
+    written = write_results(output, parts, text)
+    is_new = True
+    for rows in written.rows:
+        tell(f"Created {output} with {rows} rows" if is_new else f"Appended {rows} rows to {output}")
+        is_new = False

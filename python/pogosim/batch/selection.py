@@ -1,0 +1,49 @@
+"""Which combinations a batch does, and whether the columns that are asked for can tell them apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pogosim.batch.errors import NothingSelectedError
+from pogosim.batch.names import COLUMNS, NamesError, has_key, new_columns
+
+
+def with_output(named: Sequence[tuple[dict[str, Any], str]], wanted: str) -> list[tuple[dict[str, Any], str]]:
+    """Return those combinations whose file of results has a name, or path; all if it is empty.
+
+    Args:
+        named: Configurations, each with the path of its file of results.
+        wanted: The name or path.
+
+    Raises:
+        NothingSelectedError: There are none.
+    """
+    if not wanted:
+        return list(named)
+    kept = [
+        (config, output)
+        for config, output in named
+        if wanted in (output, Path(output).name) or Path(output).absolute() == Path(wanted).absolute()
+    ]
+    if not kept:
+        raise NothingSelectedError(
+            f"--only-output: no combination has the output '{wanted}'; --list-outputs shows those that there are"
+        )
+    return kept
+
+
+def check_columns_exist(configs: Sequence[dict[str, Any]]) -> None:
+    """Check that each of the new columns is a key in some combination.
+
+    Raises:
+        NamesError: One is in none of them.
+    """
+    for name in new_columns(configs[0]):
+        if not any(has_key(config, name) for config in configs):
+            raise NamesError(
+                COLUMNS,
+                f"there is no key '{name}' in the configuration; expected the dotted paths of keys, such as "
+                "objects.robots.nb",
+            )

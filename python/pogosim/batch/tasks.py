@@ -1,0 +1,81 @@
+"""From the configuration of a combination to its runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pogosim.batch.configuration import dump_configuration
+from pogosim.batch.identity import run_key, world_digest
+from pogosim.batch.run import Task
+from pogosim.batch.temporary import TemporaryFolder
+
+OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
+FILES_BESIDE = ("arena_file", "formation_filename")
+
+
+@dataclass
+class Combination:
+    """What is done with one combination of options."""
+
+    output: str
+    columns: dict[str, Any]
+    tasks: list[Task] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """What all runs of a batch have in common."""
+
+    program: Path
+    program_digest: str
+    configuration_folder: Path  # where files that configurations name are searched, too; absolute
+    temporary: TemporaryFolder
+    retries: int
+    gui: bool
+    digests: dict[Path, str] = field(default_factory=dict)  # of files that configurations name
+
+
+def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings) -> list[Task]:
+    """Return the runs of a configuration, one per seed."""
+    world = {key: value for key, value in entries.items() if key not in OUTPUTS}
+    for key in FILES_BESIDE:
+        if key in world:
+            world[key] = found_beside(world[key], settings.configuration_folder)
+    outputs = {key: basename(entries.get(key), default) for key, default in OUTPUTS.items()}
+    text = dump_configuration(world) if world else ""
+    digest = world_digest(world, (Path.cwd(), settings.configuration_folder), settings.digests)
+    return [
+        Task(
+            key=run_key(digest, settings.program_digest, seed),
+            run=run,
+            seed=seed,
+            program=str(settings.program),
+            text=text,
+            outputs=tuple(outputs.items()),
+            data=outputs["data_filename"],
+            working_folder=str(Path.cwd()),
+            temp_folder=str(settings.temporary.path),
+            done_folder=str(settings.temporary.done),
+            batch=settings.temporary.batch,
+            retries=settings.retries,
+            gui=settings.gui,
+            keep_temp=settings.temporary.is_kept,
+        )
+        for run, seed in enumerate(seeds)
+    ]
+
+
+def found_beside(name: Any, folder: Path) -> Any:
+    """Return the path of a file that a single run would find beside the configuration; else the name as it is."""
+    if not isinstance(name, str) or not name or Path(name).exists():
+        return name
+    beside = folder / name
+    return str(beside) if beside.exists() else name
+
+
+def basename(name: Any, default: str) -> str:
+    """Return the last part of a path."""
+    return (Path(name).name or default) if isinstance(name, str) else default

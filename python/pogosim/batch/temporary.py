@@ -1,0 +1,90 @@
+"""The folder for temporary files: finished runs of an unfinished batch, and what its runs leave."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import shutil
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pogosim.batch.errors import BatchError, cannot
+from pogosim.batch.run import Task, is_complete_data
+
+
+def batch_name(paths: Sequence[str]) -> str:
+    """Return the name of a batch in names of temporary files: the same whenever the same command is given.
+
+    Args:
+        paths: Its configuration, folder of results and program.
+    """
+    absolute = [Path(path).absolute() for path in paths]
+    return hashlib.sha256("\n".join(map(str, absolute)).encode()).hexdigest()[:8]
+
+
+@dataclass(frozen=True)
+class TemporaryFolder:
+    """The folder for temporary files, as one batch sees it.
+
+    Other batches may use it, too: what belongs to this one has its name.
+    """
+
+    path: Path  # absolute
+    batch: str  # see batch_name
+    is_kept: bool  # all files stay
+
+    @property
+    def done(self) -> Path:
+        """The folder of finished runs."""
+        return self.path / f"done_{self.batch}"
+
+    @contextlib.contextmanager
+    def locked(self) -> Iterator[None]:
+        """Keep other batches from using the same folder of finished runs meanwhile.
+
+        Raises:
+            BatchError: Another one does.
+        """
+        try:
+            self.done.mkdir(parents=True, exist_ok=True)
+            with (self.done / "lock").open("a") as file:
+                try:
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    raise BatchError(
+                        f"the same batch is running already, with its files in {self.done}; wait for it, or choose "
+                        "another folder with --temp-base"
+                    ) from None
+                except OSError:
+                    pass  # no locks on this file system
+                yield
+        except OSError as error:
+            raise cannot("use", error.filename or self.path, error) from None
+
+    def has_finished(self, task: Task) -> bool:
+        """Tell whether a run is done already."""
+        return task.result.is_file() and is_complete_data(task.result)
+
+    def remove_leftovers(self) -> None:
+        """Remove what runs of an interrupted batch have left, unless folders are kept."""
+        if not self.is_kept:
+            for folder in self.path.glob(f"sim_*_try*_{self.batch}_*"):
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def forget_finished_runs(self) -> None:
+        """Remove the data files of single runs, unless folders are kept."""
+        if not self.is_kept:
+            shutil.rmtree(self.done, ignore_errors=True)
+
+    def tidy(self, configurations: Iterable[str]) -> None:
+        """Remove what no later batch needs: configurations of combinations, and folders without a finished run."""
+        if self.is_kept:
+            return
+        for path in configurations:
+            Path(path).unlink(missing_ok=True)
+        if self.done.exists() and not any(self.done.glob("*.feather")):
+            shutil.rmtree(self.done, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            self.path.rmdir()  # if nothing else is in it
