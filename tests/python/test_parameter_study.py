@@ -78,7 +78,7 @@ def test_more_of_each_parameter_spreads_the_rumour_faster(parameter: str, inform
 
     # In the panel of the figure, by more than four standard errors from the first to the last value.
     panel = informed.reset_index().query("time == 30")
-    for other, reference in zip(PARAMETERS, (20, 60, 50)):
+    for other, reference in zip(PARAMETERS, (20, 60, 50), strict=True):
         panel = panel[(panel[other] == reference) | (other == parameter)]
     first, _, last = panel[list(range(RUNS))].to_numpy()
     error = np.sqrt((first.var(ddof=1) + last.var(ddof=1)) / RUNS)

@@ -21,7 +21,7 @@ from running import ROOT, Run, compile_program, run_command, write_scene
 # Every Linux has these, or gets them with a C compiler.
 OF_THE_SYSTEM = {"linux-vdso.so.1", "libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "libz.so.1"}
 OF_OLDER_SYSTEMS = {"libpthread.so.0", "libdl.so.2", "librt.so.1"}
-OTHER_PACKAGES = ("pyarrow", "sdl2dll", "matplotlib", "numpy", "pandas", "yaml", "tqdm")
+OTHER_PACKAGES = ("pyarrow", "sdl2dll", "matplotlib")
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="auditwheel makes wheels for Linux")
 
@@ -64,7 +64,7 @@ def packages(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def pogosim(packages: Path, folder: Path, *arguments: str) -> Run:
     """Run the command `pogosim` of the installed wheel."""
     ended = subprocess.run(
-        [sys.executable, "-m", "pogosim", *arguments],
+        [sys.executable, "-S", "-m", "pogosim", *arguments],  # -S: not the package of the tree
         cwd=folder,
         env=CLEAN | {"PYTHONPATH": str(packages)},
         capture_output=True,
@@ -153,7 +153,7 @@ def test_arenas_frames_and_window_work(project: Path, tmp_path: Path) -> None:
             check=False,
         )
         assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
-        assert len(list(folder.glob("f*.png"))) == 3
+        assert len(list(folder.glob("f*.png"))) == 2
 
 
 def test_tool_for_shared_variables_is_in_it(packages: Path, tmp_path: Path) -> None:

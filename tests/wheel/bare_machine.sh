@@ -12,6 +12,7 @@ fi
 
 wheel=$(realpath "$1")
 machine=$(mktemp -d)
+chmod 755 "$machine"
 # Only plain files are below: what is mounted disappears with its namespace.
 trap 'rm -rf --one-file-system "$machine"' EXIT
 
