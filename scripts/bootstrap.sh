@@ -12,9 +12,10 @@ apt_packages="build-essential cmake ninja-build ccache pkg-config
     libbox2d-dev libyaml-cpp-dev libspdlog-dev libfmt-dev libcli11-dev libgtest-dev libbenchmark-dev libdw-dev
     libsdl2-dev libimgui-dev libpng-dev fonts-dejavu-core
     python3 python3-venv ca-certificates"
-# libclang-rt-dev: the sanitizers of clang. xvfb, xdotool, x11-apps: a display to test the window on. ffmpeg: films.
+# libclang-rt-dev: the sanitizers of clang. xvfb, xdotool, x11-apps: a display to test the window on. ffmpeg: films. slurm*: batches.
 apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg
-    gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf"
+    gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf
+    slurmctld slurmd slurm-client munge"
 apt_tidy_packages="clang-tidy"
 brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark sdl2 imgui libpng
     python3"

@@ -6,14 +6,33 @@ import asyncio
 import contextlib
 import importlib
 import logging
-from collections.abc import Generator, Sequence
+import time
+from collections.abc import Callable, Generator, Iterator, Sequence
 from typing import Any
 
 from pogosim.batch.errors import BatchError, one_line
 from pogosim.batch.run import Outcome, Task, do_run
 
 CONNECT_S = 5
-INSTALL = "install it: pip install 'pogosim[dask]'"
+LOOK_S = 0.2
+
+
+def imported(flag: str, extra: str) -> tuple[Any, Any]:
+    """Return the packages dask and distributed, which keep silent.
+
+    Raises:
+        BatchError: They are not installed; says what the flag needs.
+    """
+    try:
+        settings: Any = importlib.import_module("dask")
+        # Read when distributed is imported.
+        settings.config.set({"logging": dict.fromkeys(("distributed", "distributed.client", "tornado"), "critical")})
+        distributed: Any = importlib.import_module("distributed")
+    except ImportError:
+        raise BatchError(
+            f"{flag} needs the Python package 'distributed'; install it: pip install 'pogosim[{extra}]'"
+        ) from None
+    return settings, distributed
 
 
 def connected(workers: int, scheduler: str | None) -> tuple[Any, Any]:
@@ -22,13 +41,7 @@ def connected(workers: int, scheduler: str | None) -> tuple[Any, Any]:
     Raises:
         BatchError: Dask is not installed, or there is no scheduler.
     """
-    try:
-        settings: Any = importlib.import_module("dask")
-        # Read when distributed is imported.
-        settings.config.set({"logging": dict.fromkeys(("distributed", "distributed.client", "tornado"), "critical")})
-        distributed: Any = importlib.import_module("distributed")
-    except ImportError:
-        raise BatchError(f"--backend dask needs the Python package 'distributed'; {INSTALL}") from None
+    settings, distributed = imported("--backend dask", "dask")
     settings.config.set({"distributed.comm.timeouts.connect": f"{CONNECT_S}s"})
     if scheduler is None:
         cluster = distributed.LocalCluster(
@@ -51,22 +64,42 @@ def dask(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Generato
         BatchError: Dask is not installed, or there is no scheduler; or, later, the scheduler has gone.
     """
     client, cluster = connected(workers, scheduler)
-    return outcomes_of(tasks, client, cluster)
+
+    def close() -> None:
+        if cluster is not None:
+            with contextlib.suppress(Exception):
+                cluster.close(timeout=5)
+
+    return outcomes_of(tasks, client, close)
 
 
-def outcomes_of(tasks: Sequence[Task], client: Any, cluster: Any) -> Generator[Outcome, None, None]:
-    """Yield the outcomes of runs that a client of Dask has done."""
+def outcomes_of(
+    tasks: Sequence[Task],
+    client: Any,
+    close: Callable[[], None],
+    look: Callable[[], None] | None = None,
+    do: Callable[[Task], Outcome] = do_run,
+) -> Generator[Outcome, None, None]:
+    """Yield the outcomes of runs that a client of Dask has done.
+
+    Args:
+        tasks: Runs to do.
+        client: Client of Dask; it is closed at the end.
+        close: Called at the end, whatever the reason.
+        look: Called now and then meanwhile.
+        do: Does a run, in a worker.
+    """
     futures: list[Any] = []
     try:
         as_completed: Any = importlib.import_module("distributed").as_completed
-        futures = [client.submit(do_run, task, key=f"pogosim-{task.batch}-{task.key}", pure=False) for task in tasks]
+        futures = [client.submit(do, task, key=f"pogosim-{task.batch}-{task.key}", pure=False) for task in tasks]
         left = {future.key: task for future, task in zip(futures, tasks, strict=True)}
-        for future in as_completed(futures, raise_errors=False):
+        for future in finished(as_completed(futures, raise_errors=False), look):
             task = left.pop(future.key)
             if future.status == "finished":
                 yield future.result()
             elif future.status == "error":
-                yield Outcome(task.key, f"its worker failed: {one_line(repr(future.exception()))}")
+                yield Outcome(task.key, problem_of(future.exception()))
             else:
                 raise BatchError(
                     "the Dask scheduler ended before the batch; finished runs are kept: start it "
@@ -77,6 +110,22 @@ def outcomes_of(tasks: Sequence[Task], client: Any, cluster: Any) -> Generator[O
             client.cancel(futures, force=True)
         with contextlib.suppress(Exception):
             client.close(timeout=5)
-        if cluster is not None:
-            with contextlib.suppress(Exception):
-                cluster.close(timeout=5)
+        close()
+
+
+def problem_of(error: Exception) -> str:
+    """Return what kept a worker from doing a run."""
+    if type(error).__name__ == "KilledWorker":
+        return "each worker that did it was killed, see their logs; it may need more time or memory"
+    return f"its worker failed: {one_line(repr(error))}"
+
+
+def finished(completed: Any, look: Callable[[], None] | None) -> Iterator[Any]:
+    """Yield futures as they are finished, and look at something meanwhile."""
+    if look is None:
+        yield from completed
+        return
+    while not completed.is_empty():
+        yield from completed.next_batch(block=False)
+        look()
+        time.sleep(LOOK_S)

@@ -21,6 +21,7 @@ from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.selection import check_columns_exist, with_output
+from pogosim.batch.slurm import SlurmJobs, slurm
 from pogosim.batch.tasks import Combination, RunSettings, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 
@@ -50,6 +51,7 @@ class PogobotBatchRunner:
             `seed` and the number.
         workers: Runs at the same time; None: one per processor.
         scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
+        slurm_jobs: Jobs of SLURM that do the runs.
 
     Attributes:
         failures: Runs of the last `run_all()` that failed.
@@ -77,6 +79,7 @@ class PogobotBatchRunner:
         seed_from: str = "run",
         workers: int | None = None,
         scheduler: str | None = None,
+        slurm_jobs: SlurmJobs | None = None,
     ) -> None:
         self.multi_config_file = str(multi_config_file)
         self.runs = at_least(1, runs, "--runs")
@@ -92,6 +95,7 @@ class PogobotBatchRunner:
         self.seed_from = seed_from
         self.workers = at_least(1, processors() if workers is None else workers, "--workers")
         self.scheduler = scheduler
+        self.slurm_jobs = slurm_jobs
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
         self.queue: list[Combination] | None = None
@@ -103,6 +107,8 @@ class PogobotBatchRunner:
             raise BatchError(f"--backend: expected one of {known}; found '{self.backend}'")
         if self.scheduler is not None and BACKENDS[self.backend] is not BACKENDS["dask"]:
             raise BatchError(f"--scheduler goes with --backend dask, not with --backend {self.backend}")
+        if slurm_jobs is not None and (self.backend != "multiprocessing" or workers is not None):
+            raise BatchError("--slurm goes without --backend, --scheduler and --workers; see --slurm-jobs")
         if seed_from not in ("run", "config"):
             raise BatchError(f"--seed-from: expected run or config; found '{seed_from}'")
         self.configuration = Configuration(self.multi_config_file)
@@ -229,11 +235,14 @@ class PogobotBatchRunner:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
         else:
             self.temporary.forget_finished_runs()
+            self.temporary.remove_leftovers()  # of workers that were killed
 
     def started(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
         """Make the backend ready for runs, which begin when their outcomes are asked for."""
         if self.backend == "ray":
             log.warning("--backend ray is replaced by --backend dask")
+        if self.slurm_jobs is not None:
+            return slurm(tasks, self.slurm_jobs)
         return BACKENDS[self.backend](tasks, self.workers, self.scheduler)
 
     # ---- Its parts ----

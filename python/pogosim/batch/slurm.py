@@ -1,0 +1,263 @@
+"""Runs done by SLURM: its jobs are Dask workers, which join a scheduler in the process of the batch.
+
+The package dask-jobqueue writes the script of the jobs, with what a site says in its jobqueue.yaml, and starts the
+scheduler. Connections are encrypted and authenticated with keys made for the batch, as others use the same network.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import hashlib
+import importlib
+import logging
+import re
+import shutil
+import signal
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pogosim.batch.dask_backend import imported, outcomes_of
+from pogosim.batch.errors import BatchError, one_line, tell
+from pogosim.batch.run import Outcome, Task
+from pogosim.batch.slurm_jobs import Jobs, check_commands, counted, own_folder
+from pogosim.batch.slurm_worker import do_in_job
+
+JOBS = 8
+CORES = 1
+MEMORY_PER_CORE_GB = 2
+TIME = "01:00:00"
+LOSSES_PER_RUN = 5
+ROLES = ("scheduler", "worker", "client")
+TIME_FORM = re.compile(r"(\d+-\d{1,2}|\d+)(:[0-5]?\d){0,2}")
+MEMORY_FORM = re.compile(r"([1-9]\d*)([KMGT]?)")
+POWERS = {"K": 1, "": 2, "M": 2, "G": 3, "T": 4}
+
+
+@dataclass(frozen=True)
+class SlurmJobs:
+    """What to ask SLURM for. None: what the site's jobqueue.yaml says, or else a default.
+
+    Args:
+        jobs: Jobs at the same time.
+        cores: Cores per job, each of which does one run at a time (1).
+        memory: Memory per job, as for sbatch --mem: "500M", "4G" (2G per core).
+        time: Time limit of a job, as for sbatch --time: "04:00:00", "2-12" (1 h).
+        partition: Partition.
+        account: Account.
+        options: More options of sbatch: "qos=long".
+        wait_min: How long to wait for the first job to start, in minutes; None: as long as it takes.
+
+    Raises:
+        BatchError: One of them has a wrong form.
+    """
+
+    jobs: int = JOBS
+    cores: int | None = None
+    memory: str | None = None
+    time: str | None = None
+    partition: str | None = None
+    account: str | None = None
+    options: tuple[str, ...] = ()
+    wait_min: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, number in (("jobs", self.jobs), ("cores", self.cores)):
+            if number is not None and number < 1:
+                raise BatchError(f"--slurm-{name}: expected a whole number of at least 1; found {number}")
+        if self.time is not None and not TIME_FORM.fullmatch(self.time):
+            raise BatchError(
+                f"--slurm-time: expected minutes, hours:minutes:seconds or days-hours, such as 04:00:00; found "
+                f"'{self.time}'"
+            )
+        if self.memory is not None and not MEMORY_FORM.fullmatch(self.memory):
+            raise BatchError(f"--slurm-memory: expected a number with K, M, G or T, such as 4G; found '{self.memory}'")
+        texts = [("option", option) for option in self.options]
+        for name, text in [*texts, ("partition", self.partition), ("account", self.account)]:
+            if text is not None and (not text.strip() or "\n" in text):
+                raise BatchError(f"--slurm-{name}: expected one line of text; found {text!r}")
+
+
+def slurm(tasks: Sequence[Task], request: SlurmJobs) -> Generator[Outcome, None, None]:
+    """Do runs in jobs of SLURM. Jobs that are lost are replaced, and their runs are done again.
+
+    Raises:
+        BatchError: A package or a command is missing, or SLURM refuses the jobs; later: no job starts, or all are lost.
+    """
+    if not tasks:
+        return outcomes_in(tasks, None, None, None)
+    dask, distributed = imported("--slurm", "slurm")
+    jobqueue = imported_jobqueue()
+    check_commands()
+    cluster, jobs = started(dask, distributed, jobqueue, tasks, request)
+    try:
+        return outcomes_in(tasks, distributed.Client(cluster), cluster, jobs)
+    except BaseException:
+        jobs.cancel()
+        raise
+
+
+def imported_jobqueue() -> Any:
+    """Return the package dask_jobqueue.
+
+    Raises:
+        BatchError: It, or what its encryption needs, is not installed.
+    """
+    on_interrupt = signal.getsignal(signal.SIGINT)
+    try:
+        importlib.import_module("cryptography")
+        return importlib.import_module("dask_jobqueue")
+    except ImportError as error:
+        package = "cryptography" if error.name == "cryptography" else "dask-jobqueue"
+        raise BatchError(
+            f"--slurm needs the Python package '{package}'; install it: pip install 'pogosim[slurm]'"
+        ) from None
+    finally:
+        signal.signal(signal.SIGINT, on_interrupt)  # dask_jobqueue puts its own
+
+
+def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], request: SlurmJobs) -> tuple[Any, Jobs]:
+    """Start the scheduler and submit the jobs.
+
+    Raises:
+        BatchError: It cannot be started, or SLURM refuses the jobs.
+    """
+    task = tasks[0]
+    site = site_settings(dask)
+    cores = request.cores or site.get("cores") or CORES
+    folder = own_folder(log_folder(task))
+    settings = job_settings(request, site, cores, folder)
+    settings["scheduler_options"] = {
+        "dashboard_address": "127.0.0.1:0",
+        "allowed_failures": max(task.retries, LOSSES_PER_RUN),
+        **(site.get("scheduler-options") or {}),
+    }
+    try:
+        settings["security"] = with_keys(distributed.Security, folder)
+        cluster = jobqueue.SLURMCluster(silence_logs=logging.CRITICAL, **settings)
+    except (OSError, ValueError, RuntimeError) as error:
+        raise BatchError(f"--slurm: the Dask scheduler cannot be started: {one_line(error)}") from None
+    wanted = min(request.jobs, -(-len(tasks) // cores))
+    patience_s = None if request.wait_min is None else 60 * request.wait_min
+    jobs = Jobs(cluster.job_script(), job_name(task), wanted, cores, patience_s, settings["log_directory"])
+    atexit.register(jobs.cancel)  # whatever happens to the batch before its first run
+    try:
+        jobs.cancel()
+        jobs.submit(wanted)
+    except BaseException:
+        close(cluster, jobs, folder)
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    counts = f"{counted(wanted, 'job')} of {counted(cores, 'core')}"
+    tell(f"SLURM: submitted {counts}, called {job_name(task)}; logs: {settings['log_directory']}")
+    return cluster, jobs
+
+
+def with_keys(security: Any, folder: Path) -> Any:
+    """Return the security of connections with keys of this batch alone, which are files that workers read."""
+    made = security.temporary().get_tls_config_for_role("worker")
+    paths = {name: folder / f"tls_{name}.pem" for name in ("ca_file", "cert", "key")}
+    for name, path in paths.items():
+        path.unlink(missing_ok=True)
+        path.touch(mode=0o600)
+        path.write_text(made[name])
+    pairs = {f"tls_{role}_{name}": str(paths[name]) for role in ROLES for name in ("cert", "key")}
+    return security(require_encryption=True, tls_ca_file=str(paths["ca_file"]), **pairs)
+
+
+def site_settings(dask: Any) -> dict[str, Any]:
+    """Return what the site and the user say about SLURM in jobqueue.yaml, or in the environment."""
+    entries = (dask.config.collect().get("jobqueue") or {}).get("slurm") or {}
+    return {key.replace("_", "-"): value for key, value in entries.items() if value is not None}
+
+
+def job_settings(request: SlurmJobs, site: dict[str, Any], cores: int, folder: Path) -> dict[str, Any]:
+    """Return the arguments of SLURMCluster that say what a job is."""
+    settings: dict[str, Any] = {
+        "cores": cores,
+        "processes": 1,  # simulators are processes of their own, which its threads wait for
+        "nanny": False,  # SLURM sees when a worker ends
+        "queue": request.partition,
+        "account": request.account,
+        "walltime": request.time or site.get("walltime") or TIME,
+        "log_directory": str(site.get("log-directory") or folder),
+        "job_extra_directives": [*(site.get("job-extra-directives") or []), *map(directive, request.options)],
+        # The worker has the name of its job.
+        "worker_extra_args": [
+            *(site.get("worker-extra-args") or []),
+            *("--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.slurm_worker"),
+        ],
+    }
+    memory = request.memory or (None if "memory" in site else f"{MEMORY_PER_CORE_GB * cores}G")
+    if memory is not None:
+        settings.update(job_mem=memory, memory=bytes_of(memory))
+    return settings
+
+
+def directive(option: str) -> str:
+    """Return an option of sbatch as it stands in a script: "--qos=long", also of "qos=long"."""
+    return option if option.startswith("-") else f"--{option}"
+
+
+def bytes_of(memory: str) -> int:
+    """Return an amount of memory in bytes. A number alone means MB, as for sbatch."""
+    unit = memory.lstrip("0123456789")
+    return int(memory.removesuffix(unit)) * int(1024 ** POWERS[unit])
+
+
+def log_folder(task: Task) -> Path:
+    """Return the folder for logs of jobs."""
+    return Path(task.temp_folder) / f"slurm_{task.batch}"
+
+
+def job_name(task: Task) -> str:
+    """Return the name of all jobs of a batch: the same whenever the same command is given."""
+    return f"pogobatch-{hashlib.sha256(task.done_folder.encode()).hexdigest()[:8]}"
+
+
+def outcomes_in(tasks: Sequence[Task], client: Any, cluster: Any, jobs: Jobs | None) -> Generator[Outcome, None, None]:
+    """Yield the outcomes of runs, and look after the jobs meanwhile. Logs stay if something went wrong."""
+    if jobs is None:
+        return
+    left = len(tasks)
+    is_well = True
+    folder = log_folder(tasks[0])
+
+    def look() -> None:
+        jobs.look(left)
+        jobs.release(idle_jobs(cluster, jobs, left))
+
+    ended = outcomes_of(tasks, client, lambda: close(cluster, jobs, folder), look, do_in_job)
+    try:
+        with contextlib.closing(ended) as outcomes:
+            for outcome in outcomes:
+                left -= 1
+                jobs.has_progress()
+                is_well &= not outcome.problem
+                yield outcome
+    except BatchError:
+        is_well = not jobs.has_started
+        raise
+    finally:
+        if is_well and not tasks[0].keep_temp:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def idle_jobs(cluster: Any, jobs: Jobs, left: int) -> list[str]:
+    """Return the jobs that have nothing to do any more: all runs that are left are being done in others."""
+    workers = {str(worker.name): len(worker.processing) for worker in list(cluster.scheduler.workers.values())}
+    if sum(min(assigned, jobs.cores) for assigned in workers.values()) < left:
+        return []
+    return [job for job in jobs.states if not workers.get(job)]
+
+
+def close(cluster: Any, jobs: Jobs, folder: Path) -> None:
+    """End the jobs, then the scheduler, and forget the keys."""
+    jobs.cancel()
+    atexit.unregister(jobs.cancel)
+    with contextlib.suppress(Exception):
+        cluster.close(timeout=5)
+    for path in folder.glob("tls_*.pem"):
+        path.unlink(missing_ok=True)
