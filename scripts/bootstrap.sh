@@ -12,7 +12,8 @@ apt_packages="build-essential cmake ninja-build ccache pkg-config
     libbox2d-dev libyaml-cpp-dev libspdlog-dev libfmt-dev libcli11-dev libgtest-dev libbenchmark-dev libdw-dev
     libsdl2-dev libimgui-dev libpng-dev fonts-dejavu-core
     python3 python3-venv ca-certificates"
-# libclang-rt-dev: the sanitizers of clang. xvfb, xdotool, x11-apps: a display to test the window on. ffmpeg: films. slurm*: batches.
+# libclang-rt-dev: the sanitizers of clang. xvfb, xdotool, x11-apps: a display to test the window on. ffmpeg: films.
+# slurm*, munge: a cluster of one node to test batches on, see tests/slurm.
 apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg
     gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf
     slurmctld slurmd slurm-client munge"
