@@ -35,18 +35,18 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit: 1 if required options are missing, otherwise 2."""
         is_missing = "required" in message
-        print(f"pogobatch: {message}", file=sys.stderr)
+        print(f"{self.prog}: {message}", file=sys.stderr)
         print(
-            "Usage: pogobatch -c CONFIG -S PROGRAM [-r RUNS] [-t TEMP] [-o FOLDER]; -h lists all options",
+            f"Usage: {self.prog} -c CONFIG -S PROGRAM [-r RUNS] [-t TEMP] [-o FOLDER]; -h lists all options",
             file=sys.stderr,
         )
         sys.exit(NO_SUCH_OUTPUT if is_missing else WRONG)
 
 
-def parser() -> Parser:
-    """Return the parser of the command line."""
+def parser(prog: str) -> Parser:
+    """Return the parser of the command line; `prog` is the name of the command."""
     options = Parser(
-        prog="pogobatch",
+        prog=prog,
         description="Runs a program with every combination of the options in a configuration, several times each, "
         "and joins the data files.",
         epilog=EPILOG,
@@ -75,7 +75,7 @@ def parser() -> Parser:
     add("--keep-temp", action="store_true", help="keep the folders of single runs")
     add("--gui", action="store_true", help="let each run open its window")
     add("-v", "--verbose", action="store_true", help="say more")
-    add("-V", "--version", action="version", version=f"pogobatch {pogosim.__version__}")
+    add("-V", "--version", action="version", version=f"{prog} {pogosim.__version__}")
     return options
 
 
@@ -130,10 +130,10 @@ def catch_signals() -> None:
             signal.signal(number, interrupt)
 
 
-def start_logging(verbose: bool) -> None:
+def start_logging(verbose: bool, prog: str) -> None:
     """Print messages on standard error."""
     handler = logging.StreamHandler()
-    handler.setFormatter(logging.Formatter("pogobatch: %(message)s"))
+    handler.setFormatter(logging.Formatter(f"{prog}: %(message)s"))
     log.handlers = [handler]
     log.propagate = False
     log.setLevel(logging.DEBUG if verbose else logging.INFO)
@@ -175,13 +175,13 @@ def run_batch(arguments: argparse.Namespace) -> int:
     return RUNS_FAILED if runner.failures else DONE
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int:
     """Run the command. Returns its exit code, see its help."""
-    options = parser()
+    options = parser(prog)
     parsed = options.parse_args(arguments)
     if not parsed.simulator_binary and not parsed.list_outputs:
         options.error("the following arguments are required: -S/--simulator-binary")
-    start_logging(parsed.verbose)
+    start_logging(parsed.verbose, prog)
     catch_signals()
     try:
         return run_batch(parsed)
