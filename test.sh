@@ -25,6 +25,8 @@ done
 
 . scripts/bootstrap.sh
 bootstrap "$needs"
+# Several builds of the same sources, here and in other clones, share what ccache has kept.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 
 python=.venv/bin/python
 reports=build/reports

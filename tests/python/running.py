@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -133,12 +134,13 @@ def example(name: str) -> Path:
 
 @cache
 def build_folder() -> Path:
-    """Return the folder of the built library: POGOSIM_BUILD_DIR, or else the newest without sanitizers."""
+    """Return the folder of the built library: POGOSIM_BUILD_DIR, or else the newest without sanitizers, of no wheel."""
     if chosen := os.environ.get("POGOSIM_BUILD_DIR"):
         return Path(chosen).resolve()
     libraries = sorted((ROOT / "build").glob(f"*/src/{LIBRARY}"), key=lambda path: path.stat().st_mtime)
     folders = [library.parents[1] for library in libraries]
-    usable = [f for f in folders if "POGOSIM_SANITIZE:BOOL=ON" not in (f / "CMakeCache.txt").read_text()]
+    others = re.compile(r"^(POGOSIM_SANITIZE:BOOL=ON|SKBUILD:.*)$", re.MULTILINE)
+    usable = [folder for folder in folders if not others.search((folder / "CMakeCache.txt").read_text())]
     assert usable, f"no {LIBRARY} in {ROOT / 'build'}/*/src: run ./build.sh"
     return usable[-1]
 
