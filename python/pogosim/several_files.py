@@ -15,7 +15,14 @@ from pogosim.outputs import PathLike
 Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
 
 # What differs between any two runs without being a parameter.
-NO_PARAMETERS = ("seed", "data_filename", "console_filename", "frames_name")
+NO_PARAMETERS = (
+    "seed",
+    "data_filename",
+    "console_filename",
+    "frames_name",
+    "result_filename_format",
+    "result_new_columns",
+)
 
 MISSING = object()
 
@@ -108,8 +115,9 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
 
     Returns:
         All rows, in the order of the files, with these columns in addition, unless the file has them:
-        `run`, the number of the file (0, 1, ...); `seed`; and for each key whose value differs between the files, its
-        dotted path (`objects.robots.nb`). Null where a file has no such key; lists as text.
+        `run`, the number of the file (0, 1, ...); `seed`, if a configuration has one; and for each key whose value
+        differs between the files, its dotted path (`objects.robots.nb`). Null where a file has no such key; lists as
+        text.
         And the metadata that all files have in common, `files` with the names of the files, and `configuration` with
         the common entries.
 
@@ -119,12 +127,17 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     if not files:
         raise ValueError("there are no files to read: the list is empty")
     configurations = [configuration_of(metadata) for _, _, metadata in files]
-    varied = varied_parameters(configurations)
+    added: dict[str, list[Any]] = {
+        "run": list(range(len(files))),
+        "seed": [configuration.get("seed") for configuration in configurations],
+    }
+    if all(seed is None for seed in added["seed"]):
+        del added["seed"]  # of files of results: each of their runs has its own
+    added |= varied_parameters(configurations)
     parts = []
     for number, (_, rows, _) in enumerate(files):
-        added = {"run": number, "seed": configurations[number].get("seed")}
-        added |= {path: scalar(found[number]) for path, found in varied.items()}
-        parts.append(rows.assign(**{name: value for name, value in added.items() if name not in rows.columns}))
+        missing = {name: scalar(found[number]) for name, found in added.items() if name not in rows.columns}
+        parts.append(rows.assign(**missing))
     metadata: dict[str, Any] = in_common([metadata for _, _, metadata in files])
     metadata = {} if metadata is MISSING else metadata
     metadata.setdefault("configuration", {})

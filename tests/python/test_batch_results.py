@@ -175,6 +175,7 @@ def test_results_of_values_added_in_a_batch_of_their_own_are_read_together(tmp_p
     rows, _ = load_dataframe([tmp_path / "results" / name for name in ("result.feather", "more.feather")])
     robots = rows[rows["time"] == 0].groupby(["objects.robots.nb", "run"]).size()
     assert robots.to_dict() == {(nb, run): nb for nb in (2, 3, 4) for run in (0, 1)}
+    assert not {"seed", "result_filename_format"} & set(rows.columns)
 
 
 def test_file_beside_the_configuration_is_found_as_by_a_single_run(tmp_path: Path) -> None:
@@ -185,6 +186,17 @@ def test_file_beside_the_configuration_is_found_as_by_a_single_run(tmp_path: Pat
     result = batch(tmp_path, "-c", "conf/my.yaml")
     assert (result.code, result.errors) == (0, "")
     assert set(load_dataframe(tmp_path / "results" / "result.feather")[0]["arena_file"]) == {"mine"}
+
+
+def test_combinations_that_no_column_tells_apart_are_warned_of(tmp_path: Path) -> None:
+    write_options(tmp_path, {"result_new_columns": ["arena_file"], "result_filename_format": "all.feather"})
+    result = batch(tmp_path)
+    assert result.code == 0
+    (line,) = result.errors.splitlines()
+    assert line == (
+        "pogobatch: results/all.feather: no column tells its combinations apart; add to result_new_columns: "
+        "objects.robots.nb"
+    )
 
 
 def test_outputs_are_listed_and_chosen_by_name_or_path(tmp_path: Path) -> None:
@@ -248,7 +260,7 @@ def test_rows_are_written_in_pieces_of_one_size_however_the_runs_are_cut(tmp_pat
 
 
 def test_program_with_a_column_that_the_batch_adds_is_refused(program: Compile, tmp_path: Path) -> None:
-    write_options(tmp_path, {"result_new_columns": ["flag"], "flag": 1})
+    write_options(tmp_path, {"result_new_columns": ["objects.robots.nb", "flag"], "flag": 1})
     result = batch(tmp_path, program=program("columns.c"))
     assert result.code == 2
     assert result.errors.count("\n") == 1

@@ -20,7 +20,7 @@ from pogosim.batch.names import NamesError, file_name, new_columns
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.run import Outcome, Task
-from pogosim.batch.selection import check_columns_exist, with_output
+from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm import SlurmJobs, slurm
 from pogosim.batch.tasks import Combination, RunSettings, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
@@ -197,6 +197,10 @@ class PogobotBatchRunner:
             check_columns_exist([config for config, _ in selected])
         except NamesError as error:
             raise self.names_error(error) from None
+        columns = [(config, output, self.compute_new_columns(config)) for config, output in selected]
+        for output, keys in indistinguishable(columns).items():
+            listed = ", ".join(keys)
+            log.warning("%s: no column tells its combinations apart; add to result_new_columns: %s", output, listed)
         with self.prepared():
             for output in dict.fromkeys(output for _, output in selected):
                 check_output(output)

@@ -8,6 +8,7 @@ from typing import Any
 
 from pogosim.batch.errors import NothingSelectedError
 from pogosim.batch.names import COLUMNS, NamesError, has_key, new_columns
+from pogosim.several_files import varied_parameters
 
 
 def with_output(named: Sequence[tuple[dict[str, Any], str]], wanted: str) -> list[tuple[dict[str, Any], str]]:
@@ -47,3 +48,18 @@ def check_columns_exist(configs: Sequence[dict[str, Any]]) -> None:
                 f"there is no key '{name}' in the configuration; expected the dotted paths of keys, such as "
                 "objects.robots.nb",
             )
+
+
+def indistinguishable(selected: Sequence[tuple[dict[str, Any], str, dict[str, Any]]]) -> dict[str, list[str]]:
+    """Return files of results with combinations that no column tells apart, and the keys in which those differ.
+
+    Args:
+        selected: Configurations, each with its file of results and its new columns.
+    """
+    alike: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    for config, output, columns in selected:
+        alike.setdefault((output, repr(columns)), []).append(config)
+    keys: dict[str, list[str]] = {}
+    for (output, _), configs in alike.items():
+        keys[output] = list(dict.fromkeys([*keys.get(output, []), *varied_parameters(configs)]))
+    return {output: varied for output, varied in keys.items() if varied}
