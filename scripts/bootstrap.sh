@@ -120,7 +120,7 @@ system_python() {
 trim_venv() {
     local packages
     packages=$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("platlib"))') || return
-    rm -rf "$packages"/{matplotlib,pandas,pyarrow}/tests \
+    rm -rf "$packages"/{matplotlib,pandas,pyarrow,scipy/*,scipy/*/*}/tests \
         "$packages"/pyarrow/{_flight,_s3fs,libarrow_flight,libarrow_python_flight,libarrow_s3}.*
 }
 
