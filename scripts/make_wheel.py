@@ -19,16 +19,19 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+# The newest with packages for all versions of Python that the wheel is for.
+PYARROW = "pyarrow<26"
 SDL_PACKAGE = "pysdl2-dll>=2.28"
 SDL_FOLDER = "$ORIGIN/../../../sdl2dll/dll"  # from site-packages/pogosim/simulator/lib
 SDL_THERE = "libSDL2-2.0.so"
 SDL_HERE = "libSDL2-2.0.so.0"
 
 
-def command(*words: str | Path) -> None:
+def command(*words: str | Path, **variables: str) -> None:
     """Run a module of this environment, which must work, and may call the programs of the environment."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    subprocess.run([sys.executable, "-m", *words], check=True, cwd=ROOT, env=os.environ | {"PATH": path})
+    environment = os.environ | {"PATH": path} | variables
+    subprocess.run([sys.executable, "-m", *words], check=True, cwd=ROOT, env=environment)
 
 
 def patchelf(*words: str | Path) -> None:
@@ -38,9 +41,14 @@ def patchelf(*words: str | Path) -> None:
 
 def built(folder: Path, with_environment: bool) -> Path:
     """Build the project's wheel in a folder, and return it."""
-    options = ["--no-build-isolation"] if with_environment else []
-    settings = ["--config-settings", f"build-dir={ROOT}/build/wheel"]
-    command("pip", "wheel", "--quiet", "--no-deps", *options, *settings, "--wheel-dir", folder, str(ROOT))
+    options = ["--quiet", "--no-deps", "--wheel-dir", str(folder), "--config-settings", f"build-dir={ROOT}/build/wheel"]
+    if with_environment:
+        command("pip", "wheel", *options, "--no-build-isolation", str(ROOT))
+    else:
+        constraints = folder.parent / "constraints.txt"
+        constraints.write_text(f"{PYARROW}\n")
+        names = ("PIP_CONSTRAINT", "PIP_BUILD_CONSTRAINT")  # before and since pip 25.3
+        command("pip", "wheel", *options, str(ROOT), **dict.fromkeys(names, str(constraints)))
     (wheel,) = folder.glob("pogosim-*.whl")
     return wheel
 

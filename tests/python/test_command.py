@@ -67,6 +67,19 @@ def test_unknown_command_is_one_line_with_the_nearest_name(name: str, said: str,
     assert refusal(command(tmp_path, name)) == f"pogosim: {said}"
 
 
+def test_output_that_nobody_reads_ends_it_quietly(tmp_path: Path) -> None:
+    commands = f"{sys.executable} -m pogosim doctor | head -1 >/dev/null; echo ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", commands], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("141\n", "")
+
+
+def test_output_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        command_line = [sys.executable, "-m", "pogosim", "--help"]
+        done = subprocess.run(command_line, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "pogosim: cannot go on: No space left on device\n")
+
+
 @pytest.mark.parametrize("name", SUBCOMMANDS)
 def test_each_subcommand_explains_itself_by_its_own_name(name: str, tmp_path: Path) -> None:
     result = command(tmp_path, name, "--help")

@@ -9,10 +9,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import pogosim
+from pogosim.command.parser import complain
 from pogosim.outputs import say
 
 WRONG_USAGE = 2
 INTERRUPTED = 130
+NO_READER = 141  # as a shell says of a program that SIGPIPE has ended
 
 
 class Subcommand(NamedTuple):
@@ -65,6 +67,19 @@ def unknown(name: str) -> str:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line. Returns the exit code, which is 2 for wrong usage."""
     name, *rest = list(sys.argv[1:] if arguments is None else arguments) or [""]
+    prog = f"pogosim {name}" if name in SUBCOMMANDS else "pogosim"
+    try:
+        return run(name, rest)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:  # pogosim doctor | head -3
+        return NO_READER
+    except OSError as error:
+        return complain(prog, f"cannot go on: {error.strerror or error}")
+
+
+def run(name: str, arguments: Sequence[str]) -> int:
+    """Run a subcommand, or an option in its place; returns the exit code."""
     if name in ("-h", "--help", "help"):
         say(usage())
         return 0
@@ -78,10 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(unknown(name), file=sys.stderr)
         return WRONG_USAGE
     module = importlib.import_module(SUBCOMMANDS[name].module)
-    try:
-        code: int = module.main(rest, f"pogosim {name}")
-    except KeyboardInterrupt:
-        return INTERRUPTED
+    code: int = module.main(arguments, f"pogosim {name}")
     return code
 
 
