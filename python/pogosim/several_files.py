@@ -79,7 +79,12 @@ def varied_parameters(configurations: Sequence[dict[str, Any]]) -> dict[str, lis
     flat = [dict(leaves(configuration)) for configuration in configurations]
     paths = list(dict.fromkeys(path for leaf in flat for path in leaf if path not in NO_PARAMETERS))
     values = {path: [leaf.get(path) for leaf in flat] for path in paths}
-    return {path: found for path, found in values.items() if any(value != found[0] for value in found[1:])}
+    return {path: found for path, found in values.items() if any(differ(value, found[0]) for value in found[1:])}
+
+
+def differ(a: Any, b: Any) -> bool:
+    """Tell whether two values of configurations differ; two that are not a number do not."""
+    return bool(a != b) and not (a != a and b != b)
 
 
 def plain(value: Any) -> Any:

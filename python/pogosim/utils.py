@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import json
 import logging
 import os
@@ -16,13 +17,12 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pyarrow
-import yaml
 from pyarrow import feather
 
 from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
 from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
-from pogosim.yaml_1_2 import parse_yaml
+from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 
 def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, dict[str, Any]]:
@@ -49,6 +49,7 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
 
     Raises:
         FileNotFoundError: There is no such file, or none that fits the pattern.
+        OSError: A file cannot be read.
         ValueError: A file is damaged, or neither a complete Feather file nor an unfinished one of the simulator; or the
             list is empty.
     """
@@ -124,7 +125,7 @@ def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
     """
     try:
         arrays = polygons_of(parse_yaml(text) or [])
-    except (yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError):
+    except WRONG_VALUES:
         return text
     return arrays if all(array.ndim == 2 for array in arrays) else text
 
@@ -133,12 +134,12 @@ def parse_combinations(text: str) -> list[dict[str, Any]] | str:
     """Parse what a batch says about its combinations: YAML, a sequence of maps; else the text itself."""
     try:
         combinations = parse_yaml(text)
-    except (yaml.YAMLError, ValueError, RecursionError):
+    except WRONG_VALUES:
         return text
     if not isinstance(combinations, list) or not all(isinstance(entry, dict) for entry in combinations):
         return text
     for entry in combinations:
-        if "arena_polygons" in entry:
+        with contextlib.suppress(KeyError, TypeError, ValueError):
             entry["arena_polygons"] = polygons_of(entry["arena_polygons"])
     return combinations
 
@@ -152,7 +153,8 @@ def parse_configuration(text: str) -> dict[str, Any]:
     for parse in (parse_yaml, json.loads, ast.literal_eval):
         try:
             value = parse(text)
-        except (yaml.YAMLError, ValueError, SyntaxError, TypeError, RecursionError, MemoryError):
+            plain(value)  # unless it refers to itself
+        except (*WRONG_VALUES, SyntaxError, MemoryError):
             continue
         if isinstance(value, dict):
             return value

@@ -48,8 +48,16 @@ ConfigurationLoader.add_implicit_resolver(
 ConfigurationLoader.add_constructor(INTEGER, construct_integer)
 
 
+# What PyYAML raises for text that is no YAML, and for values that do not fit their tags (!!bool x, !!timestamp x).
+WRONG_VALUES = (yaml.YAMLError, ValueError, RecursionError, KeyError, IndexError, AttributeError, TypeError)
+
+
 def parse_yaml(text: str) -> Any:
-    """Parse YAML, with numbers as the simulator reads them."""
+    """Parse YAML, with numbers as the simulator reads them.
+
+    Raises:
+        WRONG_VALUES: It cannot be parsed.
+    """
     return yaml.load(text, Loader=ConfigurationLoader)
 
 

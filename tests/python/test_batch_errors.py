@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pty
 import re
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -190,3 +191,62 @@ def test_page_of_batches_has_every_flag() -> None:
     known = {flag for action in parser("pogobatch")._actions for flag in action.option_strings}
     assert known - listed <= {"--help", "--verbose", "--version"}
     assert listed <= known
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ("nb: !!bool x", "is not valid YAML"),
+        ("nb: !!timestamp x", "is not valid YAML"),
+        ('nb: {batch_options: ["\\ud800"]}', "no text in UTF-8"),
+        (f"nb: {{batch_options_range: {{start: 0, stop: {'9' * 400}, step: 1}}}}", "stop: expected a number"),
+        ("nb: {batch_options_range: {start: 0, stop: 1e299, step: 1}}", "more than"),
+    ],
+)
+def test_values_that_are_none_are_one_line(changes: str, said: str, tmp_path: Path) -> None:
+    text = write_options(tmp_path).read_text()
+    (tmp_path / "many.yaml").write_text(f"{text}parameters: {{{changes}}}\n")
+    result = batch(tmp_path)
+    assert (result.code, result.errors.count("\n")) == (2, 1), result.text
+    assert said in result.errors
+    assert len(result.errors) < 400
+
+
+def test_aliases_of_aliases_are_refused_before_they_are_followed(tmp_path: Path) -> None:
+    lines = ["a0: &a0 [1, 2, 3, 4, 5, 6, 7, 8, 9]"]
+    lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]" for i in range(1, 10)]
+    (tmp_path / "many.yaml").write_text("\n".join(lines))
+    result = batch(tmp_path, "--list-outputs")
+    assert (result.code, result.errors) == (
+        2,
+        "pogobatch: many.yaml: its aliases stand for more than 1000000 values; use fewer of them\n",
+    )
+
+
+def test_pipe_is_no_configuration(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "many.yaml")
+    result = batch(tmp_path)
+    assert (result.code, result.errors) == (2, "pogobatch: many.yaml is not a configuration: it is not a file\n")
+
+
+def test_name_too_long_for_a_file_is_refused(tmp_path: Path) -> None:
+    write_options(tmp_path, {"result_filename_format": "{objects.robots.nb:1000000000d}"})
+    result = batch(tmp_path, "--list-outputs")
+    assert (result.code, result.errors.count("\n")) == (2, 1)
+    assert "too long for a file" in result.errors
+
+
+@pytest.mark.parametrize("flag", ["-c", "-t", "-o", "-S"])
+@pytest.mark.parametrize("name", ["a\udcff", "a\nb"])
+def test_names_that_are_no_text_are_refused(flag: str, name: str, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    result = batch(tmp_path, flag, name)
+    assert (result.code, result.errors.count("\n")) == (2, 1)
+    assert "has a line break or bytes that are not UTF-8" in result.errors
+
+
+def test_batch_runs_without_standard_error(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    commands = shlex.join(arguments(example("helloworld"))) + " 2>&-"
+    assert subprocess.run(["bash", "-c", commands], cwd=tmp_path, capture_output=True, check=False).returncode == 0
+    assert (tmp_path / "results" / "result.feather").exists()

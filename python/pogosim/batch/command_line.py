@@ -12,7 +12,7 @@ from types import FrameType
 from typing import NoReturn
 
 import pogosim
-from pogosim.batch.errors import BatchError, NothingSelectedError, reason, tell
+from pogosim.batch.errors import BatchError, NothingSelectedError, is_text, reason, tell
 from pogosim.batch.runner import PogobotBatchRunner
 from pogosim.batch.slurm import CORES, JOBS, MEMORY_PER_CORE_GB, TIME, SlurmJobs
 
@@ -139,12 +139,31 @@ def start_logging(verbose: bool, prog: str) -> None:
     log.setLevel(logging.DEBUG if verbose else logging.INFO)
 
 
+def check_names(arguments: argparse.Namespace) -> None:
+    """Check names of files and folders, which stand in configurations and messages.
+
+    Raises:
+        BatchError: One of them is no text, or has several lines.
+    """
+    names = {
+        "--config": arguments.config,
+        "--simulator-binary": arguments.simulator_binary or "",
+        "--temp-base": arguments.temp_base,
+        "--output-dir": arguments.output_dir,
+        "--only-output": arguments.only_output,
+    }
+    for option, name in names.items():
+        if not is_text(name) or "\n" in name:
+            raise BatchError(f"{option}: the name {name!a} has a line break or bytes that are not UTF-8; rename it")
+
+
 def run_batch(arguments: argparse.Namespace) -> int:
     """Do what the command line says; returns the exit code.
 
     Raises:
         BatchError: It cannot be done.
     """
+    check_names(arguments)
     runner = PogobotBatchRunner(
         arguments.config,
         arguments.runs,
@@ -192,6 +211,10 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
         log.error("%s", error)
     except OSError as error:
         log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+    except RuntimeError as error:
+        if "start new thread" not in str(error):
+            raise
+        log.error("no thread can be started: the limit of memory or of processes (ulimit -v, ulimit -u) is too low")
     except MemoryError:
         log.error("not enough memory for this many combinations and runs; make several batches")
     except KeyboardInterrupt:

@@ -11,9 +11,12 @@ from typing import Any
 import yaml
 
 from pogosim.batch.errors import BatchError, cannot, one_line
-from pogosim.yaml_1_2 import ConfigurationDumper, ConfigurationLoader, dump_yaml
+from pogosim.yaml_1_2 import WRONG_VALUES, ConfigurationDumper, ConfigurationLoader, dump_yaml
 
 HIERARCHICAL_OPTIONS = "batch_hierarchical_options"
+
+# As in the simulator: few aliases of aliases can stand for more values than memory holds.
+MAX_VALUES = 1_000_000
 
 log = logging.getLogger("pogobatch")
 
@@ -55,6 +58,9 @@ class Configuration:
             BatchError: It cannot be read, or is no YAML map.
         """
         self.path = Path(path)
+        self.values = 0
+        if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
+            raise BatchError(f"{path} is not a configuration: it is not a file")
         try:
             self.text = self.path.read_bytes().decode()
         except OSError as error:
@@ -70,7 +76,7 @@ class Configuration:
         except yaml.MarkedYAMLError as error:
             line = error.problem_mark.line + 1 if error.problem_mark else 1
             raise BatchError(f"{path}:{line}: not valid YAML: {one_line(error.problem)}") from None
-        except (yaml.YAMLError, ValueError, RecursionError) as error:
+        except WRONG_VALUES as error:
             what = "it refers to itself" if isinstance(error, RecursionError) else one_line(error)
             raise BatchError(f"{path} is not valid YAML: {what}") from None
         finally:
@@ -82,6 +88,9 @@ class Configuration:
 
     def take_repeated_keys(self, node: yaml.Node, path: tuple[str, ...]) -> None:
         """Make a list of categories with the same name; of other keys that are repeated, the last one counts."""
+        self.values += 1
+        if self.values > MAX_VALUES:
+            raise BatchError(f"{self.path}: its aliases stand for more than {MAX_VALUES} values; use fewer of them")
         if isinstance(node, yaml.SequenceNode):
             for number, item in enumerate(node.value):
                 self.take_repeated_keys(item, (*path, str(number)))

@@ -35,6 +35,15 @@ def cannot(task: str, path: str | Path, error: OSError) -> BatchError:
     return BatchError(f"cannot {task} {path}: {reason(error)}{advice}")
 
 
+def is_text(text: str) -> bool:
+    """Tell whether a text can be written in UTF-8; names of files, as Python reads them, need not."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 def tell(text: str) -> None:
     """Print a line; a batch goes on when nobody reads it."""
     with contextlib.suppress(OSError):

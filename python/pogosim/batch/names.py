@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import string
 from collections.abc import Mapping, Sequence
 from pathlib import PurePath
 from typing import Any
 
 from pogosim.batch.combinations import CHOICES
+from pogosim.batch.errors import is_text
 from pogosim.batch.options import shown
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.yaml_1_2 import dump_yaml
@@ -16,6 +18,9 @@ FORMAT = "result_filename_format"
 COLUMNS = "result_new_columns"
 DEFAULT_FORMAT = "result.feather"
 FILE_SUFFIXES = {".csv", ".feather", ".json", ".png", ".svg", ".txt", ".yaml", ".yml"}
+
+
+WIDE = re.compile(r"\d{4}")  # of a field: {objects.robots.nb:1000d}
 
 
 class NamesError(ValueError):
@@ -82,6 +87,8 @@ def file_name(combination: dict[str, Any]) -> str:
         raise NamesError(
             FORMAT, f"expected a name such as result_{{objects.robots.nb}}.feather, found {shown(pattern)}"
         )
+    if WIDE.search(pattern):
+        raise NamesError(FORMAT, f"'{shown(pattern)}' makes a name too long for a file")
     try:
         name = DottedFormatter().vformat(pattern, (), combination)
     except NamesError:
@@ -90,6 +97,8 @@ def file_name(combination: dict[str, Any]) -> str:
         raise NamesError(FORMAT, f"'{pattern}' is not a format of Python: {error}") from None
     if not name or name.endswith("/") or "\0" in name:
         raise NamesError(FORMAT, f"'{pattern}' gives no name of a file")
+    if not is_text(name):
+        raise NamesError(FORMAT, f"'{pattern}' gives a name that is no text in UTF-8")
     return name
 
 

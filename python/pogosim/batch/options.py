@@ -80,7 +80,7 @@ def expand_range(options: Any) -> list[Any]:
             "a step of the other sign, or inclusive: true"
         )
     if count > MAX_VALUES:
-        raise OptionsError(f"{RANGE}: {count} values are more than {MAX_VALUES}; give a larger step")
+        raise OptionsError(f"{RANGE}: there are more than {MAX_VALUES} values; give a larger step")
     values = [start + i * step for i in range(count)]
     integers = all(value == value.to_integral_value() for value in (start, step))
     kind = options.get("type", "int" if integers else "float")
@@ -96,7 +96,7 @@ def number_in(options: dict[str, Any], key: str) -> Decimal:
     if key not in options:
         raise OptionsError(f"{RANGE}: '{key}' is missing; expected start, stop and step")
     value = options[key]
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not -1e300 < value < 1e300:
         raise OptionsError(f"{RANGE}: {key}: expected a number, found {shown(value)}")
     return Decimal(str(value))
 

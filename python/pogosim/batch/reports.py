@@ -30,7 +30,7 @@ class Failure:
 
 def progress_bar(total: int) -> tqdm[NoReturn]:
     """Return a bar with the time left, on standard error if that is a terminal."""
-    is_shown = total > 0 and sys.stderr.isatty()
+    is_shown = total > 0 and sys.stderr is not None and sys.stderr.isatty()
     # Some terminals have no size; the bar would be empty.
     has_size = is_shown and os.get_terminal_size(sys.stderr.fileno()).columns > 0
     size = {"dynamic_ncols": True} if has_size else {"ncols": 80, "nrows": 24}

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
+import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -259,8 +260,8 @@ def check_output(path: str) -> Path:
         real = real_output(path)
         if real.exists() and real.stat().st_size > 0:
             check_replaceable(real)
-        if not os.access(real.parent, os.W_OK):
-            raise BatchError(f"cannot write {path}: no permission to write in {real.parent}")
+        with tempfile.TemporaryFile(dir=real.parent):
+            pass  # rather now than after all runs
     except OSError as error:
         raise cannot("write", path, error) from None
     except OutputError as error:

@@ -148,8 +148,11 @@ class PogobotBatchRunner:
 
     def write_temp_yaml(self, comb_config: dict[str, Any]) -> str:
         """Write the configuration of a combination into the folder for temporary files; returns its path."""
-        text = dump_configuration(comb_config)
-        name = hashlib.sha256(text.encode(errors="surrogatepass")).hexdigest()[:8]
+        try:
+            text = dump_configuration(comb_config)
+        except UnicodeEncodeError:
+            raise BatchError(f"{self.multi_config_file}: a value is no text in UTF-8 (such as \\ud800)") from None
+        name = hashlib.sha256(text.encode()).hexdigest()[:8]
         path = self.temporary.path / f"combo_{name}.yaml"
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
