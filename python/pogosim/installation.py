@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
 import pogosim
 
 PACKAGE = Path(pogosim.__file__).resolve().parent
-# Where pogosim.mk is: in a package or an installation, and in a source tree.
-SETTINGS = ("lib/pkgconfig/pogosim.mk", "build/release/pogosim.mk", "build/debug/pogosim.mk", "pogosim.mk")
-
-# What pogosim.mk says, in the order of `Installation`.
-VARIABLES = (
-    "POGOSIM_VERSION",
-    "POGOSIM_INCLUDE_DIR",
-    "POGOSIM_LIBRARY_DIR",
-    "POGOSIM_INTERFACE_DIR",
-    "POGOSIM_TEMPLATE_DIR",
-    "SHARED_STATE_TOOL",
+# Where pogosim.mk is: in a source tree, a build, a package or an installation. As in the Makefile of projects.
+SETTINGS = (
+    "build/release/pogosim.mk",
+    "build/debug/pogosim.mk",
+    "pogosim.mk",
+    "lib/pkgconfig/pogosim.mk",
+    "lib64/pkgconfig/pogosim.mk",
+    "lib/*/pkgconfig/pogosim.mk",
 )
 
 
@@ -35,32 +33,25 @@ class Installation:
     Attributes:
         folder: What the Makefile of a project calls POGOSIM_DIR.
         version: Version of the simulator, such as "0.11.0".
-        include: Folder of the headers.
         library: Folder of the library.
-        interface: Folder of the C files that are compiled for robots.
         template: Folder of the project template.
         shared_state: The tool that finds variables shared by mistake; it may be missing.
+        compiler_flags: Flags to compile and link a program in one command, for the end of the command line.
     """
 
     folder: Path
     version: str
-    include: Path
     library: Path
-    interface: Path
     template: Path
     shared_state: Path
-
-    @property
-    def compiler_flags(self) -> list[str]:
-        """Flags to compile and link a program in one command."""
-        return [f"-I{self.include}", f"-L{self.library}", f"-Wl,-rpath,{self.library}"]
+    compiler_flags: tuple[str, ...]
 
 
-def read_settings(file: Path) -> dict[str, str]:
-    """Return the variables of a pogosim.mk, by name."""
-    here = str(file.resolve().parent)
-    lines = re.findall(r"^(\w+) [:?]= (.*)$", file.read_text(encoding="utf-8"), re.MULTILINE)
-    return {name: value.replace("\\ ", " ").replace("${pcfiledir}", here) for name, value in lines}
+def read_settings(file: Path) -> dict[str, list[str]]:
+    """Return the variables of a pogosim.mk by name, split into words as a shell would."""
+    here = shlex.quote(os.path.realpath(file.parent))
+    lines = re.findall(r"^(\w+) [:?]= (.*)$", file.read_text(encoding="utf-8", errors="replace"), re.MULTILINE)
+    return {name: shlex.split(value.replace("${pcfiledir}", here)) for name, value in lines}
 
 
 def installation_in(folder: Path) -> Installation | None:
@@ -69,15 +60,19 @@ def installation_in(folder: Path) -> Installation | None:
     Raises:
         InstallationError: There is one of another version.
     """
-    file = next((folder / name for name in SETTINGS if (folder / name).is_file()), None)
+    file = next((path for pattern in SETTINGS for path in sorted(folder.glob(pattern)) if path.is_file()), None)
     if file is None:
         return None
-    settings = read_settings(file)
     try:
-        version, *paths = (settings[name] for name in VARIABLES)
-    except KeyError as error:
-        raise InstallationError(f"{file} has no {error}: it is of another version; build that Pogosim again") from None
-    return Installation(folder, version, *(Path(os.path.normpath(path)) for path in paths))
+        settings = read_settings(file)
+        library, template, shared_state = (
+            Path(os.path.normpath(settings[name][0]))
+            for name in ("POGOSIM_LIBRARY_DIR", "POGOSIM_TEMPLATE_DIR", "SHARED_STATE_TOOL")
+        )
+        flags = (*settings["POGOSIM_CFLAGS"], *settings["POGOSIM_LIBS"])
+        return Installation(folder, settings["POGOSIM_VERSION"][0], library, template, shared_state, flags)
+    except (KeyError, IndexError, ValueError):
+        raise InstallationError(f"{file} is of another version, or damaged: build that Pogosim again") from None
 
 
 def find_installation() -> Installation:
@@ -88,7 +83,7 @@ def find_installation() -> Installation:
     """
     chosen = os.environ.get("POGOSIM_DIR")
     if chosen:
-        found = installation_in(Path(chosen).resolve())
+        found = installation_in(Path(os.path.realpath(chosen)))
         if found is None:
             raise InstallationError(f"there is no simulator in POGOSIM_DIR={chosen}: build it, or unset POGOSIM_DIR")
         return found

@@ -121,7 +121,9 @@ def test_new_project_has_all_files_of_the_template(tmp_path: Path) -> None:
     assert made == set(listed.split())
 
 
-@pytest.mark.parametrize("name", ["a b", "-x", "a.c", "conf", "pogosim", "sim", "", ".", "a$b"])
+@pytest.mark.parametrize(
+    "name", ["a b", "-x", "a.c", "conf", "pogosim", "sim", "", ".", "a$b", "README.md", "GNUmakefile", ".PHONY"]
+)
 def test_name_that_make_cannot_handle_is_refused(name: str, tmp_path: Path) -> None:
     (tmp_path / "conf").mkdir()
     result = command(tmp_path / "conf", "new", "--", name)
@@ -243,3 +245,65 @@ def test_doctor_without_a_simulator(tmp_path: Path) -> None:
     result = command(tmp_path, "doctor", environment={"POGOSIM_DIR": str(tmp_path)})
     assert result.code == 2
     assert "there is no simulator in POGOSIM_DIR" in result.output
+
+
+@pytest.mark.parametrize(("variable", "value"), [("CC", "'"), ("CC", "true"), ("CC", "/nowhere/cc")])
+def test_doctor_gets_through_whatever_is_broken(variable: str, value: str, tmp_path: Path) -> None:
+    result = command(tmp_path, "doctor", environment={variable: value})
+    assert (result.code, result.errors) == (2, "")
+    found = findings(result)
+    assert found["C programs"][0] == "missing"
+    assert len(found) == 9
+
+
+def test_run_says_which_variable_cannot_be_understood(tmp_path: Path) -> None:
+    shutil.copy(TEMPLATE / "main.c", tmp_path / "main.c")
+    said = refusal(command(tmp_path, "run", "main.c", environment={"CFLAGS": '"'}))
+    assert said == "pogosim run: the environment variable CFLAGS cannot be understood: No closing quotation"
+
+
+def test_run_gives_flags_to_the_compiler(tmp_path: Path) -> None:
+    (tmp_path / "main.c").write_text("#ifndef OWN\n#error no flag\n#endif\n" + (TEMPLATE / "main.c").read_text())
+    configuration = str(write_scene(tmp_path, {}))
+    for flags, code in (("", 2), ("-DOWN", 0)):
+        result = command(tmp_path, "run", "./main.c", "-c", configuration, "-g", "-q", environment={"CFLAGS": flags})
+        assert result.code == code, result.text
+
+
+def test_run_compiles_cpp_20(tmp_path: Path) -> None:
+    step = "user_step(void) { static_assert(requires { 1; });"
+    (tmp_path / "main.cpp").write_text((TEMPLATE / "main.c").read_text().replace("user_step(void) {", step))
+    result = command(tmp_path, "run", "main.cpp", "-c", str(write_scene(tmp_path, {})), "-g", "-q")
+    assert result.code == 0, result.text
+
+
+def test_run_needs_no_configuration_to_explain_the_options(tmp_path: Path) -> None:
+    command(tmp_path, "new", "first")
+    result = command(tmp_path, "run", "first", "--version")
+    assert (result.code, result.output.split()[-1]) == (0, f"v{pogosim.__version__}")
+
+
+@pytest.mark.parametrize("name", ["lib64", "lib/x86_64-linux-gnu"])
+def test_simulator_in_a_folder_of_the_system_is_found(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / name / "pkgconfig"
+    folder.mkdir(parents=True)
+    shutil.copy(build_folder() / "pogosim.mk", folder)
+    environment = {"POGOSIM_DIR": str(tmp_path)}
+    assert command(tmp_path, "path", environment=environment).output == f"{tmp_path}\n"
+    (folder / "pogosim.mk").write_text("POGOSIM_VERSION := 0.10\n")
+    said = refusal(command(tmp_path, "path", environment=environment))
+    assert said.endswith("is of another version, or damaged: build that Pogosim again")
+
+
+@pytest.mark.parametrize("name", ["pogosim", "pogobatch"])
+def test_interrupt_while_modules_are_imported_ends_it_without_a_traceback(name: str, tmp_path: Path) -> None:
+    (tmp_path / "pandas.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
+    arguments = ["batch"] if name == "pogosim" else []
+    done = subprocess.run(
+        [Path(sys.executable).parent / name, *arguments, "-c", "a.yaml", "-S", "b"],
+        env=CLEAN | {"PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (130, "")

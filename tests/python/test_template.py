@@ -94,15 +94,23 @@ def test_command_on_the_path_leads_to_its_pogosim(prefix: Path, tmp_path: Path) 
     assert run_command(project / "cloned", project, SHORT).code == 0
 
 
-@pytest.mark.parametrize("found_by", ["link", "PKG_CONFIG_PATH", "command"])
-def test_installation_may_have_blanks_in_its_path(found_by: str, prefix: Path, tmp_path: Path) -> None:
-    copied = tmp_path / "John Doe" / "pogosim"
+@pytest.mark.parametrize(
+    ("found_by", "folder"),
+    [(found_by, "John Doe") for found_by in ("PKG_CONFIG_PATH", "command", "POGOSIM_DIR", "link")]
+    + [("link", name) for name in ("O'Neill", "a(b)", "100 $", "a;b", "a,b")],
+)
+def test_installation_may_have_special_characters_in_its_path(
+    found_by: str, folder: str, prefix: Path, tmp_path: Path
+) -> None:
+    copied = tmp_path / folder / "pogosim"
     copied.parent.mkdir()
     subprocess.run(["cp", "-r", prefix, copied], check=True)
     project = copy_template(tmp_path / "mine")
     environment = {}
     if found_by == "link":
         (project / "pogosim").symlink_to(copied)
+    elif found_by == "POGOSIM_DIR":
+        environment = {found_by: str(copied)}
     elif found_by == "PKG_CONFIG_PATH":
         (found,) = copied.glob("lib*/**/pogosim.pc")
         environment = {found_by: str(found.parent)}
@@ -242,13 +250,30 @@ def test_other_mistakes_are_one_helpful_line(project: Path, tmp_path: Path) -> N
     assert sentence(make(project, "sim")) == "There is no .c or .cpp file in this folder"
     assert "Rename the folder" in sentence(make(copy_template(tmp_path / "sim"), "sim"))
     assert "Rename the folder" in sentence(make(copy_template(tmp_path / "conf"), "sim"))  # has a folder conf in it
-    blank = sentence(make(project, "sim", f"POGOSIM_DIR={tmp_path}/my pogosim"))
-    assert blank.startswith(f"POGOSIM_DIR contains a space, which make cannot handle: {tmp_path}/my pogosim. Use a")
 
 
-@pytest.mark.parametrize("name", ["my swarm", "a$b", "a'b", "a(b", "a:b", "a&b", "a;b", "a%b", "a\\b", "-a", "a.c"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "my swarm",
+        "a$b",
+        "README.md",
+        "Makefile",
+        ".PHONY",
+        "a'b",
+        "a(b",
+        "a:b",
+        "a&b",
+        "a;b",
+        "a%b",
+        "a\\b",
+        "-a",
+        "a.c",
+    ],
+)
 def test_folder_whose_name_means_something_to_make_is_refused(name: str, tmp_path: Path) -> None:
-    assert "make cannot handle this name" in sentence(make(copy_template(tmp_path / name), "sim"))
+    said = sentence(make(copy_template(tmp_path / name), "sim"))
+    assert "make cannot handle this name" in said or "has another meaning" in said
 
 
 @pytest.mark.parametrize("name", ["a-b", "a+b", "a.b", "\u00e9t\u00e9", "John Doe/a"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import importlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import pogosim
@@ -68,8 +68,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line. Returns the exit code, which is 2 for wrong usage."""
     name, *rest = list(sys.argv[1:] if arguments is None else arguments) or [""]
     prog = f"pogosim {name}" if name in SUBCOMMANDS else "pogosim"
+    return ended(prog, lambda: run(name, rest))
+
+
+def pogobatch() -> int:
+    """Run the command `pogobatch`, which is `pogosim batch`."""
+    return ended("pogobatch", lambda: call("batch", sys.argv[1:], "pogobatch"))
+
+
+def recover() -> int:
+    """Run the command `pogosim-recover`, which is `pogosim recover`."""
+    return ended("pogosim-recover", lambda: call("recover", sys.argv[1:], "pogosim-recover"))
+
+
+def ended(prog: str, command: Callable[[], int]) -> int:
+    """Run a command to its end, whatever it is: also by Ctrl-C while its modules are imported."""
     try:
-        return run(name, rest)
+        return command()
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:  # pogosim doctor | head -3
@@ -92,8 +107,12 @@ def run(name: str, arguments: Sequence[str]) -> int:
     if name not in SUBCOMMANDS:
         print(unknown(name), file=sys.stderr)
         return WRONG_USAGE
-    module = importlib.import_module(SUBCOMMANDS[name].module)
-    code: int = module.main(arguments, f"pogosim {name}")
+    return call(name, arguments, f"pogosim {name}")
+
+
+def call(name: str, arguments: Sequence[str], prog: str) -> int:
+    """Import a subcommand, and run it under a name; returns the exit code."""
+    code: int = importlib.import_module(SUBCOMMANDS[name].module).main(arguments, prog)
     return code
 
 

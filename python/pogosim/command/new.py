@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ from pogosim.outputs import say
 FILES = ("main.c", "conf/test.yaml", "Makefile", "robot.mk", "README.md", ".gitignore")
 LINK = "pogosim"
 # Names with another meaning in the Makefile or the folder.
-TAKEN = {"all", "sim", "bin", "connect", "clean", "build", "conf", LINK}
+TAKEN = {*"all sim bin connect clean build conf makefile gnumakefile robot.mk readme.md".split(), LINK}
 
 
 class ProjectError(Exception):
@@ -27,12 +28,12 @@ def check_name(name: str) -> None:
     Raises:
         ProjectError: It cannot.
     """
-    if not re.fullmatch(r"(?!-)[\w.+=-]+", name) or set(name) == {"."} or name.endswith((".c", ".cpp")):
+    if not re.fullmatch(r"(?![-.])[\w.+=-]+", name) or name.endswith((".c", ".cpp")):
         raise ProjectError(
             f"'{name}' cannot be the name of a project, since the program is named after it: "
-            "use letters, digits and any of _ - + . ="
+            "use letters, digits and any of _ - + . =, with a letter or digit first"
         )
-    if name in TAKEN:
+    if name.lower() in TAKEN:
         raise ProjectError(f"'{name}' has another meaning in a project; choose another name")
 
 
@@ -47,18 +48,28 @@ def make_project(folder: Path, pogosim: Installation) -> None:
         ProjectError: The name will not do, or there is something already.
         OSError: The files cannot be written.
     """
-    check_name(folder.resolve().name)
+    name = name_of(folder)
+    check_name(name)
     if folder.exists() and not folder.is_dir():
         raise ProjectError(f"{folder} is a file; choose another name")
     if folder.is_dir() and any(folder.iterdir()):
         raise ProjectError(f"{folder} is there already, with files in it; choose another name")
-    for name in FILES:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(pogosim.template / name, folder / name)
-    readme = folder / "README.md"
-    text = readme.read_text(encoding="utf-8").replace("template_prj", folder.resolve().name)
-    readme.write_text(text, encoding="utf-8")
-    (folder / LINK).symlink_to(pogosim.folder, target_is_directory=True)
+    is_new = not folder.exists()
+    try:
+        for file in FILES:
+            text = (pogosim.template / file).read_text(encoding="utf-8").replace("template_prj", name)
+            (folder / file).parent.mkdir(parents=True, exist_ok=True)
+            (folder / file).write_text(text, encoding="utf-8")
+        (folder / LINK).symlink_to(pogosim.folder, target_is_directory=True)
+    except OSError:
+        if is_new:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def name_of(folder: Path) -> str:
+    """Return the name of the project in a folder, which is that of the folder."""
+    return Path(os.path.realpath(folder)).name
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim new") -> int:
@@ -71,8 +82,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim new") -> i
     except (InstallationError, ProjectError) as error:
         return complain(prog, error)
     except OSError as error:
-        return complain(prog, f"cannot write {error.filename or folder}: {error.strerror}")
-    name = folder.resolve().name
+        return complain(prog, f"cannot make {folder}: {error.strerror}")
     say(f"Made {folder}: main.c (the program), conf/test.yaml (the world), Makefile. Next:")
-    say(f"  cd {folder}\n  make sim\n  ./{name} -c conf/test.yaml      # -g: without a window")
+    say(f"  cd {folder}\n  make sim\n  ./{name_of(folder)} -c conf/test.yaml      # -g: without a window")
     return 0

@@ -22,6 +22,18 @@ class RunError(Exception):
     """There is nothing to run, or it cannot be compiled; says why."""
 
 
+def words_of(variable: str) -> list[str]:
+    """Return the words of an environment variable, as a shell would split it.
+
+    Raises:
+        RunError: A quotation mark is open.
+    """
+    try:
+        return shlex.split(os.environ.get(variable, ""))
+    except ValueError as error:
+        raise RunError(f"the environment variable {variable} cannot be understood: {error}") from None
+
+
 def compile_file(source: Path, pogosim: Installation) -> Path:
     """Compile a program of one file; returns the program: build/NAME beside the source.
 
@@ -32,14 +44,13 @@ def compile_file(source: Path, pogosim: Installation) -> Path:
     program.parent.mkdir(exist_ok=True)
     variable, compiler, flags, standard = STANDARDS[source.suffix]
     command = [
-        *shlex.split(os.environ.get(variable) or compiler),
+        *(words_of(variable) or [compiler]),
         f"-std={standard}",
         *("-g", "-O2", "-Wall", "-Wextra"),
-        *shlex.split(os.environ.get(flags, "")),
-        str(source),
+        *words_of(flags),
+        os.path.join(source.parent, source.name),  # noqa: PTH118 - ./-x.c, which would be an option without ./
         *("-o", str(program)),
         *pogosim.compiler_flags,
-        *("-lpogosim", "-lm"),
     ]
     try:
         code = subprocess.run(command, check=False).returncode
@@ -65,13 +76,15 @@ def make_project(folder: Path, pogosim: Installation) -> Path:
     command = ["make", "--silent", "--no-print-directory", "-C", str(folder), "sim"]
     has_own = (folder / "pogosim").exists() or "POGOSIM_DIR" in os.environ
     environment = os.environ | ({} if has_own else {"POGOSIM_DIR": str(pogosim.folder)})
+    for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
+        environment.pop(name, None)
     try:
         code = subprocess.run(command, check=False, env=environment, stdout=sys.stderr).returncode
     except FileNotFoundError:
         raise RunError("make is not installed (Debian, Ubuntu: apt install make)") from None
     if code != 0:
         raise RunError(f"{folder} cannot be built; see the messages above")
-    return folder / folder.resolve().name
+    return folder / Path(os.path.realpath(folder)).name
 
 
 def program_of(what: Path, pogosim: Installation) -> Path:
