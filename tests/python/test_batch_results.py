@@ -283,3 +283,17 @@ def test_disk_that_fills_up_is_one_line_and_leaves_no_half_file(
         write_results(str(out), [Part({}, [run])], "other")
     assert out.read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "out.feather"]
+
+
+def test_earlier_results_stay_until_a_run_has_ended_well(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert batch(tmp_path).code == 0
+    before = (tmp_path / "results" / "result.feather").read_bytes()
+    write_options(tmp_path, {"arena_file": "arenas/dsik.csv"})
+    result = batch(tmp_path, "-R", "0")
+    assert result.code == 3
+    assert "Removed stale" not in result.output
+    assert (tmp_path / "results" / "result.feather").read_bytes() == before
+    write_options(tmp_path, {"simulation_time": 0.5})
+    assert "Removed stale result file: results/result.feather\n" in batch(tmp_path).output
+    assert len((tmp_path / "results" / "result.feather").read_bytes()) < len(before)

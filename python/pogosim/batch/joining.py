@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 
 from pogosim.batch.errors import cannot, tell
 from pogosim.batch.reports import Failure
 from pogosim.batch.results import Part, RunFile, check_output, write_results
+from pogosim.batch.run import Outcome
 from pogosim.batch.tasks import Combination
 
 log = logging.getLogger("pogobatch")
@@ -26,6 +27,26 @@ def remove_stale(output: str) -> None:
             tell(f"Removed stale result file: {output}")
     except OSError as error:
         raise cannot("remove", output, error) from None
+
+
+def removing_stale(outputs: Sequence[str], outcomes: Generator[Outcome, None, None]) -> Generator[Outcome, None, None]:
+    """Pass on what became of runs. The first one that ends well removes results of an earlier batch.
+
+    Until then, they stay: a mistake in the configuration loses nothing.
+
+    Raises:
+        BatchError: They cannot be removed.
+    """
+    is_first = True
+    try:
+        for outcome in outcomes:
+            if is_first and not outcome.problem:
+                is_first = False
+                for output in outputs:
+                    remove_stale(output)
+            yield outcome
+    finally:
+        outcomes.close()
 
 
 def join(combinations: Sequence[Combination], failures: Sequence[Failure], text: str) -> None:

@@ -15,7 +15,7 @@ from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError, cannot, tell
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
-from pogosim.batch.joining import join, remove_stale
+from pogosim.batch.joining import join, remove_stale, removing_stale
 from pogosim.batch.names import NamesError, file_name, new_columns
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
@@ -228,8 +228,11 @@ class PogobotBatchRunner:
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
         waiting = execution.waiting(self.temporary)
         outcomes = self.started(waiting)
-        for output in outputs:
-            remove_stale(output)
+        if len(waiting) == len(execution.tasks):
+            outcomes = removing_stale(outputs, outcomes)
+        else:
+            for output in outputs:
+                remove_stale(output)
         try:
             execution.take(outcomes, len(waiting))
         finally:

@@ -15,7 +15,8 @@ from pogosim.outputs import say
 FILES = ("main.c", "conf/test.yaml", "Makefile", "robot.mk", "README.md", ".gitignore")
 LINK = "pogosim"
 # Names with another meaning in the Makefile or the folder.
-TAKEN = {*"all sim bin connect clean build conf makefile gnumakefile robot.mk readme.md".split(), LINK}
+TAKEN = {"all", "sim", "bin", "connect", "clean", "build", "conf", LINK}
+FILES_OF_MAKE = {"makefile", "gnumakefile", "robot.mk", "readme.md"}
 
 
 class ProjectError(Exception):
@@ -33,7 +34,7 @@ def check_name(name: str) -> None:
             f"'{name}' cannot be the name of a project, since the program is named after it: "
             "use letters, digits and any of _ - + . =, with a letter or digit first"
         )
-    if name.lower() in TAKEN:
+    if name.lower() in TAKEN | FILES_OF_MAKE:
         raise ProjectError(f"'{name}' has another meaning in a project; choose another name")
 
 
