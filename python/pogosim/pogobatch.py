@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from pogosim.batch.command_line import main
 from pogosim.batch.errors import BatchError
@@ -25,6 +26,20 @@ __all__ = [
     "main",
     "set_in_dict",
 ]
+
+
+class RunnerWithSeeds(PogobotBatchRunner):
+    """A batch whose runs have seeds of one's own choice.
+
+    Attributes:
+        seeds: Seed of each run; None: the usual ones.
+    """
+
+    seeds: Sequence[int] | None = None
+
+    def compute_seed(self, comb_config: dict[str, Any], run: int) -> int:
+        """Return the seed of a run."""
+        return super().compute_seed(comb_config, run) if self.seeds is None else self.seeds[run]
 
 
 class PogobotLauncher:
@@ -59,7 +74,7 @@ class PogobotLauncher:
     ) -> None:
         self.path = base_config_path
         self.output = combined_output_path
-        self.runner = PogobotBatchRunner(
+        self.runner = RunnerWithSeeds(
             base_config_path,
             num_instances,
             simulator_binary,
@@ -80,11 +95,9 @@ class PogobotLauncher:
         Raises:
             BatchError: They cannot be done.
         """
-        if seeds is not None:
-            if len(seeds) < self.runner.runs:
-                raise BatchError(f"expected {self.runner.runs} seeds, one per run; found {len(seeds)}")
-            given = list(seeds)
-            self.runner.compute_seed = lambda comb_config, run: given[run]  # type: ignore[method-assign]  # noqa: ARG005
+        if seeds is not None and len(seeds) < self.runner.runs:
+            raise BatchError(f"expected {self.runner.runs} seeds, one per run; found {len(seeds)}")
+        self.runner.seeds = seeds
         return self.runner.run_launcher_for_combination(self.path, self.output)
 
 

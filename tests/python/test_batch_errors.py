@@ -43,8 +43,11 @@ def one_line(folder: Path, *more: str, program: Path | None = None, code: int = 
 def test_wrong_configuration_is_one_line_with_its_place(changes: dict[str, object], what: str, tmp_path: Path) -> None:
     write_options(tmp_path, changes)
     line = one_line(tmp_path)
-    assert line.startswith("pogobatch: many.yaml:")
     assert what.replace(":13:", ":") in line
+    place = re.match(r"pogobatch: many\.yaml:(\d+): ([\w.]+)", line)
+    assert place
+    there = (tmp_path / "many.yaml").read_text().splitlines()[int(place.group(1)) - 1]
+    assert there.strip().startswith(f"{place.group(2).split('.')[-1]}:"), line
 
 
 def test_missing_empty_and_foreign_configurations_are_refused(tmp_path: Path) -> None:
