@@ -38,9 +38,12 @@ def progress_bar(total: int) -> tqdm[NoReturn]:
 
 
 def report_warnings(warnings: Iterable[str]) -> None:
-    """Say what simulators have warned about."""
-    for line in list(warnings)[:SHOWN_WARNINGS]:
+    """Say what simulators have warned about; of many warnings the first ones, and how many there are."""
+    lines = list(warnings)
+    for line in lines[:SHOWN_WARNINGS]:
         log.warning("warning of a run: %s", line)
+    if len(lines) > SHOWN_WARNINGS:
+        log.warning("not shown: %d more warning(s) of runs; a single run prints its own", len(lines) - SHOWN_WARNINGS)
 
 
 def report_failures(failures: Sequence[Failure]) -> None:

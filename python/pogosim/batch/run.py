@@ -23,6 +23,8 @@ from pogosim.recover import DAMAGED, is_complete
 
 LOG = "log.txt"
 LOG_LINES = 10
+MAX_WARNINGS = 1000  # of one run
+LONGEST_LINE = 10_000  # bytes of a line that are read at once
 DISK_FULL = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
 
 # Dies with the thread that starts it, whatever ends that one; and starts nothing if that has happened already.
@@ -163,17 +165,24 @@ def tail(path: Path) -> str:
             lines = file.read().decode(errors="replace").splitlines()
     except OSError:
         return ""
-    shown = ["".join(c if c.isprintable() or c == "\t" else "?" for c in line) for line in lines]
-    return "\n".join(shown[-LOG_LINES:])
+    return "\n".join(printable(line) for line in lines[-LOG_LINES:])
+
+
+def printable(line: str) -> str:
+    """Return a line without what a terminal would not show."""
+    return "".join(c if c.isprintable() or c == "\t" else "?" for c in line)
 
 
 def warnings_in(folder: Path) -> str:
-    """Return the warnings in the log of a run, one per line, without dates and places in its configuration."""
-    lines = [line for line in tail(folder / LOG).splitlines() if "[warning] " in line]
-    texts = [line.partition("[warning] ")[2] for line in lines]
-    return "\n".join(
-        re.sub(re.escape(str(folder)) + r"/test\.yaml(:\d+)?", "the configuration", text) for text in texts
-    )
+    """Return the warnings in the log of a run, each once, without dates and places in its configuration."""
+    place = re.compile(re.escape(str(folder)) + r"/test\.yaml(:\d+)?")
+    found: dict[str, None] = {}
+    with contextlib.suppress(OSError), (folder / LOG).open("rb") as file:
+        while len(found) < MAX_WARNINGS and (line := file.readline(LONGEST_LINE)):
+            _, mark, text = line.decode(errors="replace").rstrip("\r\n").partition("[warning] ")
+            if mark:
+                found[printable(place.sub("the configuration", text))] = None
+    return "\n".join(found)
 
 
 def ending(code: int) -> str:

@@ -1,0 +1,62 @@
+"""What a batch says about the logs of its runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from batches import batch, script, write_options
+from pogosim.batch.reports import SHOWN_WARNINGS, report_warnings
+from pogosim.batch.run import LOG, LOG_LINES, MAX_WARNINGS, tail, warnings_in
+
+
+def write_log(folder: Path, lines: list[str]) -> Path:
+    """Write the log of a run."""
+    path = folder / LOG
+    path.write_text("".join(f"{line}\n" for line in lines))
+    return path
+
+
+def test_warning_before_many_other_lines_is_shown_and_each_once(tmp_path: Path) -> None:
+    write_options(tmp_path, {"objects.robots.nb": 2})
+    lines = "echo '[2026] [warning] too hot'; yes chatter | head -n 10000"
+    result = batch(tmp_path, "-r", "2", program=script(tmp_path / "warns", lines))
+    assert (result.code, result.errors) == (0, "pogobatch: warning of a run: too hot\n")
+
+
+def test_warnings_of_a_log_have_no_dates_no_temporary_names_and_nothing_twice(tmp_path: Path) -> None:
+    place = f"{tmp_path}/test.yaml"
+    lines = ["[1] [warning] a", "other", f"[2] [warning] b ({place}:3)", "[3] [warning] a", "[4] [warning] \x1b[1mc"]
+    write_log(tmp_path, lines)
+    assert warnings_in(tmp_path).splitlines() == ["a", "b (the configuration)", "?[1mc"]
+
+
+def test_endless_log_is_read_in_pieces_and_only_so_many_warnings_are_kept(tmp_path: Path) -> None:
+    with (tmp_path / LOG).open("wb") as log:
+        log.truncate(3_000_000)  # one line
+    with (tmp_path / LOG).open("a") as log:
+        log.writelines(f"\n[warning] {number}" for number in range(2 * MAX_WARNINGS))
+    assert warnings_in(tmp_path).splitlines() == [str(number) for number in range(MAX_WARNINGS)]
+
+
+def test_run_without_a_log_has_no_warnings(tmp_path: Path) -> None:
+    assert (warnings_in(tmp_path), tail(tmp_path / LOG)) == ("", "")
+
+
+@pytest.mark.parametrize("more", [0, 1, 20])
+def test_of_many_warnings_the_first_are_shown_and_the_others_counted(
+    more: int, caplog: pytest.LogCaptureFixture
+) -> None:
+    report_warnings(f"w{number}" for number in range(SHOWN_WARNINGS + more))
+    shown = [f"warning of a run: w{number}" for number in range(SHOWN_WARNINGS)]
+    counted = f"not shown: {more} more warning(s) of runs; a single run prints its own"
+    assert caplog.messages == [*shown, *([counted] if more else [])]
+
+
+def test_last_ten_lines_of_a_failed_run_are_shown_and_nothing_that_a_terminal_obeys(tmp_path: Path) -> None:
+    write_log(tmp_path, [*map(str, range(10_000)), "\x1b[2Jlast\tword"])
+    assert LOG_LINES == 10
+    assert tail(tmp_path / LOG).splitlines() == [*map(str, range(9991, 10_000)), "?[2Jlast\tword"]
+    write_options(tmp_path, {"objects.robots.nb": 2})
+    result = batch(tmp_path, "-R", "0", program=script(tmp_path / "broken", "seq 100; exit 3"))
+    assert [line.split("| ")[1] for line in result.errors.splitlines() if "| " in line] == [*map(str, range(91, 101))]
