@@ -107,6 +107,6 @@ def test_files_beside_the_configuration_are_found_and_those_of_the_working_folde
 def test_names_of_outputs_make_no_other_run(tasks: Tasks) -> None:
     names = {"data_filename": "a/b.feather", "console_filename": "", "frames_name": "x{:010.4f}.png"}
     (plain, _), (named, _) = tasks({"a": 1}), tasks({"a": 1, **names})
-    assert plain.key == named.key
+    assert (plain.key, plain.text) == (named.key, named.text)
     outputs = {"data_filename": "b.feather", "console_filename": "console.txt", "frames_name": "x{:010.4f}.png"}
     assert dict(named.outputs) == outputs

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Generator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from pogosim.batch.errors import BatchError
-from pogosim.batch.run import Task
+from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm import (
     SlurmJobs,
     bytes_of,
@@ -161,11 +162,11 @@ def test_site_says_how_the_scheduler_is_reached_and_how_many_cores_a_job_has(
     commands: Commands, tmp_path: Path
 ) -> None:
     # Underscores, too, as in environment variables.
-    site = {"scheduler_options": {"interface": "ib0", "dashboard_address": ":1"}, "cores": 2, "walltime": None}
+    site = {"scheduler_options": {"interface": "ib0", "dashboard_address": ":1"}, "cores": 2, "memory": None}
     batch = Started(tmp_path, site, tasks=5)
     options = batch.arguments["scheduler_options"]
     assert (options["interface"], options["dashboard_address"], options["allowed_failures"]) == ("ib0", ":1", 5)
-    assert (batch.arguments["cores"], batch.arguments["walltime"]) == (2, "01:00:00")
+    assert (batch.arguments["cores"], batch.arguments["job_mem"]) == (2, "4G")
     assert (batch.jobs.cores, batch.jobs.wanted, len(commands.asked("sbatch"))) == (2, 3, 3)
     assert Started(tmp_path, site, tasks=5, cores=5, jobs=7).jobs.wanted == 1
     assert Started(tmp_path, site, tasks=50, jobs=7, wait_min=2).jobs.patience_s == 120
@@ -315,6 +316,23 @@ def test_job_is_idle_when_all_runs_that_are_left_are_being_done_in_others(
     workers = {name: SimpleNamespace(name=name, processing=range(count)) for name, count in assigned.items()}
     cluster = SimpleNamespace(scheduler=SimpleNamespace(workers=workers))
     assert idle_jobs(cluster, jobs, left) == idle
+
+
+@pytest.mark.parametrize("problem", ["", "exit code 3"])
+def test_run_that_ends_is_progress_and_logs_stay_if_it_failed(
+    problem: str, commands: Commands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ended(*_: object) -> Generator[Outcome, None, None]:
+        yield Outcome("key", problem)
+
+    monkeypatch.setattr("pogosim.batch.slurm.outcomes_of", ended)
+    jobs = jobs_of(commands)
+    jobs.lost_in_vain = 2
+    run = task(tmp_path)
+    own_folder(log_folder(run))
+    assert [outcome.problem for outcome in outcomes_in([run], None, None, jobs)] == [problem]
+    assert jobs.lost_in_vain == 0
+    assert log_folder(run).exists() == bool(problem)
 
 
 def test_batch_without_runs_needs_no_jobs(commands: Commands) -> None:
