@@ -150,7 +150,7 @@ def test_merged_maps_lie_under_the_own_keys_of_a_map_and_warn_of_nothing(
         more: &more {nb: 5, mass: {batch_options: [3, 4]}}
         objects:
             robots: {<<: *base, nb: 7}
-            lamps: {nb: 8, <<: [*base, *more]}
+            lamps: {nb: 8, <<: *base, <<: *more}
     """
     configuration = read(tmp_path, text)
     assert [combination["objects"] for combination in combinations_of(configuration.entries)] == [
@@ -162,6 +162,7 @@ def test_merged_maps_lie_under_the_own_keys_of_a_map_and_warn_of_nothing(
 def test_categories_of_one_name_are_many_in_alternatives_too(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     text = """
         objects:
+            robots: {nb: 1, nb: 2}
             batch_hierarchical_options:
                 two: {lamp: {x: 1}, lamp: {x: 2}}
                 three: {lamp: [{x: 1}, {x: 2}], lamp: {x: 3}}
@@ -173,8 +174,10 @@ def test_categories_of_one_name_are_many_in_alternatives_too(tmp_path: Path, cap
         [{"x": 1}, {"x": 2}, {"x": 3}],
     ]
     assert combinations[0]["parameters"] == {"lamp": 2}
-    (message,) = caplog.messages
-    assert message.endswith("many.yaml:6: duplicate key 'lamp'; the last one is used")
+    assert combinations[0]["objects"]["robots"] == {"nb": 2}
+    *others, message = sorted(caplog.messages)
+    assert len(others) == 1
+    assert message.endswith("many.yaml:7: duplicate key 'lamp'; the last one is used")
 
 
 def test_alternatives_may_be_merged_maps(tmp_path: Path) -> None:
