@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from batches import COMMAND, ENVIRONMENT, arguments, batch, batch_apart, ended, results, run_main, script, write_options
+from pogosim.batch import reports
 from pogosim.batch.command_line import parser
 from pogosim.batch.identity import seed_of
 from running import ROOT, example
@@ -253,3 +254,14 @@ def test_batch_runs_without_standard_error(tmp_path: Path) -> None:
     commands = shlex.join(arguments(example("helloworld"))) + " 2>&-"
     assert subprocess.run(["bash", "-c", commands], cwd=tmp_path, capture_output=True, check=False).returncode == 0
     assert (tmp_path / "results" / "result.feather").exists()
+
+
+def test_log_without_a_terminal_says_now_and_then_how_many_runs_are_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reports, "LINE_EVERY_S", 0.0)
+    write_options(tmp_path)
+    result = batch(tmp_path, "-r", "2")
+    lines = result.errors.splitlines()
+    assert [line.rpartition("; ")[0] for line in lines] == [f"pogobatch: {n} of 4 runs are done" for n in (1, 2, 3)]
+    assert all(re.fullmatch(r"\d\d:\d\d left", line.rpartition("; ")[2]) for line in lines)

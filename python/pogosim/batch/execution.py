@@ -6,7 +6,7 @@ import logging
 from collections.abc import Generator, Sequence
 
 from pogosim.batch.errors import BatchError, tell
-from pogosim.batch.reports import Failure, progress_bar, report_warnings
+from pogosim.batch.reports import Failure, Progress, report_warnings
 from pogosim.batch.results import check_columns, schema_of
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.tasks import Combination
@@ -51,7 +51,7 @@ class Execution:
             BatchError: The others would fail in the same way as one that did; or its columns are wrong.
         """
         warnings: dict[str, None] = {}
-        bar = progress_bar(total)
+        bar = Progress(total)
         try:
             for outcome in outcomes:
                 task = self.tasks[outcome.key]

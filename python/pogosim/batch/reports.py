@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import sys
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
@@ -17,6 +18,7 @@ log = logging.getLogger("pogobatch")
 
 SHOWN_FAILURES = 5
 SHOWN_WARNINGS = 10
+LINE_EVERY_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -28,13 +30,34 @@ class Failure:
     output: str
 
 
-def progress_bar(total: int) -> tqdm[NoReturn]:
-    """Return a bar with the time left, on standard error if that is a terminal."""
-    is_shown = total > 0 and sys.stderr is not None and sys.stderr.isatty()
-    # Some terminals have no size; the bar would be empty.
-    has_size = is_shown and os.get_terminal_size(sys.stderr.fileno()).columns > 0
-    size = {"dynamic_ncols": True} if has_size else {"ncols": 80, "nrows": 24}
-    return tqdm(total=total, unit="run", disable=not is_shown, file=sys.stderr, smoothing=0.05, **size)
+class Progress:
+    """How many runs are done: a bar with the time left on a terminal; elsewhere, as in a log file, a line a minute."""
+
+    def __init__(self, total: int) -> None:
+        self.total = total
+        self.done = 0
+        self.started_s = self.said_s = time.monotonic()
+        is_terminal = total > 0 and sys.stderr is not None and sys.stderr.isatty()
+        # Some terminals have no size; the bar would be empty.
+        has_size = is_terminal and os.get_terminal_size(sys.stderr.fileno()).columns > 0
+        size = {"dynamic_ncols": True} if has_size else {"ncols": 80, "nrows": 24}
+        self.bar: tqdm[NoReturn] = tqdm(
+            total=total, unit="run", disable=not is_terminal, file=sys.stderr, smoothing=0.05, **size
+        )
+
+    def update(self) -> None:
+        """Count one more run."""
+        self.done += 1
+        self.bar.update()
+        now_s = time.monotonic()
+        if self.bar.disable and now_s - self.said_s >= LINE_EVERY_S and self.done < self.total:
+            self.said_s = now_s
+            left_s = (now_s - self.started_s) / self.done * (self.total - self.done)
+            log.info("%d of %d runs are done; %s left", self.done, self.total, tqdm.format_interval(left_s))
+
+    def close(self) -> None:
+        """Leave the bar as it is."""
+        self.bar.close()
 
 
 def report_warnings(warnings: Iterable[str]) -> None:
