@@ -62,17 +62,17 @@ def commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Commands:
     return Commands(folder)
 
 
-def jobs_of(commands: Commands, wanted: int = 2, cores: int = 1, patience_s: float | None = None) -> Jobs:
+def jobs_of(commands: Commands, wanted: int = 2, cores: int = 1, start_timeout_s: float | None = None) -> Jobs:
     """Return submitted jobs."""
-    jobs = Jobs("#!script\n", "mine", wanted, cores, patience_s, commands.folder)
+    jobs = Jobs("#!script\n", "mine", wanted, cores, start_timeout_s, commands.folder)
     jobs.submit(wanted)
     return jobs
 
 
-def look(jobs: Jobs, left: int = 9) -> None:
+def poll(jobs: Jobs, left: int = 9) -> None:
     """Look at the jobs now."""
-    jobs.next_look_s = 0
-    jobs.look(left)
+    jobs.next_poll_s = 0
+    jobs.poll(left)
 
 
 # ---- What a job is ----
@@ -169,7 +169,7 @@ def test_site_says_how_the_scheduler_is_reached_and_how_many_cores_a_job_has(
     assert (batch.arguments["cores"], batch.arguments["job_mem"]) == (2, "4G")
     assert (batch.jobs.cores, batch.jobs.wanted, len(commands.asked("sbatch"))) == (2, 3, 3)
     assert Started(tmp_path, site, tasks=5, cores=5, jobs=7).jobs.wanted == 1
-    assert Started(tmp_path, site, tasks=50, jobs=7, wait_min=2).jobs.patience_s == 120
+    assert Started(tmp_path, site, tasks=50, jobs=7, wait_min=2).jobs.start_timeout_s == 120
 
 
 def test_refused_jobs_leave_no_keys_and_no_folder(commands: Commands, tmp_path: Path) -> None:
@@ -219,9 +219,9 @@ def test_jobs_have_the_script_and_the_name_of_the_batch_and_are_cancelled_by_it(
 def test_lost_jobs_are_replaced_by_as_many_as_are_still_of_use(commands: Commands) -> None:
     jobs = jobs_of(commands, wanted=3, cores=2)
     commands.set_states("1|TIMEOUT|None", "2|RUNNING|None")  # and 3 is forgotten
-    look(jobs, left=4)
+    poll(jobs, left=4)
     assert list(jobs.states) == ["2", "4"]
-    look(jobs, left=0)
+    poll(jobs, left=0)
     assert len(commands.asked("squeue")) == 1
 
 
@@ -229,14 +229,14 @@ def test_squeue_is_not_asked_again_and_again(commands: Commands) -> None:
     jobs = jobs_of(commands)
     commands.set_states("1|RUNNING|None", "2|RUNNING|None")
     for _ in range(5):
-        jobs.look(2)
+        jobs.poll(2)
     assert len(commands.asked("squeue")) == 1
 
 
 def test_controller_that_does_not_answer_is_asked_later(commands: Commands) -> None:
     jobs = jobs_of(commands)
     commands.write("squeue", "exit 1")
-    look(jobs)
+    poll(jobs)
     assert (list(jobs.states), jobs.lost_in_vain) == (["1", "2"], 0)
 
 
@@ -244,13 +244,13 @@ def test_batch_ends_when_job_after_job_is_lost_but_not_while_runs_are_finished(c
     jobs = jobs_of(commands, wanted=1)
     commands.set_states()
     for _ in range(LOST_PER_JOB - 1):
-        look(jobs)
-    jobs.has_progress()
+        poll(jobs)
+    jobs.note_progress()
     for _ in range(LOST_PER_JOB - 1):
-        look(jobs)
+        poll(jobs)
     (commands.folder / f"job-{2 * LOST_PER_JOB - 1}.err").write_text("first\nout of memory\n")
     with pytest.raises(BatchError, match=r"3 jobs have ended since .* ends with: out of memory; if runs need longer"):
-        look(jobs)
+        poll(jobs)
 
 
 @pytest.mark.parametrize(
@@ -275,28 +275,28 @@ def test_jobs_that_will_never_start_end_the_batch(reason: str, commands: Command
     jobs = jobs_of(commands, wanted=1)
     commands.set_states(f"1|PENDING|{reason}")
     with pytest.raises(BatchError, match=rf"will not start the jobs: 1 job PENDING \({reason}\)"):
-        look(jobs)
+        poll(jobs)
 
 
 def test_jobs_that_may_start_are_waited_for(commands: Commands) -> None:
     jobs = jobs_of(commands)
     for reason in ("Priority", "Resources", "QOSMaxJobsPerUserLimit", "PartitionDown", "AssocGrpCpuLimit"):
         commands.set_states("1|PENDING|BadConstraints", f"2|PENDING|{reason}")
-        look(jobs)
+        poll(jobs)
     commands.set_states("1|PENDING|BadConstraints", "2|RUNNING|None")
-    look(jobs)
+    poll(jobs)
     assert jobs.has_started
 
 
 def test_patience_is_for_the_first_job_only(commands: Commands) -> None:
-    jobs = jobs_of(commands, wanted=1, patience_s=0)
+    jobs = jobs_of(commands, wanted=1, start_timeout_s=0)
     commands.set_states("1|RUNNING|None")
-    look(jobs)
+    poll(jobs)
     commands.set_states("1|PENDING|Priority")  # put back
-    look(jobs)
+    poll(jobs)
     jobs.has_started = False
     with pytest.raises(BatchError, match=r"within --slurm-wait: 1 job PENDING \(Priority\)"):
-        look(jobs)
+        poll(jobs)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from pogosim.batch.errors import BatchError, one_line
 from pogosim.batch.run import Outcome, Task, do_run
 
 CONNECT_S = 5
-LOOK_S = 0.2
+POLL_S = 0.2
 
 
 def imported(flag: str, extra: str) -> tuple[Any, Any]:
@@ -77,7 +77,7 @@ def outcomes_of(
     tasks: Sequence[Task],
     client: Any,
     close: Callable[[], None],
-    look: Callable[[], None] | None = None,
+    poll: Callable[[], None] | None = None,
     do: Callable[[Task], Outcome] = do_run,
 ) -> Generator[Outcome, None, None]:
     """Yield the outcomes of runs that a client of Dask has done.
@@ -86,7 +86,7 @@ def outcomes_of(
         tasks: Runs to do.
         client: Client of Dask; it is closed at the end.
         close: Called at the end, whatever the reason.
-        look: Called now and then meanwhile.
+        poll: Called now and then meanwhile.
         do: Does a run, in a worker.
     """
     futures: list[Any] = []
@@ -94,7 +94,7 @@ def outcomes_of(
         as_completed: Any = importlib.import_module("distributed").as_completed
         futures = [client.submit(do, task, key=f"pogosim-{task.batch}-{task.key}", pure=False) for task in tasks]
         left = {future.key: task for future, task in zip(futures, tasks, strict=True)}
-        for future in finished(as_completed(futures, raise_errors=False), look):
+        for future in finished(as_completed(futures, raise_errors=False), poll):
             task = left.pop(future.key)
             if future.status == "finished":
                 yield future.result()
@@ -120,12 +120,12 @@ def problem_of(error: Exception) -> str:
     return f"its worker failed: {one_line(repr(error))}"
 
 
-def finished(completed: Any, look: Callable[[], None] | None) -> Iterator[Any]:
+def finished(completed: Any, poll: Callable[[], None] | None) -> Iterator[Any]:
     """Yield futures as they are finished, and look at something meanwhile."""
-    if look is None:
+    if poll is None:
         yield from completed
         return
     while not completed.is_empty():
         yield from completed.next_batch(block=False)
-        look()
-        time.sleep(LOOK_S)
+        poll()
+        time.sleep(POLL_S)

@@ -140,8 +140,8 @@ def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], r
     except (OSError, ValueError, RuntimeError) as error:
         raise BatchError(f"--slurm: the Dask scheduler cannot be started: {one_line(error)}") from None
     wanted = min(request.jobs, -(-len(tasks) // cores))
-    patience_s = None if request.wait_min is None else 60 * request.wait_min
-    jobs = Jobs(cluster.job_script(), job_name(task), wanted, cores, patience_s, settings["log_directory"])
+    start_timeout_s = None if request.wait_min is None else 60 * request.wait_min
+    jobs = Jobs(cluster.job_script(), job_name(task), wanted, cores, start_timeout_s, settings["log_directory"])
     atexit.register(jobs.cancel)  # whatever happens to the batch before its first run
     try:
         jobs.cancel()
@@ -225,16 +225,16 @@ def outcomes_in(tasks: Sequence[Task], client: Any, cluster: Any, jobs: Jobs | N
     is_well = True
     folder = log_folder(tasks[0])
 
-    def look() -> None:
-        jobs.look(left)
+    def poll() -> None:
+        jobs.poll(left)
         jobs.release(idle_jobs(cluster, jobs, left))
 
-    ended = outcomes_of(tasks, client, lambda: close(cluster, jobs, folder), look, do_in_job)
+    ended = outcomes_of(tasks, client, lambda: close(cluster, jobs, folder), poll, do_in_job)
     try:
         with contextlib.closing(ended) as outcomes:
             for outcome in outcomes:
                 left -= 1
-                jobs.has_progress()
+                jobs.note_progress()
                 is_well &= not outcome.problem
                 yield outcome
     except BatchError:

@@ -19,13 +19,13 @@ from pogosim.batch.run import tail
 COMMANDS = ("sbatch", "squeue", "scancel")
 ENDED = re.compile("BOOT_FAIL|CANCELLED|COMPLETED|DEADLINE|FAILED|NODE_FAIL|OUT_OF_MEMORY|PREEMPTED|REVOKED|TIMEOUT")
 # Reasons for which a job waits until somebody changes it, or the site's limits.
-HOPELESS = re.compile(
+BLOCKING_REASONS = re.compile(
     r"(Partition(Config|NodeLimit|TimeLimit)|BadConstraints|DependencyNeverSatisfied|MaxMemPerLimit"
     r"|Invalid(Account|QOS)|(Account|QOS)NotAllowed|(Assoc|QOS)(Max|Min)\w+PerJob\w*)$"
 )
 LOST_PER_JOB = 3  # so many jobs in place of one may be lost before a run is finished
 REMIND_S = 60.0
-SHORTEST_LOOK_S, LONGEST_LOOK_S = 2.0, 30.0  # squeue burdens the controller of the whole cluster
+SHORTEST_POLL_S, LONGEST_POLL_S = 2.0, 30.0  # squeue burdens the controller of the whole cluster
 
 
 def check_commands() -> None:
@@ -58,24 +58,24 @@ class Jobs:
         name: Name of the jobs; no other jobs of the user have it.
         wanted: Number of jobs.
         cores: Runs at the same time in each.
-        patience_s: How long to wait for the first job to start, in s; None: as long as it takes.
+        start_timeout_s: How long to wait for the first job to start, in s; None: as long as it takes.
         logs: Folder of the jobs' logs.
     """
 
     def __init__(
-        self, script: str, name: str, wanted: int, cores: int, patience_s: float | None, logs: str | Path
+        self, script: str, name: str, wanted: int, cores: int, start_timeout_s: float | None, logs: str | Path
     ) -> None:
         self.script = script
         self.name = name
         self.wanted = wanted
         self.cores = cores
-        self.patience_s = patience_s
+        self.start_timeout_s = start_timeout_s
         self.logs = Path(logs)
         self.states: dict[str, tuple[str, str]] = {}  # state and reason of the jobs that have not ended
         self.lost_in_vain = 0  # jobs that have ended since a run was finished
         self.has_started = False
         self.started_s = self.told_s = time.monotonic()
-        self.next_look_s = 0.0
+        self.next_poll_s = 0.0
         self.told = ""
 
     def submit(self, number: int) -> None:
@@ -91,7 +91,7 @@ class Jobs:
                 raise BatchError(f"sbatch refuses the job: {words_of(done.stderr) or words_of(done.stdout)}")
             self.states[job] = ("PENDING", "None")
 
-    def look(self, left: int) -> None:
+    def poll(self, left: int) -> None:
         """Look at the jobs if it is time to: say what they do, and replace those that were lost.
 
         Args:
@@ -101,9 +101,9 @@ class Jobs:
             BatchError: No job will start, or job after job is lost.
         """
         now = time.monotonic()
-        if now < self.next_look_s or not left:
+        if now < self.next_poll_s or not left:
             return
-        self.next_look_s = now + min(LONGEST_LOOK_S, max(SHORTEST_LOOK_S, 0.1 * (now - self.started_s)))
+        self.next_poll_s = now + min(LONGEST_POLL_S, max(SHORTEST_POLL_S, 0.1 * (now - self.started_s)))
         listed = self.listed()
         if listed is None:
             return  # the controller does not answer; it may later
@@ -159,12 +159,12 @@ class Jobs:
         self.has_started |= any(state != "PENDING" for state, _ in self.states.values())
         reasons = [reason for _, reason in self.states.values()]
         is_waiting = bool(reasons) and not any(state != "PENDING" for state, _ in self.states.values())
-        if is_waiting and all(HOPELESS.match(reason) for reason in reasons):
+        if is_waiting and all(BLOCKING_REASONS.match(reason) for reason in reasons):
             raise BatchError(
                 f"SLURM will not start the jobs: {self.summary()}; ask for other resources, or another partition"
             )
         waited_s = time.monotonic() - self.started_s
-        if self.patience_s is not None and not self.has_started and waited_s >= self.patience_s:
+        if self.start_timeout_s is not None and not self.has_started and waited_s >= self.start_timeout_s:
             raise BatchError(f"no job has started within --slurm-wait: {self.summary()}")
 
     def summary(self) -> str:
@@ -183,7 +183,7 @@ class Jobs:
             tell(f"SLURM: {text}{waited}")
             self.told, self.told_s = text, now
 
-    def has_progress(self) -> None:
+    def note_progress(self) -> None:
         """Note that a run was finished."""
         self.lost_in_vain = 0
 
