@@ -24,8 +24,13 @@ def mean_over_runs(runs: pd.DataFrame, level: float = 0.95) -> pd.DataFrame:
         there is nothing to compute from: no run for a mean, fewer than two for an interval.
 
     Raises:
+        TypeError: It is not a dataframe.
         ValueError: The level is not between 0 and 1.
     """
+    if not isinstance(runs, pd.DataFrame):
+        raise TypeError(
+            f"expected a dataframe with one column per run, as of unstack('run'); found {type(runs).__name__}"
+        )
     if not 0.0 < level < 1.0:
         raise ValueError(f"level: expected a number between 0 and 1, such as 0.95; found {level}")
     count = runs.notna().sum(axis=1)

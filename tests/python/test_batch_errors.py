@@ -265,3 +265,10 @@ def test_log_without_a_terminal_says_now_and_then_how_many_runs_are_done(
     lines = result.errors.splitlines()
     assert [line.rpartition("; ")[0] for line in lines] == [f"pogobatch: {n} of 4 runs are done" for n in (1, 2, 3)]
     assert all(re.fullmatch(r"\d\d:\d\d left", line.rpartition("; ")[2]) for line in lines)
+
+
+@pytest.mark.parametrize("runs", ["6000000", "9" * 20])
+def test_more_runs_than_memory_holds_are_refused_at_once(runs: str, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    said = one_line(tmp_path, "-r", runs)
+    assert said == f"pogobatch: --runs: {runs} runs of 2 combination(s) are more than 10000000; make several batches\n"

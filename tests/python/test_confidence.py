@@ -64,3 +64,8 @@ def test_intervals_contain_the_true_mean_as_often_as_they_say(level: float) -> N
 def test_levels_that_are_no_probabilities_are_refused(level: float) -> None:
     with pytest.raises(ValueError, match="between 0 and 1"):
         mean_over_runs(pd.DataFrame([[1.0, 2.0]]), level)
+
+
+def test_series_is_refused_with_what_was_expected() -> None:
+    with pytest.raises(TypeError, match=r"one column per run, as of unstack\('run'\); found Series"):
+        mean_over_runs(pd.Series([1.0, 2.0]))  # type: ignore[arg-type]

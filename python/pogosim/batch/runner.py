@@ -25,6 +25,8 @@ from pogosim.batch.slurm import SlurmJobs, slurm
 from pogosim.batch.tasks import Combination, RunSettings, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 
+MAX_RUNS = 10_000_000  # in memory, about 1 kB each
+
 log = logging.getLogger("pogobatch")
 
 
@@ -196,6 +198,9 @@ class PogobotBatchRunner:
             missing in the results and listed in `failures`.
         """
         selected = self.selected()
+        if len(selected) * self.runs > MAX_RUNS:
+            wanted = f"{self.runs} runs of {len(selected)} combination(s)"
+            raise BatchError(f"--runs: {wanted} are more than {MAX_RUNS}; make several batches")
         try:
             check_columns_exist([config for config, _ in selected])
         except NamesError as error:
