@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import os
 import platform
@@ -150,10 +151,9 @@ def check_films(found: Installation) -> Finding:  # noqa: ARG001
 
 
 def check_batches(found: Installation) -> Finding:  # noqa: ARG001
-    """Count processors."""
-    can_tell = hasattr(os, "sched_getaffinity")
-    count = len(os.sched_getaffinity(0)) if can_tell else os.cpu_count() or 1
-    return Finding("Batches", True, f"{count} runs at the same time, one per processor")
+    """Import what batches need, and count processors."""
+    processors = importlib.import_module("pogosim.batch.backends").processors
+    return Finding("Batches", True, f"{processors()} runs at the same time, one per processor")
 
 
 def check_clusters(found: Installation) -> Finding:  # noqa: ARG001
@@ -200,7 +200,7 @@ def checked(purpose: str, found: Installation) -> Finding:
     """Check one thing. What keeps the check itself from working is a finding, too."""
     try:
         return CHECKS[purpose](found)
-    except (OSError, ValueError) as error:
+    except (ImportError, OSError, ValueError) as error:
         return Finding(purpose, False, f"it cannot be checked: {error}")
 
 
