@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import errno
 import json
 import logging
 import os
@@ -66,9 +65,6 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
 
 def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Read one data file: what `load_dataframe` does with it."""
-    if path.is_dir():
-        hint = f"it is a folder; for all files in it, give the pattern '{path}/*.feather'"
-        raise IsADirectoryError(errno.EISDIR, hint, str(path))
     table = read_table(path)
     try:
         rows = table.to_pandas()

@@ -87,8 +87,3 @@ def test_attributes_of_the_dataframe_are_the_metadata_and_survive_pandas(tmp_pat
 )
 def test_numbers_in_names_sort_by_value(names: list[str], expected: list[str]) -> None:
     assert sorted(names, key=natural_order) == expected
-
-
-def test_folder_is_no_file_and_the_pattern_for_its_files_is_given(tmp_path: Path) -> None:
-    with pytest.raises(IsADirectoryError, match=r"give the pattern '.*/\*\.feather'"):
-        load_dataframe(tmp_path)
