@@ -28,6 +28,7 @@ SUBCOMMANDS = {
     "new": Subcommand("pogosim.command.new", "make a project: a program, a configuration and a Makefile"),
     "run": Subcommand("pogosim.command.run", "compile a project or a source file, and run it"),
     "batch": Subcommand("pogosim.pogobatch", "run a program many times, with every combination of options"),
+    "analyze": Subcommand("pogosim.reports.command", "compute what robots did: tables and figures of a data file"),
     "picture": Subcommand("pogosim.swarm_picture", "draw the trajectories of a run"),
     "recover": Subcommand("pogosim.recover", "make a complete data file of a run that was killed"),
     "doctor": Subcommand("pogosim.command.doctor", "say what works on this machine, and what is missing for what"),

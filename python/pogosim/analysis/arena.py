@@ -1,0 +1,79 @@
+"""The arena of a run: its walls, its area, and distances across periodic borders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import freud
+    import shapely
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Arena:
+    """Where robots move. Lengths in mm, y downwards."""
+
+    name: str = ""
+    polygons: list[Floats] = field(default_factory=list)  # (corners, 2) each; the outer wall, then holes; may be empty
+    is_periodic: bool = False  # what leaves the bounding box comes back on the other side
+
+    @property
+    def bounds_mm(self) -> tuple[Floats, Floats]:
+        """Corners (x, y) of the bounding box of the outer wall: least and greatest."""
+        return self.polygons[0].min(axis=0), self.polygons[0].max(axis=0)
+
+    @property
+    def size_mm(self) -> Floats:
+        """Width and height of the bounding box."""
+        low, high = self.bounds_mm
+        return np.asarray(high - low)
+
+    def shape(self) -> shapely.Polygon:
+        """Floor of the arena as a shapely polygon, with holes; self-crossing outlines are mended as GEOS does it."""
+        import shapely
+
+        if self.is_periodic:
+            return shapely.box(*np.concatenate(self.bounds_mm))
+        polygon = shapely.Polygon(self.polygons[0], self.polygons[1:])
+        return polygon if polygon.is_valid else polygon.buffer(0)
+
+    @property
+    def area_mm2(self) -> float:
+        """Area of the floor, without holes; of a periodic arena, that of the bounding box."""
+        return float(self.shape().area)
+
+    def minimum_image(self, offset_mm: npt.ArrayLike) -> Floats:
+        """Return the shortest of all images of an offset. Shape (..., 2) to the same; unchanged unless periodic."""
+        offset = np.asarray(offset_mm, dtype=float)
+        return offset - self.size_mm * np.round(offset / self.size_mm) if self.is_periodic else offset
+
+    def box_and_points(self, position_mm: Floats) -> tuple[freud.box.Box, npt.NDArray[np.float32]]:
+        """Return the positions as freud takes them: centred in a 2D box, with z = 0.
+
+        A periodic arena is the box itself. Walls make a box that is not periodic.
+
+        Args:
+            position_mm: Shape (n, 2), finite.
+
+        Returns:
+            The box, and the points of shape (n, 3) in mm.
+        """
+        import freud
+
+        if self.is_periodic:
+            low, high = self.bounds_mm
+        else:
+            low, high = position_mm.min(axis=0), position_mm.max(axis=0)
+        # freud wants a box with some size, and nothing outside of one without periodic borders.
+        size = np.maximum(high - low, 1.0) * (1.0 if self.is_periodic else 1.001)
+        box = freud.box.Box(Lx=size[0], Ly=size[1], is2D=True)
+        box.periodic = (self.is_periodic, self.is_periodic, False)
+        points = np.zeros((len(position_mm), 3), dtype=np.float32)
+        points[:, :2] = position_mm - (low + high) / 2.0
+        return box, (box.wrap(points) if self.is_periodic else points)

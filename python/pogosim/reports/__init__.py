@@ -1,0 +1,1 @@
+"""What `pogosim analyze` writes: tables and figures of the analyses in `pogosim.analysis`."""

@@ -1,0 +1,74 @@
+"""Figures of the analyses: curves over time with bands over runs, saved as PNG and PDF."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from pogosim.analysis.trajectories import Trajectories
+from pogosim.confidence import mean_over_runs
+
+DPI = 150
+FORMATS = (".pdf", ".png")
+# The same bytes for the same data.
+METADATA: Mapping[str, dict[str, Any]] = {".pdf": {"CreationDate": None}, ".png": {"Software": None}}
+
+
+def new_figure(columns: int = 1, rows: int = 1, width: float = 6.0, height: float = 4.0) -> tuple[Figure, Any]:
+    """Return a figure and its axes, an array of shape (rows, columns); width and height of one panel in inches."""
+    figure = Figure(figsize=(columns * width, rows * height), layout="constrained")
+    return figure, figure.subplots(rows, columns, squeeze=False)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as PDF and PNG; parent folders are made. The suffix of the path does not count."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for suffix in FORMATS:
+        figure.savefig(path.with_suffix(suffix), dpi=DPI, metadata=METADATA[suffix])
+
+
+def group_names(runs: Sequence[Trajectories]) -> list[str]:
+    """Return the labels whose values differ between runs, apart from the number of the run: those of combinations."""
+    names = dict.fromkeys(name for run in runs for name in run.labels)
+    return [name for name in names if name != "run" and len({str(run.labels.get(name)) for run in runs}) > 1]
+
+
+def group_of(run: Trajectories, names: Sequence[str]) -> str:
+    """Return what a curve of this run's combination is called: its values of these labels; the arena if none differ."""
+    if not names:
+        return run.arena.name
+    return ", ".join(f"{name.rpartition('.')[2]} {run.labels.get(name)}" for name in names)
+
+
+def groups_of(runs: Sequence[Trajectories]) -> dict[str, list[Trajectories]]:
+    """Sort runs by combination, so that the runs of each are repetitions of the same."""
+    names = group_names(runs)
+    groups: dict[str, list[Trajectories]] = {}
+    for run in runs:
+        groups.setdefault(group_of(run, names), []).append(run)
+    return groups
+
+
+def draw_bands(axes: Axes, curves: Mapping[str, Iterable[pd.Series[Any]]]) -> None:
+    """Draw the mean of several curves of each group, with a band: its 95 % confidence interval.
+
+    Args:
+        axes: Where to.
+        curves: By group: a series per run, indexed by the abscissa. With one run there is no band.
+    """
+    colours = colormaps["viridis"](np.linspace(0.0, 0.85, max(len(curves), 1)))
+    for colour, (name, series) in zip(colours, curves.items(), strict=False):
+        together: dict[Hashable, pd.Series[Any]] = dict(enumerate(series))
+        band = mean_over_runs(pd.DataFrame(together))
+        x = band.index.to_numpy(dtype=float)
+        axes.plot(x, band["mean"], color=colour, label=name, marker="o" if len(x) == 1 else "")
+        axes.fill_between(x, band["low"], band["high"], color=colour, alpha=0.25, linewidth=0)
+    if len(curves) > 1:
+        axes.legend(frameon=False, fontsize="small")

@@ -1,0 +1,119 @@
+"""What all analyses have in common: their options, reading the data, and what they say when it cannot be done."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pandas as pd
+import pyarrow
+
+from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.trajectories import Trajectories, trajectories_of
+from pogosim.command.parser import Parser, complain
+from pogosim.outputs import OutputError, leads_to
+from pogosim.utils import load_dataframe
+
+# What pandas, numpy and the libraries behind the analyses raise for values that no run has.
+STRANGE_DATA = (ArithmeticError, IndexError, KeyError, MemoryError, RuntimeError, TypeError, ValueError)
+
+
+def analysis_parser(prog: str, description: str) -> Parser:
+    """Return a parser with the options that all analyses have."""
+    parser = Parser(prog=prog, description=description)
+    parser.add_argument(
+        "-i",
+        "--input",
+        nargs="+",
+        default=["results/result.feather"],
+        metavar="FILE",
+        help="data file of a run or a batch, several, or a pattern in quotes (results/result.feather)",
+    )
+    parser.add_argument("-o", "--output-dir", default=".", metavar="DIR", help="folder for tables and figures (.)")
+    parser.add_argument("--category", metavar="NAME", help="objects to analyse (robots, or all with a program)")
+    parser.add_argument(
+        "--rc", type=positive, metavar="MM", help="neighbours are closer than this (communication_radius + 2 radius)"
+    )
+    return parser
+
+
+def positive(text: str) -> float:
+    """Return a number above 0 from the command line."""
+    value = float(text)
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not a number above 0")
+    return value
+
+
+def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
+    """Read the runs that the options name. A file of a killed run is read as far as it goes, with a warning.
+
+    Raises:
+        AnalysisError: There is nothing to analyse.
+        OSError, ValueError: A file cannot be read.
+    """
+    files = options.input[0] if len(options.input) == 1 else options.input
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        rows, metadata = load_dataframe(files)
+    for warning in caught:
+        warn(prog, warning.message)
+    try:
+        runs = trajectories_of(rows, metadata, options.category)
+    except AnalysisError as error:
+        raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
+    if options.rc is not None:
+        runs = [replace(run, communication_radius_mm=options.rc - 2.0 * run.radius_mm) for run in runs]
+    return runs
+
+
+def warn(prog: str, text: object) -> None:
+    """Print a warning as one line."""
+    print(f"{prog}: warning: {text}", file=sys.stderr)
+
+
+def output_folder(options: argparse.Namespace) -> Path:
+    """Make the folder for the output.
+
+    Raises:
+        OutputError: It cannot be one.
+    """
+    folder = Path(options.output_dir)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise OutputError(f"{folder} is a file; -o wants a folder") from None
+    except OSError as error:
+        raise OutputError(f"cannot make the folder {folder}: {(error.strerror or str(error)).lower()}") from error
+    return folder
+
+
+def write_table(table: pd.DataFrame, path: Path, inputs: Sequence[str]) -> None:
+    """Write a table as CSV.
+
+    Raises:
+        OutputError: It would take the place of an input.
+    """
+    if any(leads_to(path, name) for name in inputs):
+        raise OutputError(f"{path} is an input; choose another folder with -o")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    table.to_csv(path, index=False)
+
+
+def reported(prog: str, work: Callable[[], None]) -> int:
+    """Do an analysis; what goes wrong is said in one line. Returns the exit code, 0 or 2."""
+    try:
+        work()
+    except (AnalysisError, OutputError) as error:
+        return complain(prog, error)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return complain(prog, f"{where}{(error.strerror or str(error)).lower()}")
+    except (*STRANGE_DATA, pyarrow.ArrowException) as error:
+        return complain(prog, f"the data cannot be analysed: {str(error) or type(error).__name__}".splitlines()[0])
+    return 0
