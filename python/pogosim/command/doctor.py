@@ -6,7 +6,6 @@ import importlib
 import importlib.util
 import os
 import platform
-import shlex
 import shutil
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pogosim
+from pogosim.command.compilers import COMPILERS
 from pogosim.command.parser import Parser
 from pogosim.installation import Installation, InstallationError, find_installation
 from pogosim.outputs import say
@@ -62,23 +62,19 @@ def last_line(done: subprocess.CompletedProcess[str]) -> str:
     return lines[-1] if lines else f"exit code {done.returncode}"
 
 
-def compiler(variable: str, usual: str) -> list[str]:
-    """Return the command of a compiler, as make would take it; raises ValueError if a quotation mark is open in it."""
-    return shlex.split(os.environ.get(variable, "")) or [usual]
-
-
 def check_c(found: Installation) -> Finding:
     """Compile and run a program in C."""
-    return check_programs(found, "C programs", ".c", [*compiler("CC", "cc"), "-std=gnu11"], "apt install gcc")
+    return check_programs(found, "C programs", ".c", "apt install gcc")
 
 
 def check_cpp(found: Installation) -> Finding:
     """Compile and run a program in C++."""
-    return check_programs(found, "C++ programs", ".cpp", [*compiler("CXX", "c++"), "-std=gnu++20"], "apt install g++")
+    return check_programs(found, "C++ programs", ".cpp", "apt install g++")
 
 
-def check_programs(found: Installation, purpose: str, suffix: str, command: Sequence[str], advice: str) -> Finding:
+def check_programs(found: Installation, purpose: str, suffix: str, advice: str) -> Finding:
     """Compile and run a program, the only check that counts."""
+    command = COMPILERS[suffix].command()
     if shutil.which(command[0]) is None:
         return Finding(purpose, False, f"the compiler '{command[0]}' is not installed", advice)
     with tempfile.TemporaryDirectory(prefix="pogosim-doctor-") as folder:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import argparse
 import os
-import shlex
 import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from pogosim.command.compilers import COMPILERS, words_of
 from pogosim.command.parser import Parser, complain
 from pogosim.installation import Installation, InstallationError, find_installation
 
-STANDARDS = {".c": ("CC", "cc", "CFLAGS", "gnu11"), ".cpp": ("CXX", "c++", "CXXFLAGS", "gnu++20")}
 EPILOG = """All other options are the simulator's: -c CONFIG, -g (no window), -s SEED, --set KEY=VALUE and others.
 Without -c, a project is run with its conf/test.yaml. Paths are relative to the working folder."""
 
@@ -22,32 +21,20 @@ class RunError(Exception):
     """There is nothing to run, or it cannot be compiled; says why."""
 
 
-def words_of(variable: str) -> list[str]:
-    """Return the words of an environment variable, as a shell would split it.
-
-    Raises:
-        RunError: A quotation mark is open.
-    """
-    try:
-        return shlex.split(os.environ.get(variable, ""))
-    except ValueError as error:
-        raise RunError(f"the environment variable {variable} cannot be understood: {error}") from None
-
-
 def compile_file(source: Path, pogosim: Installation) -> Path:
     """Compile a program of one file; returns the program: build/NAME beside the source.
 
     Raises:
         RunError: It does not compile. The compiler has said why.
+        ValueError: An environment variable cannot be understood.
     """
     program = source.parent / "build" / source.stem
     program.parent.mkdir(exist_ok=True)
-    variable, compiler, flags, standard = STANDARDS[source.suffix]
+    compiler = COMPILERS[source.suffix]
     command = [
-        *(words_of(variable) or [compiler]),
-        f"-std={standard}",
+        *compiler.command(),
         *("-g", "-O2", "-Wall", "-Wextra"),
-        *words_of(flags),
+        *words_of(compiler.flags),
         os.path.join(source.parent, source.name),  # noqa: PTH118 - ./-x.c, which would be an option without ./
         *("-o", str(program)),
         *pogosim.compiler_flags,
@@ -97,7 +84,7 @@ def program_of(what: Path, pogosim: Installation) -> Path:
         return make_project(what, pogosim)
     if not what.exists():
         raise RunError(f"there is no project, source file or program {what}")
-    if what.suffix in STANDARDS:
+    if what.suffix in COMPILERS:
         return compile_file(what, pogosim)
     if not os.access(what, os.X_OK):
         raise RunError(f"{what} is neither a folder, a .c or .cpp file, nor a program")
@@ -129,7 +116,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim run") -> i
         return 0
     try:
         program = program_of(what, find_installation())
-    except (InstallationError, RunError) as error:
+    except (InstallationError, RunError, ValueError) as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, f"cannot build {what}: {error.strerror}")

@@ -28,7 +28,7 @@ def usage(prog: str) -> str:
     listed = [f"  {name:{width}}  {analysis.summary}" for name, analysis in ANALYSES.items()]
     return "\n".join(
         [
-            f"Usage: {prog} ANALYSIS -i FILE -o DIR [OPTIONS]",
+            f"usage: {prog} ANALYSIS -i FILE -o DIR [OPTIONS]",
             "",
             "Computes what robots did, and writes tables (CSV) and figures (PDF, PNG).",
             "",
