@@ -2,8 +2,9 @@
 
     .venv/bin/python bench/reception_profile.py
 
-Runs the example `probes` with `conf/probes.yaml` for every setting in `ir_reception_profile.csv` (the measurements on
-real robots to which the article fitted its equation) and many seeds, and compares the share of received messages with
+Runs the example `probes` with `conf/probes.yaml` for every setting of the measurements on real robots to which the
+article fitted its equation (pogosim.communication.measurements) and many seeds, and compares the share of received
+messages with
 
     P = 1 / (alpha + beta p^gamma c^delta exp(zeta m) + theta p c)
 
@@ -26,15 +27,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
+from pogosim.communication.measurements import ROBOTS_OWN
+from pogosim.communication.reception_law import SHORT_HEADER_BYTES, DynamicLaw
 from pogosim.utils import load_dataframe
 
 ROOT = Path(__file__).resolve().parents[1]
 PROBES = ROOT / "examples" / "probes" / "probes"
 CONFIG = ROOT / "conf" / "probes.yaml"
 FORMATION = ROOT / "conf" / "probes_formation.csv"
-MEASUREMENTS = ROOT / "bench" / "ir_reception_profile.csv"
+MEASUREMENTS = ROBOTS_OWN
 
-SHORT_HEADER_BYTES = 3
 FOCAL_ROBOT = 0
 TOLERANCE = 0.03
 
@@ -85,11 +87,7 @@ def read_parameters(path: Path = CONFIG) -> dict[str, float]:
 def equation(setting: Setting, parameters: Mapping[str, float]) -> float:
     """Reception probability, in [0, 1], that the article's equation gives."""
     m = setting.payload_size + SHORT_HEADER_BYTES
-    p = setting.send_percent / 100.0
-    c = setting.neighbors + 1
-    a = parameters
-    collisions = a["beta"] * math.pow(p, a["gamma"]) * math.pow(c, a["delta"]) * math.exp(a["zeta"] * m)
-    return min(1.0, 1.0 / (a["alpha"] + collisions + a["theta"] * p * c))
+    return float(DynamicLaw(**parameters).probability(m, setting.send_percent / 100.0, setting.neighbors + 1))
 
 
 def simulate(setting: Setting, seed: int, simulation_time_s: float = 60.0, program: Path = PROBES) -> Count:

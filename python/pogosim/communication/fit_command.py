@@ -1,0 +1,244 @@
+"""`pogosim fit-comm`: fits a law of reception to measurements."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from pogosim.command.numbers import finite, positive, whole
+from pogosim.command.parser import Parser, complain
+from pogosim.communication.fit import OBJECTIVES, Fit, FitError, FitSettings, fit
+from pogosim.communication.measurements import ROBOTS_OWN, MeasurementError, Measurements, read_measurements
+from pogosim.communication.quality import Quality, compare, quality
+from pogosim.communication.reception_law import (
+    LAWS,
+    SHORT_HEADER_BYTES,
+    configuration_block,
+    parameter_names,
+    parameters_of,
+)
+from pogosim.outputs import OutputError, leads_to, real_output, say
+
+RESULTS = "model_final_results.json"
+RESIDUALS = "model_residuals.csv"
+
+
+def assignment(text: str) -> tuple[str, str]:
+    """Split NAME=VALUE."""
+    name, equals, value = text.partition("=")
+    if not equals or not name:
+        raise argparse.ArgumentTypeError(f"'{text}' is not of the form NAME=...")
+    return name.strip(), value
+
+
+def fixed_value(text: str) -> tuple[str, float]:
+    """Return the parameter and value of NAME=VALUE."""
+    name, value = assignment(text)
+    return name, finite(value)
+
+
+def bounds(text: str) -> tuple[str, tuple[float, float]]:
+    """Return the parameter and bounds of NAME=LOW:HIGH."""
+    name, value = assignment(text)
+    low, colon, high = value.partition(":")
+    if not colon:
+        raise argparse.ArgumentTypeError(f"'{text}' is not of the form NAME=LOW:HIGH")
+    return name, (finite(low), finite(high))
+
+
+def parser(prog: str) -> Parser:
+    """Return the parser of the command line."""
+    made = Parser(
+        prog=prog,
+        description="Fits a law of reception over infrared to measurements (docs/communication_tools.md), and prints "
+        "how well it fits and the lines for a configuration.",
+    )
+    made.add_argument(
+        "data",
+        nargs="?",
+        metavar="DATA.csv",
+        help="measurements, with the columns payload_size (bytes), nb_neighbors (or cluster_size), p_send and "
+        "success_probability; without it, those of real robots",
+    )
+    made.add_argument("--example", action="store_true", help="fit the measurements of real robots, the default")
+    made.add_argument("-o", "--output-dir", metavar="DIR", help=f"folder for {RESULTS}, {RESIDUALS} and pictures")
+    made.add_argument(
+        "--law", choices=list(LAWS), default="dynamic", help="dynamic: the article's equation (default); power: older"
+    )
+    made.add_argument(
+        "--objective",
+        choices=OBJECTIVES,
+        default="r2",
+        help="r2: least squares (default); huber: strange measurements count for less",
+    )
+    made.add_argument(
+        "--huber-delta", type=positive, default=0.1, help="residual from which Huber's loss is linear (0.1)"
+    )
+    names = ", ".join(parameter_names(LAWS["dynamic"]))
+    made.add_argument(
+        "--bounds",
+        type=bounds,
+        action="append",
+        default=[],
+        metavar="NAME=LOW:HIGH",
+        help=f"of {names}; may be repeated",
+    )
+    made.add_argument(
+        "--fix", type=fixed_value, action="append", default=[], metavar="NAME=VALUE", help="do not fit this parameter"
+    )
+    made.add_argument(
+        "--header-bytes",
+        type=whole(0, 1000),
+        default=SHORT_HEADER_BYTES,
+        metavar="N",
+        help="header of the messages: 3 in short ones (default), 8 in long ones",
+    )
+    made.add_argument("--seed", type=whole(1, 2**32 - 10**4), default=42, metavar="N", help="of the search (42)")
+    made.add_argument("--restarts", type=whole(0, 1000), default=2, metavar="N", help="more searches (2)")
+    return made
+
+
+def settings_of(options: argparse.Namespace) -> FitSettings:
+    """Return how to fit.
+
+    Raises:
+        FitError: The options contradict each other.
+    """
+    settings = FitSettings(
+        law=options.law,
+        objective=options.objective,
+        huber_delta=options.huber_delta,
+        bounds=dict(options.bounds),
+        fixed=dict(options.fix),
+        seed=options.seed,
+        restarts=options.restarts,
+    )
+    settings.check()
+    return settings
+
+
+def shown(value: float | None, digits: str = ".6f") -> str:
+    """Return a number as text, or a dash where it is not defined."""
+    return "-" if value is None else format(value, digits)
+
+
+def report(measurements: Measurements, fitted: Fit, compared: pd.DataFrame) -> None:
+    """Print the table of predictions, how well they fit, and the lines for a configuration."""
+    say("payload cluster p_send  measured predicted  residual")
+    for row in compared.itertuples(index=False):
+        say(
+            f"{row.payload_size:7g} {row.cluster_size:7g} {row.p_send:6.3f} {row.success_probability:9.4f}"
+            f" {row.predicted:9.4f} {row.residual:+9.4f}"
+        )
+    found = quality(compared)
+    say("")
+    say(f"measurements: {len(measurements.rows)}")
+    say(f"R2: {shown(found.r2)}")
+    say(f"MAE: {shown(found.mae)}")
+    say(f"RMSE: {shown(found.rmse)}")
+    say(f"MAPE: {shown(found.mape_percent, '.2f')} %")
+    say(f"residuals, Shapiro-Wilk: W = {shown(found.shapiro_w, '.4f')}, p = {shown(found.shapiro_p, '.2g')}")
+    say("")
+    say(configuration_block(fitted.law))
+
+
+def results_text(settings: FitSettings, fitted: Fit, found: Quality, measurements: Measurements, data: Path) -> str:
+    """Return the content of the file of results."""
+    free = [name for name in parameter_names(LAWS[settings.law]) if name not in settings.fixed]
+    content = {
+        "law": settings.law,
+        "parameters": parameters_of(fitted.law),
+        "quality": dataclasses.asdict(found),
+        "objective": settings.objective,
+        "huber_delta": settings.huber_delta if settings.objective == "huber" else None,
+        "loss": fitted.loss,
+        "bounds": {name: settings.bounds_of(name) for name in free},
+        "fixed": dict(settings.fixed),
+        "seed": settings.seed,
+        "evaluations": fitted.evaluations,
+        "data": data.name,
+        "measurements": len(measurements.rows),
+        "header_bytes": measurements.header_bytes,
+    }
+    return json.dumps(content, indent=2) + "\n"
+
+
+def check_outputs(folder: Path, names: Sequence[str], data: Path) -> None:
+    """Make the folder; raises OutputError or OSError if results cannot be written there."""
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder} is not a folder; choose another one with -o")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        real_output(folder / name)
+        if leads_to(folder / name, data):
+            raise OutputError(
+                f"{folder / name} would take the place of the measurements; choose another folder with -o"
+            )
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim fit-comm") -> int:
+    """Run the command. Returns its exit code: 0 done, 2 nothing could be fitted, or written."""
+    options = parser(prog).parse_args(arguments)
+    if options.example and options.data:
+        return complain(prog, f"--example stands for the measurements of real robots; leave out it or {options.data}")
+    data = Path(options.data) if options.data else ROBOTS_OWN
+    try:
+        settings = settings_of(options)
+        measurements = read_measurements(data, options.header_bytes)
+        written = fit_and_report(prog, data, measurements, settings, options.output_dir)
+    except (MeasurementError, FitError, OutputError) as error:
+        return complain(prog, error)
+    except OSError as error:
+        place = error.filename or options.output_dir or data
+        return complain(prog, f"{place}: {(error.strerror or str(error)).lower()}")
+    if written:
+        say("")
+        say(f"written to {options.output_dir}: {', '.join(written)}")
+    return 0
+
+
+def fit_and_report(
+    prog: str, data: Path, measurements: Measurements, settings: FitSettings, output: str | None
+) -> list[str]:
+    """Fit, print, and write if a folder is given; returns the names of the files written."""
+    warn(prog, data, measurements, settings)
+    names = [RESULTS, RESIDUALS]
+    if output is not None:
+        from pogosim.communication import fit_plots
+
+        names += [f"{name}.{suffix}" for name in fit_plots.PLOTS for suffix in fit_plots.FORMATS]
+        check_outputs(Path(output), names, data)
+    fitted = fit(measurements, settings)
+    compared = compare(fitted.law, measurements)
+    report(measurements, fitted, compared)
+    if output is None:
+        return []
+    content = {
+        RESULTS: results_text(settings, fitted, quality(compared), measurements, data).encode(),
+        RESIDUALS: compared.to_csv(index=False, float_format="%.9g", lineterminator="\n").encode(),
+        **fit_plots.pictures(fitted.law, measurements, compared),
+    }
+    for name in names:
+        (Path(output) / name).write_bytes(content[name])
+    return names
+
+
+def warn(prog: str, data: Path, measurements: Measurements, settings: FitSettings) -> None:
+    """Say what is doubtful about the measurements."""
+    if measurements.left_out:
+        print(
+            f"{prog}: warning: {data}: {measurements.left_out} rows without all numbers are left out", file=sys.stderr
+        )
+    free = len(parameter_names(LAWS[settings.law])) - len(settings.fixed)
+    if len(measurements.rows) < free:
+        print(
+            f"{prog}: warning: {data}: {len(measurements.rows)} measurements do not determine {free} parameters; "
+            "measure more, or fix some with --fix",
+            file=sys.stderr,
+        )
