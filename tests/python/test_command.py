@@ -13,7 +13,7 @@ import pytest
 from project import CLEAN, TEMPLATE
 from running import Run, build_folder, write_scene
 
-SUBCOMMANDS = ("new", "run", "batch", "analyze", "picture", "recover", "fit-comm", "best-psend", "doctor", "path")
+SUBCOMMANDS = ("new", "run", "batch", "analyze", "picture", "recover", "arena", "fit-comm", "best-psend", "doctor", "path")
 
 
 def command(folder: Path, *arguments: str, environment: Mapping[str, str] | None = None) -> Run:
@@ -88,7 +88,7 @@ def test_each_subcommand_explains_itself_by_its_own_name(name: str, tmp_path: Pa
     assert result.output.startswith(f"usage: pogosim {name}")
 
 
-@pytest.mark.parametrize("name", ["new", "picture", "recover", "fit-comm", "best-psend", "doctor", "path"])
+@pytest.mark.parametrize("name", ["new", "picture", "recover", "arena", "fit-comm", "best-psend", "doctor", "path"])
 def test_each_subcommand_refuses_unknown_options_by_its_own_name(name: str, tmp_path: Path) -> None:
     result = command(tmp_path, name, "a", "b", "c", "--nonsense")
     assert result.code == 2

@@ -31,6 +31,7 @@ SUBCOMMANDS = {
     "analyze": Subcommand("pogosim.reports.command", "compute what robots did: tables and figures of a data file"),
     "picture": Subcommand("pogosim.swarm_picture", "draw the trajectories of a run"),
     "recover": Subcommand("pogosim.recover", "make a complete data file of a run that was killed"),
+    "arena": Subcommand("pogosim.geometry.command", "draw, check, scale and convert arenas"),
     "fit-comm": Subcommand("pogosim.communication.fit_command", "fit a law of reception to measurements"),
     "best-psend": Subcommand("pogosim.communication.sending_command", "compute how often robots should send"),
     "doctor": Subcommand("pogosim.command.doctor", "say what works on this machine, and what is missing for what"),

@@ -1,0 +1,1 @@
+"""Arenas: reading, checking, scaling, converting and drawing their outlines."""
