@@ -56,7 +56,7 @@ def parser(prog: str) -> Parser:
     """Return the parser of the command line."""
     made = Parser(
         prog=prog,
-        description="Fits a law of reception over infrared to measurements (docs/communication_tools.md), and prints "
+        description="Fits a law of reception over infrared to measurements (docs/communication.md), and prints "
         "how well it fits and the lines for a configuration.",
     )
     made.add_argument(

@@ -21,7 +21,7 @@ from pogosim.communication.quality import quality
 from pogosim.communication.reception_law import Law
 
 COLOURS = ("#1b6ca8", "#d98200", "#a8321b", "#3c8d5a", "#7a4fa0", "#5f6b73")
-CELLS = 40  # of a surface, along each side
+CELLS = 25  # of a surface, along each side
 FORMATS = ("png", "pdf")
 
 

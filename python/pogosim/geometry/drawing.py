@@ -17,18 +17,21 @@ FORMATS = ("pdf", "png", "svg")
 FLOOR, WALL, HOLE, UNREACHABLE = "#eef2f5", "#29343d", "#a8321b", "#f0c9a8"
 
 
-def draw(outline: Outline, room: Room | None, title: str) -> Figure:
+def draw(outline: Outline, room: Room | None, title: str, figure: Figure | None = None) -> Figure:
     """Draw an arena: its floor, walls and holes, and what robots cannot reach.
 
     Args:
         outline: The arena, in mm; it may be invalid.
         room: How much room it has for robots. None: that is not known.
         title: Heading.
+        figure: An empty figure to draw into, that of a window for instance. None: a new one.
     """
     low, high = outline.bounds
     size = high - low
     width, height = 6.5 * size / max(float(size.max()), 1e-12)
-    figure = Figure(figsize=(max(float(width), 2.5) + 1.0, max(float(height), 1.5) + 1.2), layout="constrained")
+    figure = figure or Figure()
+    figure.set_size_inches(max(float(width), 2.5) + 1.0, max(float(height), 1.5) + 1.2)
+    figure.set_layout_engine("constrained")
     axes = figure.subplots()
     closed = [Curve(np.vstack([polygon, polygon[:1]]), closed=True) for polygon in outline.polygons]
     axes.add_patch(PathPatch(closed[0], facecolor=FLOOR, edgecolor="none"))

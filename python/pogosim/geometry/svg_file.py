@@ -171,7 +171,8 @@ def flattened_shapes(shape: Any, number: int, tolerance: float, source: str) -> 
     import svgelements
 
     name = f"'{shape.id}'" if shape.id else f"shape {number} (<{type(shape).__name__.lower()}>)"
-    sub_paths = list(svgelements.Path(shape).as_subpaths())
+    # abs() applies what is left of a transform: a turned rectangle that is stretched is no rectangle any more.
+    sub_paths = list(abs(svgelements.Path(shape)).as_subpaths())
     for place, sub_path in enumerate(sub_paths, start=1):
         points: list[complex] = []
         is_closed = False
@@ -196,7 +197,8 @@ def curve_points(segment: Any, tolerance: float) -> list[complex]:
     """Return points on a curve, without its start: its quarters, each halved until it is straight enough."""
 
     def at(t: float) -> complex:
-        return complex(segment.point(t))
+        point = segment.point(t)
+        return complex(float(point.x), float(point.y))
 
     def refined(t0: float, p0: complex, t1: float, p1: complex, depth: int) -> list[complex]:
         inner = [at(t0 + (t1 - t0) * share) for share in (0.25, 0.5, 0.75)]
