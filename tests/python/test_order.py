@@ -7,8 +7,8 @@ from pogosim.analysis.bond_order import bond_order
 from pogosim.analysis.directions import directions_of_headings, directions_of_motion, velocities
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.milling import centre_of_mass, milling
+from pogosim.analysis.neighbourhood import pairs_within
 from pogosim.analysis.order import local_alignment, nematic_order, polar_order
-from pogosim.analysis.pairs import pairs_within
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from swarms import Floats, metadata_of, rows_of
 
@@ -86,14 +86,14 @@ def test_pairs_are_found_across_periodic_borders_only() -> None:
     position = np.array([[5.0, 500.0], [995.0, 500.0], [995.0, 5.0], [500.0, 995.0]])
     for periodic, expected in ((True, [(0, 1)]), (False, [])):
         run = run_of(rows_of(position[None]), periodic=periodic)
-        i, j = pairs_within(run.arena, position, 20.0)
+        i, j, _ = pairs_within(position, run.arena, 20.0)
         assert list(zip(i.tolist(), j.tolist(), strict=True)) == expected
 
 
 def test_a_position_just_left_of_a_periodic_border_is_inside() -> None:
     position = np.array([[-1e-20, 5.0], [999.0, 5.0]])
     run = run_of(rows_of(position[None]), periodic=True)
-    assert len(pairs_within(run.arena, position, 2.0)[0]) == 1
+    assert len(pairs_within(position, run.arena, 2.0)[0]) == 1
 
 
 def test_local_alignment_of_three_robots_is_that_of_a_sum_of_three_vectors() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.analysis.pairs import in_box, tree_of
+from pogosim.analysis.neighbourhood import tree_of
 from pogosim.analysis.trajectories import Trajectories
 
 Complex = npt.NDArray[np.complex128]
@@ -31,8 +31,8 @@ def bond_order(run: Trajectories, k: int = 6) -> Complex:
             continue
         position = run.position_mm[time, there]
         own = np.arange(len(position))[:, None]
-        tree = tree_of(run.arena, position)
-        _, nearest = tree.query(in_box(run.arena, position) if run.arena.is_periodic else position, k + 1)
+        tree, points = tree_of(position, run.arena)
+        _, nearest = tree.query(points, k + 1)
         # A robot is among its own nearest, first or, if others stand in the same place, later, or not at all.
         is_own = nearest == own
         is_own[~is_own.any(axis=1), -1] = True

@@ -91,13 +91,20 @@ def neighbour_pairs(position_mm: Floats, arena: Arena, reach_mm: float) -> tuple
         The numbers i and j of the points, and their distances in mm, shape (E,) each: every pair as (i, j) and (j, i),
         sorted by i, then j; no point is its own neighbour.
     """
+    i, j, distance = pairs_within(position_mm, arena, reach_mm)
+    first, second = np.concatenate([i, j]), np.concatenate([j, i])
+    order = np.argsort(first * len(position_mm) + second)
+    return first[order], second[order], np.concatenate([distance, distance])[order]
+
+
+def pairs_within(position_mm: Floats, arena: Arena, reach_mm: float) -> tuple[Integers, Integers, Floats]:
+    """Find all pairs of points as `neighbour_pairs` does, but each of them once, i < j, in no particular order."""
+    if len(position_mm) < 2:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0)
     tree, points = tree_of(position_mm, arena)
     pairs = tree.query_pairs(reach_mm, output_type="ndarray").astype(np.int64)
-    distance = np.linalg.norm(arena.minimum_image(points[pairs[:, 1]] - points[pairs[:, 0]]), axis=1)
-    first = np.concatenate([pairs[:, 0], pairs[:, 1]])
-    second = np.concatenate([pairs[:, 1], pairs[:, 0]])
-    order = np.argsort(first * len(points) + second)
-    return first[order], second[order], np.concatenate([distance, distance])[order]
+    offset = arena.minimum_image(points[pairs[:, 1]] - points[pairs[:, 0]])
+    return pairs[:, 0], pairs[:, 1], np.hypot(offset[:, 0], offset[:, 1])
 
 
 def neighbours(run: Trajectories, reach_mm: float | None = None) -> Iterator[Neighbours]:

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.pairs import Indices, pairs_within
+from pogosim.analysis.neighbourhood import Integers, pairs_within
 from pogosim.analysis.trajectories import Trajectories
 
 
@@ -96,7 +96,7 @@ def local_alignment(run: Trajectories, direction: Floats, radius_mm: float) -> L
     counts = run.is_there & np.isfinite(direction).all(axis=2)
     for time, use in enumerate(counts):
         unit = direction[time, use]
-        i, j = pairs_within(run.arena, run.position_mm[time, use], radius_mm)
+        i, j, _ = pairs_within(run.position_mm[time, use], run.arena, radius_mm)
         total[time, use] = unit + sum_over_neighbours(unit, i, j)
         size[time, use] = 1 + np.bincount(np.concatenate([i, j]), minlength=len(unit))
     m = np.where(size > 1, size, np.nan)
@@ -110,7 +110,7 @@ def local_alignment(run: Trajectories, direction: Floats, radius_mm: float) -> L
     )
 
 
-def sum_over_neighbours(vector: Floats, i: Indices, j: Indices) -> Floats:
+def sum_over_neighbours(vector: Floats, i: Integers, j: Integers) -> Floats:
     """Return the sum of the vectors of each robot's neighbours; shape (n, 2), pairs i, j."""
     own, other = np.concatenate([i, j]), np.concatenate([j, i])
     parts = [np.bincount(own, vector[other, axis], minlength=len(vector)) for axis in (0, 1)]
