@@ -19,7 +19,9 @@ class Analysis(NamedTuple):
     summary: str
 
 
-ANALYSES: dict[str, Analysis] = {}
+ANALYSES: dict[str, Analysis] = {
+    "collective": Analysis("pogosim.reports.collective", "order, pair correlations, structure factor, flow, milling"),
+}
 
 
 def usage(prog: str) -> str:

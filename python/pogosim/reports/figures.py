@@ -30,6 +30,10 @@ def new_figure(columns: int = 1, rows: int = 1, width: float = 6.0, height: floa
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PDF and PNG; parent folders are made. The suffix of the path does not count."""
     path.parent.mkdir(parents=True, exist_ok=True)
+    # Panels are laid out once, not for each format: that takes longer than drawing them.
+    if (engine := figure.get_layout_engine()) is not None:
+        engine.execute(figure)
+        figure.set_layout_engine("none")
     for suffix in FORMATS:
         figure.savefig(path.with_suffix(suffix), dpi=DPI, metadata=METADATA[suffix])
 

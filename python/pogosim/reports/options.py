@@ -22,6 +22,8 @@ from pogosim.utils import load_dataframe
 # What pandas, numpy and the libraries behind the analyses raise for values that no run has.
 STRANGE_DATA = (ArithmeticError, IndexError, KeyError, MemoryError, RuntimeError, TypeError, ValueError)
 
+OUTPUT_SUFFIXES = (".csv", ".gif", ".json", ".pdf", ".pkl", ".png", ".txt")
+
 
 def analysis_parser(prog: str, description: str) -> Parser:
     """Return a parser with the options that all analyses have."""
@@ -48,6 +50,18 @@ def positive(text: str) -> float:
     if not 0.0 < value < math.inf:
         raise argparse.ArgumentTypeError(f"{text} is not a number above 0")
     return value
+
+
+def at_least(least: int) -> Callable[[str], int]:
+    """Return the type of an option that takes a whole number of at least this."""
+
+    def whole_number(text: str) -> int:
+        value = int(text)
+        if value < least:
+            raise argparse.ArgumentTypeError(f"{text} is less than {least}")
+        return value
+
+    return whole_number
 
 
 def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
@@ -81,9 +95,12 @@ def output_folder(options: argparse.Namespace) -> Path:
     """Make the folder for the output.
 
     Raises:
-        OutputError: It cannot be one.
+        OutputError: It cannot be one, or has an input whose name is that of a table or a figure.
     """
     folder = Path(options.output_dir)
+    for name in options.input:
+        if Path(name).suffix in OUTPUT_SUFFIXES and Path(name).resolve().is_relative_to(folder.resolve()):
+            raise OutputError(f"{name} is an input that might be overwritten; choose another folder with -o")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
@@ -103,6 +120,12 @@ def write_table(table: pd.DataFrame, path: Path, inputs: Sequence[str]) -> None:
         raise OutputError(f"{path} is an input; choose another folder with -o")
     path.parent.mkdir(parents=True, exist_ok=True)
     table.to_csv(path, index=False)
+
+
+def labelled(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
+    """Return a table with the labels of its run as first columns."""
+    labels = pd.DataFrame({name: [value] * len(table) for name, value in run.labels.items()}, index=table.index)
+    return pd.concat([labels, table], axis=1)
 
 
 def reported(prog: str, work: Callable[[], None]) -> int:

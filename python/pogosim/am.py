@@ -1,0 +1,43 @@
+"""Collective order of swarms: the command `pogosim analyze collective`, and its functions for scripts.
+
+python -m pogosim.am -i results/result.feather -o results/collective
+"""
+
+from __future__ import annotations
+
+import sys
+
+from pogosim.analysis.bond_order import bond_order
+from pogosim.analysis.correlations import correlation_length, pair_correlation, vector_correlation
+from pogosim.analysis.directions import directions_of_headings, directions_of_motion, velocities
+from pogosim.analysis.flow import VelocityField, velocity_field, velocity_fields
+from pogosim.analysis.fluctuations import mean_square_speed, number_fluctuations
+from pogosim.analysis.milling import centre_of_mass, milling
+from pogosim.analysis.order import local_alignment, nematic_order, polar_order
+from pogosim.analysis.structure_factor import structure_factor
+from pogosim.reports.collective import main
+
+__all__ = [
+    "VelocityField",
+    "bond_order",
+    "centre_of_mass",
+    "correlation_length",
+    "directions_of_headings",
+    "directions_of_motion",
+    "local_alignment",
+    "main",
+    "mean_square_speed",
+    "milling",
+    "nematic_order",
+    "number_fluctuations",
+    "pair_correlation",
+    "polar_order",
+    "structure_factor",
+    "vector_correlation",
+    "velocities",
+    "velocity_field",
+    "velocity_fields",
+]
+
+if __name__ == "__main__":
+    sys.exit(main(prog="python -m pogosim.am"))

@@ -1,0 +1,165 @@
+"""`pogosim analyze collective`: order, structure and flow of a swarm, as tables, figures and summaries."""
+
+from __future__ import annotations
+
+import argparse
+import pickle
+import sys
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from pogosim.analysis.directions import MIN_SPEED_MM_S, velocities
+from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.milling import centre_of_arena
+from pogosim.analysis.trajectories import Trajectories, need_columns
+from pogosim.command.parser import Parser
+from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
+from pogosim.reports.collective_metrics import METRICS, Metric
+from pogosim.reports.collective_summary import write_summaries
+from pogosim.reports.collective_swarm import Settings, Swarm, Vortices
+from pogosim.reports.figures import groups_of
+from pogosim.reports.options import (
+    analysis_parser,
+    at_least,
+    labelled,
+    output_folder,
+    positive,
+    read_runs,
+    reported,
+    warn,
+    write_table,
+)
+
+MAX_BINS = 100_000
+
+
+def parser(prog: str) -> Parser:
+    """Return the parser of the command line."""
+    own = analysis_parser(prog, "Measures order, structure and flow of a swarm.")
+    add = own.add_argument
+    add("--direction", choices=("velocity", "heading"), default="velocity", help="what is aligned (velocity)")
+    add(
+        "--min-speed",
+        type=positive,
+        default=MIN_SPEED_MM_S,
+        metavar="MM_S",
+        help=f"slower robots have no direction ({MIN_SPEED_MM_S} mm/s)",
+    )
+    add("--psi-k", type=at_least(1), default=6, metavar="K", help="symmetry of the bond order (6)")
+    add("--gr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of g(r) (200)")
+    add("--gr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (2)")
+    add("--sk-nx", type=at_least(4), default=128, metavar="N", help="columns of the grid of S(k) (128)")
+    add("--sk-ny", type=at_least(4), default=128, metavar="N", help="rows of it (128)")
+    add("--v2-ref", type=positive, metavar="MM2_S2", help="mean square speed that Teff_ratio is for (that of all runs)")
+    add("--vort-nx", type=at_least(2), default=64, metavar="N", help="columns of the grid of the velocity field (64)")
+    add("--vort-ny", type=at_least(2), default=64, metavar="N", help="rows of it (64)")
+    add("--milling-center", choices=("cm", "arena"), default="cm", help="centre of mass, or of the arena (cm)")
+    add("--aligncorr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of C(r) (200)")
+    add("--aligncorr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (2)")
+    add("--aligncorr-fluctuations", action="store_true", help="subtract the mean of all robots first")
+    add("-N", "--no-csv", action="store_true", help="do not write CSV files")
+    return own
+
+
+def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Settings:
+    """Return the settings that the options name, and those that are the same for all runs.
+
+    Raises:
+        AnalysisError: Options or data do not allow it.
+    """
+    for name in ("gr", "aligncorr"):
+        if getattr(options, f"{name}_rmax") / getattr(options, f"{name}_dr") > MAX_BINS:
+            raise AnalysisError(f"--{name}-dr is too small for --{name}-rmax: there would be more than {MAX_BINS} bins")
+    for run in runs:
+        if options.direction == "heading":
+            need_columns(run.rows, ["angle"])
+        if options.milling_center == "arena":
+            centre_of_arena(run.arena)
+    squares = [(velocities(run) ** 2).sum(axis=2) for run in runs]
+    known = sum(int(np.isfinite(square).sum()) for square in squares)
+    mean_square = float(sum(np.nansum(square) for square in squares)) / known if known else 0.0
+    return Settings(
+        direction=options.direction,
+        min_speed_mm_s=options.min_speed,
+        psi_k=options.psi_k,
+        gr_rmax_mm=options.gr_rmax,
+        gr_dr_mm=options.gr_dr,
+        sk_shape=(options.sk_nx, options.sk_ny),
+        v2_ref_mm2_s2=options.v2_ref or mean_square or None,
+        vorticity_shape=(options.vort_nx, options.vort_ny),
+        milling_centre=options.milling_center,
+        correlation_rmax_mm=options.aligncorr_rmax,
+        correlation_dr_mm=options.aligncorr_dr,
+        fluctuations=options.aligncorr_fluctuations,
+        # A robot turns with this vorticity if it circles at half the reach.
+        vorticity_range=float(f"{4.0 * np.sqrt(mean_square) / runs[0].reach_mm:.1g}") or 1.0,
+    )
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze collective") -> int:
+    """Run the command line. Returns the exit code, which is 2 for wrong usage or data."""
+    options = parser(prog).parse_args(arguments)
+    return reported(prog, lambda: analyze(options, prog))
+
+
+def analyze(options: argparse.Namespace, prog: str) -> None:
+    """Read the runs, and write everything."""
+    runs = read_runs(options, prog)
+    settings = settings_of(options, runs)
+    folder = output_folder(options)
+    tables: dict[str, list[pd.DataFrame]] = {metric.key: [] for metric in METRICS}
+    fields: dict[str, Vortices] = {}
+    first = {name: own[0] for name, own in groups_of(runs).items()}
+    for run in runs:
+        swarm = Swarm(run, settings)
+        for metric in METRICS:
+            if run.arena.polygons or not metric.needs_arena:
+                tables[metric.key].append(metric.compute(swarm))
+            else:
+                tables[metric.key].append(pd.DataFrame())
+        fields |= {name: swarm.vortices for name, own in first.items() if own is run}
+    warn_of_missing(prog, runs, tables)
+    joined = {metric.key: joined_table(runs, tables[metric.key]) for metric in METRICS}
+    for metric in METRICS:
+        if not options.no_csv:
+            write_table(joined[metric.key], folder / f"{metric.key}.csv", options.input)
+        draw_metric(metric, runs, tables[metric.key], folder)
+    draw_vorticity_fields(first, fields, folder)
+    write_summaries(folder, runs, tables, settings)
+    with (folder / "metrics.pkl").open("wb") as file:
+        pickle.dump(joined, file, protocol=4)
+
+
+def joined_table(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame]) -> pd.DataFrame:
+    """Return the tables of all runs as one, with the labels of the runs."""
+    return pd.concat([labelled(table, run) for run, table in zip(runs, tables, strict=True)], ignore_index=True)
+
+
+def has_values(metric: Metric, table: pd.DataFrame) -> bool:
+    """Say whether a table has anything to draw."""
+    return any(name in table and bool(np.isfinite(table[name].astype(float)).any()) for name in metric.curves)
+
+
+def warn_of_missing(prog: str, runs: Sequence[Trajectories], tables: dict[str, list[pd.DataFrame]]) -> None:
+    """Say once which metrics have no values, and why."""
+    without = sum(not run.arena.polygons for run in runs)
+    if without:
+        names = ", ".join(metric.key for metric in METRICS if metric.needs_arena)
+        warn(prog, f"{without} of {len(runs)} runs do not say what the arena is: without {names}")
+    arenas = [run for run in runs if run.arena.polygons] or runs
+    empty = [
+        metric.key
+        for metric in METRICS
+        if not any(has_values(metric, table) for table in tables[metric.key]) and not (metric.needs_arena and without)
+    ]
+    if empty:
+        robots, times = max(len(run.robot_id) for run in arenas), max(len(run.time_s) for run in arenas)
+        warn(
+            prog, f"no values of {', '.join(empty)}: too few robots ({robots}) or times ({times}), or robots that stand"
+        )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

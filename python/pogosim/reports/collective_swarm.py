@@ -1,0 +1,127 @@
+"""What several metrics of `pogosim analyze collective` need of a run, computed once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from pogosim.analysis.arena import Floats
+from pogosim.analysis.correlations import VectorCorrelation, vector_correlation
+from pogosim.analysis.directions import MIN_SPEED_MM_S, directions_of_headings, unit_vectors, velocities
+from pogosim.analysis.flow import velocity_fields
+from pogosim.analysis.order import LocalAlignment, local_alignment
+from pogosim.analysis.trajectories import Trajectories, need_columns
+
+VORTICITY_BINS = 80
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the command line says; the same for all runs."""
+
+    direction: Literal["velocity", "heading"] = "velocity"
+    min_speed_mm_s: float = MIN_SPEED_MM_S
+    psi_k: int = 6
+    gr_rmax_mm: float = 200.0
+    gr_dr_mm: float = 2.0
+    sk_shape: tuple[int, int] = (128, 128)
+    v2_ref_mm2_s2: float | None = None  # None: the mean of all runs
+    vorticity_shape: tuple[int, int] = (64, 64)
+    milling_centre: Literal["cm", "arena"] = "cm"
+    correlation_rmax_mm: float = 200.0
+    correlation_dr_mm: float = 2.0
+    fluctuations: bool = False
+    vorticity_range: float = 1.0  # of the distribution, 1/s; the same for all runs, so that they can be averaged
+
+
+@dataclass(frozen=True)
+class Vortices:
+    """Velocity fields of a run: their means at each time, over time, and the distribution of vorticity."""
+
+    at_times: pd.DataFrame
+    density: Floats  # (bins,), of vorticity, s
+    velocity: Floats  # (rows, columns, 2), mean over time
+    vorticity: Floats  # (rows, columns), mean over time
+
+
+class Swarm:
+    """A run and what follows from it."""
+
+    def __init__(self, run: Trajectories, settings: Settings) -> None:
+        """Nothing is computed before it is asked for."""
+        self.run = run
+        self.settings = settings
+
+    @cached_property
+    def velocity(self) -> Floats:
+        """Velocities, shape (T, N, 2), mm/s."""
+        return velocities(self.run)
+
+    @cached_property
+    def direction(self) -> Floats:
+        """Unit vectors of velocities or headings, shape (T, N, 2)."""
+        if self.settings.direction == "velocity":
+            return unit_vectors(self.velocity, self.settings.min_speed_mm_s)
+        need_columns(self.run.rows, ["angle"])
+        return directions_of_headings(self.run)
+
+    @cached_property
+    def local(self) -> LocalAlignment:
+        """Alignment of neighbours."""
+        return local_alignment(self.run, self.direction, self.run.reach_mm)
+
+    @cached_property
+    def correlation(self) -> VectorCorrelation:
+        """Correlation of velocities, or of headings."""
+        settings = self.settings
+        vector = self.velocity if settings.direction == "velocity" else self.direction
+        greatest, width = settings.correlation_rmax_mm, settings.correlation_dr_mm
+        return vector_correlation(self.run, vector, greatest, width, settings.fluctuations)
+
+    @cached_property
+    def vortices(self) -> Vortices:
+        """Velocity fields, without keeping them all."""
+        settings = self.settings
+        columns, rows = settings.vorticity_shape
+        edges = np.linspace(-settings.vorticity_range, settings.vorticity_range, VORTICITY_BINS + 1)
+        counted, cells, table = np.zeros(VORTICITY_BINS), 0, []
+        known = np.zeros((rows, columns))
+        velocity, vorticity = np.zeros((rows, columns, 2)), np.zeros((rows, columns))
+        for time, field in velocity_fields(self.run, self.velocity, self.run.reach_mm, settings.vorticity_shape):
+            there = np.isfinite(field.vorticity)
+            values = field.vorticity[there]
+            table.append(
+                {
+                    "time_s": time,
+                    "vorticity_per_s": mean(values),
+                    "abs_vorticity_per_s": mean(np.abs(values)),
+                    "enstrophy_per_s2": mean(field.enstrophy[there]),
+                    "swirling_strength_rad_s": mean(field.swirling_strength[there]),
+                    "okubo_weiss_per_s2": mean(field.okubo_weiss[there]),
+                    "vortex_fraction": mean(field.okubo_weiss[there] < 0.0),
+                    "known_fraction": mean(there),
+                }
+            )
+            counted += np.histogram(values, edges)[0]
+            cells += len(values)
+            known += there
+            velocity += np.where(there[:, :, None], field.velocity, 0.0)
+            vorticity += np.where(there, field.vorticity, 0.0)
+        with np.errstate(invalid="ignore"):
+            density = counted / (cells * np.diff(edges)) if cells else np.full(VORTICITY_BINS, np.nan)
+            return Vortices(pd.DataFrame(table), density, velocity / known[:, :, None], vorticity / known)
+
+
+def mean(values: np.ndarray) -> float:
+    """Return the mean; NaN of nothing."""
+    return float(values.mean()) if values.size else float("nan")
+
+
+def mean_of_robots(values: Floats) -> Floats:
+    """Return the mean over the robots that have a value, at each time. Shape (T, N) to (T,), NaN without any."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.nansum(values, axis=1) / np.isfinite(values).sum(axis=1))
