@@ -17,8 +17,11 @@ MEMBRANES = ("membrane", "rectmembrane")
 RAYS = ("rotating_ray_of_light", "alternating_rays_of_light")
 SPOTS = ("static_light", "orbiting_static_light", "orbiting_light")
 
-# Of a pogobot without `radius`.
+TALKERS = ("pogobot", "pogobject", "active_object")  # bodies with a program
+
+# Of a pogobot without `radius`, and without `communication_radius`.
 POGOBOT_RADIUS_MM = 26.5
+COMMUNICATION_RADIUS_MM = 80.0
 
 # Levels of light are sensor counts, and sums of them stop here.
 BRIGHTEST = 32767
@@ -82,6 +85,7 @@ class Category:
     shape: Shape
     half_thickness_mm: float = 0.0  # of a membrane
     position_mm: tuple[float, float] | None = None  # x and y, where both are given
+    communication_radius_mm: float = 0.0  # from an emitter to the edge of a listener; 0: mute
 
 
 @dataclass(frozen=True)
@@ -190,10 +194,29 @@ def position_of(settings: dict[str, Any]) -> tuple[float, float] | None:
     return (x, y) if math.isfinite(x) and math.isfinite(y) else None
 
 
+def communication_radius_of(settings: dict[str, Any]) -> float:
+    """Infrared range of a body with a program, mm; 0 for all else."""
+    if type_of(settings) not in TALKERS:
+        return 0.0
+    return number(settings.get("communication_radius"), COMMUNICATION_RADIUS_MM)
+
+
+def read_periodic(*configurations: dict[str, Any] | None) -> bool:
+    """Tell whether what leaves the arena comes back on the other side, if any of the configurations says so."""
+    return any(str((own or {}).get("boundary_condition")).lower() == "periodic" for own in configurations)
+
+
 def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
     """All objects except lamps, by their category; of a list of entries, the last one stands for all."""
     return {
-        name: Category(name, type_of(settings), shape_of(settings), half_thickness_of(settings), position_of(settings))
+        name: Category(
+            name,
+            type_of(settings),
+            shape_of(settings),
+            half_thickness_of(settings),
+            position_of(settings),
+            communication_radius_of(settings),
+        )
         for name, settings in entries(configuration)
         if type_of(settings) not in SPOTS + RAYS
     }

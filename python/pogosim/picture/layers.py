@@ -1,0 +1,277 @@
+"""The layers of a picture, from the floor to the robots; each is drawn into axes that show the arena in mm."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path as Outline
+
+from pogosim.picture.links import links_at_end
+from pogosim.picture.palette import DARK_LED, DARK_WALL, EDGE, FLOOR, LAMPLIGHT, LINK, MAX_LAMPLIGHT, PAPER, WALL
+from pogosim.picture.swarm import RGB, Swarm
+from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, light_levels
+
+# Long files are drawn from that many snapshots at most: more cannot be told apart.
+MAX_SNAPSHOTS = 1500
+
+LIGHT_CELLS = 240  # along either side of the arena
+
+
+def thinned(rows: pd.DataFrame, max_snapshots: int = MAX_SNAPSHOTS) -> pd.DataFrame:
+    """Rows at no more than `max_snapshots` (at least 2) times, evenly chosen, the first and last among them."""
+    times = np.sort(rows["time"].unique())
+    if len(times) <= max_snapshots:
+        return rows
+    chosen = times[np.linspace(0, len(times) - 1, max_snapshots).round().astype(int)]
+    return rows[rows["time"].isin(chosen)]
+
+
+def trail_segments(rows: pd.DataFrame, extent_mm: Floats) -> tuple[Floats, pd.DataFrame]:
+    """Steps of all objects: from each pose to the next one of the same object.
+
+    Steps of more than half the arena are left out: there the object left through one side of a
+    periodic arena and came in through the other.
+
+    Args:
+        rows: As in Swarm.
+        extent_mm: Width and height of the arena.
+
+    Returns:
+        The steps, shape (n, 2, 2): from and to, x and y. And the n rows that they lead to.
+    """
+    ordered = rows.sort_values(["object", "time"], kind="stable")
+    position = ordered[["x", "y"]].to_numpy(dtype=float)
+    same_object = np.diff(ordered["object"].to_numpy()) == 0
+    inside = (np.abs(np.diff(position, axis=0)) <= extent_mm / 2.0).all(axis=1)
+    kept = same_object & inside
+    segments = np.stack([position[:-1], position[1:]], axis=1)
+    return segments[kept], ordered.iloc[1:][kept]
+
+
+def turned(polygon: Floats, clockwise: bool) -> Floats:
+    """Order the vertices clockwise (on the screen) or against it."""
+    x, y = polygon.T
+    area = np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+    return polygon if (area > 0) == clockwise else polygon[::-1]
+
+
+def draw_arena(axes: Axes, polygons: list[Floats]) -> PathPatch:
+    """Draw the floor, with holes cut out, and the walls around it. Returns the floor."""
+    loops = [turned(polygon, clockwise=i == 0) for i, polygon in enumerate(polygons)]
+    outline = Outline.make_compound_path(*(Outline(np.vstack([p, p[:1]]), closed=True) for p in loops))
+    floor = PathPatch(outline, facecolor=FLOOR, edgecolor=WALL, linewidth=2.2, joinstyle="round", zorder=1)
+    axes.add_patch(floor)
+    return floor
+
+
+def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float) -> None:
+    """Draw the last `tail_s` seconds of all trajectories, fading into the past."""
+    start_s = swarm.end_s - tail_s
+    rows = swarm.rows[~is_membrane(swarm)]  # the pose of those is their first dot's
+    recent = rows[rows["time"] >= start_s]
+    segments, ends = trail_segments(thinned(recent), extent_mm)
+    # Oldest first, so that the present lies above the past.
+    order = np.argsort(ends["time"].to_numpy(), kind="stable")
+    freshness = np.clip((ends["time"].to_numpy(dtype=float) - start_s) / tail_s, 0.0, 1.0)
+    colours = np.column_stack([ends[RGB].to_numpy(), 0.04 + 0.7 * freshness**3])
+    axes.add_collection(
+        LineCollection(
+            list(segments[order]),
+            colors=list(map(tuple, colours[order])),
+            linewidths=list(0.5 + 0.9 * freshness[order]),
+            capstyle="round",
+            zorder=2,
+        )
+    )
+
+
+def is_membrane(swarm: Swarm) -> pd.Series[bool]:
+    """Tell which rows are those of membranes."""
+    names = [name for name, own in swarm.categories.items() if own.type in MEMBRANES]
+    return swarm.rows["robot_category"].isin(names)
+
+
+def placed(outline: Floats, position: Floats, angle: Floats) -> Floats:
+    """Put an outline at n poses. Shape (corners, 2), (n, 2) and (n,) to (n, corners, 2)."""
+    turn = np.nan_to_num(angle)[:, None]
+    x, y = outline.T
+    turned_outline = np.stack([x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)], axis=-1)
+    return np.asarray(turned_outline + position[:, None, :])
+
+
+def draw_light(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Brighten the floor where lamps shine more than where they shine least. An even light shows nothing."""
+    low, high = bounds(swarm.polygons)
+    share = (np.arange(LIGHT_CELLS) + 0.5) / LIGHT_CELLS
+    x, y = np.meshgrid(*(low[:, None] + (high - low)[:, None] * share))
+    points = np.column_stack([x.ravel(), y.ravel()])
+    levels = light_levels(swarm.lamps, swarm.polygons, points, swarm.end_s)
+    inside = floor.get_path().contains_points(points)
+    darkest = levels[inside].min() if inside.any() else levels.min()
+    brightest = levels.max()
+    if brightest <= darkest:
+        return
+    opacity = MAX_LAMPLIGHT * np.clip((levels - darkest) / brightest, 0.0, 1.0)
+    image = np.concatenate([np.full((len(points), 3), LAMPLIGHT), opacity[:, None]], axis=1)
+    light = axes.imshow(
+        image.reshape(LIGHT_CELLS, LIGHT_CELLS, 4),
+        extent=(low[0], high[0], high[1], low[1]),
+        interpolation="bilinear",
+        zorder=1.2,
+    )
+    light.set_clip_path(floor)
+
+
+def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Draw walls that run programs as lines that glow in the colour of their LED."""
+    for wall in swarm.categories.values():
+        if wall.type != "pogowall":
+            continue
+        lines = swarm.polygons
+        if wall.shape.kind != "arena":
+            lines = [wall.shape.outline() + np.array(wall.position_mm or (0.0, 0.0))]
+        colour = swarm.wall_colours.get(wall.name, np.array(DARK_LED))
+        colour = np.array(DARK_WALL) if (colour == DARK_LED).all() else colour
+        closed = [np.vstack([line, line[:1]]) for line in lines]
+        for width, alpha in ((16.0, 0.10), (11.0, 0.16), (6.0, 0.28), (1.8, 1.0)):
+            glow = LineCollection(closed, colors=[(*colour, alpha)], linewidths=width, joinstyle="round", zorder=1.5)
+            axes.add_collection(glow)
+            if alpha < 1.0:
+                glow.set_clip_path(floor)
+
+
+def draw_membranes(axes: Axes, swarm: Swarm) -> None:
+    """Draw the lines and dots of membranes; those without dots in the file as a mark at their first."""
+    for (name, _), dots in swarm.dots.sort_values("subpart_id").groupby(["robot_category", "robot_id"]):
+        half_thickness = swarm.category(str(name)).half_thickness_mm
+        centres = dots[["x", "y"]].to_numpy(dtype=float)
+        colour = dots[RGB].to_numpy()[0]
+        line = [np.vstack([centres, centres[:1]])]
+        width = 2.0 * half_thickness * points_per_mm(axes)
+        segments = swarm.category(str(name)).type == "rectmembrane"
+        style = {"joinstyle": "round", "capstyle": "round"}
+        axes.add_collection(
+            LineCollection(
+                line, colors=[(*colour, 0.45)], linewidths=width if segments else width / 3, zorder=4, **style
+            )
+        )
+        dot = Shape(radius_mm=half_thickness * (0.35 if segments else 1.0)).outline()
+        axes.add_collection(
+            PolyCollection(
+                list(placed(dot, centres, np.zeros(len(centres)))),
+                facecolors=[tuple(colour)],
+                edgecolors=EDGE,
+                linewidths=0.5,
+                zorder=4.1,
+            )
+        )
+    marks = marked_membranes(swarm)
+    axes.scatter(
+        marks["x"], marks["y"], s=60.0, marker="D", facecolors="none", edgecolors=list(marks[RGB].to_numpy()), zorder=4
+    )
+
+
+def marked_membranes(swarm: Swarm) -> pd.DataFrame:
+    """Last rows of the membranes whose dots the file does not have."""
+    last = swarm.rows[is_membrane(swarm)].groupby("object").tail(1)
+    return last[~last["object"].isin(swarm.dots["object"])]
+
+
+def draw_bodies(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Draw every rigid object at its last pose: its shape, and a tick where it heads."""
+    last = swarm.rows[~is_membrane(swarm)].groupby("object").tail(1)
+    for name, rows in last.groupby("robot_category"):
+        draw_category(axes, swarm.category(str(name)), rows, floor, glows=swarm.colouring is None)
+
+
+def draw_category(axes: Axes, category: Category, rows: pd.DataFrame, floor: PathPatch, glows: bool = True) -> None:
+    """Draw the objects of one category; lit LEDs, if colours are those, glow."""
+    shape = category.shape
+    position = rows[["x", "y"]].to_numpy(dtype=float)
+    angle = rows["angle"].to_numpy(dtype=float)
+    colours = rows[RGB].to_numpy()
+
+    def bodies(scale: float, **style: Any) -> PolyCollection:
+        collection = PolyCollection(list(placed(scale * shape.outline(), position, angle)), **style)
+        axes.add_collection(collection)
+        return collection
+
+    # A lit LED lights up the floor around.
+    lit = (colours != DARK_LED).any(axis=1) & (category.type != "passive_object")
+    for scale, alpha in ((1.75, 0.05), (1.5, 0.08), (1.25, 0.13)) if glows else ():
+        glow = bodies(scale, facecolors=np.column_stack([colours, alpha * lit]), zorder=3)
+        glow.set_clip_path(floor)
+
+    # Bodies, with ticks that stand out from them.
+    bodies(1.0, facecolors=colours, edgecolors=EDGE, linewidths=0.8, zorder=4)
+    brightness = colours @ [0.299, 0.587, 0.114]
+    heading = np.column_stack([np.cos(angle), np.sin(angle)])
+    ticks = np.stack([position + heading * shape.reach_mm * f for f in (0.25, 0.95)], axis=1)
+    known = np.isfinite(angle)
+    axes.add_collection(
+        LineCollection(
+            list(ticks[known]),
+            colors=list(np.where(brightness > 0.25, EDGE, PAPER)[known]),
+            linewidths=1.6,
+            capstyle="butt",
+            zorder=5,
+        )
+    )
+
+
+def points_per_mm(axes: Axes) -> float:
+    """Scale of the picture, in points (1/72 inch) per mm of the arena."""
+    pixels = axes.transData.transform([[0.0, 0.0], [1.0, 0.0]])
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return float(abs(pixels[1, 0] - pixels[0, 0]) * 72.0 / figure.dpi)
+
+
+def show_arena(axes: Axes, swarm: Swarm) -> None:
+    """Let axes show the arena in true proportions, and nothing else."""
+    low, high = bounds(swarm.polygons)
+    margin = 0.02 * extent_of(swarm).max()
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(high[1] + margin, low[1] - margin)  # y runs downwards
+    axes.apply_aspect()
+
+
+def extent_of(swarm: Swarm) -> Floats:
+    """Width and height of the arena, mm."""
+    low, high = bounds(swarm.polygons)
+    return high - low
+
+
+def draw_links(axes: Axes, segments: Floats, floor: PathPatch) -> None:
+    """Draw lines between robots, shape (k, 2, 2), mm; they end at the walls."""
+    lines = LineCollection(list(segments), colors=LINK, alpha=0.5, linewidths=0.8, zorder=2.5)
+    axes.add_collection(lines)
+    lines.set_clip_path(floor)
+
+
+def draw_scene(axes: Axes, swarm: Swarm, tail_s: float | None = None, links: bool = False) -> None:
+    """Draw a run into axes, which then show its arena in true proportions.
+
+    Args:
+        axes: Where to.
+        swarm: The run.
+        tail_s: Length of the trails in s, above 0. None: the whole run.
+        links: Whether lines join robots near enough to hear each other.
+    """
+    show_arena(axes, swarm)
+    first_s = float(swarm.rows["time"].iloc[0])
+    floor = draw_arena(axes, swarm.polygons)
+    draw_light(axes, swarm, floor)
+    draw_walls(axes, swarm, floor)
+    draw_trails(axes, swarm, extent_of(swarm), tail_s or max(swarm.end_s - first_s, 1e-9))
+    if links:
+        draw_links(axes, links_at_end(swarm), floor)
+    draw_membranes(axes, swarm)
+    draw_bodies(axes, swarm, floor)

@@ -1,0 +1,48 @@
+"""The colours of pictures: those of the simulator's window, too."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.colors import to_rgb
+
+from pogosim.scene import Floats
+
+PALETTE: dict[str, Any] = json.loads((Path(__file__).parents[1] / "palette.json").read_text(encoding="utf-8"))
+PAPER: str = PALETTE["paper"]
+FLOOR: str = PALETTE["floor"]
+WALL: str = PALETTE["wall"]
+EDGE: str = PALETTE["edge"]
+INK: str = PALETTE["ink"]
+DARK_LED = to_rgb(PALETTE["dark_led"])  # of a robot whose LED is off
+NO_LED = to_rgb(PALETTE["no_led"])  # of what has none
+DARK_WALL = to_rgb(PALETTE["dark_wall"])  # of a wall with a program whose LED is off
+LAMPLIGHT = to_rgb(PALETTE["lamplight"])
+MAX_LAMPLIGHT: float = PALETTE["brightest_lamplight"]  # opacity over the floor where it is brightest
+LEDS = (PALETTE["dimmest_led"], PALETTE["brightest_led"])  # values between which brightness differs
+LEDS_ON_SCREEN = (PALETTE["dimmest_led_on_screen"], PALETTE["brightest_led_on_screen"])  # 0 to 255
+LINK: str = PALETTE["link_by_all_emitters"]
+
+
+def led_brightness(led: npt.ArrayLike) -> Floats:
+    """Brightness on the screen, 0 to 1, of LED values 0 to 255; any shape.
+
+    The LEDs of the robots are bright at low values already: 0 is dark, 1 to 25 go linearly from
+    100/255 to 210/255, and more does not look brighter.
+    """
+    values = np.asarray(led, dtype=float)
+    lit = np.interp(values, LEDS, LEDS_ON_SCREEN) / 255.0
+    return np.where(values > 0, lit, 0.0)
+
+
+def led_colours(led_rgb: npt.ArrayLike) -> Floats:
+    """Colours on the screen of LED values 0xRRGGBB of shape (n,). Shape (n, 3), 0 to 1."""
+    packed = np.asarray(led_rgb, dtype=np.int64)
+    channels = np.stack([(packed >> shift) & 0xFF for shift in (16, 8, 0)], axis=-1)
+    colours = led_brightness(channels)
+    colours[packed == 0] = DARK_LED
+    return colours

@@ -1,0 +1,203 @@
+"""A run as pictures need it: the rows of its data file, and what the configuration says of objects, arena and light."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from pogosim.outputs import PathLike
+from pogosim.picture.colouring import Colouring, colouring_of
+from pogosim.picture.errors import PictureError
+from pogosim.picture.palette import NO_LED, led_colours
+from pogosim.picture.selection import checked, one_run
+from pogosim.scene import (
+    COMMUNICATION_RADIUS_MM,
+    POGOBOT_RADIUS_MM,
+    Category,
+    Floats,
+    Lamp,
+    Shape,
+    ray_names,
+    read_categories,
+    read_lamps,
+    read_periodic,
+)
+from pogosim.utils import load_dataframe
+
+# Robots of the real swarm, where a file does not say.
+UNKNOWN = Category(
+    "robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM), communication_radius_mm=COMMUNICATION_RADIUS_MM
+)
+
+RGB = ["rgb_0", "rgb_1", "rgb_2"]  # columns of colours
+
+
+@dataclass
+class Swarm:
+    """One run up to a time, ready to be drawn. Lengths in mm, y downwards; times in s."""
+
+    rows: pd.DataFrame  # finite poses of objects, ordered by time; columns object, rgb_0 to rgb_2 (0 to 1) added
+    dots: pd.DataFrame  # the same of the parts of membranes, at the end; columns subpart_id, too
+    wall_colours: dict[str, Floats]  # of pogowalls at the end, by category
+    polygons: list[Floats]  # each of shape (vertices, 2), at least one; the outer wall first
+    categories: dict[str, Category]
+    lamps: list[Lamp]
+    rays: list[str]  # categories of lighthouses
+    end_s: float
+    is_periodic: bool = False
+    colouring: Colouring | None = None  # what colours mean; None: LEDs
+
+    def category(self, name: str) -> Category:
+        """Look up how the objects of a category look."""
+        return self.categories.get(name, UNKNOWN)
+
+
+@dataclass
+class Recording:
+    """One whole run. Lengths in mm, y downwards; times in s."""
+
+    last: Swarm  # at its end; with the dots of membranes at all times
+    walls: pd.DataFrame  # rows of pogowalls at all times
+    left_out: str = ""  # what the file holds besides this run; empty: nothing
+
+    @property
+    def times_s(self) -> npt.NDArray[np.float64]:
+        """Times of the file, each once, ascending."""
+        return np.unique(self.last.rows["time"].to_numpy(dtype=float))
+
+    def until(self, time_s: float | None = None) -> Swarm:
+        """Return the run up to a time: the last state of the file at or before it.
+
+        Args:
+            time_s: In s. None: the end.
+
+        Raises:
+            PictureError: The run has not begun by then, or is over.
+        """
+        rows, dots = self.last.rows, self.last.dots
+        end_s = self.last.end_s
+        if time_s is not None:
+            known_s = self.times_s
+            slack_s = 1e-6 * max(1.0, abs(time_s))  # times of the file have 24 bits
+            if not known_s[0] - slack_s <= time_s <= known_s[-1] + slack_s:
+                raise PictureError(f"it has rows from {known_s[0]:g} s to {known_s[-1]:g} s, none at {time_s:g} s")
+            end_s = float(known_s[np.searchsorted(known_s, time_s + slack_s, side="right") - 1])
+            rows = rows[rows["time"] <= end_s]
+        walls = self.walls[self.walls["time"] <= end_s].groupby("robot_category").tail(1)
+        return replace(
+            self.last,
+            rows=rows,
+            dots=dots[dots["time"] == end_s],
+            wall_colours={str(name): own[RGB].to_numpy()[0] for name, own in walls.groupby("robot_category")},
+            end_s=end_s,
+        )
+
+
+def read_swarm(path: PathLike) -> Swarm:
+    """Read the file of a run (of several runs: the first), up to its end.
+
+    Raises:
+        PictureError: The file has no poses.
+        OSError, ValueError: It cannot be read.
+    """
+    return read_recording(path).until()
+
+
+def read_recording(
+    path: PathLike, run: int | None = None, color_by: str | None = None, combination: int | None = None
+) -> Recording:
+    """Read the file of a run, or one run of a file of several.
+
+    Args:
+        path: Feather file, of a run or of a batch of runs.
+        run: Number in its column run. None: the first.
+        color_by: Column whose values colour the objects. None: by their LEDs.
+        combination: Of the options of a batch, from 0 on. None: the first.
+
+    Raises:
+        PictureError: The file has no poses, no such run, or no such column.
+        OSError, ValueError: It cannot be read.
+    """
+    rows, metadata = load_dataframe(path)
+    missing = {"time", "x", "y"} - set(rows.columns)
+    if missing:
+        raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
+    rows, polygons, left_out = one_run(checked(rows), metadata, run, combination)
+    configuration = metadata["configuration"]
+    categories = read_categories(configuration)
+    rows, colouring = coloured(with_defaults(rows), categories, color_by)
+    rows = completed(rows)
+
+    # In files of earlier versions, walls have no pose.
+    is_wall = rows["robot_category"].isin([name for name, own in categories.items() if own.type == "pogowall"])
+    has_pose = np.isfinite(rows["time"]) & np.isfinite(rows["x"]) & np.isfinite(rows["y"]) & ~is_wall
+    is_part = rows["subpart_id"] >= 0
+    objects = rows[has_pose & ~is_part].reset_index(drop=True)
+    if objects.empty:
+        raise PictureError("it holds no object with a position")
+    last = Swarm(
+        rows=objects,
+        dots=rows[has_pose & is_part],
+        wall_colours={},
+        polygons=polygons or [box_around(rows[has_pose], categories)],
+        categories=categories,
+        lamps=read_lamps(configuration),
+        rays=ray_names(configuration),
+        end_s=float(objects["time"].iloc[-1]),
+        is_periodic=read_periodic(configuration, metadata.get("resolved_configuration")),
+        colouring=colouring,
+    )
+    return Recording(last, rows[is_wall], left_out)
+
+
+def with_defaults(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add columns of the simulator that are not there."""
+    defaults: tuple[tuple[str, Any], ...]
+    defaults = (("robot_category", "robots"), ("robot_id", 0), ("angle", np.nan), ("subpart_id", -1))
+    return rows.assign(**{name: default for name, default in defaults if name not in rows})
+
+
+def completed(rows: pd.DataFrame) -> pd.DataFrame:
+    """Order rows by time, and number the objects."""
+    rows = rows.sort_values("time", kind="stable").reset_index(drop=True)
+    return rows.assign(object=rows.groupby(["robot_category", "robot_id"], sort=True).ngroup())
+
+
+def coloured(
+    rows: pd.DataFrame, categories: dict[str, Category], color_by: str | None = None
+) -> tuple[pd.DataFrame, Colouring | None]:
+    """Add the colours of a column, by default LEDs, or of categories if the file does not have those."""
+    colouring = None
+    if color_by not in (None, "led_rgb"):
+        colouring = colouring_of(rows, str(color_by))
+        colours = colouring.colours(rows[str(color_by)])
+    elif "led_rgb" in rows:
+        colours = led_colours(rows["led_rgb"].to_numpy())
+        passive = [name for name, own in categories.items() if own.type == "passive_object"]
+        colours[rows["robot_category"].isin(passive).to_numpy()] = NO_LED
+    elif color_by == "led_rgb":
+        raise PictureError("it has no column led_rgb of integers (data_logger_led: true writes it)")
+    else:
+        colours = category_colours(rows["robot_category"])
+    return rows.assign(**dict(zip(RGB, colours.T, strict=True))), colouring
+
+
+def category_colours(categories: pd.Series[Any]) -> Floats:
+    """One colour per category, in order of their names. Shape (n, 3), 0 to 1."""
+    names = sorted(categories.unique())
+    palette = np.asarray(mpl.colormaps["Set2"].colors)  # type: ignore[attr-defined]
+    return palette[[names.index(name) % len(palette) for name in categories]]
+
+
+def box_around(rows: pd.DataFrame, categories: dict[str, Category]) -> Floats:
+    """Return the box in which all objects ever were, as a polygon of shape (4, 2)."""
+    names = rows["robot_category"].unique()
+    margin = max(categories.get(str(name), UNKNOWN).shape.bounding_radius_mm for name in names)
+    left, top = rows[["x", "y"]].to_numpy(dtype=float).min(axis=0) - margin
+    right, bottom = rows[["x", "y"]].to_numpy(dtype=float).max(axis=0) + margin
+    return np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
