@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import stat
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Union
+
+PARTIAL = ".pogosim-new"  # behind the name of a file that is not complete
 
 PathLike = Union[str, "Path"]
 
@@ -55,6 +59,24 @@ def real_output(path: PathLike) -> Path:
         return real
     kind = next((words for is_kind, words in KINDS if is_kind(mode)), "something else")
     raise OutputError(f"{path} is {kind}, not a file; choose another output")
+
+
+@contextlib.contextmanager
+def partial_output(path: Path) -> Iterator[Path]:
+    """Give the name of a file beside an output; it takes the output's place if the block ends well, or else is removed.
+
+    Args:
+        path: As real_output() returns it.
+    """
+    partial = path.with_name(f"{path.name}.{os.getpid()}{PARTIAL}")
+    partial.touch()
+    try:
+        yield partial
+        if path.exists():
+            partial.chmod(stat.S_IMODE(path.stat().st_mode))
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def say(text: str) -> None:

@@ -112,6 +112,13 @@ class Lamp:
         angle = self.orbit_phase_rad + self.orbit_speed_rad_s * time_s
         return np.array(self.centre_mm) + self.orbit_radius_mm * np.array([math.cos(angle), math.sin(angle)])
 
+    def photo_phase(self, time_s: float) -> int:
+        """Phase of the photo start: -1 before it, 0 during it, 1 after it or without one."""
+        since_s = time_s - self.photo_start_at_s
+        if self.photo_start_at_s < 0.0 or since_s >= self.photo_start_duration_s:
+            return 1
+        return 0 if since_s >= 0.0 else -1
+
     def levels(self, points_mm: Floats, polygons: list[Floats], time_s: float) -> Floats:
         """Light that it gives at points of the arena at a time. Shape (n, 2) to (n,); sensor counts."""
         offset = points_mm - self.centre_at(time_s)
@@ -123,9 +130,9 @@ class Lamp:
 
     def levels_around(self, offset: Floats, gradient_reach_mm: float, time_s: float) -> Floats:
         """Level at points relative to the centre, wherever the shape ends."""
-        since_s = time_s - self.photo_start_at_s
-        if self.photo_start_at_s >= 0.0 and since_s < self.photo_start_duration_s:
-            return np.full(len(offset), self.photo_start_value if since_s >= 0.0 else 0.0)
+        phase = self.photo_phase(time_s)
+        if phase < 1:
+            return np.full(len(offset), self.photo_start_value if phase == 0 else 0.0)
         share = np.zeros(len(offset))
         if self.mode == "gradient":
             share = np.hypot(*offset.T) / gradient_reach_mm

@@ -30,6 +30,7 @@ SUBCOMMANDS = {
     "batch": Subcommand("pogosim.pogobatch", "run a program many times, with every combination of options"),
     "analyze": Subcommand("pogosim.reports.command", "compute what robots did: tables and figures of a data file"),
     "picture": Subcommand("pogosim.swarm_picture", "draw the trajectories of a run"),
+    "film": Subcommand("pogosim.film.command", "make a film of a run, or a page to replay it in a browser"),
     "recover": Subcommand("pogosim.recover", "make a complete data file of a run that was killed"),
     "arena": Subcommand("pogosim.geometry.command", "draw, check, scale and convert arenas"),
     "fit-comm": Subcommand("pogosim.communication.fit_command", "fit a law of reception to measurements"),

@@ -14,7 +14,7 @@ from matplotlib.path import Path as Outline
 from pogosim.picture.links import links_at_end
 from pogosim.picture.palette import DARK_LED, DARK_WALL, EDGE, FLOOR, LAMPLIGHT, LINK, MAX_LAMPLIGHT, PAPER, WALL
 from pogosim.picture.swarm import RGB, Swarm
-from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, light_levels
+from pogosim.scene import MEMBRANES, Category, Floats, Lamp, Shape, bounds, light_levels
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500
@@ -60,21 +60,27 @@ def turned(polygon: Floats, clockwise: bool) -> Floats:
     return polygon if (area > 0) == clockwise else polygon[::-1]
 
 
+def floor_outline(polygons: list[Floats]) -> Outline:
+    """Return the floor, with holes cut out."""
+    loops = [turned(polygon, clockwise=i == 0) for i, polygon in enumerate(polygons)]
+    return Outline.make_compound_path(*(Outline(np.vstack([p, p[:1]]), closed=True) for p in loops))
+
+
 def draw_arena(axes: Axes, polygons: list[Floats]) -> PathPatch:
     """Draw the floor, with holes cut out, and the walls around it. Returns the floor."""
-    loops = [turned(polygon, clockwise=i == 0) for i, polygon in enumerate(polygons)]
-    outline = Outline.make_compound_path(*(Outline(np.vstack([p, p[:1]]), closed=True) for p in loops))
-    floor = PathPatch(outline, facecolor=FLOOR, edgecolor=WALL, linewidth=2.2, joinstyle="round", zorder=1)
+    floor = PathPatch(
+        floor_outline(polygons), facecolor=FLOOR, edgecolor=WALL, linewidth=2.2, joinstyle="round", zorder=1
+    )
     axes.add_patch(floor)
     return floor
 
 
-def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float) -> None:
-    """Draw the last `tail_s` seconds of all trajectories, fading into the past."""
+def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float, max_snapshots: int = MAX_SNAPSHOTS) -> None:
+    """Draw the last `tail_s` seconds of all trajectories, fading into the past, from so many snapshots at most."""
     start_s = swarm.end_s - tail_s
     rows = swarm.rows[~is_membrane(swarm)]  # the pose of those is their first dot's
     recent = rows[rows["time"] >= start_s]
-    segments, ends = trail_segments(thinned(recent), extent_mm)
+    segments, ends = trail_segments(thinned(recent, max_snapshots), extent_mm)
     # Oldest first, so that the present lies above the past.
     order = np.argsort(ends["time"].to_numpy(), kind="stable")
     freshness = np.clip((ends["time"].to_numpy(dtype=float) - start_s) / tail_s, 0.0, 1.0)
@@ -104,20 +110,39 @@ def placed(outline: Floats, position: Floats, angle: Floats) -> Floats:
     return np.asarray(turned_outline + position[:, None, :])
 
 
-def draw_light(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
-    """Brighten the floor where lamps shine more than where they shine least. An even light shows nothing."""
-    low, high = bounds(swarm.polygons)
-    share = (np.arange(LIGHT_CELLS) + 0.5) / LIGHT_CELLS
+def light_opacity(lamps: list[Lamp], polygons: list[Floats], time_s: float, cells: int = LIGHT_CELLS) -> Floats:
+    """Opacity of the lamplight over the floor, where lamps shine more than where they shine least.
+
+    Args:
+        lamps: Spots of light.
+        polygons: Outlines of the arena, mm.
+        time_s: Since the start of the run.
+        cells: Along either side of the arena.
+
+    Returns:
+        Shape (cells * cells,), row by row from the top left; 0 to 1 as shares of the greatest opacity. All 0 if
+        the light is even.
+    """
+    low, high = bounds(polygons)
+    share = (np.arange(cells) + 0.5) / cells
     x, y = np.meshgrid(*(low[:, None] + (high - low)[:, None] * share))
     points = np.column_stack([x.ravel(), y.ravel()])
-    levels = light_levels(swarm.lamps, swarm.polygons, points, swarm.end_s)
-    inside = floor.get_path().contains_points(points)
+    levels = light_levels(lamps, polygons, points, time_s)
+    inside = floor_outline(polygons).contains_points(points)
     darkest = levels[inside].min() if inside.any() else levels.min()
     brightest = levels.max()
     if brightest <= darkest:
+        return np.zeros(len(points))
+    return np.asarray(np.clip((levels - darkest) / brightest, 0.0, 1.0))
+
+
+def draw_light(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Brighten the floor where lamps shine more than where they shine least. An even light shows nothing."""
+    low, high = bounds(swarm.polygons)
+    opacity = MAX_LAMPLIGHT * light_opacity(swarm.lamps, swarm.polygons, swarm.end_s)
+    if not opacity.any():
         return
-    opacity = MAX_LAMPLIGHT * np.clip((levels - darkest) / brightest, 0.0, 1.0)
-    image = np.concatenate([np.full((len(points), 3), LAMPLIGHT), opacity[:, None]], axis=1)
+    image = np.concatenate([np.full((len(opacity), 3), LAMPLIGHT), opacity[:, None]], axis=1)
     light = axes.imshow(
         image.reshape(LIGHT_CELLS, LIGHT_CELLS, 4),
         extent=(low[0], high[0], high[1], low[1]),
@@ -127,17 +152,26 @@ def draw_light(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     light.set_clip_path(floor)
 
 
+def wall_lines(wall: Category, polygons: list[Floats]) -> list[Floats]:
+    """Outlines of walls with a program, each of shape (corners, 2), mm."""
+    if wall.shape.kind == "arena":
+        return polygons
+    return [wall.shape.outline() + np.array(wall.position_mm or (0.0, 0.0))]
+
+
+def wall_colour(colour: Floats | None) -> Floats:
+    """Colour in which a wall shines whose LED has a colour, shape (3,), or none."""
+    is_dark = colour is None or bool((colour == DARK_LED).all())
+    return np.array(DARK_WALL) if is_dark else np.asarray(colour)
+
+
 def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw walls that run programs as lines that glow in the colour of their LED."""
     for wall in swarm.categories.values():
         if wall.type != "pogowall":
             continue
-        lines = swarm.polygons
-        if wall.shape.kind != "arena":
-            lines = [wall.shape.outline() + np.array(wall.position_mm or (0.0, 0.0))]
-        colour = swarm.wall_colours.get(wall.name, np.array(DARK_LED))
-        colour = np.array(DARK_WALL) if (colour == DARK_LED).all() else colour
-        closed = [np.vstack([line, line[:1]]) for line in lines]
+        colour = wall_colour(swarm.wall_colours.get(wall.name))
+        closed = [np.vstack([line, line[:1]]) for line in wall_lines(wall, swarm.polygons)]
         for width, alpha in ((16.0, 0.10), (11.0, 0.16), (6.0, 0.28), (1.8, 1.0)):
             glow = LineCollection(closed, colors=[(*colour, alpha)], linewidths=width, joinstyle="round", zorder=1.5)
             axes.add_collection(glow)

@@ -88,14 +88,20 @@ class Recording:
                 raise PictureError(f"it has rows from {known_s[0]:g} s to {known_s[-1]:g} s, none at {time_s:g} s")
             end_s = float(known_s[np.searchsorted(known_s, time_s + slack_s, side="right") - 1])
             rows = rows[rows["time"] <= end_s]
-        walls = self.walls[self.walls["time"] <= end_s].groupby("robot_category").tail(1)
         return replace(
             self.last,
             rows=rows,
             dots=dots[dots["time"] == end_s],
-            wall_colours={str(name): own[RGB].to_numpy()[0] for name, own in walls.groupby("robot_category")},
+            wall_colours=self.wall_colours(end_s),
             end_s=end_s,
         )
+
+    def wall_colours(self, time_s: float) -> dict[str, Floats]:
+        """Colours of pogowalls at a time, by category."""
+        if self.walls.empty:
+            return {}
+        walls = self.walls[self.walls["time"] <= time_s].groupby("robot_category").tail(1)
+        return {str(name): own[RGB].to_numpy()[0] for name, own in walls.groupby("robot_category")}
 
 
 def read_swarm(path: PathLike) -> Swarm:
@@ -124,6 +130,7 @@ def read_recording(
         OSError, ValueError: It cannot be read.
     """
     rows, metadata = load_dataframe(path)
+    rows.attrs = {}  # pandas copies them with every operation
     missing = {"time", "x", "y"} - set(rows.columns)
     if missing:
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")

@@ -1,0 +1,1 @@
+"""Films and replays of a run, from its data file alone."""

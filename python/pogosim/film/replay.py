@@ -1,0 +1,274 @@
+"""A run as one page for the browser: its data, and the program that shows them, without any network."""
+
+from __future__ import annotations
+
+import argparse
+import html
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, quantised, shades_of
+from pogosim.film.timeline import Timeline, timeline_of
+from pogosim.outputs import partial_output
+from pogosim.picture import layers
+from pogosim.picture.colouring import scale_of
+from pogosim.picture.errors import PictureError
+from pogosim.picture.figure import notes, title
+from pogosim.picture.palette import PALETTE, led_colours
+from pogosim.picture.swarm import RGB, Recording, coloured
+from pogosim.scene import MEMBRANES, Category, Shape
+
+FOLDER = Path(__file__).parent
+OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", "object", "led_rgb", *RGB}
+LIGHT_CELLS = 144
+MAX_LIGHTS = 100  # pictures of lamps that move
+DEFAULT_TAIL_S = 5.0
+
+
+def write_replay(
+    recording: Recording, path: Path, span_s: tuple[float, float], options: argparse.Namespace
+) -> tuple[str, list[str]]:
+    """Write the page of a run.
+
+    Args:
+        recording: The run.
+        path: As real_output() returns it.
+        span_s: First and last time, s.
+        options: Of the command: color_by, links, speed, tail.
+
+    Returns:
+        What is said of the page, and warnings.
+
+    Raises:
+        PictureError: The run is too large.
+        OSError: The page cannot be written.
+    """
+    head, data, warnings = replay_data(recording, span_s)
+    head["start"] = {
+        "speed": options.speed,
+        "tail_s": options.tail or DEFAULT_TAIL_S,
+        "trails": options.tail is not None,
+        "links": options.links,
+        "colourBy": options.color_by if options.color_by != "led_rgb" else None,
+    }
+    name = Path(options.data).name
+    page = page_of(head, data, name).encode("utf-8")
+    with partial_output(path) as partial:
+        partial.write_bytes(page)
+    count, times = len(head["objects"]), head["times"]
+    return f"{count} objects from {times[0]:g} s to {times[-1]:g} s, {len(page) / 1e6:.2f} MB", warnings
+
+
+def page_of(head: dict[str, Any], data: str, name: str) -> str:
+    """Join page, style, program and data."""
+    text = json.dumps(head, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    parts = {
+        "@@TITLE@@": html.escape(f"{name} \u2013 Pogosim"),
+        "@@STYLE@@": (FOLDER / "replay.css").read_text(encoding="utf-8"),
+        "@@SCRIPT@@": (FOLDER / "replay.js").read_text(encoding="utf-8"),
+        "@@HEAD@@": text,
+        "@@DATA@@": data,
+    }
+    pieces = (FOLDER / "replay.html").read_text(encoding="utf-8")
+    for mark, part in parts.items():
+        before, after = pieces.split(mark)
+        pieces = before + part + after
+    return pieces
+
+
+def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, list[str]]:
+    """Return what the page knows of the run: its description, its tables as text, and what had to be left out."""
+    swarm = recording.last
+    bodies = timeline_of(recording, swarm.rows, ["object"], *span_s)
+    packer = Packer()
+    columns, warnings = column_tables(packer, bodies, recording)
+    head: dict[str, Any] = {
+        "title": title(swarm, 1000.0).rsplit(" after ", 1)[0],
+        "notes": notes(swarm),
+        "times": [float(f"{time:.7g}") for time in bodies.times_s],
+        "polygons": [np.round(polygon, 3).tolist() for polygon in swarm.polygons],
+        "low": bodies.low_mm.tolist(),
+        "high": bodies.high_mm.tolist(),
+        "periodic": swarm.is_periodic,
+        "categories": [category_data(str(name), swarm.category(str(name))) for name in names_in(bodies.objects)],
+        "objects": object_list(bodies.objects),
+        "poses": pose_tables(packer, bodies),
+        "columns": columns,
+        "shades": {"number": shades_of(scale_of("", np.zeros(1))), "angle": shades_of(scale_of("angle", np.zeros(1)))},
+        "lightCells": LIGHT_CELLS,
+        "walls": wall_data(recording, bodies),
+        "lamps": lamp_data(recording),
+        "lights": light_tables(packer, recording, bodies),
+        "membranes": membrane_tables(packer, recording, bodies, span_s),
+        "palette": PALETTE,
+    }
+    return head, packer.packed(), warnings
+
+
+def names_in(objects: pd.DataFrame) -> list[str]:
+    """Categories of objects, in alphabetical order."""
+    return sorted(map(str, objects["robot_category"].unique()))
+
+
+def object_list(objects: pd.DataFrame) -> list[list[Any]]:
+    """Number of the category and robot_id of each object."""
+    names = names_in(objects)
+    ids = pd.to_numeric(objects["robot_id"], errors="coerce")
+    return [
+        [names.index(str(name)), int(own) if pd.notna(own) and math.isfinite(own) else None]
+        for name, own in zip(objects["robot_category"], ids, strict=True)
+    ]
+
+
+def category_data(name: str, category: Category) -> dict[str, Any]:
+    """How the objects of a category look, and how far they are heard."""
+    shape = category.shape
+    return {
+        "name": name,
+        "radius": shape.bounding_radius_mm,
+        "reach": shape.reach_mm,
+        "outline": outline_of(shape),
+        "range": category.communication_radius_mm,
+        "passive": category.type == "passive_object",
+        "membrane": category.type in MEMBRANES,
+    }
+
+
+def outline_of(shape: Shape) -> list[list[float]] | None:
+    """Corners of a shape; None of a disk."""
+    return np.round(shape.outline(), 3).tolist() if shape.kind in ("rectangle", "triangle") else None
+
+
+def pose_tables(packer: Packer, timeline: Timeline) -> dict[str, Any]:
+    """Add positions and angles, and return which tables those are, and their limits."""
+    poses: dict[str, Any] = {}
+    for name in ("x", "y", "angle"):
+        values, there = timeline.column(name)
+        values = np.where(there, values.astype(float), np.nan)
+        known = values[np.isfinite(values)]
+        low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 0.0)
+        if name == "angle":
+            low, high = min(low, -math.pi), max(high, math.pi)
+        poses[name] = {"table": packer.add(quantised(values, low, high)), "low": low, "high": high}
+    return poses
+
+
+def column_tables(packer: Packer, bodies: Timeline, recording: Recording) -> tuple[list[dict[str, Any]], list[str]]:
+    """Add all columns that can be shown, colours of LEDs first; returns what they are, and what cannot be shown."""
+    rows = bodies.rows
+    columns = [base_table(packer, bodies, recording)]
+    warnings = []
+    for name in rows.columns:
+        if name in OWN:
+            continue
+        try:
+            codes, meaning = encode_column(rows[name], str(name))
+        except PictureError as error:
+            warnings.append(f"{error}; the page is without it")
+            continue
+        columns.append({**meaning, "table": packer.add(spread(codes, bodies))})
+    return columns, warnings
+
+
+def base_table(packer: Packer, bodies: Timeline, recording: Recording) -> dict[str, Any]:
+    """Add the colours of LEDs, or of categories if the file does not have those; returns what they are."""
+    rows = bodies.rows
+    has_leds = "led_rgb" in rows
+    if has_leds:
+        packed = rows["led_rgb"].to_numpy().astype(np.int64) & 0xFFFFFF
+    else:
+        colours = coloured(rows, recording.last.categories)[0][RGB].to_numpy()
+        packed = np.round(colours * 255.0).astype(np.int64) @ np.array([65536, 256, 1])
+    if len(np.unique(packed)) >= MISSING:  # the page has codes of 16 bits
+        packed &= 0xF8F8F8
+    codes, different = pd.factorize(packed, sort=True)
+    labels = [f"#{colour:06x}" for colour in different]
+    shown = [hex_colour(colour) for colour in led_colours(different)] if has_leds else labels
+    table = packer.add(spread(codes.astype(np.uint16), bodies))
+    name = "LED" if has_leds else "category"
+    return {"name": name, "led": has_leds, "base": True, "labels": labels, "colours": shown, "table": table}
+
+
+def spread(codes: np.ndarray, timeline: Timeline) -> np.ndarray:
+    """Codes of rows at all times, shape (t, n); 65535 where there is no row yet."""
+    return np.where(timeline.known >= 0, codes[np.maximum(timeline.known, 0)], MISSING).astype(np.uint16)
+
+
+def wall_data(recording: Recording, bodies: Timeline) -> list[dict[str, Any]]:
+    """Lines of walls with a program, and their colours: pairs of number of the time and colour."""
+    swarm = recording.last
+    walls = []
+    for category in swarm.categories.values():
+        if category.type != "pogowall":
+            continue
+        own = recording.walls[recording.walls["robot_category"] == category.name]
+        changes: list[list[Any]] = []
+        for time, colour in zip(own["time"], own[RGB].to_numpy(), strict=True):
+            text = hex_colour(layers.wall_colour(colour))
+            if not changes or changes[-1][1] != text:
+                changes.append([bodies.index_at(float(time)), text])
+        lines = [np.round(line, 3).tolist() for line in layers.wall_lines(category, swarm.polygons)]
+        walls.append({"lines": lines, "colours": changes or [[0, hex_colour(layers.wall_colour(None))]]})
+    return walls
+
+
+def lamp_data(recording: Recording) -> list[dict[str, Any]]:
+    """Places of lamps that shine on a part of the arena."""
+    return [
+        {
+            "centre": list(lamp.centre_mm),
+            "orbit": [lamp.orbit_radius_mm, lamp.orbit_speed_rad_s, lamp.orbit_phase_rad],
+        }
+        for lamp in recording.last.lamps
+        if lamp.shape.kind not in ("global", "arena")
+    ]
+
+
+def light_tables(packer: Packer, recording: Recording, bodies: Timeline) -> list[list[int]]:
+    """Add pictures of the light; returns pairs of number of the time and table."""
+    swarm = recording.last
+    moves = any(lamp.orbit_radius_mm and lamp.orbit_speed_rad_s for lamp in swarm.lamps)
+    count = len(bodies.times_s)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MAX_LIGHTS)).astype(int)) if moves else range(count)
+    lights: list[list[int]] = []
+    before: object = None
+    for index in chosen:
+        time_s = float(bodies.times_s[index])
+        key = [(*lamp.centre_at(time_s), lamp.photo_phase(time_s)) for lamp in swarm.lamps]
+        if key == before:
+            continue
+        before = key
+        opacity = layers.light_opacity(swarm.lamps, swarm.polygons, time_s, LIGHT_CELLS)
+        lights.append([int(index), packer.add(np.round(opacity * 255.0).astype(np.uint16).reshape(1, -1))])
+    return lights
+
+
+def membrane_tables(
+    packer: Packer, recording: Recording, bodies: Timeline, span_s: tuple[float, float]
+) -> dict[str, Any] | None:
+    """Add the places of dots of membranes; returns which dots belong together, None if there are none."""
+    dots = recording.last.dots
+    if dots.empty:
+        return None
+    timeline = timeline_of(recording, dots, ["object", "subpart_id"], *span_s)
+    object_number = {int(own): i for i, own in enumerate(bodies.objects["object"].to_numpy(dtype=int))}
+    groups = []
+    for _, rows in timeline.objects.reset_index(drop=True).groupby("object"):
+        category = recording.last.category(str(rows["robot_category"].iloc[0]))
+        number = int(rows["object"].iloc[0])
+        groups.append(
+            {
+                "object": object_number.get(number),
+                "first": int(rows.index[0]),
+                "count": len(rows),
+                "half_thickness": category.half_thickness_mm,
+                "segments": category.type == "rectmembrane",
+            }
+        )
+    times = [float(f"{time:.7g}") for time in timeline.times_s]
+    return {"times": times, "dots": len(timeline.objects), "groups": groups, "poses": pose_tables(packer, timeline)}

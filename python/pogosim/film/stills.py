@@ -1,0 +1,144 @@
+"""The frames of a film: the picture of a run at one time after another.
+
+Floor, light, walls and writing that stays are drawn once, and again only if they change; robots, trails, links and the
+clock are drawn over a copy of those.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from pogosim.film.timeline import timeline_of
+from pogosim.picture import layers
+from pogosim.picture.errors import PictureError
+from pogosim.picture.figure import draw_key, draw_notes, draw_scale_bar, notes, title, width_of_key
+from pogosim.picture.links import links_at_end
+from pogosim.picture.palette import INK, PAPER
+from pogosim.picture.swarm import Recording, Swarm
+from pogosim.scene import bounds
+
+DPI = 100.0
+ABOVE, BELOW = 0.36, 0.42  # inches: heading and clock, scale bar
+MAX_SIDE = 8192  # pixels
+MIN_SIDE = 160
+TRAIL_SNAPSHOTS = 60  # of a trail
+
+
+@dataclass(frozen=True)
+class Look:
+    """What frames show."""
+
+    tail_s: float | None = None  # None: no trails
+    links: bool = False
+
+
+def size_for(recording: Recording, asked: tuple[int, int] | None, is_even: bool) -> tuple[int, int]:
+    """Width and height of frames in pixels: as asked, or such that the arena's longer side has 720 pixels.
+
+    Raises:
+        PictureError: They are too small or too large.
+    """
+    swarm = recording.last
+    extent = layers.extent_of(swarm)
+    arena = 720.0 * extent / extent.max()
+    beside = width_of_key(swarm.colouring) * DPI
+    size = asked or (max(round(arena[0] + beside), MIN_SIDE), max(round(arena[1] + (ABOVE + BELOW) * DPI), MIN_SIDE))
+    if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
+        raise PictureError(f"frames of {size[0]} x {size[1]} pixels; {MIN_SIDE} to {MAX_SIDE} are possible (--size)")
+    return (size[0] + size[0] % 2, size[1] + size[1] % 2) if is_even else size
+
+
+class Stills:
+    """Draws a run at any time."""
+
+    def __init__(self, recording: Recording, size: tuple[int, int], look: Look) -> None:
+        self.recording = recording
+        self.look = look
+        self.bodies = timeline_of(recording, recording.last.rows, ["object"])
+        dots = recording.last.dots
+        self.dots = timeline_of(recording, dots, ["object", "subpart_id"]) if len(dots) else None
+        self.walls = recording.walls
+        self.figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, facecolor=PAPER)
+        self.canvas: Any = FigureCanvasAgg(self.figure)
+        self.size = size
+        self.key: object = None  # of what the background depends on
+        self.still: Any = None  # pixels of the background
+
+    def frame(self, time_s: float) -> bytes:
+        """Return the picture at a time: RGBA, row by row from the top left; width * height * 4 bytes."""
+        swarm = self.swarm_at(time_s)
+        key = self.background_key(swarm)
+        if key != self.key:
+            self.draw_background(swarm)
+            self.key = key
+        self.canvas.restore_region(self.still)
+        self.clock.set_text(f"{time_s:.2f} s")
+        self.clock.draw(self.canvas.get_renderer())
+        self.draw_moving(swarm)
+        return bytes(self.canvas.buffer_rgba())
+
+    def swarm_at(self, time_s: float) -> Swarm:
+        """Return the run at a time, with as many rows before it as trails need."""
+        now = self.bodies.at(time_s).assign(time=time_s)
+        rows = now
+        if self.look.tail_s:
+            times = self.bodies.rows["time"].to_numpy()
+            first, end = np.searchsorted(times, [time_s - self.look.tail_s, time_s])
+            rows = pd.concat([self.bodies.rows.iloc[first:end], now])
+        dots = self.recording.last.dots.iloc[:0] if self.dots is None else self.dots.at(time_s)
+        return replace(
+            self.recording.last, rows=rows, dots=dots, wall_colours=self.recording.wall_colours(time_s), end_s=time_s
+        )
+
+    def background_key(self, swarm: Swarm) -> object:
+        """Return what differs whenever the background does."""
+        lamps = tuple((tuple(lamp.centre_at(swarm.end_s)), lamp.photo_phase(swarm.end_s)) for lamp in swarm.lamps)
+        return lamps, tuple((name, tuple(colour)) for name, colour in sorted(swarm.wall_colours.items()))
+
+    def draw_background(self, swarm: Swarm) -> None:
+        """Draw all that stands still, and keep its pixels."""
+        figure = self.figure
+        figure.clear()
+        width, height = figure.get_size_inches()
+        beside = width_of_key(swarm.colouring)
+        share = 1.0 - beside / width
+        rect = (0.0, BELOW / height, share, 1.0 - (ABOVE + BELOW) / height)
+        self.axes = figure.add_axes(rect)
+        layers.show_arena(self.axes, swarm)
+        self.floor = layers.draw_arena(self.axes, swarm.polygons)
+        layers.draw_light(self.axes, swarm, self.floor)
+        layers.draw_walls(self.axes, swarm, self.floor)
+        low, high = bounds(swarm.polygons)
+        draw_scale_bar(self.axes, low, high)
+        draw_notes(self.axes, notes(swarm), low, high)
+        y = 1.0 - 0.5 * ABOVE / height
+        heading = title(self.recording.last, 1000.0).rsplit(" after ", 1)[0]
+        room = int((width - beside) * 9.0) - 12  # characters
+        heading = heading if len(heading) <= room else heading[: max(room - 1, 0)] + "\u2026"
+        figure.text(0.15 / width, y, heading, color=INK, fontsize=11, va="center")
+        if swarm.colouring:
+            draw_key(figure, swarm.colouring, share, beside)
+        self.canvas.draw()
+        self.still = self.canvas.copy_from_bbox(figure.bbox)
+        self.clock = figure.text(share - 0.15 / width, y, "", color=INK, fontsize=11, va="center", ha="right")
+
+    def draw_moving(self, swarm: Swarm) -> None:
+        """Draw over the background, from below to above."""
+        axes = self.axes
+        below = len(axes.collections)
+        if self.look.tail_s:
+            layers.draw_trails(axes, swarm, layers.extent_of(swarm), self.look.tail_s, TRAIL_SNAPSHOTS)
+        if self.look.links:
+            layers.draw_links(axes, links_at_end(swarm), self.floor)
+        layers.draw_membranes(axes, swarm)
+        layers.draw_bodies(axes, swarm, self.floor)
+        renderer = self.canvas.get_renderer()
+        for artist in sorted(list(axes.collections)[below:], key=lambda one: one.get_zorder()):
+            artist.draw(renderer)
+            artist.remove()

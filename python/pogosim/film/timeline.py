@@ -1,0 +1,128 @@
+"""The objects of a run at any time, also between the times of its data file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from pogosim.picture.errors import PictureError
+from pogosim.picture.swarm import Recording
+from pogosim.scene import Floats, bounds
+
+MAX_CELLS = 200_000_000  # objects times times
+
+Rows = npt.NDArray[np.int32]
+Bools = npt.NDArray[np.bool_]
+
+
+@dataclass
+class Timeline:
+    """What a file knew of each of n objects at each of its t times. Lengths in mm, angles in rad."""
+
+    times_s: Floats  # shape (t,), ascending
+    rows: pd.DataFrame  # finite poses, ordered by time
+    known: Rows  # shape (t, n): the last row of an object by then; -1 before its first
+    objects: pd.DataFrame  # n rows: those that each object has first
+    low_mm: Floats  # the box of the arena: least x and y
+    high_mm: Floats
+    is_periodic: bool
+
+    def index_at(self, time_s: float) -> int:
+        """Number of the last time of the file at or before a time; 0 before the first."""
+        slack_s = 1e-6 * max(1.0, abs(time_s))  # times of the file have 24 bits
+        return max(int(np.searchsorted(self.times_s, time_s + slack_s, side="right")) - 1, 0)
+
+    def column(self, name: str) -> tuple[npt.NDArray[Any], Bools]:
+        """Values of a column at all times, shape (t, n), and where there are any."""
+        values = self.rows[name].to_numpy()
+        return values[np.maximum(self.known, 0)], self.known >= 0
+
+    def at(self, time_s: float) -> pd.DataFrame:
+        """Rows of all objects that there are at a time.
+
+        Positions and angles between two times of the file are on the straight and shortest way; in a periodic arena
+        that may lead across the border. Other columns keep their values until the next time. An object without a row
+        at a time stays where it was.
+
+        Args:
+            time_s: In s; before the first and after the last time of the file, the state is that of those.
+
+        Returns:
+            One row for each object that has had a row by then, with the columns of the file.
+        """
+        index = self.index_at(time_s)
+        there = self.known[index] >= 0
+        now = self.known[index][there]
+        rows: pd.DataFrame = self.rows.iloc[now]
+        if index + 1 == len(self.times_s):
+            return rows
+        start_s, end_s = self.times_s[index : index + 2]
+        share = float(np.clip((time_s - start_s) / (end_s - start_s), 0.0, 1.0))
+        following = self.known[index + 1][there]
+        position = self.rows[["x", "y"]].to_numpy(dtype=float)
+        angle = self.rows["angle"].to_numpy(dtype=float)
+        turn = np.remainder(angle[following] - angle[now] + np.pi, 2.0 * np.pi) - np.pi
+        place = between(position[now], position[following], share, self.high_mm - self.low_mm, self.is_periodic)
+        if self.is_periodic:
+            outside = (place < self.low_mm) | (place > self.high_mm)
+            place = np.where(outside, self.low_mm + (place - self.low_mm) % (self.high_mm - self.low_mm), place)
+        heading = angle[now] + share * np.nan_to_num(turn)
+        moved: pd.DataFrame = rows.assign(x=place[:, 0], y=place[:, 1], angle=heading)
+        return moved
+
+
+def between(start: Floats, end: Floats, share: float, size: Floats, is_periodic: bool) -> Floats:
+    """Places on the way from n starts to n ends, shape (n, 2), mm.
+
+    Steps of more than half the arena are no way that a robot has gone: in a periodic arena they lead across the
+    border, and elsewhere it stays at its start.
+    """
+    step = end - start
+    if is_periodic:
+        step -= size * np.round(step / size)
+    else:
+        near = np.all(np.abs(step) <= size / 2.0, axis=1, keepdims=True)
+        step = np.where(near, step, 0.0)
+    return np.asarray(start + share * step)
+
+
+def timeline_of(
+    recording: Recording, rows: pd.DataFrame, keys: list[str], from_s: float | None = None, to_s: float | None = None
+) -> Timeline:
+    """Arrange rows by object and time.
+
+    Args:
+        recording: The run they belong to.
+        rows: Finite poses, ordered by time; not empty.
+        keys: Columns that tell objects apart.
+        from_s: The last time of the file at or before this one is the first to be kept; None: all are.
+        to_s: The first at or after this one is the last; None: all.
+
+    Raises:
+        PictureError: There are too many objects and times for the memory.
+    """
+    rows = rows.reset_index(drop=True)
+    times_s, time_index = np.unique(rows["time"].to_numpy(dtype=float), return_inverse=True)
+    group = rows.groupby(keys, sort=True, dropna=False)
+    number = group.ngroup().to_numpy()
+    count = int(number.max()) + 1
+    if count * len(times_s) > MAX_CELLS:
+        raise PictureError(
+            f"it has {count} objects at {len(times_s)} times, more than fit into memory; record less often, or fewer"
+        )
+    known = np.full((len(times_s), count), -1, dtype=np.int32)
+    known[time_index, number] = np.arange(len(rows), dtype=np.int32)
+    known = np.maximum.accumulate(known, axis=0)  # later rows have higher numbers
+    first = np.unique(number, return_index=True)[1]
+    low, high = bounds(recording.last.polygons)
+    whole = Timeline(times_s, rows, known, rows.iloc[first], low, high, recording.last.is_periodic)
+    start = 0 if from_s is None else whole.index_at(from_s)
+    end = len(times_s) - 1 if to_s is None else whole.index_at(to_s)
+    if to_s is not None and times_s[end] < to_s - 1e-6 * max(1.0, abs(to_s)):
+        end = min(end + 1, len(times_s) - 1)
+    whole.times_s, whole.known = times_s[start : end + 1], known[start : end + 1]
+    return whole
