@@ -22,13 +22,14 @@ import gallery
 import lamps
 import parameter_study
 import reception
+import replay
 import swarm
 import window
 from pictures import DOCS, difference, keep
 
 SCRIPTS: dict[str, ModuleType] = {
     script.__name__: script
-    for script in (first_program, formations, gallery, lamps, parameter_study, reception, swarm, window)
+    for script in (first_program, formations, gallery, lamps, parameter_study, reception, replay, swarm, window)
 }
 
 

@@ -413,12 +413,12 @@ function linkedPairs() {
     let furthest = 0;
     for (let object = 0; object < count; object++) {
         const own = categoryOf(object);
-        if (own.membrane || !(poses[object].x === poses[object].x)) continue;
+        if (!own.talks || !(poses[object].x === poses[object].x)) continue;
         talkers.push(object);
         if (own.range > 0) furthest = Math.max(furthest, own.range);
     }
     if (furthest <= 0) return [];
-    const reach = furthest + 2 * Math.max(...head.categories.filter((own) => !own.membrane).map((own) => own.radius));
+    const reach = furthest + 2 * Math.max(...head.categories.filter((own) => own.talks).map((own) => own.radius));
     const cells = [0, 1].map((axis) => Math.max(1, Math.min(Math.floor(size[axis] / reach), 1000)));
     const place = (value, axis) =>
         Math.min(Math.max(Math.floor((value - low[axis]) / size[axis] * cells[axis]), 0), cells[axis] - 1);

@@ -21,7 +21,7 @@ from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import notes, title
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.swarm import RGB, Recording, coloured
-from pogosim.scene import MEMBRANES, Category, Shape
+from pogosim.scene import MEMBRANES, TALKERS, Category, Shape
 
 FOLDER = Path(__file__).parent
 OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", "object", "led_rgb", *RGB}
@@ -133,6 +133,7 @@ def category_data(name: str, category: Category) -> dict[str, Any]:
         "radius": shape.bounding_radius_mm,
         "reach": shape.reach_mm,
         "outline": outline_of(shape),
+        "talks": category.type in TALKERS,
         "range": category.communication_radius_mm,
         "passive": category.type == "passive_object",
         "membrane": category.type in MEMBRANES,

@@ -12,7 +12,7 @@ import pandas as pd
 from scipy.spatial import KDTree
 
 from pogosim.picture.swarm import Swarm
-from pogosim.scene import Floats, bounds
+from pogosim.scene import TALKERS, Floats, bounds
 
 Pairs = npt.NDArray[np.int64]
 
@@ -88,9 +88,9 @@ def links_at_end(swarm: Swarm) -> Floats:
 def links_between(swarm: Swarm, rows: pd.DataFrame) -> Floats:
     """Lines of the links between the objects of some rows, one for each, shape (k, 2, 2), mm."""
     own = [swarm.category(str(name)) for name in rows["robot_category"]]
-    is_body = np.array([category.half_thickness_mm == 0.0 for category in own], dtype=bool)
-    position = rows[["x", "y"]].to_numpy(dtype=float)[is_body]
-    bodies = [category for category in own if category.half_thickness_mm == 0.0]
+    talks = np.array([category.type in TALKERS for category in own], dtype=bool)
+    position = rows[["x", "y"]].to_numpy(dtype=float)[talks]
+    bodies = [category for category in own if category.type in TALKERS]
     pairs = proximity_pairs(
         position,
         np.array([category.communication_radius_mm for category in bodies]),

@@ -1,0 +1,241 @@
+"""The page that replays a run, in a real browser."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+from pogosim.film.command import main
+from pogosim.picture.links import proximity_pairs
+from recordings import walkers, write
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: on macOS, none is installed for tests")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+def page_of(data: Path, *options: str) -> Path:
+    out = data.with_suffix(".html")
+    assert main([str(data), "-o", str(out), *options]) == 0
+    return out
+
+
+def show(browser: Browser, page: Path) -> Page:
+    """Open a page from its file; every message of the browser is an error of the test."""
+    opened = browser.new_page(viewport={"width": 900, "height": 700}, bypass_csp=True)  # its waiting needs eval()
+    opened.set_default_timeout(20_000)
+    said: list[str] = []
+    opened.on("console", lambda message: said.append(message.text))
+    opened.on("pageerror", lambda error: said.append(str(error)))
+    opened.on("request", lambda request: said.append(request.url) if request.url.startswith("http") else None)
+    opened.goto(page.as_uri())
+    opened.evaluate("replay.ready")
+    opened.wait_for_function("replay.frames > 0")
+    opened.said = said  # type: ignore[attr-defined]
+    return opened
+
+
+@pytest.fixture
+def page(browser: Browser, tmp_path: Path) -> Iterator[Page]:
+    opened = show(browser, page_of(write(tmp_path / "run.feather", walkers())))
+    yield opened
+    assert opened.said == []  # type: ignore[attr-defined]
+    opened.close()
+
+
+def poses(page: Page, count: int = 3) -> list[dict[str, float]]:
+    found: list[dict[str, float]] = page.evaluate(f"[...Array({count}).keys()].map(replay.pose)")
+    return found
+
+
+def drawn(page: Page) -> None:
+    """Wait until what has been asked for is on the screen."""
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def pixel(page: Page, x: float, y: float) -> list[int]:
+    drawn(page)
+    read = "([x, y]) => [...document.getElementById('arena').getContext('2d').getImageData(x, y, 1, 1).data]"
+    colour: list[int] = page.evaluate(read, [round(x), round(y)])
+    return colour[:3]
+
+
+def test_robots_are_where_the_data_say_at_each_time(page: Page) -> None:
+    rows = walkers()
+    for time_s, own in rows.groupby("time"):
+        page.evaluate("(time) => replay.setTime(time)", time_s)
+        for pose, row in zip(poses(page), own.to_dict("records"), strict=True):
+            assert (pose["x"], pose["y"]) == pytest.approx((row["x"], row["y"]), abs=0.02)
+            assert pose["angle"] == pytest.approx(row["angle"], abs=2e-4)
+    page.evaluate("replay.setTime(0.25)")
+    assert poses(page)[1]["y"] == pytest.approx(125.0, abs=0.02)
+
+
+def test_scrubbing_shows_the_time_that_it_says(page: Page) -> None:
+    page.evaluate(
+        "() => { const s = document.getElementById('scrub'); s.value = 1.25; s.dispatchEvent(new Event('input')); }"
+    )
+    drawn(page)
+    assert page.inner_text("#clock") == "1.25 s"
+    assert poses(page)[0]["y"] == pytest.approx(225.0, abs=0.02)
+
+
+def test_playing_goes_on_to_the_end_and_stops(page: Page) -> None:
+    page.select_option("#speed", "8")
+    page.keyboard.press("Space")
+    page.wait_for_function("replay.time > 0")
+    assert page.get_attribute("#play", "aria-label") == "Pause"
+    page.wait_for_function("replay.time === 2 && !replay.playing")
+    assert page.get_attribute("#play", "aria-label") == "Play"
+    page.click("#play")  # from the start again
+    page.wait_for_function("replay.playing && replay.time < 2")
+    page.keyboard.press("Space")
+    assert page.evaluate("replay.playing") is False
+
+
+def test_keys_step_from_record_to_record(page: Page) -> None:
+    for key, time_s in (
+        ("ArrowRight", 0.5),
+        ("Shift+ArrowRight", 2.0),
+        ("ArrowLeft", 1.5),
+        ("Home", 0.0),
+        ("End", 2.0),
+    ):
+        page.keyboard.press(key)
+        assert page.evaluate("replay.time") == time_s
+    page.keyboard.press("?")
+    assert page.is_visible("#help")
+
+
+def test_robots_shine_in_the_colours_of_their_leds(page: Page) -> None:
+    page.evaluate("replay.setTime(1)")
+    x, y = page.evaluate("replay.screen(0)")
+    assert pixel(page, x, y - 8) == [210, 0, 0]
+    x, y = page.evaluate("replay.screen(2)")
+    assert pixel(page, x, y - 8) == [0, 0, 210]
+
+
+def test_column_colours_robots_and_the_legend_explains(page: Page) -> None:
+    page.select_option("#colour", "state")
+    assert page.inner_text("#key").split() == ["state", "waits", "walks"]
+    swatches = page.eval_on_selector_all(".swatch", "(all) => all.map((own) => getComputedStyle(own).backgroundColor)")
+    x, y = page.evaluate("replay.screen(1)")
+    assert f"rgb({', '.join(map(str, pixel(page, x, y - 8)))})" == swatches[0]
+    page.select_option("#colour", "heard")
+    assert page.inner_text("#key").split() == ["heard", "0", "24"]
+    assert page.evaluate("replay.setTime(2), replay.colourOf(2)") == "#fde725"  # the last of viridis
+
+
+def test_hovering_and_clicking_tell_the_values_of_the_robot_below(page: Page) -> None:
+    page.evaluate("replay.setTime(1)")
+    page.mouse.move(*page.evaluate("replay.screen(1)"))
+    drawn(page)
+    cells = page.inner_text("#hover").split()
+    assert cells[:2] == ["robots", "1"]
+    told = dict(zip(cells[2::2], cells[3::2], strict=True))
+    assert (told["heard"], told["state"], told["fed"], told["LED"]) == ("12", "waits", "false", "#001900")
+    page.mouse.click(*page.evaluate("replay.screen(2)"))
+    drawn(page)
+    assert page.inner_text("#robot").startswith("robots 2")
+    page.keyboard.press("Escape")
+    drawn(page)
+    assert not page.is_visible("#robot")
+
+
+def test_wheel_zooms_where_the_mouse_is_and_following_keeps_the_robot_in_the_middle(page: Page) -> None:
+    x, y = page.evaluate("replay.screen(2)")
+    before = page.evaluate("replay.screen(0)")
+    page.mouse.move(x, y)
+    page.mouse.wheel(0, -300)
+    page.wait_for_function("(before) => replay.screen(0)[0] < before - 50", arg=before[0])
+    assert page.evaluate("replay.screen(2)") == pytest.approx([x, y], abs=0.5)
+    page.evaluate("replay.select(0)")
+    page.check("#follow")
+    drawn(page)
+    box = page.locator("#arena").bounding_box()
+    assert box is not None
+    assert page.evaluate("replay.screen(0)") == pytest.approx([box["width"] / 2, box["height"] / 2], abs=0.5)
+    page.click("#fit")
+    assert page.evaluate("replay.screen(0)") == pytest.approx(before, abs=0.5)
+
+
+@pytest.mark.parametrize("boundary", ["solid", "periodic"])
+def test_links_are_those_of_pictures(browser: Browser, tmp_path: Path, boundary: str) -> None:
+    random = np.random.default_rng(1)
+    rows = walkers(60, 1).assign(x=random.uniform(0, 1000, 60), y=random.uniform(0, 1000, 60))
+    data = write(tmp_path / "run.feather", rows, boundary_condition=boundary)
+    page = show(browser, page_of(data, "--links"))
+    found = sorted(sorted(pair) for pair in page.evaluate("replay.links"))
+    box = (np.zeros(2), np.full(2, 1000.0)) if boundary == "periodic" else None
+    place = rows[["x", "y"]].to_numpy()
+    assert found == proximity_pairs(place, np.full(60, 80.0), np.full(60, 26.5), box).tolist()
+    assert page.said == []  # type: ignore[attr-defined]
+
+
+def test_way_across_a_periodic_border_leaves_no_streak(browser: Browser, tmp_path: Path) -> None:
+    rows = walkers(1, 2).assign(x=np.array([980.0, 20.0]))
+    page = show(browser, page_of(write(tmp_path / "run.feather", rows, boundary_condition="periodic"), "--tail", "1"))
+    page.evaluate("replay.setTime(0.25)")
+    assert poses(page, 1)[0]["x"] % 1000.0 == pytest.approx(0.0, abs=0.05)
+    page.evaluate("replay.setTime(0.5)")
+    x, y = page.evaluate("replay.screen(0)")
+    assert max(pixel(page, x + 200, y)) < 40  # the floor
+    assert page.said == []  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        walkers().iloc[:1],
+        walkers().drop(columns=["angle", "led_rgb"]),
+        walkers().drop(columns=["robot_category", "robot_id"]),
+        walkers().assign(x=lambda frame: frame["x"].where(frame["time"] != 1.0), heard=np.nan, state=None),
+        walkers().assign(state="</script><b>", robot_category="<i>&"),
+        walkers().assign(empty=np.inf, big=2**62, date=pd.Timestamp("2020-01-01")),
+    ],
+    ids=["one row", "places only", "nobody", "gaps", "markup", "odd"],
+)
+def test_page_of_odd_data_works(browser: Browser, tmp_path: Path, rows: pd.DataFrame) -> None:
+    page = show(browser, page_of(write(tmp_path / "run.feather", rows)))
+    names: list[Any] = page.evaluate("replay.columns")
+    for name in names:
+        page.evaluate("([name, time]) => { replay.colourBy(name); replay.setTime(time); replay.select(0); }", [name, 1])
+        drawn(page)
+    assert page.said == []  # type: ignore[attr-defined]
+
+
+def test_thousand_robots_are_drawn_frame_by_frame(browser: Browser, tmp_path: Path) -> None:
+    rows = walkers(1000, 3)
+    page = show(browser, page_of(write(tmp_path / "run.feather", rows), "--tail", "1", "--links"))
+    page.evaluate("replay.play()")
+    page.wait_for_function("replay.frames > 5")
+    assert page.evaluate("replay.count") == 1000
+    assert page.said == []  # type: ignore[attr-defined]
+
+
+def test_page_of_a_minute_at_60_records_per_second_is_small_and_the_same_each_time(tmp_path: Path) -> None:
+    random = np.random.default_rng(1)
+    count, records = 100, 3601
+    rows = walkers(count, records)
+    turns = np.cumsum(random.normal(0, 0.1, (records, count)), axis=0)
+    walk = 500 + np.cumsum(100 / 60 * np.stack([np.cos(turns), np.sin(turns)]), axis=1)
+    rows = rows.assign(x=walk[0].ravel(), y=walk[1].ravel(), angle=np.angle(np.exp(1j * turns)).ravel())
+    data = write(tmp_path / "run.feather", rows)
+    first, again = (page_of(data).read_bytes() for _ in range(2))
+    assert first == again
+    assert len(first) < 5_000_000
+    assert not re.search(rb"https?://", first)
