@@ -20,7 +20,7 @@ from pogosim.utils import load_dataframe
 
 NAMES = ("replay.png",)
 
-SCRIPT = "replay.setTime(59); replay.select(24)"
+SCRIPT = "replay.setTime(12.8); replay.select(24)"
 OPTIONS = ("--tail", "4", "--links")
 
 

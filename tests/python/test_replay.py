@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 import shutil
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 from pogosim.film.command import main
 from pogosim.picture.links import proximity_pairs
@@ -68,10 +70,11 @@ def drawn(page: Page) -> None:
 
 
 def pixel(page: Page, x: float, y: float) -> list[int]:
+    """Colour on the screen."""
     drawn(page)
-    read = "([x, y]) => [...document.getElementById('arena').getContext('2d').getImageData(x, y, 1, 1).data]"
-    colour: list[int] = page.evaluate(read, [round(x), round(y)])
-    return colour[:3]
+    with Image.open(io.BytesIO(page.screenshot())) as shown:
+        red, green, blue = np.asarray(shown.convert("RGB"))[round(y), round(x)]
+    return [int(red), int(green), int(blue)]
 
 
 def test_robots_are_where_the_data_say_at_each_time(page: Page) -> None:
