@@ -13,7 +13,20 @@ import pytest
 from project import CLEAN, TEMPLATE
 from running import Run, build_folder, write_scene
 
-SUBCOMMANDS = ("new", "run", "batch", "analyze", "picture", "film", "recover", "arena", "fit-comm", "best-psend", "doctor", "path")
+SUBCOMMANDS = (
+    "new",
+    "run",
+    "batch",
+    "analyze",
+    "picture",
+    "film",
+    "recover",
+    "arena",
+    "fit-comm",
+    "best-psend",
+    "doctor",
+    "path",
+)
 
 
 def command(folder: Path, *arguments: str, environment: Mapping[str, str] | None = None) -> Run:
