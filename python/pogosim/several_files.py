@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import glob
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -112,6 +112,18 @@ def scalar(value: Any) -> Any:
     return str(value) if isinstance(value, (list, dict)) else value
 
 
+def combinations_of_file(
+    rows: pd.DataFrame, metadata: Mapping[str, Any], added: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Return the combinations of a file that is joined with others, with the columns that it gets; one for a run."""
+    entries: Any = metadata.get("combinations")
+    if not isinstance(entries, list):
+        entries = [{"columns": {}, "runs": 1, "rows": len(rows), "failed_runs": []}]
+    arena = {name: metadata[name] for name in ("arena_polygons",) if isinstance(metadata.get(name), list)}
+    columns = {name: value for name, value in added.items() if name != "seed" and value is not None}
+    return [{**arena, **entry, "columns": {**columns, **entry.get("columns", {})}} for entry in entries]
+
+
 def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Join the rows of several data files.
 
@@ -124,7 +136,8 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
         differs between the files, its dotted path (`objects.robots.nb`). Null where a file has no such key; lists as
         text.
         And the metadata that all files have in common, `files` with the names of the files, and `configuration` with
-        the common entries.
+        the common entries. If arenas differ, `combinations` has those of all files, with
+        their arenas; a file of one run is a combination of its own.
 
     Raises:
         ValueError: There are no files.
@@ -139,12 +152,15 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     if all(seed is None for seed in added["seed"]):
         del added["seed"]  # of files of results: each of their runs has its own
     added |= varied_parameters(configurations)
-    parts = []
-    for number, (_, rows, _) in enumerate(files):
+    parts, combinations = [], []
+    for number, (_, rows, own) in enumerate(files):
         missing = {name: scalar(found[number]) for name, found in added.items() if name not in rows.columns}
         parts.append(rows.assign(**missing))
+        combinations += combinations_of_file(rows, own, missing)
     metadata: dict[str, Any] = in_common([metadata for _, _, metadata in files])
     metadata = {} if metadata is MISSING else metadata
     metadata.setdefault("configuration", {})
+    if not metadata.get("arena_polygons") and any(entry.get("arena_polygons") for entry in combinations):
+        metadata["combinations"] = combinations
     metadata["files"] = [str(path) for path, _, _ in files]
     return pd.concat(parts, ignore_index=True), metadata
