@@ -13,6 +13,9 @@ from pogosim.analysis.arena import Floats
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of, unwrapped
 
+# Numbers that are transformed at once: 100 MB of spectra.
+MAX_CELLS = 4_000_000
+
 
 def squared_displacement(run: Trajectories) -> Floats:
     """Return the squared displacement of each robot from its first position, |r(t) - r(t0)|^2.
@@ -23,6 +26,27 @@ def squared_displacement(run: Trajectories) -> Floats:
     path = unwrapped(run)
     first = np.take_along_axis(path, np.argmax(run.is_there, axis=0)[None, :, None], axis=0)
     return np.asarray(((path - first) ** 2).sum(axis=2))
+
+
+def displacement_by_lag(run: Trajectories) -> tuple[Floats, Floats]:
+    """Return the squared displacement of each robot at the same times after its own first position, tau = t - t0.
+
+    Returns:
+        Lags in s, shape (T,), the first one 0, and squared displacements in mm^2, shape (T, N). NaN where a robot has
+        no position, and after its last one.
+
+    Raises:
+        AnalysisError: Robots have their first positions at different times, and save times are not evenly spaced.
+    """
+    squared = squared_displacement(run)
+    lags = run.time_s - run.time_s[0]
+    first = np.argmax(run.is_there, axis=0)
+    if (first == 0).all():
+        return lags, squared
+    save_period_s(run)
+    row = np.arange(len(lags))[:, None] + first
+    shifted = np.take_along_axis(squared, np.minimum(row, len(lags) - 1), axis=0)
+    return lags, np.where(row < len(lags), shifted, np.nan)
 
 
 def mean_squared_displacement(run: Trajectories) -> tuple[Floats, Floats]:
@@ -57,6 +81,7 @@ def mean_squared_displacement(run: Trajectories) -> tuple[Floats, Floats]:
     lags: Floats = period_s * np.arange(len(path), dtype=float)
     with np.errstate(invalid="ignore"):
         mean: Floats = np.maximum(total, 0.0) / pairs
+    mean[:1] = 0.0  # without rounding errors
     return lags, mean
 
 
@@ -64,21 +89,31 @@ def correlation(a: Floats, b: Floats) -> Floats:
     """Sum a(t) b(t + m) over t and columns, for each lag m. Shapes (T, N) to (T,)."""
     length = len(a)
     size = fft.next_fast_len(2 * length, real=True)
-    spectrum = (fft.rfft(a, size, axis=0).conj() * fft.rfft(b, size, axis=0)).sum(axis=1)
+    spectrum = np.zeros(size // 2 + 1, dtype=complex)
+    block = max(MAX_CELLS // size, 1)
+    for start in range(0, a.shape[1], block):
+        columns = slice(start, start + block)
+        one = fft.rfft(a[:, columns], size, axis=0)
+        other = one if b is a else fft.rfft(b[:, columns], size, axis=0)
+        spectrum += (one.conj() * other).sum(axis=1)
     return np.asarray(fft.irfft(spectrum, size)[:length])
 
 
 def save_period_s(run: Trajectories) -> float:
     """Return the time between two save times; 1 if there is only one.
 
+    A run is saved at the first time step after each period. So save times may be off by a time step, here by up to a
+    quarter of the period.
+
     Raises:
-        AnalysisError: It is not the same everywhere. Times are stored with 24 bits, and compared accordingly.
+        AnalysisError: It is not the same everywhere.
     """
     if len(run.time_s) < 2:
         return 1.0
     steps = np.diff(run.time_s)
     period = float(run.time_s[-1] - run.time_s[0]) / len(steps)
-    if np.abs(steps - period).max() > 0.01 * period + 2.0**-22 * np.abs(run.time_s).max():
+    regular = run.time_s[0] + period * np.arange(len(run.time_s))
+    if np.abs(run.time_s - regular).max() > 0.25 * period:
         raise AnalysisError(f"its save times are not evenly spaced: {steps.min():g} s to {steps.max():g} s apart")
     return period
 
@@ -94,6 +129,25 @@ def diffusion_coefficient(lag_s: Floats, msd_mm2: Floats) -> float:
         return float("nan")
     lag = lag_s[good] - lag_s[good].mean()
     return float(lag @ msd_mm2[good] / (lag @ lag) / 4.0)
+
+
+def diffusion_coefficients(run: Trajectories) -> Floats:
+    """Return D of each robot: a quarter of the slope of a least-squares line through its squared displacements.
+
+    |r(t) - r(t0)|^2 = 4 D (t - t0) + constant, over all its save times. One path is a rough estimate of D, with an
+    error as large as D itself; the D of a run is more precise: `mean_squared_displacement` and `diffusion_coefficient`.
+
+    Returns:
+        Shape (N,), mm^2/s; negative for robots that ended near where they began. NaN for fewer than two positions.
+    """
+    squared = squared_displacement(run)
+    known = run.is_there
+    count = known.sum(axis=0)
+    lag = np.where(known, run.time_s[:, None], np.nan)
+    lag = lag - np.nansum(lag, axis=0) / count
+    with np.errstate(invalid="ignore"):
+        slope = np.nansum(lag * squared, axis=0) / np.nansum(lag**2, axis=0)
+    return np.where(count > 1, slope / 4.0, np.nan)
 
 
 def diffusion_exponent(lag_s: Floats, msd_mm2: Floats) -> float:
@@ -112,6 +166,17 @@ def diffusion_exponent(lag_s: Floats, msd_mm2: Floats) -> float:
     return float(x @ np.log(msd_mm2[good]) / (x @ x))
 
 
+def msd_per_agent(run: Trajectories) -> Floats:
+    """Return |r(t) - r(t0)|^2 of each robot, averaged over its save times after t0.
+
+    Returns:
+        Shape (N,), mm^2. NaN for a robot with one position.
+    """
+    count = run.is_there.sum(axis=0)
+    total = np.nansum(squared_displacement(run), axis=0)
+    return np.where(count > 1, total / np.maximum(count - 1, 1), np.nan)
+
+
 def compute_msd_per_agent(rows: pd.DataFrame, metadata: Mapping[str, Any] | None = None) -> pd.DataFrame:
     """Return the mean squared displacement of each robot: |r(t) - r(t0)|^2, averaged over its save times after t0.
 
@@ -128,11 +193,8 @@ def compute_msd_per_agent(rows: pd.DataFrame, metadata: Mapping[str, Any] | None
     """
     parts = []
     for run in trajectories_of(rows, metadata) if len(rows) else []:
-        total = np.nansum(squared_displacement(run), axis=0)
-        count = run.is_there.sum(axis=0)
-        moved = count > 1
-        part = pd.DataFrame({"robot_category": run.category[moved], "robot_id": run.robot_id[moved]})
-        parts.append(part.assign(MSD=total[moved] / (count[moved] - 1)))
+        part = pd.DataFrame({"robot_category": run.category, "robot_id": run.robot_id, "MSD": msd_per_agent(run)})
+        parts.append(part.dropna(subset="MSD"))
         for name, value in reversed(run.labels.items()):
             parts[-1].insert(0, name, value)
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame({"run": [], "robot_id": [], "MSD": []})

@@ -1,0 +1,129 @@
+"""Where robots spend their time: densities of positions on a grid over the arena, counted or smoothed.
+
+from pogosim.analysis.density import count_density, kernel_density
+
+grid = count_density(run.arena, run.position_mm.reshape(-1, 2))
+grid.density_per_m2  # (rows, columns)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from pogosim.analysis.arena import Arena, Floats
+from pogosim.analysis.walls import has_walls
+
+# Of a bin, the share of floor below which it is not drawn: its density is that of hardly any positions.
+MIN_FLOOR_SHARE = 0.05
+KERNEL_GRID = 200  # bins along the longer side
+
+
+@dataclass(frozen=True)
+class DensityGrid:
+    """A density on a grid."""
+
+    x_mm: Floats  # (columns + 1,), edges of the bins
+    y_mm: Floats  # (rows + 1,)
+    probability_per_m2: Floats  # (rows, columns), of the position of a robot; integrates to 1; NaN where no floor is
+
+
+def finite_points(position_mm: Floats) -> Floats:
+    """Return the points of shape (n, 2) that are known, of shape (m, 2)."""
+    return np.asarray(position_mm[np.isfinite(position_mm).all(axis=1)])
+
+
+def edges(arena: Arena, points: Floats, bins: int) -> tuple[Floats, Floats]:
+    """Return edges of about square bins over the arena (or the points), so many on the longer side."""
+    if arena.polygons:
+        low, high = arena.bounds_mm
+    else:
+        low, high = points.min(axis=0), points.max(axis=0)
+        high = np.maximum(high, low + 1.0)
+    side = float((high - low).max()) / bins
+    count = np.maximum(np.round((high - low) / side).astype(int), 1)
+    return np.linspace(low[0], high[0], count[0] + 1), np.linspace(low[1], high[1], count[1] + 1)
+
+
+def floor_share(arena: Arena, x_mm: Floats, y_mm: Floats) -> Floats:
+    """Return the share of each bin that is floor. Shape (rows, columns), 0 to 1; 1 without walls."""
+    shape = (len(y_mm) - 1, len(x_mm) - 1)
+    if not has_walls(arena):
+        return np.ones(shape)
+    import shapely
+
+    floor = arena.shape()
+    shapely.prepare(floor)
+    left, top = np.meshgrid(x_mm[:-1], y_mm[:-1])
+    right, bottom = np.meshgrid(x_mm[1:], y_mm[1:])
+    bins = shapely.box(left, top, right, bottom)
+    share = shapely.contains(floor, bins).astype(float)
+    partly = (share == 0.0) & shapely.intersects(floor, bins)
+    share[partly] = shapely.area(shapely.intersection(floor, bins[partly])) / shapely.area(bins[partly])
+    return np.asarray(share)
+
+
+def counted(points: Floats, x_mm: Floats, y_mm: Floats) -> Floats:
+    """Return the number of points in each bin. Shape (rows, columns); points beyond the edges are left out."""
+    return np.asarray(np.histogram2d(points[:, 1], points[:, 0], bins=(y_mm, x_mm))[0])
+
+
+def count_density(arena: Arena, position_mm: Floats, bins: int = 30) -> DensityGrid:
+    """Count positions in bins: the share of all positions in a bin, by the floor that the bin has.
+
+    Bins of which less than 5 % is floor are NaN.
+
+    Args:
+        arena: Its bounding box is divided into bins.
+        position_mm: Shape (n, 2); of periodic arenas, within the bounding box. NaN is left out.
+        bins: Number of bins along the longer side; they are about square.
+
+    Returns:
+        The density: NaN everywhere without positions.
+    """
+    points = finite_points(position_mm)
+    if len(points) == 0:
+        return DensityGrid(np.zeros(2), np.zeros(2), np.full((1, 1), np.nan))
+    x, y = edges(arena, points, bins)
+    area_m2 = floor_share(arena, x, y) * np.outer(np.diff(y), np.diff(x)) * 1e-6
+    few = area_m2 < MIN_FLOOR_SHARE * area_m2.max()
+    count = counted(points, x, y)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return DensityGrid(x, y, np.where(few, np.nan, count / (len(points) * area_m2)))
+
+
+def kernel_density(arena: Arena, position_mm: Floats, bandwidth_mm: float | None = None) -> DensityGrid:
+    """Estimate the density by Gaussian kernels: each position is spread over its surroundings.
+
+    Positions are counted in fine bins, and these smoothed (Silverman, "Kernel density estimation using the fast
+    Fourier transform", Appl. Stat. 31, 1982), so a million positions take a moment. Near walls, where a part of each
+    kernel lies outside, the density is divided by the part inside (Diggle, Appl. Stat. 34, 1985). Kernels go on across
+    periodic borders.
+
+    Args:
+        arena: The grid covers its bounding box.
+        position_mm: As for `count_density`.
+        bandwidth_mm: Standard deviation of the kernel. None: Scott's rule in two dimensions, s n^(-1/6), where s is
+            the standard deviation of the positions (root mean square of both axes).
+
+    Returns:
+        The density: NaN off the floor.
+    """
+    points = finite_points(position_mm)
+    if len(points) == 0:
+        return DensityGrid(np.zeros(2), np.zeros(2), np.full((1, 1), np.nan))
+    x, y = edges(arena, points, KERNEL_GRID)
+    if bandwidth_mm is None:
+        bandwidth_mm = float(np.sqrt(points.var(axis=0).mean())) * len(points) ** (-1.0 / 6.0)
+    size = np.array([y[1] - y[0], x[1] - x[0]])
+    sigma = np.maximum(bandwidth_mm / size, 0.5)  # in bins
+    mode = "wrap" if arena.is_periodic else "constant"
+    share = floor_share(arena, x, y)
+    count = ndimage.gaussian_filter(counted(points, x, y), sigma, mode=mode)
+    inside = ndimage.gaussian_filter(share, sigma, mode=mode) if has_walls(arena) else share
+    with np.errstate(invalid="ignore", divide="ignore"):
+        density = np.where(share > MIN_FLOOR_SHARE, count / inside, np.nan)
+    total = np.nansum(density * share) * size.prod() * 1e-6
+    return DensityGrid(x, y, density / total)
