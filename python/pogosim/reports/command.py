@@ -21,6 +21,7 @@ class Analysis(NamedTuple):
 
 ANALYSES: dict[str, Analysis] = {
     "collective": Analysis("pogosim.reports.collective", "order, pair correlations, structure factor, flow, milling"),
+    "locomotion": Analysis("pogosim.reports.locomotion", "speeds, displacements, diffusion, persistence, densities"),
 }
 
 

@@ -1,0 +1,173 @@
+"""`pogosim analyze locomotion`: how fast, how far and how straight robots move, and where."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from pogosim.analysis.trajectories import Trajectories
+from pogosim.reports.figures import group_names, group_of
+from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
+from pogosim.reports.locomotion_figures import RunTables, draw_all
+from pogosim.reports.locomotion_tables import (
+    agent_table,
+    autocorrelation_table,
+    is_evenly_spaced,
+    joined,
+    msd_per_agent_table,
+    msd_table,
+    peclet_table,
+    run_row,
+    time_table,
+)
+from pogosim.reports.options import (
+    analysis_parser,
+    at_least,
+    output_folder,
+    positive,
+    read_runs,
+    reported,
+    warn,
+    write_table,
+)
+from pogosim.reports.traces import draw_traces, film_traces
+
+FRAMES = 120
+
+UNITS = {"mm_s": "mm/s", "rad_s": "rad/s", "mm2_s": "mm²/s", "mm": "mm", "s": "s"}
+
+
+def parse(arguments: Sequence[str] | None, prog: str) -> argparse.Namespace:
+    """Read the command line."""
+    parser = analysis_parser(
+        prog,
+        "Computes speeds, displacements, diffusion, persistence and densities of robots: tables in DIR/stats, figures "
+        "(PDF, PNG) in DIR, and DIR/SUMMARY.txt.",
+    )
+    parser.add_argument("--window", type=positive, default=2.0, metavar="S", help="sliding window of speeds (2 s)")
+    parser.add_argument(
+        "--characteristic-length", type=positive, metavar="MM", help="length of the Peclet number (2 radius)"
+    )
+    parser.add_argument("--bins", type=at_least(1), default=30, metavar="N", help="bins of heat maps (30)")
+    parser.add_argument("--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (20)")
+    parser.add_argument("--gif", action="store_true", help="make films of the traces, too: traces/*.gif")
+    return parser.parse_args(arguments)
+
+
+def tables_of(run: Trajectories, options: argparse.Namespace) -> RunTables:
+    """Compute all tables of a run."""
+    agents, msd = agent_table(run), msd_table(run)
+    peclet, correlations = peclet_table(run, options.characteristic_length), autocorrelation_table(run)
+    return RunTables(
+        run=run,
+        agents=agents,
+        over_time=time_table(run, options.window),
+        peclet=peclet,
+        msd=msd,
+        correlations=correlations,
+        summary=run_row(run, agents, msd, correlations, peclet),
+    )
+
+
+def warn_of_what_is_left_out(tables: Sequence[RunTables], prog: str) -> None:
+    """Say in one line each what could not be computed, and for how many."""
+    runs = len(tables)
+    robots = sum(len(own.run.robot_id) for own in tables)
+    if single := robots - sum(len(own.agents) for own in tables):
+        warn(prog, f"{single} of {robots} robots have one position only: no speeds or displacements of them")
+    if uneven := sum(not is_evenly_spaced(own.run) for own in tables):
+        warn(
+            prog, f"{uneven} of {runs} runs have unevenly spaced save times: no autocorrelations or averages over them"
+        )
+    if blind := sum(not np.isfinite(own.run.heading_rad).any() for own in tables):
+        warn(prog, f"{blind} of {runs} runs have no headings (column angle): no angular velocities")
+    if missing := sum(int(own.peclet["peclet"].isna().sum()) for own in tables):
+        warn(prog, f"{missing} of {robots} robots did not get away from where they began: no Peclet number of them")
+
+
+def summary_text(tables: Sequence[RunTables], names: Sequence[str]) -> str:
+    """Return the means of all runs of each combination as text."""
+    lines = []
+    members: dict[str, list[RunTables]] = {}
+    for own in tables:
+        members.setdefault(group_of(own.run, names), []).append(own)
+    for group, runs in members.items():
+        rows = pd.concat([own.summary for own in runs], ignore_index=True)
+        count = len(rows)
+        last = max(float(own.run.time_s[-1]) for own in runs)
+        robots = f"{rows['robots'].min()} to {rows['robots'].max()}"
+        if rows["robots"].nunique() == 1:
+            robots = str(rows["robots"].iloc[0])
+        lines += [f"{group}: {count} {'run' if count == 1 else 'runs'}, {robots} robots, until {last:g} s"]
+        for column in rows.columns[list(rows.columns).index("mean_speed_mm_s") :]:
+            lines.append(f"  {words(column):42} {mean_text(rows[column])}")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def words(column: str) -> str:
+    """Return the name of a column in words, with its unit."""
+    for suffix, unit in UNITS.items():
+        if column.endswith(f"_{suffix}"):
+            return f"{column.removesuffix(f'_{suffix}').replace('_', ' ')} ({unit})"
+    return column.replace("_", " ")
+
+
+def mean_text(values: pd.Series[float]) -> str:
+    """Return the mean over runs, and their standard deviation."""
+    known = values.dropna()
+    if known.empty:
+        return "unknown"
+    if len(known) == 1 or not np.isfinite(known).all():
+        return f"{known.mean():.4g}"
+    return f"{known.mean():.4g} (standard deviation of runs {known.std():.2g})"
+
+
+def write_tables(tables: Sequence[RunTables], folder: Path, inputs: Sequence[str]) -> None:
+    """Write all tables in the folder stats."""
+    parts = {
+        "speed_agent_stats": [own.agents for own in tables],
+        "speed_time_stats": [own.over_time for own in tables],
+        "peclet": [own.peclet for own in tables],
+        "msd_per_agent": [msd_per_agent_table(own.run) for own in tables],
+        "msd_time_stats": [own.msd for own in tables],
+        "autocorrelation": [own.correlations for own in tables],
+        "runs": [own.summary for own in tables],
+    }
+    for name, own in parts.items():
+        write_table(joined(own), folder / "stats" / f"{name}.csv", inputs)
+
+
+def analyse(options: argparse.Namespace, prog: str) -> None:
+    """Do the analysis."""
+    folder = output_folder(options)
+    runs = read_runs(options, prog)
+    tables = [tables_of(run, options) for run in runs]
+    warn_of_what_is_left_out(tables, prog)
+    names = group_names(runs)
+    write_tables(tables, folder, options.input)
+    (folder / "SUMMARY.txt").write_text(summary_text(tables, names), encoding="utf-8")
+    draw_all(tables, names, folder)
+    draw_heat_maps(runs, folder, options.bins)
+    arenas = arenas_of(runs)
+    for name, own in arenas.items() if len(arenas) > 1 else ():
+        here = [one for one in tables if any(one.run is run for run in own)]
+        draw_all(here, group_names(own), folder / "arenas" / name)
+    draw_traces(runs, names, folder, options.steps)
+    if options.gif:
+        film_traces(runs, names, folder, options.steps, FRAMES)
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze locomotion") -> int:
+    """Run the command line. Returns the exit code, which is 2 if the data cannot be analysed."""
+    options = parse(arguments, prog)
+    return reported(prog, lambda: analyse(options, prog))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
