@@ -16,6 +16,7 @@ import tempfile
 from pathlib import Path
 from types import ModuleType
 
+import analysis_tour
 import first_program
 import formations
 import gallery
@@ -30,6 +31,7 @@ from pictures import DOCS, difference, keep
 SCRIPTS: dict[str, ModuleType] = {
     script.__name__: script
     for script in (first_program, formations, gallery, lamps, parameter_study, reception, replay, swarm, window)
+    for script in (analysis_tour, first_program, formations, gallery, lamps, parameter_study, reception, swarm, window)
 }
 
 
