@@ -53,6 +53,14 @@ class Arena:
         offset = np.asarray(offset_mm, dtype=float)
         return offset - self.size_mm * np.round(offset / self.size_mm) if self.is_periodic else offset
 
+    def wrap(self, position_mm: Floats) -> Floats:
+        """Return positions in the box of a periodic arena, lower borders included. Others stay. Shape (..., 2), mm."""
+        if not self.is_periodic:
+            return position_mm
+        offset = np.mod(position_mm - self.bounds_mm[0], self.size_mm)
+        # Of a tiny negative number, mod is the size itself.
+        return np.asarray(self.bounds_mm[0] + np.where(offset < self.size_mm, offset, 0.0))
+
     def box_and_points(self, position_mm: Floats) -> tuple[freud.box.Box, npt.NDArray[np.float32]]:
         """Return the positions as freud takes them: centred in a 2D box, with z = 0.
 

@@ -75,7 +75,7 @@ def tree_of(position_mm: Floats, arena: Arena) -> tuple[spatial.cKDTree, Floats]
     if not arena.is_periodic:
         return spatial.cKDTree(position_mm), position_mm
     points = np.mod(position_mm - arena.bounds_mm[0], arena.size_mm)
-    points = np.where(points >= arena.size_mm, 0.0, points)  # of a tiny negative number, mod is the size itself
+    points = np.where(points < arena.size_mm, points, 0.0)  # of a tiny negative number, mod is the size itself
     return spatial.cKDTree(points, boxsize=arena.size_mm), points
 
 

@@ -1,0 +1,136 @@
+"""How evenly robots share an arena (areas of Voronoi cells), and how much of it they reach (union of disks)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.analysis.arena import Arena, Floats
+from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.voronoi import Cells, one_each, voronoi_areas, voronoi_cells
+
+
+def coverage_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.DataFrame:
+    """Return statistics of the Voronoi cells and the coverage ratio at each save time.
+
+    The coefficient of variation of the areas is 0 for a lattice; for independent, uniform positions (Poisson) its
+    square is 0.280. E. N. Gilbert, "Random subdivisions of space into crystals", Ann. Math. Statist. 33, 958 (1962).
+
+    Args:
+        run: Its arena must have polygons. Robots without a position at a time have no cell.
+        reach_mm: Radius of the disks; None: reach of the run.
+
+    Returns:
+        A row per time: time (s); mean_area (mm^2), std_area (mm^2), var_area (mm^4) and cv_area of the cells, with n in
+        the denominator of the variance; n_cells, one for each robot; coverage_ratio, 0 to 1. Areas are NaN, and the
+        ratio is 0, while there are no robots.
+
+    Raises:
+        AnalysisError: The arena is not known.
+    """
+    need_arena(run)
+    reach = run.reach_mm if reach_mm is None else reach_mm
+    floor = run.arena.shape()
+    rows = []
+    for _, positions, _ in run.snapshots():
+        cells = voronoi_cells(positions, run.arena, floor)
+        rows.append(statistics(positions, cells, run.arena, reach))
+    table = pd.DataFrame(rows, columns=["mean_area", "std_area", "var_area", "n_cells", "coverage_ratio"])
+    table["coverage_ratio"] = np.minimum(table["coverage_ratio"] / floor.area, 1.0)
+    table.insert(0, "time", run.time_s)
+    table.insert(4, "cv_area", table["std_area"] / table["mean_area"])
+    return table
+
+
+def need_arena(run: Trajectories) -> None:
+    """Raise AnalysisError unless the arena of a run is known, and has a floor."""
+    if not run.arena.polygons:
+        raise AnalysisError(
+            "it has no arena_polygons, the walls of the arena: name the configuration of the run with -c, and the "
+            "folder of its arena file with --arenas-dir"
+        )
+    if not run.arena.area_mm2 > 0.0:
+        raise AnalysisError("the floor of its arena has no area")
+
+
+def statistics(position_mm: Floats, cells: Cells, arena: Arena, reach_mm: float) -> tuple[Any, ...]:
+    """Return mean, standard deviation and variance of the areas of cells, their number, and the area reached."""
+    if len(cells) == 0:
+        return np.nan, np.nan, np.nan, 0, 0.0
+    area = voronoi_areas(cells, position_mm, arena)
+    return area.mean(), area.std(), area.var(), len(area), covered_area(cells, position_mm, arena, reach_mm)
+
+
+def covered_area(cells: Cells, position_mm: Floats, arena: Arena, reach_mm: float) -> float:
+    """Return the area of the union of disks around robots, within the floor that their cells cover.
+
+    A point is in a disk if its nearest robot is not farther away than the radius. So the union is made of the
+    intersections of each disk with the cell of its own robot, which do not overlap; see `disk_and_edges`.
+
+    Args:
+        cells: Of `voronoi_cells`, shape (n,).
+        position_mm: The same positions, shape (n, 2).
+        arena: The same arena.
+        reach_mm: Radius of the disks.
+
+    Returns:
+        mm^2, exact but for rounding.
+    """
+    import shapely
+
+    places, place = one_each(position_mm, arena)
+    first = np.unique(place, return_index=True)[1]
+    polygons, owner = shapely.get_parts(cells[first], return_index=True)
+    is_area = shapely.area(polygons) > 0.0  # of an intersection that only touches: lines and points
+    polygons, owner = polygons[is_area], owner[is_area]
+    rings, polygon = shapely.get_rings(polygons, return_index=True)
+    if len(rings) == 0:
+        return 0.0
+    corners, ring = shapely.get_coordinates(rings, return_index=True)
+    corners = corners - places[owner[polygon[ring]]]
+    # Outer walls count as areas, holes against them, whatever way round their corners are.
+    is_outer = np.concatenate([[True], polygon[1:] != polygon[:-1]])
+    inner = ring[1:] == ring[:-1]
+    start, end = corners[:-1][inner], corners[1:][inner]
+    edge_ring = ring[:-1][inner]
+    turn = np.bincount(edge_ring, cross(start, end), minlength=len(rings))
+    sign = np.where(is_outer, 1.0, -1.0) * np.sign(turn)
+    return max(float(sign[edge_ring] @ disk_and_edges(start, end, reach_mm)), 0.0)
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Return the cross products of vectors in the plane. Shapes (n, 2) to (n,)."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def disk_and_edges(start: Floats, end: Floats, radius: float) -> Floats:
+    """Return the signed areas of a disk around the origin within the triangles (origin, start, end).
+
+    Summed over the edges of a polygon, they are the area of its intersection with the disk (Green's theorem): triangles
+    where an edge is inside of the disk, sectors where it is outside.
+
+    Args:
+        start: First corners of the edges, shape (n, 2).
+        end: Second corners, shape (n, 2).
+        radius: Of the disk.
+
+    Returns:
+        Shape (n,), positive for edges that turn from x to y around the origin.
+    """
+    along = end - start
+    # Where the edge is in the disk: |start + t along| < radius, for t from enter to leave.
+    a = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+    half_b = (start * along).sum(axis=1)
+    root = np.sqrt(np.maximum(half_b**2 - a * ((start**2).sum(axis=1) - radius**2), 0.0))
+    enter = np.clip((-half_b - root) / a, 0.0, 1.0)
+    leave = np.clip((-half_b + root) / a, 0.0, 1.0)
+    first, last = start + enter[:, None] * along, start + leave[:, None] * along
+    return radius**2 / 2.0 * (turned(start, first) + turned(last, end)) + cross(first, last) / 2.0
+
+
+def turned(a: Floats, b: Floats) -> Floats:
+    """Return the angles from vectors a to vectors b, in rad, -pi to pi; 0 if one is zero."""
+    return np.asarray(np.arctan2(cross(a, b), (a * b).sum(axis=1)))
