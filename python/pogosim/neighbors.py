@@ -1,0 +1,36 @@
+"""Neighbours of robots: `python -m pogosim.neighbors` is `pogosim analyze neighbors`; and its functions, for scripts.
+
+python -m pogosim.neighbors -i results/result.feather -o figures
+"""
+
+from __future__ import annotations
+
+import sys
+
+from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
+from pogosim.analysis.neighbourhood import (
+    cluster_sizes,
+    clusters,
+    degrees,
+    fano_factor,
+    nearest_distances,
+    neighbour_pairs,
+    neighbours,
+)
+from pogosim.reports.neighbors import main
+
+__all__ = [
+    "cluster_sizes",
+    "clusters",
+    "degrees",
+    "fano_factor",
+    "listed_distance",
+    "listed_neighbours",
+    "main",
+    "nearest_distances",
+    "neighbour_pairs",
+    "neighbours",
+]
+
+if __name__ == "__main__":
+    sys.exit(main(prog="python -m pogosim.neighbors"))

@@ -1,0 +1,113 @@
+"""`pogosim analyze coverage`: how evenly robots share their arena, and how much of it is within their reach."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.analysis.coverage import coverage_over_time
+from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.trajectories import Trajectories
+from pogosim.confidence import mean_over_runs
+from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
+from pogosim.reports.groups import by_arena, by_combination, draw_over_time, save_over_time
+from pogosim.reports.missing_arenas import add_options, with_arenas
+from pogosim.reports.options import analysis_parser, output_folder, read_runs, reported, write_table
+from pogosim.reports.voronoi_diagram import draw_diagrams
+
+TABLE = "voronoi_metrics_per_arena.csv"
+POISSON_CV = np.sqrt(0.280)  # Gilbert 1962, see `coverage_over_time`
+
+AREA_PANELS = {"mean_area": "mean area of cells (mm²)", "std_area": "standard deviation of areas (mm²)"}
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze coverage") -> int:
+    """Run the command line. Returns the exit code, which is 2 for what cannot be analysed."""
+    parser = analysis_parser(prog, "Areas of the Voronoi cells of robots, and the share of the arena within reach.")
+    add_options(parser)
+    parser.add_argument("--run", type=int, metavar="N", help="analyse only the runs with this number (all)")
+    options = parser.parse_args(arguments)
+    return reported(prog, lambda: analyse(options, prog))
+
+
+def analyse(options: argparse.Namespace, prog: str) -> None:
+    """Compute everything, then write tables and figures."""
+    runs = with_arenas(of_number(read_runs(options, prog), options), options)
+    try:
+        tables = [coverage_over_time(run) for run in runs]
+    except AnalysisError as error:
+        raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
+    folder = output_folder(options)
+    write_table(pd.concat([named(table, run) for run, table in zip(runs, tables, strict=True)]), folder / TABLE,
+                options.input)  # fmt: skip
+    for arena, (own_runs, own_tables) in by_arena(runs, tables).items():
+        suffix = f"__arena_{arena}"
+        save_over_time(own_runs, own_tables, AREA_PANELS, folder / f"voronoi_areas{suffix}")
+        save_over_time(own_runs, own_tables, {"coverage_ratio": "coverage ratio"}, folder / f"coverage_ratio{suffix}")
+        save_variation(own_runs, own_tables, folder / f"voronoi_cv{suffix}")
+        save(draw_diagrams(own_runs[0]), folder / f"voronoi_diagram{suffix}")
+    save_mean_of_arenas(runs, tables, folder, options.input)
+
+
+def of_number(runs: list[Trajectories], options: argparse.Namespace) -> list[Trajectories]:
+    """Return the runs that --run asks for."""
+    if options.run is None:
+        return runs
+    chosen = [run for run in runs if str(run.labels.get("run")) == str(options.run)]
+    if not chosen:
+        there = ", ".join(sorted({str(run.labels.get("run")) for run in runs}))
+        raise AnalysisError(f"cannot analyse {' '.join(options.input)}: it has no run {options.run}; it has {there}")
+    return chosen
+
+
+def named(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
+    """Return a table with the run, the arena, and further labels of its combination."""
+    labels = {name: value for name, value in run.labels.items() if name not in ("run", "arena_file")}
+    table = table.assign(arena_name=run.arena.name, **{name: [value] * len(table) for name, value in labels.items()})
+    table.insert(0, "run", run.labels.get("run", 0))
+    return table
+
+
+def save_variation(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], path: Path) -> None:
+    """Save a figure of the coefficient of variation over time, with that of independent robots."""
+    figure, axes = new_figure()
+    draw_over_time(axes[0, 0], by_combination(runs, tables), "cv_area", "coefficient of variation of areas")
+    axes[0, 0].axhline(POISSON_CV, color="0.4", linestyle=":", label="independent positions (Poisson)")
+    axes[0, 0].set_ylim(bottom=0.0)
+    axes[0, 0].legend(frameon=False, fontsize="small")
+    save(figure, path)
+
+
+def save_mean_of_arenas(
+    runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], folder: Path, inputs: Sequence[str]
+) -> None:
+    """Save the coefficient of variation over time: averaged over the runs in each arena, then over arenas."""
+    rest = [name for name in group_names(runs) if name != "arena_file"]
+    curves: dict[str, dict[str, list[pd.Series[Any]]]] = {}
+    for run, table in zip(runs, tables, strict=True):
+        arenas = curves.setdefault(group_of(run, rest) if rest else "all", {})
+        arenas.setdefault(run.arena.name, []).append(table.set_index("time")["cv_area"])
+    means = {name: [pd.concat(own, axis=1).mean(axis=1) for own in arenas.values()] for name, arenas in curves.items()}
+    figure, axes = new_figure()
+    draw_bands(axes[0, 0], means)
+    count = len({run.arena.name for run in runs})
+    over = f"mean over {count} arenas" if count > 1 else f"arena {runs[0].arena.name}"
+    axes[0, 0].set(xlabel="time (s)", ylabel=f"coefficient of variation of areas\n({over})")
+    axes[0, 0].set_ylim(bottom=0.0)
+    save(figure, folder / "cv_mean_across_arenas_over_time")
+    parts = [
+        mean_over_runs(pd.concat(own, axis=1, ignore_index=True)).rename_axis("time").reset_index().assign(group=name)
+        for name, own in means.items()
+    ]
+    table = pd.concat(parts).rename(columns={"runs": "n_arenas", "group": "combination"})
+    write_table(table, folder / "cv_mean_across_arenas_over_time.csv", inputs)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

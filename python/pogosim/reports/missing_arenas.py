@@ -1,0 +1,63 @@
+"""Arenas for data files that do not have them: from a configuration (-c) and a folder of arena files (--arenas-dir)."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pogosim.analysis.arena_files import read_arena
+from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.trajectories import Trajectories
+from pogosim.utils import parse_configuration
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add -c and --arenas-dir to a command line."""
+    parser.add_argument(
+        "-c", "--config", metavar="FILE", help="configuration of the runs, for data that do not have their arena"
+    )
+    parser.add_argument(
+        "--arenas-dir", default="arenas", metavar="DIR", help="folder of the arena files of this configuration (arenas)"
+    )
+
+
+def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[Trajectories]:
+    """Return the runs, those without an arena with that of the configuration.
+
+    Raises:
+        AnalysisError: There is no configuration, or it has no arena.
+        OSError: A file cannot be read.
+    """
+    if options.config is None:
+        return runs
+    configuration = parse_configuration(Path(options.config).read_text(encoding="utf-8", errors="replace"))
+    if not configuration:
+        raise AnalysisError(f"{options.config} is not a configuration in YAML")
+    return [run if run.arena.polygons else with_arena(run, configuration, options) for run in runs]
+
+
+def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: argparse.Namespace) -> Trajectories:
+    """Return a run with the arena that a configuration says."""
+
+    def value(name: str) -> Any:
+        found = run.labels.get(name, configuration.get(name))
+        return found.get("default_option") if isinstance(found, dict) else found  # of a batch
+
+    if value("arena_file") is None:
+        raise AnalysisError(f"{options.config} has no arena_file")
+    surface = value("arena_surface")
+    if surface != "file":
+        try:
+            surface = float(surface)
+        except (TypeError, ValueError):
+            surface = 0.0
+        if not 0.0 < surface < float("inf"):
+            found = value("arena_surface")
+            raise AnalysisError(f"{options.config}: expected arena_surface in mm2, or 'file', found {found}")
+    path = Path(options.arenas_dir) / Path(str(value("arena_file"))).with_suffix(".csv").name
+    periodic = str(value("boundary_condition")).lower() == "periodic"
+    arena = read_arena(path, None if surface == "file" else surface, bool(value("arena_stretch")), periodic)
+    return replace(run, arena=arena)

@@ -1,0 +1,103 @@
+"""`pogosim analyze network`: connectedness and Laplacian spectra of the proximity graph, at once and time-averaged."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from pogosim.analysis.network import averaged_spectra, default_windows, graph_over_time, instantaneous_spectra
+from pogosim.analysis.trajectories import Trajectories
+from pogosim.reports.groups import by_arena, save_over_time, save_violins
+from pogosim.reports.options import (
+    analysis_parser,
+    at_least,
+    labelled,
+    output_folder,
+    positive,
+    read_runs,
+    reported,
+    warn,
+    write_table,
+)
+
+GRAPH_PANELS = {
+    "n_components": "connected components",
+    "largest_component_fraction": "largest component (share of robots)",
+    "mean_degree": "mean degree",
+}
+SPECTRUM_PANELS = {
+    "swarm_lambda_nz_1": "smallest non-zero eigenvalue",
+    "lcc_lambda_nz_1": "algebraic connectivity\nof the largest component",
+    "swarm_lambda_max": "largest eigenvalue",
+}
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze network") -> int:
+    """Run the command line. Returns the exit code, which is 2 for what cannot be analysed."""
+    parser = analysis_parser(prog, "Components, degrees and Laplacian spectra of the proximity graph of robots.")
+    parser.add_argument(
+        "--k-first", type=at_least(1), default=5, metavar="K", help="how many small non-zero eigenvalues (5)"
+    )
+    parser.add_argument(
+        "--avg-window-s",
+        type=window,
+        metavar="S",
+        help="graphs are averaged over windows of this many seconds (auto: rc / mean speed, and 10 save periods)",
+    )
+    parser.add_argument(
+        "--zero-tol", type=positive, default=1e-10, metavar="X", help="eigenvalues up to this count as zero (1e-10)"
+    )
+    options = parser.parse_args(arguments)
+    return reported(prog, lambda: analyse(options, prog))
+
+
+def window(text: str) -> float | None:
+    """Return a number of seconds from the command line; None for auto."""
+    return None if text == "auto" else positive(text)
+
+
+def analyse(options: argparse.Namespace, prog: str) -> None:
+    """Compute everything, then write tables and figures."""
+    runs = read_runs(options, prog)
+    graphs = [graph_over_time(run) for run in runs]
+    count, tol = options.k_first, options.zero_tol
+    spectra = {"instantaneous_eigs": [instantaneous_spectra(run, count, zero_tol=tol) for run in runs]}
+    for name, windows in windows_of(runs, options.avg_window_s).items():
+        spectra[name] = [
+            averaged_spectra(run, window_s, count, zero_tol=tol) for run, window_s in zip(runs, windows, strict=True)
+        ]
+        whole = sum(math.isinf(window_s) for window_s in windows)
+        if whole:
+            warn(prog, f"in {whole} of {len(runs)} runs, robots do not move, or there is one save time: {name} has one "
+                       "window there, the whole run")  # fmt: skip
+    folder = output_folder(options)
+    write_runs(runs, graphs, folder / "network_graph.csv", options.input)
+    for name, tables in spectra.items():
+        write_runs(runs, tables, folder / f"{name}.csv", options.input)
+    for name, tables in {"network_graph": graphs, **spectra}.items():
+        for arena, (own_runs, own_tables) in by_arena(runs, tables).items():
+            panels = GRAPH_PANELS if name == "network_graph" else SPECTRUM_PANELS
+            save_over_time(own_runs, own_tables, panels, folder / f"{name}_line__arena_{arena}")
+            save_violins(own_runs, own_tables, panels, folder / f"{name}_violin__arena_{arena}")
+
+
+def windows_of(runs: Sequence[Trajectories], window_s: float | None) -> dict[str, list[float]]:
+    """Return the windows of each run by the name of their table."""
+    if window_s is not None:
+        return {"timeavg_eigs": [window_s] * len(runs)}
+    named = [dict(default_windows(run)) for run in runs]
+    return {f"timeavg_eigs_{name}": [own[name] for own in named] for name in named[0]}
+
+
+def write_runs(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], path: Path, inputs: Sequence[str]) -> None:
+    """Write the tables of all runs as one."""
+    write_table(pd.concat([labelled(table, run) for run, table in zip(runs, tables, strict=True)]), path, inputs)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
