@@ -7,7 +7,7 @@ can be connected on average; messages that are passed on while robots move see t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -133,13 +133,21 @@ def mean_speed_mm_s(run: Trajectories) -> float:
     return float(speed[np.isfinite(speed)].mean()) if np.isfinite(speed).any() else float("nan")
 
 
-def contact_time_s(run: Trajectories, reach_mm: float | None = None) -> float:
-    """Return tau_c = reach / mean speed, in which a robot crosses its neighbourhood; infinite if none moves."""
-    speed = mean_speed_mm_s(run)
-    return (run.reach_mm if reach_mm is None else reach_mm) / speed if speed > 0.0 else float("inf")
+def contact_time_s(runs: Sequence[Trajectories], reach_mm: float | None = None) -> float:
+    """Return tau_c = reach / mean speed, the time in which a robot crosses the radius of its neighbourhood.
+
+    Args:
+        runs: Repetitions of the same; their mean speeds are averaged.
+        reach_mm: Greatest distance of neighbours; None: that of the first run.
+
+    Returns:
+        s; infinite if no robot moves, or there is one save time.
+    """
+    speeds = [speed for speed in map(mean_speed_mm_s, runs) if speed > 0.0]
+    return (runs[0].reach_mm if reach_mm is None else reach_mm) / float(np.mean(speeds)) if speeds else float("inf")
 
 
-def default_windows(run: Trajectories) -> Iterator[tuple[str, float]]:
-    """Yield names and lengths in s of the windows over which graphs are averaged: tau_c, and 10 save periods."""
-    yield "tau_c", contact_time_s(run)
-    yield "10dt", 10.0 * float(np.median(np.diff(run.time_s))) if len(run.time_s) > 1 else float("inf")
+def ten_periods_s(runs: Sequence[Trajectories]) -> float:
+    """Return 10 times the median of the times between successive save times; infinite if there is one only."""
+    steps = np.concatenate([np.diff(run.time_s) for run in runs])
+    return 10.0 * float(np.median(steps)) if len(steps) else float("inf")

@@ -79,7 +79,6 @@ def save_variation(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame],
     figure, axes = new_figure()
     draw_over_time(axes[0, 0], by_combination(runs, tables), "cv_area", "coefficient of variation of areas")
     axes[0, 0].axhline(POISSON_CV, color="0.4", linestyle=":", label="independent positions (Poisson)")
-    axes[0, 0].set_ylim(bottom=0.0)
     axes[0, 0].legend(frameon=False, fontsize="small")
     save(figure, path)
 

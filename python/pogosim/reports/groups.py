@@ -37,10 +37,14 @@ def by_arena(runs: Sequence[Trajectories], values: Sequence[T]) -> dict[str, tup
 
 
 def draw_over_time(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], column: str, label: str) -> None:
-    """Draw a column of the tables over time: the mean over the runs of each combination, with its confidence band."""
+    """Draw a column of the tables over time: the mean over the runs of each combination, with its confidence band.
+
+    Values are not negative, and neither is what the axis shows of the bands.
+    """
     draw_bands(axes, {name: [table.set_index("time")[column] for table in own] for name, own in groups.items()})
     axes.set_xlabel("time (s)")
     axes.set_ylabel(label)
+    axes.set_ylim(bottom=0.0)
 
 
 def draw_each_run(axes: Axes, groups: Mapping[str, Sequence[pd.Series[Any]]]) -> None:
@@ -75,6 +79,7 @@ def draw_violins(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], colum
         axes.tick_params(axis="x", rotation=30)
     axes.set_xlim(-0.7, len(names) - 0.3)
     axes.set_ylabel(label)
+    axes.set_ylim(bottom=0.0)
 
 
 def save_over_time(

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import MaxNLocator
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
@@ -201,6 +202,7 @@ def save_degrees(runs: Sequence[Trajectories], found: Sequence[Found], folder: P
         {name: [own.set_index("time")["fano_factor"] for own in tables] for name, tables in groups.items()},
     )
     axes[0, 0].set(xlabel="time (s)", ylabel="Fano factor of the degrees")
+    axes[0, 0].set_ylim(bottom=0.0)
     save(figure, folder / "fano_factor_over_time_all_runs")
     histograms = by_combination(runs, [own.histogram.set_index("degree") for own in found])
     shares = {name: shares_of(own, "count") for name, own in histograms.items()}
@@ -209,6 +211,7 @@ def save_degrees(runs: Sequence[Trajectories], found: Sequence[Found], folder: P
         draw(axes[0, 0], shares)
         axes[0, 0].set(xlabel="degree (neighbours of a robot)", ylabel="share of robots")
         axes[0, 0].set_ylim(bottom=0.0)
+        axes[0, 0].xaxis.set_major_locator(MaxNLocator(integer=True))
         save(figure, folder / f"overall_neighbor_degree_histogram{name}")
     save_first_and_last(histograms, folder / "degree_histogram_first_last")
 
@@ -234,6 +237,7 @@ def save_first_and_last(histograms: dict[str, list[pd.DataFrame]], path: Path) -
             share = pd.DataFrame(dict(enumerate(shares_of(own, column)))).mean(axis=1)
             panel.bar(share.index + offset, share, width=0.4, color=colour, label=label)
         panel.set(xlabel="degree (neighbours of a robot)", ylabel="share of robots")
+        panel.xaxis.set_major_locator(MaxNLocator(integer=True))
         if len(histograms) > 1:
             panel.set_title(name, fontsize="medium")
         panel.legend(frameon=False, fontsize="small")

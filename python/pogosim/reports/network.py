@@ -10,8 +10,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from pogosim.analysis.network import averaged_spectra, default_windows, graph_over_time, instantaneous_spectra
+from pogosim.analysis.network import (
+    averaged_spectra,
+    contact_time_s,
+    graph_over_time,
+    instantaneous_spectra,
+    ten_periods_s,
+)
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.reports.figures import group_names, group_of, groups_of
 from pogosim.reports.groups import by_arena, save_over_time, save_violins
 from pogosim.reports.options import (
     analysis_parser,
@@ -90,8 +97,14 @@ def windows_of(runs: Sequence[Trajectories], window_s: float | None) -> dict[str
     """Return the windows of each run by the name of their table."""
     if window_s is not None:
         return {"timeavg_eigs": [window_s] * len(runs)}
-    named = [dict(default_windows(run)) for run in runs]
-    return {f"timeavg_eigs_{name}": [own[name] for own in named] for name in named[0]}
+    # Runs of one combination have the same windows, so that they can be averaged.
+    names = group_names(runs)
+    groups = groups_of(runs)
+    windows = {
+        "timeavg_eigs_tau_c": {name: contact_time_s(own) for name, own in groups.items()},
+        "timeavg_eigs_10dt": {name: ten_periods_s(own) for name, own in groups.items()},
+    }
+    return {name: [own[group_of(run, names)] for run in runs] for name, own in windows.items()}
 
 
 def write_runs(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], path: Path, inputs: Sequence[str]) -> None:
