@@ -176,11 +176,12 @@ def test_missing_positions_are_left_out(tmp_path: Path) -> None:
 
 def test_statistics_of_neighbours_are_dataframes(tmp_path: Path) -> None:
     file_of(tmp_path)
-    assert runs_of("neighbors", tmp_path, "--statBasis", "robot", "--k", "2") == 0
+    assert runs_of("neighbors", tmp_path, "--statBasis", "robot", "--k", "2", "--rc", "2000") == 0
     with (tmp_path / "out/neighbors_stats.pkl").open("rb") as file:
         tables = pickle.load(file)
     assert list(tables) == ["time", "degree_histogram", "knn_robot"]
     assert tables["knn_robot"]["n"].tolist() == [6, 6, 6]
+    assert not (tmp_path / "out/knn_run.pdf").exists()
     assert not (tmp_path / "out/knn_run.pdf").exists()
     histogram = tables["degree_histogram"]
     assert histogram[["count", "count_first", "count_last"]].sum().tolist() == [18, 6, 6]
