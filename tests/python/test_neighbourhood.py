@@ -55,6 +55,13 @@ def test_pairs_are_those_of_the_matrix_of_all_distances(periodic: bool, reach: f
     np.testing.assert_array_equal(degrees(run, reach), [now.degree() for now in neighbours(run, reach)])
 
 
+def test_a_neighbour_at_exactly_the_reach_is_one() -> None:
+    run = run_at(np.array([[0.0, 0.0], [120.0, 0.0]]))
+    assert nearest_distances(run, 1, 120.0).ravel().tolist() == [120.0, 120.0]
+    assert degrees(run, 120.0).tolist() == [[1, 1]]
+    assert degrees(run, 119.9).tolist() == [[0, 0]]
+
+
 def test_in_a_periodic_lattice_each_robot_has_four_neighbours_and_the_fano_factor_is_0() -> None:
     run = run_at(square_lattice(10, 100.0), periodic=True)
     assert (degrees(run, 101.0) == 4).all()
