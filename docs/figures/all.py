@@ -30,8 +30,18 @@ from pictures import DOCS, difference, keep
 
 SCRIPTS: dict[str, ModuleType] = {
     script.__name__: script
-    for script in (first_program, formations, gallery, lamps, parameter_study, reception, replay, swarm, window)
-    for script in (analysis_tour, first_program, formations, gallery, lamps, parameter_study, reception, swarm, window)
+    for script in (
+        analysis_tour,
+        first_program,
+        formations,
+        gallery,
+        lamps,
+        parameter_study,
+        reception,
+        replay,
+        swarm,
+        window,
+    )
 }
 
 

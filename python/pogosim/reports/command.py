@@ -20,11 +20,11 @@ class Analysis(NamedTuple):
 
 
 ANALYSES: dict[str, Analysis] = {
-    "collective": Analysis("pogosim.reports.collective", "order, pair correlations, structure factor, flow, milling"),
     "locomotion": Analysis("pogosim.reports.locomotion", "speeds, displacements, diffusion, persistence, densities"),
     "neighbors": Analysis("pogosim.reports.neighbors", "distances to neighbours, degrees, Fano factor, clusters"),
     "network": Analysis("pogosim.reports.network", "components and Laplacian spectra of the proximity graph"),
     "coverage": Analysis("pogosim.reports.coverage", "Voronoi cells and the share of the arena within reach"),
+    "collective": Analysis("pogosim.reports.collective", "order, pair correlations, structure factor, flow, milling"),
 }
 
 
