@@ -62,6 +62,10 @@ std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& sc
         set(*configuration, "mm_to_pixels", fmt::format("{}", fitted_mm_to_pixels(scenario.view, arena)));
     }
     set(resolved, "time_step", fmt::format("{}", run.time_step_s));
+    if (run.is_periodic) {
+        set(resolved, "boundary_condition", "periodic");
+        std::erase_if(resolved.entries, [](auto const& entry) { return entry.key.starts_with("wall_"); });
+    }
     return {{"program_version", POGOSIM_VERSION_STRING},
             {"configuration", to_yaml(written)},
             {"resolved_configuration", to_yaml(resolved)},

@@ -15,6 +15,7 @@ namespace pogosim {
 struct RunValues {
     std::uint32_t seed = 0;
     double time_step_s = 0.01;  // lowered where robots tick more often
+    bool is_periodic = false;   // also where only the arena file says so
 };
 
 /// Schema metadata: program_version, configuration (YAML text of what is written, with the seed in use),

@@ -61,6 +61,20 @@ def test_resolved_configuration_gives_the_same_run(program: str, tmp_path: Path)
     assert same_metadata["resolved_configuration"] == metadata["resolved_configuration"]
 
 
+def test_resolved_configuration_says_that_the_arena_file_is_periodic(tmp_path: Path) -> None:
+    arena = ("--set", "arena_file=arenas/torus.csv", "--strict")
+    entries = yaml.safe_load((ROOT / NAMED["vicsek"]).read_text())
+    del entries["boundary_condition"]
+    (tmp_path / "torus.yaml").write_text(yaml.safe_dump(entries, sort_keys=False))
+    run_shortly("vicsek", tmp_path / "torus.yaml", tmp_path, *arena)
+    rows, metadata = load_dataframe(tmp_path / "data.feather")
+    resolved = metadata["resolved_configuration"]
+    assert resolved["boundary_condition"] == "periodic"
+    (tmp_path / "resolved.yaml").write_text(yaml.safe_dump(resolved, sort_keys=False))
+    assert run_shortly("vicsek", tmp_path / "resolved.yaml", tmp_path, "--strict") == ""
+    pd.testing.assert_frame_equal(rows, load_dataframe(tmp_path / "data.feather")[0])
+
+
 def test_every_configuration_is_named_by_an_example() -> None:
     of_batches = {"conf/test.yaml"}
     assert {f"conf/{path.name}" for path in CONFIGURATIONS} == set(NAMED.values()) | of_batches

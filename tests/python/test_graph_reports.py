@@ -11,8 +11,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
-from pogosim.analysis.arena_files import read_arena
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
 from pogosim.analysis.trajectories import trajectories_of
 from pogosim.reports import coverage, neighbors, network
@@ -267,23 +265,10 @@ def test_coverage_takes_the_arena_of_a_configuration(tmp_path: Path, capsys: pyt
         (tmp_path / "conf.yaml").write_text(wrong)
         assert runs_of("coverage", tmp_path, *options) == 2
         assert said in capsys.readouterr().err
-
-
-def test_arena_files_are_scaled_as_by_the_simulator(tmp_path: Path) -> None:
-    arenas = Path(__file__).resolve().parents[2] / "arenas"
-    for path in sorted(arenas.glob("*.csv")):
-        arena = read_arena(path, 1e6)
-        assert arena.bounds_mm[0].tolist() == [0.0, 0.0]
-        if not arena.is_periodic:
-            assert arena.area_mm2 == pytest.approx(1e6), path
-    assert read_arena(arenas / "torus.csv").is_periodic
-    assert len(read_arena(arenas / "squarewithHole.csv").polygons) == 2
-    stretched = read_arena(arenas / "triangle.csv", 1e6, stretch=True)
-    assert stretched.size_mm[0] == pytest.approx(stretched.size_mm[1])
-    for text, said in (("", "three corners"), ("0,0\n1,0\n2,0\n", "three corners"), ("x,y\n", ":1: expected a corner")):
-        (tmp_path / "bad.csv").write_text(text)
-        with pytest.raises(AnalysisError, match=said):
-            read_arena(tmp_path / "bad.csv")
+    (tmp_path / "conf.yaml").write_text("arena_file: box\narena_surface: file\n")
+    (tmp_path / "box.csv").write_text("0,0\nx,y\n")
+    assert runs_of("coverage", tmp_path, *options) == 2
+    assert "box.csv:2: expected a corner 'x,y'" in capsys.readouterr().err
 
 
 def test_an_input_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,9 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pogosim.analysis.arena_files import read_arena
+from pogosim.analysis.arena import Arena
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.geometry.arena_file import ArenaError, read_arena, scaled
 from pogosim.utils import parse_configuration
 
 
@@ -58,6 +59,9 @@ def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: arg
             found = value("arena_surface")
             raise AnalysisError(f"{options.config}: expected arena_surface in mm2, or 'file', found {found}")
     path = Path(options.arenas_dir) / Path(str(value("arena_file"))).with_suffix(".csv").name
-    periodic = str(value("boundary_condition")).lower() == "periodic"
-    arena = read_arena(path, None if surface == "file" else surface, bool(value("arena_stretch")), periodic)
-    return replace(run, arena=arena)
+    try:
+        outline = scaled(read_arena(path), None if surface == "file" else surface, stretch=bool(value("arena_stretch")))
+    except ArenaError as error:
+        raise AnalysisError(str(error)) from error
+    is_periodic = outline.periodic or str(value("boundary_condition")).lower() == "periodic"
+    return replace(run, arena=Arena(path.stem, list(outline.polygons), is_periodic))

@@ -1,0 +1,115 @@
+"""`pogosim analyze arena`: the arenas of a data file: size, area, room for robots, and how much of them was visited."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import shapely
+from matplotlib.figure import Figure
+from shapely import affinity
+
+from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.walls import distance_to_walls
+from pogosim.geometry.arena_file import Outline
+from pogosim.geometry.drawing import draw
+from pogosim.geometry.validity import Room, problems, room_for
+from pogosim.reports.figures import save
+from pogosim.reports.missing_arenas import add_options, with_arenas
+from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, warn, write_table
+
+
+def outline_of(run: Trajectories) -> Outline:
+    """Return the arena of a run as the arena tools take it."""
+    return Outline(tuple(run.arena.polygons), run.arena.name, run.arena.is_periodic)
+
+
+def room_of(run: Trajectories) -> Room | None:
+    """Return the room that an arena has for robots; None if it is periodic or its walls cross."""
+    outline = outline_of(run)
+    return None if outline.periodic or problems(outline) else room_for(outline, run.radius_mm)
+
+
+def visited_mm2(run: Trajectories) -> float:
+    """Return the area of the floor that bodies of robots covered at some save time, mm2."""
+    position = run.position_mm[run.is_there]
+    cells = np.unique(np.floor(position / (0.1 * run.radius_mm)), axis=0)  # places that are nearly the same count once
+    disks = shapely.buffer(shapely.points((cells + 0.5) * 0.1 * run.radius_mm), run.radius_mm, quad_segs=8)
+    covered = shapely.union_all(disks)
+    if run.arena.is_periodic:
+        width, height = run.arena.size_mm
+        shifts = [(x, y) for x in (-width, 0.0, width) for y in (-height, 0.0, height)]
+        covered = shapely.union_all([affinity.translate(covered, *shift) for shift in shifts])
+    return float(covered.intersection(run.arena.shape()).area)
+
+
+def row_of(run: Trajectories, room: Room | None) -> pd.DataFrame:
+    """Return what there is to say about the arena of a run, as a table of one row."""
+    arena = run.arena
+    floor = arena.shape()
+    width, height = arena.size_mm
+    to_wall = distance_to_walls(arena, run.position_mm[run.is_there])
+    return pd.DataFrame(
+        {
+            "arena": [arena.name],
+            "is_periodic": [arena.is_periodic],
+            "width_mm": [width],
+            "height_mm": [height],
+            "area_mm2": [floor.area],
+            "perimeter_mm": [np.nan if arena.is_periodic else floor.length],
+            "holes": [len(arena.polygons) - 1],
+            "room_share": [np.nan if room is None else room.share],
+            "robots": [len(run.robot_id)],
+            "robots_area_share": [len(run.robot_id) * np.pi * run.radius_mm**2 / floor.area],
+            "visited_share": [visited_mm2(run) / floor.area],
+            "least_wall_distance_mm": [np.nan if arena.is_periodic else float(np.nanmin(to_wall))],
+        }
+    )
+
+
+def drawn(run: Trajectories, room: Room | None) -> Figure:
+    """Draw the arena of a run with the places of its robots at the end."""
+    outline = outline_of(run)
+    heading = f"{run.arena.name}: {run.arena.area_mm2:.6g} mm$^2$" + (", periodic" if outline.periodic else "")
+    figure = draw(outline, room, heading)
+    last = run.position_mm[-1][run.is_there[-1]]
+    figure.axes[0].scatter(
+        last[:, 0], last[:, 1], s=12, color="#2a6f97", label=f"robots at {run.time_s[-1]:g} s", zorder=3
+    )
+    for legend in figure.legends:
+        legend.remove()
+    figure.legend(loc="outside lower right", fontsize=8, frameon=False, ncols=2)
+    return figure
+
+
+def analyse(options: argparse.Namespace, prog: str) -> None:
+    """Write the table and the figures."""
+    runs = with_arenas(read_runs(options, prog), options)
+    known = [run for run in runs if run.arena.polygons]
+    if not known:
+        raise AnalysisError(f"{' '.join(options.input)} has no arena_polygons; give a configuration with -c")
+    if len(known) < len(runs):
+        warn(prog, f"{len(runs) - len(known)} runs have no arena and are left out")
+    folder = output_folder(options)
+    tables, figures = [], set()
+    for run in known:
+        room = room_of(run)
+        tables.append(labelled(row_of(run, room), run))
+        if run.arena.name not in figures:
+            figures.add(run.arena.name)
+            for problem in problems(outline_of(run)):
+                warn(prog, f"{run.arena.name}: {problem}")
+            save(drawn(run, room), folder / f"arena_{run.arena.name}.pdf")
+    write_table(pd.concat(tables, ignore_index=True), Path(folder, "arenas.csv"), options.input)
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze arena") -> int:
+    """Run the command line. Returns the exit code: 0, or 2 if the data cannot be analysed."""
+    parser = analysis_parser(prog, "Says how large arenas are, what room they have, and how much of them was visited.")
+    add_options(parser)
+    options = parser.parse_args(arguments)
+    return reported(prog, lambda: analyse(options, prog))
