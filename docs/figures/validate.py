@@ -1,0 +1,72 @@
+"""Runs the scenes of docs/validation.md, and tells whether the simulator gives what theory says.
+
+    .venv/bin/python docs/figures/validate.py                    # all; takes several minutes
+    .venv/bin/python docs/figures/validate.py --quick vicsek     # one scene with fewer runs, wider tolerances
+    .venv/bin/python docs/figures/validate.py --keep             # also draws, and writes the numbers into the page
+
+The exit code is 1 if a scene disagrees. Needs the library and the examples (./build.sh).
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from pictures import DOCS, keep
+from validation import SCENES, picture_of
+
+PAGE = DOCS / "validation.md"
+
+
+def block(name: str) -> re.Pattern[str]:
+    """Match what the page quotes of a scene: a code block after a comment with its name."""
+    return re.compile(rf"(?<=<!-- {name} -->\n\n```\n).*?(?=```\n)", re.DOTALL)
+
+
+def quoted(name: str) -> list[str]:
+    """Return the lines that the page quotes of a scene."""
+    found = block(name).search(PAGE.read_text(encoding="utf-8"))
+    return found[0].splitlines() if found else []
+
+
+def quote(name: str, lines: Sequence[str]) -> None:
+    """Replace what the page quotes of a scene."""
+    page = PAGE.read_text(encoding="utf-8")
+    text, count = block(name).subn(lambda _: "".join(f"{line}\n" for line in lines), page)
+    if count != 1:
+        sys.exit(f"{PAGE}: expected one place for the numbers of {name}, found {count}")
+    PAGE.write_text(text, encoding="utf-8")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(SCENES)}; without: all")
+    parser.add_argument("--quick", action="store_true", help="fewer runs")
+    parser.add_argument("--keep", action="store_true", help="keep pictures and numbers in docs/")
+    options = parser.parse_args(arguments)
+    if unknown := sorted(set(options.names) - set(SCENES)):
+        parser.error(f"no scene is called {', '.join(unknown)}; there are {', '.join(SCENES)}")
+    if options.quick and options.keep:
+        parser.error("--keep needs all runs, not --quick")
+    disagreements = 0
+    for name in options.names or SCENES:
+        start_s = time.monotonic()
+        with tempfile.TemporaryDirectory() as folder:
+            outcome = SCENES[name](Path(folder), options.quick)
+        lines = [comparison.line for comparison in outcome.comparisons]
+        print(f"{name} ({time.monotonic() - start_s:.0f} s)", *lines, sep="\n", flush=True)
+        if options.keep:
+            keep(picture_of(outcome), DOCS / f"validation_{name}.png")
+            quote(name, lines)
+        disagreements += sum(not comparison.agrees for comparison in outcome.comparisons)
+    return 1 if disagreements else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,23 @@
+"""Textbook results that the simulator must give: the scenes of docs/validation.md."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from pictures import Picture, from_figure
+
+from . import kuramoto_order, vicsek_order, walks
+from .experiment import Outcome
+
+Scene = Callable[[Path, bool], Outcome]
+
+SCENES: dict[str, Scene] = {
+    module.NAME: module.measure for module in (walks, vicsek_order, kuramoto_order)
+}
+NAMES = tuple(f"validation_{name}.png" for name in SCENES)
+
+
+def picture_of(outcome: Outcome) -> Picture:
+    """Draw a scene's figure."""
+    return from_figure(outcome.figure, 110, *outcome.tables)
