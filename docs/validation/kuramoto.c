@@ -25,11 +25,11 @@ DECLARE_USERDATA(USERDATA);
 REGISTER_USERDATA(USERDATA);
 
 // Parameters, the same for all robots.
-float coupling_k = 1.0f;        // rad/s
-float gamma_width = 0.5f;       // rad/s
-float nb_robots = 100.0f;       // as in the configuration
-uint16_t cruise_power = 0;      // of both motors; 0: robots stand
-uint8_t send_percent = 10;      // chance to send in a tick
+float coupling_k = 1.0f;    // rad/s
+float gamma_width = 0.5f;   // rad/s
+float nb_robots = 100.0f;   // as in the configuration
+uint16_t cruise_power = 0;  // of both motors; 0: robots stand
+uint8_t send_percent = 10;  // chance to send in a tick
 
 static float uniform(float low, float high) {
     return low + (high - low) * ((float)rand() + 0.5f) / ((float)RAND_MAX + 1.0f);

@@ -7,13 +7,14 @@ from pathlib import Path
 
 from pictures import Picture, from_figure
 
-from . import kuramoto_order, vicsek_order, walks
+from . import kuramoto_order, lamp_density, reception_runs, vicsek_order, voter_consensus, walks
 from .experiment import Outcome
 
 Scene = Callable[[Path, bool], Outcome]
 
 SCENES: dict[str, Scene] = {
-    module.NAME: module.measure for module in (walks, vicsek_order, kuramoto_order)
+    module.NAME: module.measure
+    for module in (walks, vicsek_order, kuramoto_order, voter_consensus, reception_runs, lamp_density)
 }
 NAMES = tuple(f"validation_{name}.png" for name in SCENES)
 

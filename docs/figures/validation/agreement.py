@@ -35,7 +35,7 @@ class Comparison:
 
     @property
     def errors_allowed(self) -> float:
-        """Standard errors allowed at each value: with Bonferroni's correction, FALSE_ALARM in all for normal samples."""
+        """Standard errors allowed at each value: Bonferroni's correction for FALSE_ALARM in all, normal samples."""
         return float(special.stdtrit(self.degrees, 1.0 - FALSE_ALARM / (2.0 * len(self.measured))))
 
     @property
@@ -65,9 +65,7 @@ class Comparison:
         )
 
 
-def relative(
-    name: str, samples: npt.ArrayLike, expected: npt.ArrayLike, margin: float = 0.0
-) -> Comparison:
+def relative(name: str, samples: npt.ArrayLike, expected: npt.ArrayLike, margin: float = 0.0) -> Comparison:
     """Compare the mean of samples with theory, both divided by what theory says.
 
     Args:

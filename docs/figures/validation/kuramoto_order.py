@@ -69,7 +69,7 @@ def robot_orders(program: Path, setting: str, couplings: tuple[float, ...], runs
     rows = batch(program, NAME, runs, changes)[NAME]
     rows = rows[rows["time"] >= LEFT_OUT_S].assign(x=np.cos(rows["theta"]), y=np.sin(rows["theta"]))
     means = rows.groupby(["parameters.coupling_k", "run", "time"])[["x", "y"]].mean()
-    order = np.hypot(means["x"], means["y"]).groupby(level=[0, 1]).mean()
+    order = means.assign(r=np.hypot(means["x"], means["y"])).groupby(level=[0, 1])["r"].mean()
     return np.asarray(order.unstack(0)[list(couplings)].to_numpy())
 
 

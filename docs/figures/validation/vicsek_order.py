@@ -73,7 +73,7 @@ def robot_orders(folder: Path, robots: int, etas: tuple[float, ...], runs: int) 
     rows = batch(compile_program(NAME, folder), NAME, runs, changes)[NAME]
     rows = rows[rows["time"] >= STEPS_LEFT_OUT * STEP_S - 1e-6].assign(x=np.cos(rows["angle"]), y=np.sin(rows["angle"]))
     means = rows.groupby(["parameters.noise_eta", "run", "time"])[["x", "y"]].mean()
-    order = np.hypot(means["x"], means["y"]).groupby(level=[0, 1]).mean()
+    order = means.assign(r=np.hypot(means["x"], means["y"])).groupby(level=[0, 1])["r"].mean()
     return np.asarray(order.unstack(0)[list(etas)].to_numpy())
 
 
@@ -92,13 +92,21 @@ def measure(folder: Path, quick: bool) -> Outcome:
         ours, theirs = robot_orders(folder, robots, etas, runs), model_orders(robots, etas, runs)
         against_model = two_samples(f"{robots} robots, against the model", ours, theirs, MARGIN)
         noise_only = absolute(
-            f"{robots} robots at 2 pi, against independent directions", ours[:, -1:], [independent_order(robots)], MARGIN
+            f"{robots} robots at 2 pi, against independent directions",
+            ours[:, -1:],
+            [independent_order(robots)],
+            MARGIN,
         )
         comparisons += [against_model, noise_only]
         colour = COLOURS[robots]
         axes.plot(etas, against_model.expected, color=colour, linewidth=1, label=f"model, N = {robots}")
         axes.errorbar(
-            etas, against_model.measured, against_model.standard_error, fmt="o", color=colour, markersize=4,
+            etas,
+            against_model.measured,
+            against_model.standard_error,
+            fmt="o",
+            color=colour,
+            markersize=4,
             label=f"robots, N = {robots}",
         )
         table = {"eta": np.array(etas), "robots": against_model.measured, "model": against_model.expected}

@@ -69,9 +69,7 @@ def draw_curves(axes: tuple[Axes, Axes], time_s: Values, msd: Comparison, cosine
     axes[0].plot(fine_s, theory_msd(fine_s, rate), color=colour, linewidth=1)
     axes[0].errorbar(time_s, scale * msd.measured, scale * msd.standard_error, fmt="o", color=colour, markersize=4)
     axes[1].plot(fine_s, np.exp(-rate * fine_s), color=colour, linewidth=1)
-    axes[1].errorbar(
-        time_s, cosine.measured, cosine.standard_error, fmt="o", color=colour, markersize=4, label=title
-    )
+    axes[1].errorbar(time_s, cosine.measured, cosine.standard_error, fmt="o", color=colour, markersize=4, label=title)
 
 
 def measure(folder: Path, quick: bool) -> Outcome:
