@@ -25,6 +25,7 @@ import parameter_study
 import reception
 import replay
 import swarm
+import validation
 import window
 from pictures import DOCS, difference, keep
 
@@ -40,6 +41,7 @@ SCRIPTS: dict[str, ModuleType] = {
         reception,
         replay,
         swarm,
+        validation,
         window,
     )
 }

@@ -4,13 +4,14 @@
     .venv/bin/python docs/figures/validate.py --quick vicsek     # one scene with fewer runs, wider tolerances
     .venv/bin/python docs/figures/validate.py --keep             # also draws, and writes the numbers into the page
 
-The exit code is 1 if a scene disagrees. Needs the library and the examples (./build.sh).
+The exit code is 1 if a scene disagrees, 2 if one cannot run. Needs the library and the examples (./build.sh).
 """
 
 from __future__ import annotations
 
 import argparse
 import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -25,19 +26,19 @@ PAGE = DOCS / "validation.md"
 
 def block(name: str) -> re.Pattern[str]:
     """Match what the page quotes of a scene: a code block after a comment with its name."""
-    return re.compile(rf"(?<=<!-- {name} -->\n\n```\n).*?(?=```\n)", re.DOTALL)
+    return re.compile(rf"(<!-- {name} -->\n\n```\n)(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
 def quoted(name: str) -> list[str]:
     """Return the lines that the page quotes of a scene."""
     found = block(name).search(PAGE.read_text(encoding="utf-8"))
-    return found[0].splitlines() if found else []
+    return found[2].splitlines() if found else []
 
 
 def quote(name: str, lines: Sequence[str]) -> None:
     """Replace what the page quotes of a scene."""
     page = PAGE.read_text(encoding="utf-8")
-    text, count = block(name).subn(lambda _: "".join(f"{line}\n" for line in lines), page)
+    text, count = block(name).subn(lambda found: "\n".join((found[1] + lines[0], *lines[1:], "```")), page)
     if count != 1:
         sys.exit(f"{PAGE}: expected one place for the numbers of {name}, found {count}")
     PAGE.write_text(text, encoding="utf-8")
@@ -57,13 +58,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     disagreements = 0
     for name in options.names or SCENES:
         start_s = time.monotonic()
-        with tempfile.TemporaryDirectory() as folder:
-            outcome = SCENES[name](Path(folder), options.quick)
-        lines = [comparison.line for comparison in outcome.comparisons]
-        print(f"{name} ({time.monotonic() - start_s:.0f} s)", *lines, sep="\n", flush=True)
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                outcome = SCENES[name](Path(folder), options.quick)
+        except (FileNotFoundError, subprocess.CalledProcessError) as error:
+            print(f"{name}: {error}. ./build.sh builds the library and the examples", file=sys.stderr)
+            return 2
+        print(f"{name} ({time.monotonic() - start_s:.0f} s)", *outcome.lines, sep="\n", flush=True)
         if options.keep:
             keep(picture_of(outcome), DOCS / f"validation_{name}.png")
-            quote(name, lines)
+            quote(name, outcome.lines)
         disagreements += sum(not comparison.agrees for comparison in outcome.comparisons)
     return 1 if disagreements else 0
 

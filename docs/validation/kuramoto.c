@@ -3,7 +3,7 @@
 //     d theta / dt = w + K * mean over all phases heard in a tick of sin(theta_j - theta)
 //
 // The frequencies w are the quantiles (i + 1/2) / N of a Lorentzian distribution around 0 of half-width gamma, for the
-// robots i = 0 to N - 1. With a range beyond the arena, everybody hears everybody, as in the theory; with a short range,
+// robots i = 0 to N - 1. With a range beyond the arena, everybody hears everybody, as in the theory; with a short one,
 // robots that drive about hear ever new ones.
 #include <math.h>
 
@@ -40,7 +40,7 @@ static bool send_phase(void) {
     return pogobot_infrared_sendShortMessage_omni((uint8_t*)&content, sizeof(content)) == 0;
 }
 
-// Mean of sin(theta_j - theta) over all robots heard since the last tick. A message comes once for each face it reaches.
+// Mean of sin(theta_j - theta) over all robots heard since the last tick. A message comes once per face it reaches.
 static float mean_pull(void) {
     bool heard[MAX_ROBOTS] = {false};
     float sum = 0.0f;

@@ -6,8 +6,8 @@
 //  - tumbles (run and tumble): with the probability tumble_rate dt, a turn by tumble_angle to a random side, or in
 //    any direction if tumble_angle is 0.
 //
-// A robot turns while it moves, within one tick, so runs have no pauses. In light, it may move more slowly (orthokinesis)
-// or tumble more often (klinokinesis): by the shares slow_in_light and tumble_in_light at full light.
+// A robot turns while it moves, within one tick, so runs have no pauses. In light, it may move more slowly
+// (orthokinesis) or tumble more often (klinokinesis): by the shares slow_in_light and tumble_in_light at full light.
 #include <math.h>
 
 #include "pogobase.h"

@@ -14,8 +14,9 @@ from PIL import Image
 from running import ROOT
 
 
-# Those of the tutorials are compared by test_docs.py and test_parameter_study.py, which follow them anyway.
-@pytest.mark.parametrize("script", sorted(set(SCRIPTS) - {"first_program", "parameter_study"}))
+# Those of the tutorials are compared by test_docs.py and test_parameter_study.py, which follow them anyway. Those
+# of the validation take many runs: test_validation.py does fewer.
+@pytest.mark.parametrize("script", sorted(set(SCRIPTS) - {"first_program", "parameter_study", "validation"}))
 def test_pictures_show_what_the_tree_draws_today(script: str, tmp_path: Path) -> None:
     today = SCRIPTS[script].draw(tmp_path)
     assert set(today) == set(SCRIPTS[script].NAMES)

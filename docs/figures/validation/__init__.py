@@ -22,3 +22,8 @@ NAMES = tuple(f"validation_{name}.png" for name in SCENES)
 def picture_of(outcome: Outcome) -> Picture:
     """Draw a scene's figure."""
     return from_figure(outcome.figure, 110, *outcome.tables)
+
+
+def draw(folder: Path) -> dict[str, Picture]:
+    """Run all scenes; takes several minutes."""
+    return {name: picture_of(SCENES[scene](folder, False)) for name, scene in zip(NAMES, SCENES, strict=True)}

@@ -54,15 +54,21 @@ class Comparison:
         return bool((np.abs(self.difference) <= self.tolerance).all())
 
     @property
+    def used(self) -> float:
+        """Largest share of a tolerance that a difference uses; above 1, or NaN, if they do not agree."""
+        difference = np.abs(self.difference)
+        return float(np.where(difference == 0.0, 0.0, difference / np.maximum(self.tolerance, 1e-300)).max())
+
+    @property
     def line(self) -> str:
-        """One line for the page: root mean square and largest difference, and how much of the tolerance is used."""
-        rms, largest = np.sqrt((self.difference**2).mean()), np.abs(self.difference).max()
-        used = (np.abs(self.difference) / self.tolerance).max()
+        """One line for the page: differences, and how much of the tolerance they use."""
+        if len(self.measured) == 1:
+            values = f"{self.measured[0]:.4f}, expected {self.expected[0]:.4f}"
+        else:
+            rms, largest = np.sqrt((self.difference**2).mean()), np.abs(self.difference).max()
+            values = f"{len(self.measured)} values, rms difference {rms:.4f}, largest {largest:.4f}"
         verdict = "agrees" if self.agrees else "DISAGREES"
-        return (
-            f"{self.name}: {len(self.measured)} values, rms difference {rms:.4f}, largest {largest:.4f},"
-            f" {100 * used:.0f} % of what is allowed: {verdict}"
-        )
+        return f"{self.name}: {values}; {100 * self.used:.0f} % of the tolerance: {verdict}"
 
 
 def relative(name: str, samples: npt.ArrayLike, expected: npt.ArrayLike, margin: float = 0.0) -> Comparison:

@@ -25,9 +25,15 @@ SOURCES = DOCS / "validation"
 class Outcome:
     """What a scene gives: its figure, the numbers that it shows, and comparisons."""
 
+    runs: str  # how many of what, for the page
     figure: Figure
     tables: tuple[pd.DataFrame, ...]
     comparisons: tuple[Comparison, ...]
+
+    @property
+    def lines(self) -> list[str]:
+        """What the page quotes."""
+        return [self.runs, *(comparison.line for comparison in self.comparisons)]
 
 
 @cache

@@ -100,4 +100,5 @@ def measure(folder: Path, quick: bool) -> Outcome:
     axes.set(xlabel="coupling K (rad/s)", ylabel="order parameter r", ylim=(0.0, 1.0))
     axes.legend(fontsize=8, loc="upper left")
     table = pd.DataFrame({name: values.mean(axis=0) for name, values in orders.items()}).assign(coupling=couplings)
-    return Outcome(figure, (table.round(9),), tuple(compare(orders, np.array(couplings), runs)))
+    counted = f"{runs} runs of {ROBOTS} robots for each coupling and each kind of neighbours, {TIME_S:g} s"
+    return Outcome(counted, figure, (table.round(9),), tuple(compare(orders, np.array(couplings), runs)))

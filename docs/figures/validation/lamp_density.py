@@ -25,6 +25,7 @@ NAME, PROGRAM = "lamp", "persistent_walk"
 RUNS, QUICK_RUNS = 16, 3
 SIDE_MM, LAMP_RADIUS_MM = 2000.0, 900.0
 SLOW_IN_LIGHT = 0.8
+ROBOTS, TIME_S = 30, 500.0
 START_S = 100.0  # until then, robots spread from where they were put
 EDGES_MM = np.array([0.0, 150.0, 300.0, 450.0, 600.0, 750.0, 900.0, np.inf])
 LABELS = {"orthokinesis": "slower in light", "klinokinesis": "more tumbles in light"}
@@ -90,7 +91,8 @@ def draw(frames: dict[str, pd.DataFrame], results: dict[str, Comparison], expect
 
 def measure(folder: Path, quick: bool) -> Outcome:
     """Run, compare, draw."""
-    frames = batch(compile_program(PROGRAM, folder), NAME, QUICK_RUNS if quick else RUNS)
+    runs = QUICK_RUNS if quick else RUNS
+    frames = batch(compile_program(PROGRAM, folder), NAME, runs)
     cells = grid_radius_mm()
     expected = {"orthokinesis": shares(cells, 1.0 / speed(cells)), "klinokinesis": shares(cells)}
     results = {
@@ -98,4 +100,5 @@ def measure(folder: Path, quick: bool) -> Outcome:
         for kind, theory in expected.items()
     }
     tables = [pd.DataFrame({"radius": EDGES_MM[:-1], "ratio": result.measured}).round(9) for result in results.values()]
-    return Outcome(draw(frames, results, expected), tuple(tables), tuple(results.values()))
+    counted = f"{runs} runs of {ROBOTS} robots for each behaviour, {TIME_S:g} s"
+    return Outcome(counted, draw(frames, results, expected), tuple(tables), tuple(results.values()))

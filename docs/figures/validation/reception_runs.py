@@ -90,4 +90,5 @@ def measure(folder: Path, quick: bool) -> Outcome:  # noqa: ARG001
     runs, expected, error = (rows[name].to_numpy(dtype=float) for name in ("runs", "equation", "error"))
     many = 10**6  # messages, not runs, are the samples: their variance is known
     on_equation = Comparison("runs against the equation", runs, expected, error, many, np.zeros(len(rows)))
-    return Outcome(draw(rows), (rows.round(9),), (on_equation,))
+    counted = f"{seeds} runs of {time_s:g} s for each of {len(rows)} settings"
+    return Outcome(counted, draw(rows), (rows.round(9),), (on_equation,))

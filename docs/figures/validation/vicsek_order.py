@@ -15,6 +15,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from pogosim.analysis.directions import directions_of_headings
+from pogosim.analysis.order import polar_order
+from pogosim.analysis.trajectories import trajectories_of
 from scipy.spatial import cKDTree
 
 from .agreement import Comparison, Values, absolute, two_samples
@@ -71,10 +74,12 @@ def robot_orders(folder: Path, robots: int, etas: tuple[float, ...], runs: int) 
         "parameters.noise_eta": {"batch_options": list(etas)},
     }
     rows = batch(compile_program(NAME, folder), NAME, runs, changes)[NAME]
-    rows = rows[rows["time"] >= STEPS_LEFT_OUT * STEP_S - 1e-6].assign(x=np.cos(rows["angle"]), y=np.sin(rows["angle"]))
-    means = rows.groupby(["parameters.noise_eta", "run", "time"])[["x", "y"]].mean()
-    order = means.assign(r=np.hypot(means["x"], means["y"])).groupby(level=[0, 1])["r"].mean()
-    return np.asarray(order.unstack(0)[list(etas)].to_numpy())
+    order = {}
+    for run in trajectories_of(rows):
+        late = run.time_s >= STEPS_LEFT_OUT * STEP_S - 1e-6
+        label = (run.labels["parameters.noise_eta"], run.labels["run"])
+        order[label] = polar_order(directions_of_headings(run))[late].mean()
+    return np.array([[order[eta, run] for eta in etas] for run in range(runs)])
 
 
 def independent_order(robots: int) -> float:
@@ -88,7 +93,9 @@ def measure(folder: Path, quick: bool) -> Outcome:
     axes = figure.subplots()
     comparisons: list[Comparison] = []
     tables = []
-    for robots, (runs, etas) in (QUICK_SIZES if quick else SIZES).items():
+    sizes = QUICK_SIZES if quick else SIZES
+    counted = ", ".join(f"{runs} runs of {robots} robots" for robots, (runs, _) in sizes.items())
+    for robots, (runs, etas) in sizes.items():
         ours, theirs = robot_orders(folder, robots, etas, runs), model_orders(robots, etas, runs)
         against_model = two_samples(f"{robots} robots, against the model", ours, theirs, MARGIN)
         noise_only = absolute(
@@ -115,4 +122,4 @@ def measure(folder: Path, quick: bool) -> Outcome:
     axes.plot(eta, np.sin(eta / 2.0) / (eta / 2.0), color="0.6", linestyle=":", label="noise of one step alone")
     axes.set(xlabel=r"noise $\eta$ (rad)", ylabel="order parameter", ylim=(0.0, 1.03))
     axes.legend(fontsize=8)
-    return Outcome(figure, tuple(tables), tuple(comparisons))
+    return Outcome(f"for each noise, {counted}, {STEPS} steps", figure, tuple(tables), tuple(comparisons))

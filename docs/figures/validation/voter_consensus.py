@@ -117,4 +117,6 @@ def measure(folder: Path, quick: bool) -> Outcome:
     right.set(xlabel="time / N", ylabel="share of runs without consensus", xlim=(0.0, 3.0))
     right.legend(fontsize=8)
     comparisons = (mean, *(distribution(robots, ticks[robots]) for robots in sizes))
-    return Outcome(figure, (pd.DataFrame(ticks).rename(columns=str),), comparisons)
+    return Outcome(
+        f"{runs} runs for each number of robots", figure, (pd.DataFrame(ticks).rename(columns=str),), comparisons
+    )

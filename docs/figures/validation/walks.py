@@ -19,13 +19,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from pogosim.analysis.trajectories import trajectories_of, unwrapped
 
 from .agreement import Comparison, Values, absolute, relative
 from .experiment import Outcome, batch, compile_program
 
 NAME = "persistent_walk"
 RUNS, QUICK_RUNS = 4, 1
-SIDE_MM = 30_000.0
+ROBOTS, TIME_S, QUICK_TIME_S = 100, 200.0, 100.0
 SPEED_MM_S = 511.5 * 100 / 1023
 WALKS = {  # results: title, decay rate of the heading's autocorrelation (1/s), colour
     "active_brownian": ("active Brownian, $D_r$ = 1 rad²/s", 1.0, "#1b6ca8"),
@@ -43,22 +44,14 @@ def theory_msd(time_s: Values, decay_rate_s: float) -> Values:
     return np.asarray(2.0 * SPEED_MM_S**2 / decay_rate_s**2 * (kt - 1.0 + np.exp(-kt)))
 
 
-def by_robot(rows: pd.DataFrame, column: str) -> Values:
-    """Return a column as an array. Shape (robots of all runs, times)."""
-    return np.asarray(rows.pivot(index=["run", "robot_id"], columns="time", values=column).to_numpy(dtype=float))
-
-
-def unwrapped(positions_mm: Values) -> Values:
-    """Undo jumps across the periodic boundary. Same shape."""
-    return np.asarray(np.unwrap(positions_mm, period=SIDE_MM, axis=1))
-
-
 def time_averages(rows: pd.DataFrame) -> tuple[Values, Values]:
     """Return each robot's squared displacements (mm^2) and cosines of turned angles. Shapes (robots, lags)."""
-    x, y, angle = unwrapped(by_robot(rows, "x")), unwrapped(by_robot(rows, "y")), by_robot(rows, "angle")
-    squares = [((x[:, n:] - x[:, :-n]) ** 2 + (y[:, n:] - y[:, :-n]) ** 2).mean(axis=1) for n in LAGS]
-    cosines = [np.cos(angle[:, n:] - angle[:, :-n]).mean(axis=1) for n in LAGS]
-    return np.column_stack(squares), np.column_stack(cosines)
+    squares, cosines = [], []
+    for run in trajectories_of(rows):
+        path, angle = unwrapped(run), run.heading_rad
+        squares.append([((path[n:] - path[:-n]) ** 2).sum(axis=2).mean(axis=0) for n in LAGS])
+        cosines.append([np.cos(angle[n:] - angle[:-n]).mean(axis=0) for n in LAGS])
+    return np.hstack(squares).T, np.hstack(cosines).T
 
 
 def draw_curves(axes: tuple[Axes, Axes], time_s: Values, msd: Comparison, cosine: Comparison, walk: str) -> None:
@@ -74,20 +67,22 @@ def draw_curves(axes: tuple[Axes, Axes], time_s: Values, msd: Comparison, cosine
 
 def measure(folder: Path, quick: bool) -> Outcome:
     """Run, compare, draw."""
-    frames = batch(compile_program(NAME, folder), NAME, QUICK_RUNS if quick else RUNS)
+    runs, time_s = (QUICK_RUNS, QUICK_TIME_S) if quick else (RUNS, TIME_S)
+    frames = batch(compile_program(NAME, folder), NAME, runs, {"simulation_time": time_s})
+    counted = f"{runs} runs of {ROBOTS} robots for each walk, {time_s:g} s"
     figure = Figure(figsize=(9.0, 3.6), layout="constrained")
     axes = figure.subplots(1, 2)
     comparisons, tables = [], []
     for walk, (_, rate, _) in WALKS.items():
-        time_s = LAGS * float(np.diff(np.sort(frames[walk]["time"].unique())[:2])[0])
+        lag_s = LAGS * float(np.diff(np.sort(frames[walk]["time"].unique())[:2])[0])
         squares, cosines = time_averages(frames[walk])
         name = walk.replace("_", " ")
-        msd = relative(f"{name}, MSD / theory", squares, theory_msd(time_s, rate), MARGIN_MSD)
-        cosine = absolute(f"{name}, autocorrelation", cosines, np.exp(-rate * time_s), MARGIN_COSINE)
+        msd = relative(f"{name}, MSD / theory", squares, theory_msd(lag_s, rate), MARGIN_MSD)
+        cosine = absolute(f"{name}, autocorrelation", cosines, np.exp(-rate * lag_s), MARGIN_COSINE)
         comparisons += [msd, cosine]
-        draw_curves(axes, time_s, msd, cosine, walk)
-        tables.append(pd.DataFrame({"time": time_s, "msd": msd.measured, "cosine": cosine.measured}).round(9))
+        draw_curves(axes, lag_s, msd, cosine, walk)
+        tables.append(pd.DataFrame({"time": lag_s, "msd": msd.measured, "cosine": cosine.measured}).round(9))
     axes[0].set(xscale="log", yscale="log", xlabel="time (s)", ylabel="mean squared displacement (mm²)")
     axes[1].set(xscale="log", xlabel="time (s)", ylabel="autocorrelation of the heading", ylim=(-0.1, 1.05))
     axes[1].legend(fontsize=8)
-    return Outcome(figure, tuple(tables), tuple(comparisons))
+    return Outcome(counted, figure, tuple(tables), tuple(comparisons))
