@@ -22,7 +22,7 @@ from .agreement import Comparison, Values, relative
 from .experiment import Outcome, batch, compile_program
 
 NAME, PROGRAM = "lamp", "persistent_walk"
-RUNS, QUICK_RUNS = 16, 3
+RUNS, QUICK_RUNS = 16, 5
 SIDE_MM, LAMP_RADIUS_MM = 2000.0, 900.0
 SLOW_IN_LIGHT = 0.8
 ROBOTS, TIME_S = 30, 500.0

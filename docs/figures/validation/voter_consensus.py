@@ -27,7 +27,7 @@ from .agreement import FALSE_ALARM, Comparison, Values, relative
 from .experiment import Outcome, batch, compile_program
 
 NAME = "voter"
-RUNS, QUICK_RUNS = 300, 60
+RUNS, QUICK_RUNS = 300, 150
 SIZES, QUICK_SIZES = (8, 16, 32, 64), (8, 32)
 UPDATE_PROBABILITY = 0.05
 COLOURS = {8: "#5b8c5a", 16: "#d98200", 32: "#1b6ca8", 64: "#a8321b"}
