@@ -27,9 +27,10 @@ from .agreement import FALSE_ALARM, Comparison, Values, relative
 from .experiment import Outcome, batch, compile_program
 
 NAME = "voter"
-RUNS, QUICK_RUNS = 300, 150
-SIZES, QUICK_SIZES = (8, 16, 32, 64), (8, 32)
+SIZES = {8: 1000, 16: 1000, 32: 500, 64: 300}  # runs
+QUICK_SIZES = {8: 150, 32: 150}
 UPDATE_PROBABILITY = 0.05
+MARGIN = 0.005  # relative: what the factor for updates that cancel leaves over
 COLOURS = {8: "#5b8c5a", 16: "#d98200", 32: "#1b6ca8", 64: "#a8321b"}
 
 
@@ -83,40 +84,43 @@ def distribution(robots: int, ticks: Values) -> Comparison:
     return Comparison(name, np.array([distance]), np.zeros(1), np.zeros(1), 1, np.array([allowed]))
 
 
-def measure(folder: Path, quick: bool) -> Outcome:
-    """Run, compare, draw."""
-    sizes, runs = (QUICK_SIZES, QUICK_RUNS) if quick else (SIZES, RUNS)
-    program = compile_program(NAME, folder)
-    ticks = {robots: consensus_ticks(program, robots, runs) for robots in sizes}
-    simultaneous = 1.0 - UPDATE_PROBABILITY / 2.0
-    times = np.column_stack([ticks[robots] * UPDATE_PROBABILITY * simultaneous for robots in sizes])
-    mean = relative("mean time / theory", times, [theory_time(robots) for robots in sizes], margin=0.005)
-
+def draw(ticks: dict[int, Values], times: dict[int, Values]) -> Figure:
+    """Draw mean times against the number of robots, and the distributions."""
     figure = Figure(figsize=(9.0, 3.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     every = np.arange(4, 101, 2)
     left.plot(every, [theory_time(int(robots)) for robots in every], color="0.3", linewidth=1, label="theory")
     left.plot(every, every * np.log(2.0), color="0.3", linestyle=":", linewidth=1, label="N ln 2")
-    error = times.std(axis=0, ddof=1) / np.sqrt(runs)
-    left.errorbar(sizes, times.mean(axis=0), error, fmt="o", color="#1b6ca8", markersize=4, label="robots")
+    for robots, sample in times.items():
+        error = sample.std(ddof=1) / np.sqrt(len(sample))
+        left.errorbar(robots, sample.mean(), error, fmt="o", color=COLOURS[robots], markersize=4)
     left.set(xscale="log", yscale="log", xlabel="robots N", ylabel="mean time to consensus (N updates)")
     left.legend(fontsize=8)
-    for robots in sizes:
-        last = int(ticks[robots].max())
-        time = UPDATE_PROBABILITY * np.arange(last + 1) / robots
-        right.plot(time, 1.0 - chain_consensus(robots, last), color="0.3", linewidth=0.8)
-        ours = 1.0 - np.arange(1, runs + 1) / runs
-        right.step(
-            UPDATE_PROBABILITY * np.sort(ticks[robots]) / robots,
-            ours,
-            where="post",
-            color=COLOURS[robots],
-            linewidth=1.2,
-            label=f"N = {robots}",
-        )
+    for robots, sample in ticks.items():
+        tick = np.arange(int(sample.max()) + 1)
+        agreed = chain_consensus(robots, len(tick) - 1)
+        scale = UPDATE_PROBABILITY / robots
+        right.plot(scale * tick, 1.0 - agreed, color="0.3", linewidth=0.8)
+        left_over = 1.0 - np.arange(1, len(sample) + 1) / len(sample)
+        right.step(scale * np.sort(sample), left_over, where="post", color=COLOURS[robots], label=f"N = {robots}")
     right.set(xlabel="time / N", ylabel="share of runs without consensus", xlim=(0.0, 3.0))
     right.legend(fontsize=8)
-    comparisons = (mean, *(distribution(robots, ticks[robots]) for robots in sizes))
-    return Outcome(
-        f"{runs} runs for each number of robots", figure, (pd.DataFrame(ticks).rename(columns=str),), comparisons
-    )
+    return figure
+
+
+def measure(folder: Path, quick: bool) -> Outcome:
+    """Run, compare, draw."""
+    program = compile_program(NAME, folder)
+    ticks = {
+        robots: consensus_ticks(program, robots, runs) for robots, runs in (QUICK_SIZES if quick else SIZES).items()
+    }
+    updates_per_tick = UPDATE_PROBABILITY * (1.0 - UPDATE_PROBABILITY / 2.0)
+    times = {robots: updates_per_tick * sample for robots, sample in ticks.items()}
+    means = [
+        relative(f"{robots} robots, mean time / theory", sample[:, None], [theory_time(robots)], MARGIN)
+        for robots, sample in times.items()
+    ]
+    counted = ", ".join(f"{len(sample)} runs of {robots} robots" for robots, sample in ticks.items())
+    tables = tuple(pd.DataFrame({str(robots): sample}) for robots, sample in ticks.items())
+    distributions = [distribution(robots, sample) for robots, sample in ticks.items()]
+    return Outcome(counted, draw(ticks, times), tables, (*means, *distributions))

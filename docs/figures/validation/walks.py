@@ -8,7 +8,7 @@ has the mean squared displacement
 (Fürth, Zeitschrift für Physik 2, 244, 1920). k is the rotational diffusion coefficient D_r of an active Brownian
 particle (Howse et al., Physical Review Letters 99, 048102, 2007), and lambda (1 - a) for tumbles at the rate lambda by
 angles of the mean cosine a (Lovely and Dahlquist, Journal of Theoretical Biology 50, 477, 1975). Times between tumbles
-are exponential; with steps of dt, both hold up to relative errors of (k dt)^2 / 12 and k dt^2 / t.
+are exponential; with steps of dt, both hold up to relative errors of (k dt)^2 / 12 and k dt^2 / (3 t).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ RUNS, QUICK_RUNS = 4, 1
 ROBOTS, TIME_S, QUICK_TIME_S = 100, 200.0, 100.0
 SPEED_MM_S = 511.5 * 100 / 1023
 WALKS = {  # results: title, decay rate of the heading's autocorrelation (1/s), colour
-    "active_brownian": ("active Brownian, $D_r$ = 1 rad²/s", 1.0, "#1b6ca8"),
+    "active_brownian": ("active Brownian, $D_r$ = 2 rad²/s", 2.0, "#1b6ca8"),
     "bacteria": ("run and tumble, 1/s, by 70.5°", 2.0 / 3.0, "#d98200"),
     "run_and_tumble": ("run and tumble, 1/s, any angle", 1.0, "#a8321b"),
 }
