@@ -30,6 +30,7 @@ from reception_profile import (
 NAME = "messages"
 SEEDS, QUICK_SEEDS = 6, 1
 TIME_S, QUICK_TIME_S = 60.0, 20.0
+PERCENTS = np.arange(5, 101)
 COLOURS = {3: "#1b6ca8", 20: "#d98200", 100: "#a8321b"}  # by bytes of payload
 
 
@@ -54,19 +55,24 @@ def table(counts: dict[Setting, Count]) -> pd.DataFrame:
 def draw(rows: pd.DataFrame) -> Figure:
     """Draw a panel per number of neighbours, and a map of simulated minus measured shares."""
     figure = Figure(figsize=(9.0, 6.4), layout="constrained")
+    parameters = read_parameters()
     grid = figure.add_gridspec(2, 3, height_ratios=(3, 2))
-    for column, (neighbours, group) in enumerate(rows.groupby("neighbours")):
+    for column, neighbours in enumerate(sorted(rows["neighbours"].unique())):
+        group = rows[rows["neighbours"] == neighbours]
         axes = figure.add_subplot(grid[0, column])
         for payload, colour in COLOURS.items():
             points = group[group["payload"] == payload]
-            axes.plot(points["p"], points["equation"], color=colour, linewidth=1)
+            law = [equation(Setting(payload, int(neighbours), int(percent)), parameters) for percent in PERCENTS]
+            axes.plot(PERCENTS / 100.0, law, color=colour, linewidth=1)
             axes.plot(points["p"], points["robots"], "x", color=colour)
             axes.plot(points["p"], points["runs"], "o", color=colour, markersize=4, label=f"{payload} bytes")
         axes.set(xlabel="chance to send, per tick", ylim=(-0.03, 1.05))
         axes.set_title(f"{neighbours} neighbour{'s' if neighbours != 1 else ''}", fontsize=10)
         if column == 0:
             axes.set_ylabel("share of messages received")
-            axes.legend(fontsize=8, loc="lower left")
+            axes.legend(
+                fontsize=8, loc="lower left", title="dots: runs, lines: equation,\ncrosses: robots", title_fontsize=8
+            )
     axes = figure.add_subplot(grid[1, :])
     difference = (rows["runs"] - rows["robots"]).to_numpy()
     settings = rows[["payload", "neighbours"]].drop_duplicates()
