@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -156,11 +155,13 @@ def test_numbers_are_written_into_the_page(monkeypatch: pytest.MonkeyPatch, tmp_
     ("arguments", "message"),
     [(["flocks"], "no scene is called flocks; there are "), (["--quick", "--keep"], "--keep needs all runs")],
 )
-def test_mistakes_on_the_command_line_get_one_line(arguments: list[str], message: str) -> None:
-    command = [sys.executable, str(ROOT / "docs" / "figures" / "validate.py"), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert message in done.stderr.splitlines()[-1]
+def test_mistakes_on_the_command_line_get_one_line(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        validate.main(arguments)
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err.splitlines()[-1]
 
 
 def test_library_that_is_not_built_is_named(
