@@ -9,10 +9,11 @@ import sys
 
 from pogosim.analysis.bond_order import bond_order
 from pogosim.analysis.correlations import correlation_length, pair_correlation, vector_correlation
-from pogosim.analysis.directions import directions_of_headings, directions_of_motion, velocities
+from pogosim.analysis.directions import directions_of_headings, directions_of_motion
 from pogosim.analysis.flow import VelocityField, velocity_field, velocity_fields
 from pogosim.analysis.fluctuations import mean_square_speed, number_fluctuations
 from pogosim.analysis.milling import centre_of_mass, milling
+from pogosim.analysis.motion import velocity
 from pogosim.analysis.order import local_alignment, nematic_order, polar_order
 from pogosim.analysis.structure_factor import structure_factor
 from pogosim.reports.collective import main
@@ -34,7 +35,7 @@ __all__ = [
     "polar_order",
     "structure_factor",
     "vector_correlation",
-    "velocities",
+    "velocity",
     "velocity_field",
     "velocity_fields",
 ]

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pogosim.analysis.directions import velocities
 from pogosim.analysis.flow import VelocityField, velocity_fields
+from pogosim.analysis.motion import velocity
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from swarms import Floats, metadata_of, rows_of
 
@@ -72,7 +72,7 @@ def test_the_vorticity_of_a_turning_disk_is_found_from_its_trajectories() -> Non
     phase = omega * period * np.arange(3)
     turned = [arm @ np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]) for a in phase]
     (run,) = trajectories_of(rows_of(500.0 + np.stack(turned), period_s=period), metadata_of())
-    fields = [field for _, field in velocity_fields(run, velocities(run), 150.0, (10, 10))]
+    fields = [field for _, field in velocity_fields(run, velocity(run), 150.0, (10, 10))]
     assert np.isnan(fields[0].vorticity).all()  # no velocity yet
     np.testing.assert_allclose(known(fields[2].vorticity), 2.0 * omega, rtol=1e-3)
 

@@ -4,9 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 from pogosim.analysis.bond_order import bond_order
-from pogosim.analysis.directions import directions_of_headings, directions_of_motion, velocities
+from pogosim.analysis.directions import directions_of_headings, directions_of_motion
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.milling import centre_of_mass, milling
+from pogosim.analysis.motion import velocity
 from pogosim.analysis.neighbourhood import pairs_within
 from pogosim.analysis.order import local_alignment, nematic_order, polar_order
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
@@ -65,7 +66,7 @@ def test_independent_headings_have_the_polar_order_of_chance() -> None:
 
 def test_velocities_are_those_since_the_time_before() -> None:
     run = run_of(rows_of(np.array([[[10.0, 10.0]], [[13.0, 14.0]], [[13.0, 14.0]]]), period_s=0.5))
-    assert velocities(run)[1:, 0].tolist() == [[6, 8], [0, 0]]
+    assert velocity(run)[1:, 0].tolist() == [[6, 8], [0, 0]]
     direction = directions_of_motion(run)[:, 0]
     assert np.isnan(direction[[0, 2]]).all()  # the first time, and a robot that stands
     assert direction[1].tolist() == [0.6, 0.8]
@@ -73,7 +74,7 @@ def test_velocities_are_those_since_the_time_before() -> None:
 
 def test_velocities_do_not_see_periodic_borders() -> None:
     run = run_of(rows_of(np.array([[[995.0, 500.0]], [[5.0, 500.0]]])), periodic=True)
-    assert velocities(run)[1, 0].tolist() == [10, 0]
+    assert velocity(run)[1, 0].tolist() == [10, 0]
 
 
 def test_robots_without_a_direction_are_left_out() -> None:
@@ -158,7 +159,7 @@ def test_robots_in_one_place_have_a_bond_order_without_themselves() -> None:
 def test_a_turning_disk_mills_and_its_sign_is_that_of_omega(centre: str) -> None:
     for sign in (1.0, -1.0):
         run = run_of(rows_of(disk_turning(sign * 0.5), period_s=0.1))
-        tangential, momentum = milling(run, velocities(run), "cm" if centre == "cm" else "arena")
+        tangential, momentum = milling(run, velocity(run), "cm" if centre == "cm" else "arena")
         assert np.isnan(tangential[0])
         # Chords lag behind tangents by half the angle of a step.
         np.testing.assert_allclose(tangential[1:], sign * np.cos(0.025), rtol=1e-3)
@@ -167,16 +168,16 @@ def test_a_turning_disk_mills_and_its_sign_is_that_of_omega(centre: str) -> None
 
 def test_a_swarm_that_goes_straight_does_not_mill() -> None:
     position = disk_turning(0.0) + 10.0 * np.arange(4)[:, None, None]
-    tangential, momentum = milling(run := run_of(rows_of(position)), velocities(run))
+    tangential, momentum = milling(run := run_of(rows_of(position)), velocity(run))
     np.testing.assert_allclose(momentum[1:], 0.0, atol=1e-12)
     assert np.abs(tangential[1:]).max() < 0.2
 
 
 def test_milling_does_not_see_periodic_borders() -> None:
     position = disk_turning(0.5)
-    inside = milling(run := run_of(rows_of(position), periodic=True), velocities(run))
+    inside = milling(run := run_of(rows_of(position), periodic=True), velocity(run))
     shifted = (position + np.array([430.0, 510.0])) % 1000.0
-    across = milling(run := run_of(rows_of(shifted), periodic=True), velocities(run))
+    across = milling(run := run_of(rows_of(shifted), periodic=True), velocity(run))
     np.testing.assert_allclose(across, inside, atol=1e-9)
 
 
@@ -191,7 +192,7 @@ def test_the_centre_of_mass_is_found_across_the_border() -> None:
 def test_the_centre_of_an_unknown_arena_is_refused() -> None:
     (run,) = trajectories_of(rows_of(disk_turning(0.5)), {})
     with pytest.raises(AnalysisError, match="what the arena is"):
-        milling(run, velocities(run), "arena")
+        milling(run, velocity(run), "arena")
 
 
 def test_one_robot_at_one_time_has_an_order_of_its_heading_and_nothing_else() -> None:
@@ -200,4 +201,4 @@ def test_one_robot_at_one_time_has_an_order_of_its_heading_and_nothing_else() ->
     assert np.isnan(polar_order(directions_of_motion(run))).all()
     assert np.isnan(local_alignment(run, directions_of_headings(run), 133.0).polar_order).all()
     assert np.isnan(bond_order(run)).all()
-    assert np.isnan(milling(run, velocities(run))).all()
+    assert np.isnan(milling(run, velocity(run))).all()

@@ -1,27 +1,15 @@
-"""Where robots go at each time: velocities, and unit vectors along velocities or headings."""
+"""Where robots go at each time: unit vectors along velocities or headings."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.trajectories import Trajectories, unwrapped
+from pogosim.analysis.motion import velocity
+from pogosim.analysis.trajectories import Trajectories
 
 # Slower robots have no direction. Positions are saved to about 0.0001 mm, a pogobot drives at 60 mm/s or more.
 MIN_SPEED_MM_S = 0.1
-
-
-def velocities(run: Trajectories) -> Floats:
-    """Return the mean velocity of each robot since the save time before, (r(t) - r(t - dt)) / dt.
-
-    Across periodic borders the shorter way counts, see `unwrapped`.
-
-    Returns:
-        Shape (T, N, 2), mm/s. NaN at the first time, and where a robot has no position at this time or the one before.
-    """
-    velocity = np.full(run.position_mm.shape, np.nan)
-    velocity[1:] = np.diff(unwrapped(run), axis=0) / np.diff(run.time_s)[:, None, None]
-    return velocity
 
 
 def unit_vectors(vector: Floats, min_length: float = 0.0) -> Floats:
@@ -35,13 +23,13 @@ def directions_of_motion(run: Trajectories, min_speed_mm_s: float = MIN_SPEED_MM
     """Return the unit vector along the velocity of each robot.
 
     Args:
-        run: See `velocities`.
+        run: See `pogosim.analysis.motion.velocity`.
         min_speed_mm_s: At this speed, and below, a robot has no direction.
 
     Returns:
         Shape (T, N, 2). NaN where a robot stands, or has no velocity.
     """
-    return unit_vectors(velocities(run), min_speed_mm_s)
+    return unit_vectors(velocity(run), min_speed_mm_s)
 
 
 def directions_of_headings(run: Trajectories) -> Floats:

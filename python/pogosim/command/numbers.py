@@ -25,6 +25,21 @@ def positive(text: str) -> float:
     return value
 
 
+def at_least(least: int) -> Callable[[str], int]:
+    """Return the type of whole numbers that are not less than this."""
+
+    def checked(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = least - 1
+        if value < least:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of {least} or more")
+        return value
+
+    return checked
+
+
 def whole(least: int, most: int) -> Callable[[str], int]:
     """Return the type of whole numbers in a range, which includes both ends."""
 

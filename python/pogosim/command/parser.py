@@ -16,6 +16,11 @@ class Parser(argparse.ArgumentParser):
         sys.exit(2)
 
 
+def warn(prog: str, text: object) -> None:
+    """Print a warning as one line."""
+    print(f"{prog}: warning: {text}", file=sys.stderr)
+
+
 def complain(prog: str, problem: object) -> int:
     """Print what is wrong; returns the exit code 2."""
     print(f"{prog}: {problem}", file=sys.stderr)

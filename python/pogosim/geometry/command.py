@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pogosim.command.numbers import positive
-from pogosim.command.parser import Parser, complain
+from pogosim.command.parser import Parser, complain, warn
 from pogosim.geometry.arena_file import ArenaError, Outline, as_csv, parse_outline, read_arena, scaled
 from pogosim.outputs import OutputError, leads_to, real_output, say
 
@@ -78,11 +77,6 @@ def add_area(made: argparse.ArgumentParser, default: float | None, words: str) -
         metavar="MM2",
         help=f"area inside the outer wall less the holes, or 'file' to keep the size ({words})",
     )
-
-
-def warn(prog: str, text: str) -> None:
-    """Print a warning."""
-    print(f"{prog}: warning: {text}", file=sys.stderr)
 
 
 def check_valid(outline: Outline) -> None:

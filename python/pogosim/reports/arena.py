@@ -15,12 +15,13 @@ from shapely import affinity
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.analysis.walls import distance_to_walls
+from pogosim.command.parser import warn
 from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.drawing import draw
 from pogosim.geometry.validity import Room, problems, room_for
 from pogosim.reports.figures import save
 from pogosim.reports.missing_arenas import add_options, with_arenas
-from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, warn, write_table
+from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
 
 
 def outline_of(run: Trajectories) -> Outline:

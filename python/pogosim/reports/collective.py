@@ -10,27 +10,19 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from pogosim.analysis.directions import MIN_SPEED_MM_S, velocities
+from pogosim.analysis.directions import MIN_SPEED_MM_S
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.milling import centre_of_arena
+from pogosim.analysis.motion import speed
 from pogosim.analysis.trajectories import Trajectories, need_columns
-from pogosim.command.parser import Parser
+from pogosim.command.numbers import at_least, positive
+from pogosim.command.parser import Parser, warn
 from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
 from pogosim.reports.collective_metrics import METRICS, Metric
 from pogosim.reports.collective_summary import write_summaries
 from pogosim.reports.collective_swarm import Settings, Swarm, Vortices
 from pogosim.reports.figures import groups_of
-from pogosim.reports.options import (
-    analysis_parser,
-    at_least,
-    labelled,
-    output_folder,
-    positive,
-    read_runs,
-    reported,
-    warn,
-    write_table,
-)
+from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
 
 MAX_BINS = 100_000
 
@@ -77,7 +69,7 @@ def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Se
             need_columns(run.rows, ["angle"])
         if options.milling_center == "arena":
             centre_of_arena(run.arena)
-    squares = [(velocities(run) ** 2).sum(axis=2) for run in runs]
+    squares = [speed(run) ** 2 for run in runs]
     known = sum(int(np.isfinite(square).sum()) for square in squares)
     mean_square = float(sum(np.nansum(square) for square in squares)) / known if known else 0.0
     return Settings(

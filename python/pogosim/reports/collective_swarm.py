@@ -9,9 +9,10 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
+from pogosim.analysis import motion
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.correlations import VectorCorrelation, vector_correlation
-from pogosim.analysis.directions import MIN_SPEED_MM_S, directions_of_headings, unit_vectors, velocities
+from pogosim.analysis.directions import MIN_SPEED_MM_S, directions_of_headings, unit_vectors
 from pogosim.analysis.flow import velocity_fields
 from pogosim.analysis.order import LocalAlignment, local_alignment
 from pogosim.analysis.trajectories import Trajectories, need_columns
@@ -59,7 +60,7 @@ class Swarm:
     @cached_property
     def velocity(self) -> Floats:
         """Velocities, shape (T, N, 2), mm/s."""
-        return velocities(self.run)
+        return motion.velocity(self.run)
 
     @cached_property
     def direction(self) -> Floats:

@@ -11,6 +11,8 @@ import numpy as np
 import pandas as pd
 
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.command.numbers import at_least, positive
+from pogosim.command.parser import warn
 from pogosim.reports.figures import group_names, group_of
 from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
 from pogosim.reports.locomotion_figures import RunTables, draw_all
@@ -25,16 +27,7 @@ from pogosim.reports.locomotion_tables import (
     run_row,
     time_table,
 )
-from pogosim.reports.options import (
-    analysis_parser,
-    at_least,
-    output_folder,
-    positive,
-    read_runs,
-    reported,
-    warn,
-    write_table,
-)
+from pogosim.reports.options import analysis_parser, output_folder, read_runs, reported, write_table
 from pogosim.reports.traces import draw_traces, film_traces
 
 FRAMES = 120

@@ -25,20 +25,13 @@ from pogosim.analysis.neighbourhood import (
     nearest_distances,
 )
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.command.numbers import at_least
+from pogosim.command.parser import warn
 from pogosim.confidence import mean_over_runs
 from pogosim.outputs import OutputError, leads_to
 from pogosim.reports.figures import draw_bands, new_figure, save
 from pogosim.reports.groups import by_combination, draw_each_run, draw_over_time
-from pogosim.reports.options import (
-    analysis_parser,
-    at_least,
-    labelled,
-    output_folder,
-    read_runs,
-    reported,
-    warn,
-    write_table,
-)
+from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
 
 LISTS = "neighbors_list"  # the column that programs usually have
 STATISTICS = "neighbors_stats.pkl"

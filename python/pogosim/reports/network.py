@@ -18,19 +18,11 @@ from pogosim.analysis.network import (
     ten_periods_s,
 )
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.command.numbers import at_least, positive
+from pogosim.command.parser import warn
 from pogosim.reports.figures import group_names, group_of, groups_of
 from pogosim.reports.groups import by_arena, save_over_time, save_violins
-from pogosim.reports.options import (
-    analysis_parser,
-    at_least,
-    labelled,
-    output_folder,
-    positive,
-    read_runs,
-    reported,
-    warn,
-    write_table,
-)
+from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
 
 GRAPH_PANELS = {
     "n_components": "connected components",

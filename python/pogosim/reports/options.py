@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
-import sys
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -15,7 +13,8 @@ import pyarrow
 
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
-from pogosim.command.parser import Parser, complain
+from pogosim.command.numbers import positive
+from pogosim.command.parser import Parser, complain, warn
 from pogosim.outputs import OutputError, leads_to
 from pogosim.utils import load_dataframe
 
@@ -44,26 +43,6 @@ def analysis_parser(prog: str, description: str) -> Parser:
     return parser
 
 
-def positive(text: str) -> float:
-    """Return a number above 0 from the command line."""
-    value = float(text)
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a number above 0")
-    return value
-
-
-def at_least(least: int) -> Callable[[str], int]:
-    """Return the type of an option that takes a whole number of at least this."""
-
-    def whole_number(text: str) -> int:
-        value = int(text)
-        if value < least:
-            raise argparse.ArgumentTypeError(f"{text} is less than {least}")
-        return value
-
-    return whole_number
-
-
 def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
     """Read the runs that the options name. A file of a killed run is read as far as it goes, with a warning.
 
@@ -84,11 +63,6 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
     if options.rc is not None:
         runs = [replace(run, communication_radius_mm=options.rc - 2.0 * run.radius_mm) for run in runs]
     return runs
-
-
-def warn(prog: str, text: object) -> None:
-    """Print a warning as one line."""
-    print(f"{prog}: warning: {text}", file=sys.stderr)
 
 
 def output_folder(options: argparse.Namespace) -> Path:
