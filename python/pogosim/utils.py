@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
@@ -172,6 +171,8 @@ def init_logging(verbose: bool = False) -> None:
 
 def save_figure(path: PathLike, dpi: int = 300) -> None:
     """Save the current figure, at `dpi` dots per inch, and close it. Parent folders are created."""
+    import matplotlib.pyplot as plt  # takes a while
+
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     plt.savefig(path, dpi=dpi, bbox_inches="tight")

@@ -5,11 +5,11 @@ import pandas as pd
 import pytest
 from pogosim.analysis.averages import mean_and_sem, mean_and_variance, sliding_mean
 from pogosim.analysis.displacement import (
+    at_regular_times,
     diffusion_coefficients,
     displacement_by_lag,
     mean_squared_displacement,
     msd_per_agent,
-    save_period_s,
 )
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.motion import (
@@ -136,10 +136,24 @@ def test_displacement_by_lag_starts_at_the_first_position_of_each_robot() -> Non
 def test_save_times_may_be_off_by_a_time_step() -> None:
     rows = rows_of(brownian_walk(100, 3, 1.0))
     run = run_of(rows.assign(time=np.float32(np.ceil(np.round(rows["time"] * 0.1 / 0.008, 6)) * 0.008)))
-    assert save_period_s(run) == pytest.approx(0.1, rel=1e-2)
+    assert at_regular_times(run)[0] is run
+    assert at_regular_times(run)[1] == pytest.approx(0.1, rel=1e-2)
     assert mean_squared_displacement(run)[1][1] == pytest.approx(2.0, rel=0.3)
-    with pytest.raises(AnalysisError, match="not evenly spaced"):
-        save_period_s(run_of(rows[rows["time"] != 50.0]))
+    with pytest.raises(AnalysisError, match=r"not evenly spaced: 0\.3 s to 1\.7 s"):
+        at_regular_times(run_of(rows.assign(time=rows["time"].replace(50.0, 49.3))))
+
+
+def test_times_that_are_missing_count_as_such() -> None:
+    rows = rows_of(brownian_walk(200, 50, 1.0))
+    gone = rows["time"].isin([50.0, 51.0, 120.0])
+    run, period_s = at_regular_times(run_of(rows[~gone]))
+    assert (len(run.time_s), period_s) == (200, 1.0)
+    assert np.flatnonzero(~run.is_there.all(axis=1)).tolist() == [50, 51, 120]
+    assert np.isnan(run.column("x")[50]).all()
+    lags, msd = mean_squared_displacement(run_of(rows[~gone]))
+    every_lag, every_msd = mean_squared_displacement(run_of(rows))
+    np.testing.assert_array_equal(lags, every_lag)
+    np.testing.assert_allclose(msd[1:20], every_msd[1:20], rtol=0.05)
 
 
 def test_heading_of_active_brownian_particles_persists_for_one_over_the_diffusion_constant() -> None:

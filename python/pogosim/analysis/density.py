@@ -126,4 +126,4 @@ def kernel_density(arena: Arena, position_mm: Floats, bandwidth_mm: float | None
     with np.errstate(invalid="ignore", divide="ignore"):
         density = np.where(share > MIN_FLOOR_SHARE, count / inside, np.nan)
     total = np.nansum(density * share) * size.prod() * 1e-6
-    return DensityGrid(x, y, density / total)
+    return DensityGrid(x, y, density / total if total > 0.0 else np.full_like(density, np.nan))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,9 @@ from pogosim.analysis.trajectories import Trajectories, trajectories_of, unwrapp
 
 # Numbers that are transformed at once: 100 MB of spectra.
 MAX_CELLS = 4_000_000
+
+# Of as many times as this for each one in the file, too many are missing to compare positions at equal lags.
+MOST_GAPS = 100
 
 
 def squared_displacement(run: Trajectories) -> Floats:
@@ -33,17 +37,19 @@ def displacement_by_lag(run: Trajectories) -> tuple[Floats, Floats]:
 
     Returns:
         Lags in s, shape (T,), the first one 0, and squared displacements in mm^2, shape (T, N). NaN where a robot has
-        no position, and after its last one.
+        no position, and after its last one. T is that of `at_regular_times`, if there are such times.
 
     Raises:
         AnalysisError: Robots have their first positions at different times, and save times are not evenly spaced.
     """
-    squared = squared_displacement(run)
-    lags = run.time_s - run.time_s[0]
-    first = np.argmax(run.is_there, axis=0)
-    if (first == 0).all():
-        return lags, squared
-    save_period_s(run)
+    try:
+        run, period_s = at_regular_times(run)
+        lags: Floats = period_s * np.arange(len(run.time_s), dtype=float)
+    except AnalysisError:
+        lags = run.time_s - run.time_s[0]
+        if not run.is_there[0].all():
+            raise
+    squared, first = squared_displacement(run), np.argmax(run.is_there, axis=0)
     row = np.arange(len(lags))[:, None] + first
     shifted = np.take_along_axis(squared, np.minimum(row, len(lags) - 1), axis=0)
     return lags, np.where(row < len(lags), shifted, np.nan)
@@ -57,7 +63,7 @@ def mean_squared_displacement(run: Trajectories) -> tuple[Floats, Floats]:
     take no longer than reading them. Positions that are missing are left out.
 
     Args:
-        run: Its times must be evenly spaced.
+        run: Its times must be multiples of a period; some may be missing.
 
     Returns:
         The lags in s, shape (T,), the first one 0, and the mean squared displacement in mm^2, shape (T,). NaN for lags
@@ -66,7 +72,7 @@ def mean_squared_displacement(run: Trajectories) -> tuple[Floats, Floats]:
     Raises:
         AnalysisError: Save times are not evenly spaced.
     """
-    period_s = save_period_s(run)
+    run, period_s = at_regular_times(run)
     path = unwrapped(run)
     there = run.is_there
     robots = there.any(axis=0)
@@ -99,23 +105,35 @@ def correlation(a: Floats, b: Floats) -> Floats:
     return np.asarray(fft.irfft(spectrum, size)[:length])
 
 
-def save_period_s(run: Trajectories) -> float:
-    """Return the time between two save times; 1 if there is only one.
+def at_regular_times(run: Trajectories) -> tuple[Trajectories, float]:
+    """Return the run at evenly spaced times, without positions where the file has no rows, and their spacing.
 
     A run is saved at the first time step after each period. So save times may be off by a time step, here by up to a
     quarter of the period.
 
+    Returns:
+        The run, with all multiples of the period as times, and the period in s; 1 if there is one time only.
+
     Raises:
-        AnalysisError: It is not the same everywhere.
+        AnalysisError: Save times are not at multiples of a period.
     """
     if len(run.time_s) < 2:
-        return 1.0
-    steps = np.diff(run.time_s)
-    period = float(run.time_s[-1] - run.time_s[0]) / len(steps)
-    regular = run.time_s[0] + period * np.arange(len(run.time_s))
-    if np.abs(run.time_s - regular).max() > 0.25 * period:
+        return run, 1.0
+    since = run.time_s - run.time_s[0]
+    steps = np.diff(since)
+    estimate = float(np.mean(steps[steps < 1.5 * steps.min()]))
+    period = float(since[-1] / max(np.round(since[-1] / estimate), 1.0))
+    index = np.round(since / period).astype(np.int64)
+    is_off = np.abs(since - period * index).max() > 0.25 * period
+    if is_off or (np.diff(index) < 1).any() or index[-1] > MOST_GAPS * len(since):
         raise AnalysisError(f"its save times are not evenly spaced: {steps.min():g} s to {steps.max():g} s apart")
-    return period
+    if index[-1] + 1 == len(since):
+        return run, period
+    times = run.time_s[0] + period * np.arange(index[-1] + 1)
+    position = np.full((len(times), *run.position_mm.shape[1:]), np.nan)
+    heading, row = np.full(position.shape[:2], np.nan), np.full(position.shape[:2], -1, dtype=np.int64)
+    position[index], heading[index], row[index] = run.position_mm, run.heading_rad, run.row
+    return replace(run, time_s=times, position_mm=position, heading_rad=heading, row=row), period
 
 
 def diffusion_coefficient(lag_s: Floats, msd_mm2: Floats) -> float:

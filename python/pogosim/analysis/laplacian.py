@@ -111,7 +111,9 @@ def ends(adjacency: Floats | sparse.csr_array, count: int) -> tuple[Floats, floa
     nodes = laplacian.shape[0]
     first = np.random.default_rng(0).standard_normal(nodes)  # the same each time
     try:
-        largest = float(eigsh(laplacian, 1, which="LA", v0=first, return_eigenvectors=False)[0])
+        largest = float(eigsh(laplacian, 3, which="LA", v0=first, ncv=min(nodes, 60), return_eigenvectors=False)[-1])
+        if below(laplacian, largest * (1.0 + 1e-9)) < nodes:  # a greater one is missing
+            raise RuntimeError("the largest eigenvalue was not found")
         values = smallest_by_inversion(laplacian, min(count + EXTRA, nodes - 1), largest, first)
         # Copies of a multiple eigenvalue can be missing; a gap above the wanted ones shows how many there should be.
         gaps = np.diff(values[count:])

@@ -8,7 +8,7 @@ import numpy as np
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.averages import mean_and_variance
-from pogosim.analysis.displacement import correlation, save_period_s
+from pogosim.analysis.displacement import at_regular_times, correlation
 from pogosim.analysis.motion import speed, velocity
 from pogosim.analysis.trajectories import Trajectories
 
@@ -38,7 +38,7 @@ def heading_autocorrelation(run: Trajectories) -> tuple[Floats, Floats]:
     1 is the same heading, 0 one at random. Rotational diffusion makes it exp(-D_r tau).
 
     Args:
-        run: Its times must be evenly spaced.
+        run: Its times must be multiples of a period; some may be missing.
 
     Returns:
         Lags in s, shape (T,), the first one 0, and C, shape (T,), -1 to 1. NaN for lags without a pair.
@@ -46,7 +46,8 @@ def heading_autocorrelation(run: Trajectories) -> tuple[Floats, Floats]:
     Raises:
         AnalysisError: Save times are not evenly spaced.
     """
-    lags = save_period_s(run) * np.arange(len(run.time_s), dtype=float)
+    run, period_s = at_regular_times(run)
+    lags = period_s * np.arange(len(run.time_s), dtype=float)
     unit = np.stack([np.cos(run.heading_rad), np.sin(run.heading_rad)], axis=2)
     return lags, vector_autocorrelation(unit)
 
@@ -57,7 +58,7 @@ def velocity_autocorrelation(run: Trajectories) -> tuple[Floats, Floats]:
     Velocities are those of the steps between save times (`pogosim.analysis.motion.velocity`).
 
     Args:
-        run: Its times must be evenly spaced.
+        run: Its times must be multiples of a period; some may be missing.
 
     Returns:
         Lags in s, shape (T,), the first one 0, and C, shape (T,), 1 at lag 0. NaN for lags without a pair, or if
@@ -66,7 +67,8 @@ def velocity_autocorrelation(run: Trajectories) -> tuple[Floats, Floats]:
     Raises:
         AnalysisError: Save times are not evenly spaced.
     """
-    lags = save_period_s(run) * np.arange(len(run.time_s), dtype=float)
+    run, period_s = at_regular_times(run)
+    lags = period_s * np.arange(len(run.time_s), dtype=float)
     product = vector_autocorrelation(velocity(run))
     with np.errstate(invalid="ignore", divide="ignore"):
         return lags, np.where(product[0] > 0.0, product / product[0], np.nan)

@@ -199,10 +199,12 @@ def on_logarithmic_axes(axes: Axes) -> None:
         first, last = diffusion_exponent(lag[early], mean[early]), diffusion_exponent(lag[late], mean[late])
         name = "" if len(axes.lines) == 1 else f"{line.get_label()}: "
         line.set_label(f"{name}{first:.2f}, {last:.2f}")
-    axes.set(xscale="log", yscale="log")
     values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines])
-    if (values > 0.0).any():
-        axes.set_ylim(0.5 * values[values > 0.0].min(), 2.0 * values[values > 0.0].max())
+    if not (values > 0.0).any():
+        say_nothing_there(axes, "no robot moved")
+        return
+    axes.set(xscale="log", yscale="log")
+    axes.set_ylim(0.5 * values[values > 0.0].min(), 2.0 * values[values > 0.0].max())
     handles, labels = axes.get_legend_handles_labels()
     title = "exponent $\\alpha$ of the first, last 25 % of lags"
     style: dict[str, Any] = {"frameon": False, "fontsize": "small", "title": title, "title_fontsize": "small"}

@@ -10,13 +10,13 @@ import pandas as pd
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.averages import mean_and_sem, mean_and_variance, sliding_mean
 from pogosim.analysis.displacement import (
+    at_regular_times,
     diffusion_coefficient,
     diffusion_coefficients,
     diffusion_exponent,
     displacement_by_lag,
     mean_squared_displacement,
     msd_per_agent,
-    save_period_s,
 )
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.motion import (
@@ -43,9 +43,9 @@ def robots_of(run: Trajectories) -> pd.DataFrame:
 
 
 def is_evenly_spaced(run: Trajectories) -> bool:
-    """Tell whether the save times of a run are evenly spaced."""
+    """Tell whether the save times of a run are multiples of a period."""
     try:
-        save_period_s(run)
+        at_regular_times(run)
     except AnalysisError:
         return False
     return True
@@ -110,10 +110,11 @@ def msd_table(run: Trajectories) -> pd.DataFrame:
 
 def autocorrelation_table(run: Trajectories) -> pd.DataFrame:
     """Return the autocorrelations of heading and velocity; NaN if times are not evenly spaced."""
-    table = pd.DataFrame({"lag_s": run.time_s - run.time_s[0], "heading": np.nan, "velocity": np.nan})
-    if is_evenly_spaced(run):
-        table["heading"] = heading_autocorrelation(run)[1]
-        table["velocity"] = velocity_autocorrelation(run)[1]
+    if not is_evenly_spaced(run):
+        lags = run.time_s - run.time_s[0]
+        return labelled(pd.DataFrame({"lag_s": lags, "heading": np.nan, "velocity": np.nan}), run)
+    lags, heading = heading_autocorrelation(run)
+    table = pd.DataFrame({"lag_s": lags, "heading": heading, "velocity": velocity_autocorrelation(run)[1]})
     return labelled(table, run)
 
 
