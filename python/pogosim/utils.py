@@ -40,7 +40,8 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
         "configuration": a dictionary; empty if the file has none or it cannot be parsed.
         "resolved_configuration": a dictionary of every key with its value in the run, defaults
         included; not there if the file has none.
-        "arena_polygons": a list of outlines, each an array of shape (corners, 2) with x and y in mm;
+        "arena_polygons": a list of outlines, each an array of shape (corners, 2) with x and y in mm (files of
+        simulators up to 0.10 have them in units of 100 mm, which is recognised by the positions of the robots);
         it remains a string if it is not a list of polygons.
         "combinations": of a batch, a list with a dictionary per combination of options.
         "files": of several files, the list of their names.
@@ -77,7 +78,7 @@ def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
     if "resolved_configuration" in metadata:
         metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])
     if "arena_polygons" in metadata:
-        metadata["arena_polygons"] = parse_polygons(metadata["arena_polygons"])
+        metadata["arena_polygons"] = in_millimetres(parse_polygons(metadata["arena_polygons"]), rows)
     if "combinations" in metadata:
         metadata["combinations"] = parse_combinations(metadata["combinations"])
     return rows, metadata
@@ -127,6 +128,32 @@ def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
     except WRONG_VALUES:
         return text
     return arrays if all(array.ndim == 2 for array in arrays) else text
+
+
+def in_millimetres(
+    polygons: list[npt.NDArray[np.float64]] | str, rows: pd.DataFrame
+) -> list[npt.NDArray[np.float64]] | str:
+    """Convert outlines in units of 100 mm, which simulators up to 0.10 write.
+
+    They are taken for such if nine in ten positions are within the bounding box of the outlines that are 100 times as
+    large, and not one in ten within that of those in the file.
+    """
+    if isinstance(polygons, str) or not polygons or not {"x", "y"} <= set(rows.columns):
+        return polygons
+    try:
+        position = rows[["x", "y"]].to_numpy(dtype=float)
+    except (TypeError, ValueError):
+        return polygons
+    position = position[np.isfinite(position).all(axis=1)]
+    low, high = polygons[0].min(axis=0), polygons[0].max(axis=0)
+
+    def share_within(scale: float) -> float:
+        inside = (position >= scale * low) & (position <= scale * high)
+        return float(inside.all(axis=1).mean())
+
+    if len(position) == 0 or not (share_within(100.0) > 0.9 and share_within(1.0) < 0.1):
+        return polygons
+    return [100.0 * polygon for polygon in polygons]
 
 
 def parse_combinations(text: str) -> list[dict[str, Any]] | str:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pandas as pd
 import pyarrow as pa
 import yaml
+from pogosim.analysis.trajectories import Trajectories
 from pyarrow import feather
 
 Floats = npt.NDArray[np.float64]
@@ -64,3 +65,14 @@ def brownian_walk(times: int, robots: int, step_mm: float, seed: int = 1) -> Flo
     """Positions of shape (times, robots, 2): each step is normal with this standard deviation in x and in y."""
     steps = np.random.default_rng(seed).normal(0.0, step_mm, (times - 1, robots, 2))
     return np.concatenate([np.zeros((1, robots, 2)), np.cumsum(steps, axis=0)])
+
+
+def freud_system(run: Trajectories) -> tuple[Any, npt.NDArray[np.float32]]:
+    """The first positions of a run in a periodic arena as freud takes them: its box, and points of shape (n, 3)."""
+    import freud
+
+    low, high = run.arena.bounds_mm
+    box = freud.box.Box(Lx=high[0] - low[0], Ly=high[1] - low[1], is2D=True)
+    points = np.zeros((run.position_mm.shape[1], 3), dtype=np.float32)
+    points[:, :2] = run.position_mm[0] - (low + high) / 2.0
+    return box, box.wrap(points)

@@ -10,7 +10,7 @@ from pogosim.analysis.floor import covered_fraction, floor_of_centres, set_covar
 from pogosim.analysis.fluctuations import mean_square_speed, number_fluctuations
 from pogosim.analysis.structure_factor import structure_factor
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
-from swarms import Floats, metadata_of, rows_of
+from swarms import Floats, freud_system, metadata_of, rows_of
 
 
 def run_of(position: Floats, metadata: dict[str, Any]) -> Trajectories:
@@ -92,7 +92,7 @@ def test_g_is_that_of_freud_in_a_periodic_box() -> None:
     run = run_of(ideal_gas(1, 200), metadata_of(1000.0, periodic=True))
     own = pair_correlation(run, 200.0, 10.0)
     rdf = freud.density.RDF(20, 200.0, normalization_mode="finite_size")
-    rdf.compute(run.arena.box_and_points(run.position_mm[0]), reset=False)
+    rdf.compute(freud_system(run), reset=False)
     np.testing.assert_allclose(own.g_r, rdf.rdf, rtol=1e-4)
 
 

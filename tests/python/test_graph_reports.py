@@ -261,6 +261,15 @@ def test_coverage_takes_the_arena_of_a_configuration(tmp_path: Path, capsys: pyt
     table = pd.read_csv(tmp_path / "out/voronoi_metrics_per_arena.csv")
     np.testing.assert_allclose(table["mean_area"], 2.0e6 / 6)
     assert set(table["arena_name"]) == {"box"}
+    (tmp_path / "far.yaml").write_text(
+        "arena_file: box\narena_surface: 2.0e6\nobjects: {robots: {communication_radius: 200, radius: 10}}\n"
+    )
+    assert runs_of("coverage", tmp_path, "-c", str(tmp_path / "far.yaml"), *options[2:]) == 0
+    far = pd.read_csv(tmp_path / "out/voronoi_metrics_per_arena.csv")
+    assert runs_of("coverage", tmp_path, *options, "--rc", "220") == 0
+    by_hand = pd.read_csv(tmp_path / "out/voronoi_metrics_per_arena.csv")
+    assert far["coverage_ratio"].tolist() == by_hand["coverage_ratio"].tolist()
+    assert (far["coverage_ratio"] > table["coverage_ratio"]).all()
     for wrong, said in (("a: [", "is not a configuration"), ("a: 1", "has no arena_file"), ("arena_file: box", "mm2")):
         (tmp_path / "conf.yaml").write_text(wrong)
         assert runs_of("coverage", tmp_path, *options) == 2

@@ -11,7 +11,7 @@ from pogosim.analysis.motion import velocity
 from pogosim.analysis.neighbourhood import pairs_within
 from pogosim.analysis.order import local_alignment, nematic_order, polar_order
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
-from swarms import Floats, metadata_of, rows_of
+from swarms import Floats, freud_system, metadata_of, rows_of
 
 
 def run_of(rows: pd.DataFrame, side_mm: float = 1000.0, periodic: bool = False) -> Trajectories:
@@ -138,7 +138,7 @@ def test_bond_order_is_that_of_freud_and_of_chance_in_an_ideal_gas() -> None:
     position = np.random.default_rng(3).uniform(0.0, 1000.0, (1, 400, 2))
     run = run_of(rows_of(position), periodic=True)
     psi = bond_order(run)
-    box, points = run.arena.box_and_points(run.position_mm[0])
+    box, points = freud_system(run)
     expected = freud.order.Hexatic(k=6).compute((box, points)).particle_order
     np.testing.assert_allclose(psi[0], expected, atol=2e-3)
     assert np.abs(psi).mean() == pytest.approx(np.sqrt(np.pi) / (2.0 * np.sqrt(6)), rel=0.1)

@@ -182,3 +182,24 @@ def test_msd_per_agent_is_the_mean_after_the_first_position() -> None:
     assert table[["run", "arena_file", "robot_id"]].iloc[1].tolist() == [2, "disk", 1]
     assert compute_msd_per_agent(line(times=1), metadata_of()).empty
     assert compute_msd_per_agent(line()[:0]).empty
+
+
+def test_a_users_column_with_a_dot_in_its_name_does_not_cut_runs_to_pieces() -> None:
+    rows = pd.concat([line().assign(run=run, **{"imu.gyro": [0.0, 1.0] * 5}) for run in (0, 1)])
+    runs = trajectories_of(rows, metadata_of())
+    assert [run.position_mm.shape for run in runs] == [(5, 2, 2)] * 2
+
+
+def test_arenas_of_one_name_and_different_sizes_are_told_apart() -> None:
+    rows = pd.concat([line().assign(run=0, arena_surface=side) for side in (500.0, 2000.0)])
+    combinations = [
+        {"columns": {"arena_surface": side}, "arena_polygons": [[[0, 0], [side, 0], [side, side], [0, side]]]}
+        for side in (500.0, 2000.0)
+    ]
+    runs = trajectories_of(rows, {**metadata_of(), "combinations": combinations})
+    assert [(run.arena.name, run.arena.area_mm2) for run in runs] == [("square", 500.0**2), ("square_2", 2000.0**2)]
+
+
+def test_what_a_run_came_to_counts_more_than_what_was_written() -> None:
+    resolved = metadata_of(radius=30.0, communication_radius=50.0)["configuration"]
+    assert run_of(line(), **metadata_of(), resolved_configuration=resolved).reach_mm == 110.0

@@ -162,3 +162,22 @@ def test_verbose_logging_starts_at_debug(verbose: bool, level: int) -> None:
     finally:
         root.handlers[:] = handlers
         root.setLevel(before)
+
+
+@pytest.mark.parametrize("unit_mm", [1.0, 100.0])
+def test_arenas_of_earlier_simulators_are_converted_to_millimetres(unit_mm: float, tmp_path: Path) -> None:
+    side = 1000.0 / unit_mm
+    corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)]
+    polygons = "[[" + ", ".join(f"{{x: {x}, y: {y}}}" for x, y in corners) + "]]"
+    rows = {"x": [100.0, 900.0, math.nan], "y": [500.0, 40.0, math.nan]}
+    table = pa.table(rows).replace_schema_metadata({"arena_polygons": polygons})
+    feather.write_feather(table, tmp_path / "old.feather")
+    (polygon,) = load_dataframe(tmp_path / "old.feather")[1]["arena_polygons"]
+    assert polygon.max() == 1000.0
+
+
+def test_small_arenas_with_robots_outside_remain_as_they_are(tmp_path: Path) -> None:
+    polygons = "[[{x: 0, y: 0}, {x: 10, y: 0}, {x: 0, y: 10}]]"
+    table = pa.table({"x": [5.0, 5000.0], "y": [5.0, 5000.0]}).replace_schema_metadata({"arena_polygons": polygons})
+    feather.write_feather(table, tmp_path / "small.feather")
+    assert load_dataframe(tmp_path / "small.feather")[1]["arena_polygons"][0].max() == 10.0

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    import freud
     import shapely
 
 Floats = npt.NDArray[np.float64]
@@ -60,28 +59,3 @@ class Arena:
         offset = np.mod(position_mm - self.bounds_mm[0], self.size_mm)
         # Of a tiny negative number, mod is the size itself.
         return np.asarray(self.bounds_mm[0] + np.where(offset < self.size_mm, offset, 0.0))
-
-    def box_and_points(self, position_mm: Floats) -> tuple[freud.box.Box, npt.NDArray[np.float32]]:
-        """Return the positions as freud takes them: centred in a 2D box, with z = 0.
-
-        A periodic arena is the box itself. Walls make a box that is not periodic.
-
-        Args:
-            position_mm: Shape (n, 2), finite.
-
-        Returns:
-            The box, and the points of shape (n, 3) in mm.
-        """
-        import freud
-
-        if self.is_periodic:
-            low, high = self.bounds_mm
-        else:
-            low, high = position_mm.min(axis=0), position_mm.max(axis=0)
-        # freud wants a box with some size, and nothing outside of one without periodic borders.
-        size = np.maximum(high - low, 1.0) * (1.0 if self.is_periodic else 1.001)
-        box = freud.box.Box(Lx=size[0], Ly=size[1], is2D=True)
-        box.periodic = (self.is_periodic, self.is_periodic, False)
-        points = np.zeros((len(position_mm), 3), dtype=np.float32)
-        points[:, :2] = position_mm - (low + high) / 2.0
-        return box, (box.wrap(points) if self.is_periodic else points)

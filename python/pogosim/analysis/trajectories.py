@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, cast
 
@@ -48,17 +49,17 @@ class Trajectories:
     row: npt.NDArray[np.int64]  # (T, N), position of the row in `rows`, -1 where there is none
     rows: pd.DataFrame  # all that the file has on this run
     radius_mm: float  # of a robot
-    communication_radius_mm: float  # from an emitter on its rim
+    reach_mm: float  # between the centres of two robots that count as neighbours: communication_radius + 2 radius
 
-    @property
-    def reach_mm(self) -> float:
-        """Distance between the centres of two robots within which they count as neighbours."""
-        return self.communication_radius_mm + 2.0 * self.radius_mm
-
-    @property
+    @cached_property
     def is_there(self) -> npt.NDArray[np.bool_]:
         """Which robots have a position at which times, shape (T, N)."""
         return np.asarray(np.isfinite(self.position_mm).all(axis=2))
+
+    @cached_property
+    def path_mm(self) -> Floats:
+        """Positions without jumps at periodic borders, shape (T, N, 2), see `unwrapped`."""
+        return unwrapped_path(self)
 
     def column(self, name: str) -> npt.NDArray[Any]:
         """Values of a column of the file, shape (T, N). Null, or NaN for numbers, where there is no row.
@@ -112,10 +113,26 @@ def trajectories_of(
         return [run_of(rows, {"run": 0} | same, metadata)]
     if not names:
         return [run_of(rows, {"run": 0}, metadata)]
-    return [
+    runs = [
         run_of(own, dict(zip(names, values, strict=True)), metadata)
         for values, own in rows.groupby(names, sort=True, dropna=False, observed=True)
     ]
+    return with_arenas_told_apart(runs)
+
+
+def with_arenas_told_apart(runs: Sequence[Trajectories]) -> list[Trajectories]:
+    """Return the runs, arenas of one name but different outlines with a number: disk, disk_2, ..."""
+    outlines: dict[str, list[bytes]] = {}
+    named = []
+    for run in runs:
+        outline = b"".join(np.round(polygon, 3).tobytes() for polygon in run.arena.polygons)
+        known = outlines.setdefault(run.arena.name, [])
+        if outline not in known:
+            known.append(outline)
+        number = 1 + known.index(outline)
+        name = run.arena.name if number == 1 else f"{run.arena.name}_{number}"
+        named.append(replace(run, arena=replace(run.arena, name=name)))
+    return named
 
 
 def need_columns(rows: pd.DataFrame, names: Sequence[str]) -> None:
@@ -160,11 +177,12 @@ def of_category(rows: pd.DataFrame, metadata: Mapping[str, Any], category: str |
 
 
 def label_columns(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> list[str]:
-    """Return the columns that tell runs apart: run, arena_file, those of combinations, and dotted paths."""
+    """Return the columns that tell runs apart: run, arena_file, those of combinations, and paths of settings."""
     configuration = metadata.get("configuration")
     named = configuration.get("result_new_columns") if isinstance(configuration, dict) else None
     names = ["run", "arena_file", *(named if isinstance(named, list) else [])]
-    names += [name for name in rows.columns if "." in str(name)]  # objects.robots.nb
+    maps = {"objects", "parameters", *(configuration if isinstance(configuration, dict) else [])}
+    names += [name for name in rows.columns if str(name).partition(".")[0] in maps and "." in str(name)]
     names += [name for entry in combinations_of(metadata) for name in entry.get("columns", {})]
     return [name for name in dict.fromkeys(map(str, names)) if name in rows]
 
@@ -209,6 +227,7 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         return setting_of(path, labels, metadata)
 
     category = str(robots["robot_category"].iloc[0])
+    radius_mm, reach_mm = sizes_of(category, setting)
     return Trajectories(
         labels=labels,
         arena=arena_of(labels, metadata, setting),
@@ -219,9 +238,16 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         heading_rad=heading,
         row=row,
         rows=rows,
-        radius_mm=number(setting(f"objects.{category}.radius"), POGOBOT_RADIUS_MM),
-        communication_radius_mm=number(setting(f"objects.{category}.communication_radius"), COMMUNICATION_RADIUS_MM),
+        radius_mm=radius_mm,
+        reach_mm=reach_mm,
     )
+
+
+def sizes_of(category: str, setting: Callable[[str], Any]) -> tuple[float, float]:
+    """Return the radius of the robots of a category and their reach, in mm; of pogobots where nothing is said."""
+    radius_mm = number(setting(f"objects.{category}.radius"), POGOBOT_RADIUS_MM)
+    range_mm = number(setting(f"objects.{category}.communication_radius"), COMMUNICATION_RADIUS_MM)
+    return radius_mm, range_mm + 2.0 * radius_mm
 
 
 def setting_of(path: str, labels: Mapping[str, Any], metadata: Mapping[str, Any]) -> Any:
@@ -275,6 +301,11 @@ def unwrapped(run: Trajectories) -> Floats:
         Positions, shape (T, N, 2), mm; the first one of each robot is in the arena. Those of the file if its arena has
         walls.
     """
+    return run.path_mm
+
+
+def unwrapped_path(run: Trajectories) -> Floats:
+    """Compute what `unwrapped` returns."""
     if not run.arena.is_periodic:
         return run.position_mm
     last = np.where(run.is_there, np.arange(len(run.time_s))[:, None], 0)

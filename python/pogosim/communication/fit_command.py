@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -215,6 +216,7 @@ def fit_and_report(
         names += [f"{name}.{suffix}" for name in fit_plots.PLOTS for suffix in fit_plots.FORMATS]
         check_outputs(Path(output), names, data)
     fitted = fit(measurements, settings)
+    warn_of_bounds(prog, fitted, settings)
     compared = compare(fitted.law, measurements)
     report(measurements, fitted, compared)
     if output is None:
@@ -227,6 +229,21 @@ def fit_and_report(
     for name in names:
         (Path(output) / name).write_bytes(content[name])
     return names
+
+
+def warn_of_bounds(prog: str, fitted: Fit, settings: FitSettings) -> None:
+    """Say which parameters would be better outside of their bounds."""
+    for name in parameter_names(LAWS[settings.law]):
+        if name in settings.fixed:
+            continue
+        value, (low, high) = getattr(fitted.law, name), settings.bounds_of(name)
+        for bound, which in ((low, "lower"), (high, "upper")):
+            if math.isclose(value, bound, rel_tol=1e-3):
+                print(
+                    f"{prog}: warning: {name} = {value:.6g} is at its {which} bound; the fit may be better with other "
+                    f"--bounds {name}=LOW:HIGH",
+                    file=sys.stderr,
+                )
 
 
 def warn(prog: str, data: Path, measurements: Measurements, settings: FitSettings) -> None:

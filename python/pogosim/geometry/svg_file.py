@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from pogosim.geometry.arena_file import ArenaError, Floats, Outline, signed_area, without_repetitions
+from pogosim.geometry.arena_file import ArenaError, Floats, Outline, digits_for, signed_area, without_repetitions
 from pogosim.geometry.validity import THINNEST
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -224,16 +224,17 @@ def distance_to_chord(point: complex, start: complex, end: complex) -> float:
 
 def as_svg(outline: Outline) -> str:
     """Return an SVG drawing of an outline in mm: one path, its holes left out of the fill."""
+    digits = digits_for(outline)
     low, high = outline.bounds
     width, height = high - low
     data = " ".join(
-        "M " + " L ".join(f"{x:.4f},{y:.4f}" for x, y in (polygon - low).tolist()) + " Z"
+        "M " + " L ".join(f"{x:.{digits}f},{y:.{digits}f}" for x, y in (polygon - low).tolist()) + " Z"
         for polygon in outline.polygons
     )
     line = 0.003 * max(width, height)
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.4f}mm" height="{height:.4f}mm" '
-        f'viewBox="0 0 {width:.4f} {height:.4f}">\n'
-        f'  <path fill="#e8edf1" fill-rule="evenodd" stroke="#29343d" stroke-width="{line:.4f}" d="{data}"/>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.{digits}f}mm" height="{height:.{digits}f}mm" '
+        f'viewBox="0 0 {width:.{digits}f} {height:.{digits}f}">\n'
+        f'  <path fill="#e8edf1" fill-rule="evenodd" stroke="#29343d" stroke-width="{line:.{digits}f}" d="{data}"/>\n'
         "</svg>\n"
     )

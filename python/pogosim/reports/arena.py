@@ -39,7 +39,8 @@ def visited_mm2(run: Trajectories) -> float:
     """Return the area of the floor that bodies of robots covered at some save time, mm2."""
     position = run.position_mm[run.is_there]
     cells = np.unique(np.floor(position / (0.1 * run.radius_mm)), axis=0)  # places that are nearly the same count once
-    disks = shapely.buffer(shapely.points((cells + 0.5) * 0.1 * run.radius_mm), run.radius_mm, quad_segs=8)
+    same_area = np.sqrt(np.pi / (16.0 * np.sin(np.pi / 16.0)))  # of a polygon with 32 corners
+    disks = shapely.buffer(shapely.points((cells + 0.5) * 0.1 * run.radius_mm), same_area * run.radius_mm, quad_segs=8)
     covered = shapely.union_all(disks)
     if run.arena.is_periodic:
         width, height = run.arena.size_mm
@@ -87,7 +88,7 @@ def drawn(run: Trajectories, room: Room | None) -> Figure:
     return figure
 
 
-def analyse(options: argparse.Namespace, prog: str) -> None:
+def analyze(options: argparse.Namespace, prog: str) -> None:
     """Write the table and the figures."""
     runs = with_arenas(read_runs(options, prog), options)
     known = [run for run in runs if run.arena.polygons]
@@ -113,4 +114,4 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze ar
     parser = analysis_parser(prog, "Says how large arenas are, what room they have, and how much of them was visited.")
     add_options(parser)
     options = parser.parse_args(arguments)
-    return reported(prog, lambda: analyse(options, prog))
+    return reported(prog, options, analyze)

@@ -93,7 +93,7 @@ def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Se
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze collective") -> int:
     """Run the command line. Returns the exit code, which is 2 for wrong usage or data."""
     options = parser(prog).parse_args(arguments)
-    return reported(prog, lambda: analyze(options, prog))
+    return reported(prog, options, analyze)
 
 
 def analyze(options: argparse.Namespace, prog: str) -> None:

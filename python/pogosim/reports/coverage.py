@@ -33,10 +33,10 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze co
     add_options(parser)
     parser.add_argument("--run", type=int, metavar="N", help="analyse only the runs with this number (all)")
     options = parser.parse_args(arguments)
-    return reported(prog, lambda: analyse(options, prog))
+    return reported(prog, options, analyze)
 
 
-def analyse(options: argparse.Namespace, prog: str) -> None:
+def analyze(options: argparse.Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
     runs = with_arenas(of_number(read_runs(options, prog), options), options)
     try:

@@ -21,20 +21,15 @@ MAX_COLUMNS = 3
 
 
 def arenas_of(runs: Sequence[Trajectories]) -> dict[str, list[Trajectories]]:
-    """Sort runs by arena. Different outlines by one name are told apart by a number: disk, disk_2.
+    """Sort runs by arena.
 
     Returns:
         By a name that can be that of a folder, in the order of their first runs.
     """
-    arenas: dict[tuple[str, bytes], list[Trajectories]] = {}
+    arenas: dict[str, list[Trajectories]] = {}
     for run in runs:
-        outline = b"".join(np.round(polygon, 3).tobytes() for polygon in run.arena.polygons)
-        arenas.setdefault((folder_name(run.arena.name), outline), []).append(run)
-    named: dict[str, list[Trajectories]] = {}
-    for (name, _), own in arenas.items():
-        number = 1 + sum(other == name or re.fullmatch(rf"{re.escape(name)}_\d+", other) is not None for other in named)
-        named[name if number == 1 else f"{name}_{number}"] = own
-    return named
+        arenas.setdefault(folder_name(run.arena.name), []).append(run)
+    return arenas
 
 
 def folder_name(text: str) -> str:

@@ -136,7 +136,7 @@ def write_tables(tables: Sequence[RunTables], folder: Path, inputs: Sequence[str
         write_table(joined(own), folder / "stats" / f"{name}.csv", inputs)
 
 
-def analyse(options: argparse.Namespace, prog: str) -> None:
+def analyze(options: argparse.Namespace, prog: str) -> None:
     """Do the analysis."""
     folder = output_folder(options)
     runs = read_runs(options, prog)
@@ -159,7 +159,7 @@ def analyse(options: argparse.Namespace, prog: str) -> None:
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze locomotion") -> int:
     """Run the command line. Returns the exit code, which is 2 if the data cannot be analysed."""
     options = parse(arguments, prog)
-    return reported(prog, lambda: analyse(options, prog))
+    return reported(prog, options, analyze)
 
 
 if __name__ == "__main__":

@@ -99,7 +99,10 @@ def msd_per_agent_table(run: Trajectories) -> pd.DataFrame:
 
 def msd_table(run: Trajectories) -> pd.DataFrame:
     """Return squared displacements against the lag: over robots from their first positions, and over all times."""
-    lag, squared = displacement_by_lag(run)
+    try:
+        lag, squared = displacement_by_lag(run)
+    except AnalysisError:  # unevenly spaced, and robots begin at different times: there are no lags in common
+        lag, squared = run.time_s - run.time_s[0], np.full(run.position_mm.shape[:2], np.nan)
     mean, error = mean_and_sem(squared, axis=1)
     table = pd.DataFrame({"lag_s": lag, "robots": np.isfinite(squared).sum(axis=1)})
     table = table.assign(msd_mm2=mean, sem_msd_mm2=error, time_averaged_msd_mm2=np.nan)

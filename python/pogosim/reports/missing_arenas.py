@@ -10,7 +10,7 @@ from typing import Any
 
 from pogosim.analysis.arena import Arena
 from pogosim.analysis.errors import AnalysisError
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Trajectories, setting_of, sizes_of, with_arenas_told_apart
 from pogosim.geometry.arena_file import ArenaError, read_arena, scaled
 from pogosim.utils import parse_configuration
 
@@ -37,16 +37,19 @@ def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[T
     configuration = parse_configuration(Path(options.config).read_text(encoding="utf-8", errors="replace"))
     if not configuration:
         raise AnalysisError(f"{options.config} is not a configuration in YAML")
-    return [run if run.arena.polygons else with_arena(run, configuration, options) for run in runs]
+    return with_arenas_told_apart(
+        [run if run.arena.polygons else with_arena(run, configuration, options) for run in runs]
+    )
 
 
 def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: argparse.Namespace) -> Trajectories:
-    """Return a run with the arena that a configuration says."""
+    """Return a run with the arena that a configuration says, and its robots' sizes."""
 
     def value(name: str) -> Any:
         found = run.labels.get(name, configuration.get(name))
         return found.get("default_option") if isinstance(found, dict) else found  # of a batch
 
+    metadata = {"configuration": configuration}
     if value("arena_file") is None:
         raise AnalysisError(f"{options.config} has no arena_file")
     surface = value("arena_surface")
@@ -64,4 +67,10 @@ def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: arg
     except ArenaError as error:
         raise AnalysisError(str(error)) from error
     is_periodic = outline.periodic or str(value("boundary_condition")).lower() == "periodic"
-    return replace(run, arena=Arena(path.stem, list(outline.polygons), is_periodic))
+    radius_mm, reach_mm = sizes_of(str(run.category[0]), lambda path: setting_of(path, run.labels, metadata))
+    return replace(
+        run,
+        arena=Arena(path.stem, list(outline.polygons), is_periodic),
+        radius_mm=radius_mm,
+        reach_mm=reach_mm if options.rc is None else options.rc,
+    )

@@ -65,10 +65,10 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze ne
         help="distances are averaged over runs, or over the robots of all runs (both)",
     )
     options = parser.parse_args(arguments)
-    return reported(prog, lambda: analyse(options, prog))
+    return reported(prog, options, analyze)
 
 
-def analyse(options: Namespace, prog: str) -> None:
+def analyze(options: Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
     runs = read_runs(options, prog)
     found = [find(run, column_of(run, options.neighborsCol), options.k) for run in runs]

@@ -52,7 +52,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze ne
         "--zero-tol", type=positive, default=1e-10, metavar="X", help="eigenvalues up to this count as zero (1e-10)"
     )
     options = parser.parse_args(arguments)
-    return reported(prog, lambda: analyse(options, prog))
+    return reported(prog, options, analyze)
 
 
 def window(text: str) -> float | None:
@@ -60,7 +60,7 @@ def window(text: str) -> float | None:
     return None if text == "auto" else positive(text)
 
 
-def analyse(options: argparse.Namespace, prog: str) -> None:
+def analyze(options: argparse.Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
     runs = read_runs(options, prog)
     graphs = [graph_over_time(run) for run in runs]

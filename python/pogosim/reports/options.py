@@ -15,7 +15,7 @@ from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser, complain, warn
-from pogosim.outputs import OutputError, leads_to
+from pogosim.outputs import OutputError, leads_to, say
 from pogosim.utils import load_dataframe
 
 # What pandas, numpy and the libraries behind the analyses raise for values that no run has.
@@ -61,7 +61,7 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
     except AnalysisError as error:
         raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
     if options.rc is not None:
-        runs = [replace(run, communication_radius_mm=options.rc - 2.0 * run.radius_mm) for run in runs]
+        runs = [replace(run, reach_mm=options.rc) for run in runs]
     return runs
 
 
@@ -102,10 +102,11 @@ def labelled(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
     return pd.concat([labels, table], axis=1)
 
 
-def reported(prog: str, work: Callable[[], None]) -> int:
-    """Do an analysis; what goes wrong is said in one line. Returns the exit code, 0 or 2."""
+def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Namespace, str], None]) -> int:
+    """Do an analysis, and say in one line where its results are, or what is wrong. Returns the exit code, 0 or 2."""
     try:
-        work()
+        work(options, prog)
+        say(f"written to {options.output_dir}")
     except (AnalysisError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
