@@ -11,10 +11,13 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
+from pogosim.film.brush import DISK
 from pogosim.film.command import frame_times, main
 from pogosim.film.stills import Look, Stills, size_for
 from pogosim.film.timeline import Timeline, timeline_of
-from pogosim.picture.swarm import read_recording
+from pogosim.picture import layers
+from pogosim.picture.links import links_at_end
+from pogosim.picture.swarm import Recording, read_recording
 from recordings import walkers, write
 
 
@@ -221,3 +224,82 @@ def test_film_that_fails_leaves_the_older_one(
     assert "ffmpeg: disk full" in refusal(capsys)
     assert (data.parent / "a.mp4").read_bytes() == b"older"
     assert list(data.parent.glob("*pogosim-new*")) == []
+
+
+# ---- the same picture, drawn faster ----------------------------------------------------------------------------------
+
+
+def mixed(folder: Path, **settings: str) -> Recording:
+    """Robots, boxes, wedges and a mute ball, some at walls, some beyond them, on curved ways."""
+    random = np.random.default_rng(3)
+    rows = walkers(24, 21)
+    time, number = rows["time"].to_numpy(), rows["robot_id"].to_numpy()
+    middle = random.uniform(0, 1000, (24, 2))[number]
+    turn = time + number
+    shapes = np.array(["robots", "robots", "robots", "boxes", "wedges", "balls"])
+    rows = rows.assign(
+        x=middle[:, 0] + 60 * np.cos(turn),
+        y=middle[:, 1] + 60 * np.sin(turn),
+        angle=np.where(number == 6, np.nan, np.angle(np.exp(1j * turn))),
+        robot_category=shapes[number % 6],
+    )
+    objects = {
+        "boxes": {"type": "active_object", "geometry": "rectangle", "body_width": 90, "body_height": 40},
+        "wedges": {"type": "pogobject", "geometry": "triangle", "side_length": 80},
+        "balls": {"type": "passive_object", "geometry": "disk", "radius": 40},
+    }
+    return read_recording(write(folder / "mixed.feather", rows, objects, **settings))
+
+
+@pytest.mark.parametrize("boundary", ["solid", "periodic"])
+@pytest.mark.parametrize("look", [Look(), Look(links=True), Look(tail_s=3.0)], ids=["bodies", "links", "trails"])
+def test_frame_shows_what_a_picture_shows(tmp_path: Path, look: Look, boundary: str) -> None:
+    recording = mixed(tmp_path, boundary_condition=boundary)
+    stills = Stills(recording, (720, 800), look)
+    frame = pixels(stills, 6.0)[40:-45]
+
+    swarm = recording.until(6.0)
+    stills.canvas.restore_region(stills.still)
+    for artist in list(stills.axes.collections):
+        artist.remove()
+    if look.tail_s:
+        layers.draw_trails(stills.axes, swarm, layers.extent_of(swarm), look.tail_s, 60)
+    if look.links:
+        layers.draw_links(stills.axes, links_at_end(swarm), stills.floor)
+    layers.draw_bodies(stills.axes, swarm, stills.floor)
+    for artist in sorted(stills.axes.collections, key=lambda one: one.get_zorder()):
+        artist.draw(stills.canvas.get_renderer())
+    picture = np.array(stills.canvas.buffer_rgba())[40:-45, :, :3].astype(int)
+
+    difference = np.abs(frame - picture).max(axis=-1)
+    assert difference.mean() < 0.5
+    assert (difference > 40).mean() < 0.002
+
+
+@pytest.mark.parametrize("options", [Look(), Look(3.0, True)])
+def test_frames_are_the_same_each_time_and_whatever_came_before(tmp_path: Path, options: Look) -> None:
+    recording = mixed(tmp_path)
+    first, other = (Stills(recording, (320, 320), options) for _ in range(2))
+    for time_s in (0.0, 7.3, 2.0):
+        other.frame(time_s)
+    assert other.frame(4.13) == first.frame(4.13)
+
+
+def test_slow_robot_moves_by_parts_of_a_pixel(tmp_path: Path) -> None:
+    stills = Stills(read_recording(write(tmp_path / "slow.feather", walkers())), (400, 400), Look())
+    heights = []
+    for time_s in np.arange(0.0, 0.1, 0.01):
+        image = pixels(stills, time_s)
+        red = np.clip(image[..., 0] - image[..., 1:].max(axis=-1), 0, None).astype(float)
+        heights.append(float(red.sum(axis=1) @ np.arange(400) / red.sum()))
+    scale = stills.axes.transData.get_matrix()[0, 0]  # pixels per mm
+    assert np.array(heights) - heights[0] == pytest.approx(np.arange(10) * scale, abs=0.13)  # an eighth of a pixel
+
+
+def test_many_sizes_of_disks_do_not_fill_the_memory(tmp_path: Path) -> None:
+    stills = Stills(mixed(tmp_path), (320, 320), Look())
+    stills.frame(0.0)
+    brush = stills.brush
+    for radius in range(100, 1500, 50):
+        brush.stamp(DISK, float(radius), 0, 0)
+        assert sum(own.width * own.height for own in brush.stamps.values()) < 80e6

@@ -9,25 +9,23 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-import pandas as pd
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from pogosim.film.brush import Brush
+from pogosim.film.moving import Moving
 from pogosim.film.timeline import timeline_of
 from pogosim.picture import layers
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw_key, draw_notes, draw_scale_bar, notes, title, width_of_key
-from pogosim.picture.links import links_at_end
 from pogosim.picture.palette import INK, PAPER
 from pogosim.picture.swarm import Recording, Swarm
-from pogosim.scene import bounds
+from pogosim.scene import Floats, bounds
 
 DPI = 100.0
 ABOVE, BELOW = 0.36, 0.42  # inches: heading and clock, scale bar
 MAX_SIDE = 8192  # pixels
 MIN_SIDE = 160
-TRAIL_SNAPSHOTS = 60  # of a trail
 
 
 @dataclass(frozen=True)
@@ -59,47 +57,35 @@ class Stills:
 
     def __init__(self, recording: Recording, size: tuple[int, int], look: Look) -> None:
         self.recording = recording
-        self.look = look
-        self.bodies = timeline_of(recording, recording.last.rows, ["object"])
+        self.moving = Moving(recording, look.tail_s, look.links)
         dots = recording.last.dots
         self.dots = timeline_of(recording, dots, ["object", "subpart_id"]) if len(dots) else None
-        self.walls = recording.walls
+        self.has_membranes = self.dots is not None or bool(layers.is_membrane(recording.last).any())
         self.figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, facecolor=PAPER)
         self.canvas: Any = FigureCanvasAgg(self.figure)
         self.size = size
         self.key: object = None  # of what the background depends on
         self.still: Any = None  # pixels of the background
+        self.brush: Any = None
 
     def frame(self, time_s: float) -> bytes:
         """Return the picture at a time: RGBA, row by row from the top left; width * height * 4 bytes."""
-        swarm = self.swarm_at(time_s)
-        key = self.background_key(swarm)
+        wall_colours = self.recording.wall_colours(time_s)
+        key = self.background_key(time_s, wall_colours)
         if key != self.key:
-            self.draw_background(swarm)
+            self.draw_background(replace(self.recording.last, wall_colours=wall_colours, end_s=time_s))
             self.key = key
         self.canvas.restore_region(self.still)
         self.clock.set_text(f"{time_s:.2f} s")
         self.clock.draw(self.canvas.get_renderer())
-        self.draw_moving(swarm)
+        membranes = (lambda: self.draw_membranes(time_s)) if self.has_membranes else None
+        self.moving.draw(self.brush, self.axes, time_s, membranes)
         return bytes(self.canvas.buffer_rgba())
 
-    def swarm_at(self, time_s: float) -> Swarm:
-        """Return the run at a time, with as many rows before it as trails need."""
-        now = self.bodies.at(time_s).assign(time=time_s)
-        rows = now
-        if self.look.tail_s:
-            times = self.bodies.rows["time"].to_numpy()
-            first, end = np.searchsorted(times, [time_s - self.look.tail_s, time_s])
-            rows = pd.concat([self.bodies.rows.iloc[first:end], now])
-        dots = self.recording.last.dots.iloc[:0] if self.dots is None else self.dots.at(time_s)
-        return replace(
-            self.recording.last, rows=rows, dots=dots, wall_colours=self.recording.wall_colours(time_s), end_s=time_s
-        )
-
-    def background_key(self, swarm: Swarm) -> object:
+    def background_key(self, time_s: float, wall_colours: dict[str, Floats]) -> object:
         """Return what differs whenever the background does."""
-        lamps = tuple((tuple(lamp.centre_at(swarm.end_s)), lamp.photo_phase(swarm.end_s)) for lamp in swarm.lamps)
-        return lamps, tuple((name, tuple(colour)) for name, colour in sorted(swarm.wall_colours.items()))
+        lamps = tuple((tuple(lamp.centre_at(time_s)), lamp.photo_phase(time_s)) for lamp in self.recording.last.lamps)
+        return lamps, tuple((name, tuple(colour)) for name, colour in sorted(wall_colours.items()))
 
     def draw_background(self, swarm: Swarm) -> None:
         """Draw all that stands still, and keep its pixels."""
@@ -128,17 +114,16 @@ class Stills:
         self.still = self.canvas.copy_from_bbox(figure.bbox)
         self.clock = figure.text(share - 0.15 / width, y, "", color=INK, fontsize=11, va="center", ha="right")
 
-    def draw_moving(self, swarm: Swarm) -> None:
-        """Draw over the background, from below to above."""
-        axes = self.axes
-        below = len(axes.collections)
-        if self.look.tail_s:
-            layers.draw_trails(axes, swarm, layers.extent_of(swarm), self.look.tail_s, TRAIL_SNAPSHOTS)
-        if self.look.links:
-            layers.draw_links(axes, links_at_end(swarm), self.floor)
-        layers.draw_membranes(axes, swarm)
-        layers.draw_bodies(axes, swarm, self.floor)
+        if self.brush is None:
+            self.brush = Brush(self.canvas, self.floor.get_transform().transform_path(self.floor.get_path()))
+
+    def draw_membranes(self, time_s: float) -> None:
+        """Draw membranes, of which there are few."""
+        rows = self.moving.bodies.at(time_s)
+        dots = self.recording.last.dots.iloc[:0] if self.dots is None else self.dots.at(time_s)
+        below = len(self.axes.collections)
+        layers.draw_membranes(self.axes, replace(self.recording.last, rows=rows, dots=dots, end_s=time_s))
         renderer = self.canvas.get_renderer()
-        for artist in sorted(list(axes.collections)[below:], key=lambda one: one.get_zorder()):
+        for artist in sorted(list(self.axes.collections)[below:], key=lambda one: one.get_zorder()):
             artist.draw(renderer)
             artist.remove()

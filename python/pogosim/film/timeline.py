@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -54,25 +55,38 @@ class Timeline:
         Returns:
             One row for each object that has had a row by then, with the columns of the file.
         """
-        index = self.index_at(time_s)
-        there = self.known[index] >= 0
-        now = self.known[index][there]
+        now, place, heading = self.poses_at(time_s)
         rows: pd.DataFrame = self.rows.iloc[now]
+        return rows.assign(x=place[:, 0], y=place[:, 1], angle=heading)
+
+    def poses_at(self, time_s: float) -> tuple[Rows, Floats, Floats]:
+        """Return what at() does as arrays: numbers of the m rows, their positions, shape (m, 2), and angles."""
+        index = self.index_at(time_s)
+        now = self.known[index]
+        there = now >= 0
+        now = now[there]
+        place, heading = self.position[now], self.angle[now]
         if index + 1 == len(self.times_s):
-            return rows
+            return now, place, heading
         start_s, end_s = self.times_s[index : index + 2]
         share = float(np.clip((time_s - start_s) / (end_s - start_s), 0.0, 1.0))
         following = self.known[index + 1][there]
-        position = self.rows[["x", "y"]].to_numpy(dtype=float)
-        angle = self.rows["angle"].to_numpy(dtype=float)
-        turn = np.remainder(angle[following] - angle[now] + np.pi, 2.0 * np.pi) - np.pi
-        place = between(position[now], position[following], share, self.high_mm - self.low_mm, self.is_periodic)
+        turn = np.remainder(self.angle[following] - heading + np.pi, 2.0 * np.pi) - np.pi
+        place = between(place, self.position[following], share, self.high_mm - self.low_mm, self.is_periodic)
         if self.is_periodic:
             outside = (place < self.low_mm) | (place > self.high_mm)
             place = np.where(outside, self.low_mm + (place - self.low_mm) % (self.high_mm - self.low_mm), place)
-        heading = angle[now] + share * np.nan_to_num(turn)
-        moved: pd.DataFrame = rows.assign(x=place[:, 0], y=place[:, 1], angle=heading)
-        return moved
+        return now, place, heading + share * np.nan_to_num(turn)
+
+    @cached_property
+    def position(self) -> Floats:
+        """Positions of all rows, shape (rows, 2), mm."""
+        return np.asarray(self.rows[["x", "y"]].to_numpy(dtype=float))
+
+    @cached_property
+    def angle(self) -> Floats:
+        """Angles of all rows, shape (rows,), rad; NaN where there is none."""
+        return np.asarray(self.rows["angle"].to_numpy(dtype=float))
 
 
 def between(start: Floats, end: Floats, share: float, size: Floats, is_periodic: bool) -> Floats:
