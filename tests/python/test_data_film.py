@@ -248,6 +248,8 @@ def mixed(folder: Path, **settings: str) -> Recording:
         "wedges": {"type": "pogobject", "geometry": "triangle", "side_length": 80},
         "balls": {"type": "passive_object", "geometry": "disk", "radius": 40},
     }
+    if settings.get("boundary_condition") == "periodic":
+        rows[["x", "y"]] %= 1000.0
     return read_recording(write(folder / "mixed.feather", rows, objects, **settings))
 
 

@@ -1,6 +1,6 @@
 """Many alike things drawn at once onto a picture of matplotlib's Agg: lines, outlines and disks.
 
-One call draws all lines of a colour, and disks are stamped, with Pillow, which comes with matplotlib: a disk of each size
+One call draws all lines of a colour, and disks are stamped, with Pillow (it comes with matplotlib): a disk of each size
 has been drawn once for each of 64 places within a pixel. Both are several times as fast as collections of matplotlib.
 Places are in pixels, x from the left and y from the bottom, as in matplotlib.
 """

@@ -297,8 +297,7 @@ const glows = new Map();
 
 function glowOf(colour) {
     if (!glows.has(colour)) {
-        const sprite = document.createElement("canvas");
-        sprite.width = sprite.height = 64;
+        const sprite = new OffscreenCanvas(64, 64);
         const ink = sprite.getContext("2d");
         const gradient = ink.createRadialGradient(32, 32, 32 / GLOW, 32, 32, 32);
         gradient.addColorStop(0, colour + "55");
@@ -306,15 +305,20 @@ function glowOf(colour) {
         gradient.addColorStop(1, colour + "00");
         ink.fillStyle = gradient;
         ink.fillRect(0, 0, 64, 64);
-        glows.set(colour, sprite);
+        glows.set(colour, sprite.transferToImageBitmap());
     }
     return glows.get(colour);
 }
 
-const isBright = (colour) => {
-    const value = parseInt(colour.slice(1), 16);
-    return 0.299 * (value >> 16) + 0.587 * ((value >> 8) & 255) + 0.114 * (value & 255) > 64;
-};
+const brightness = new Map();
+
+function isBright(colour) {
+    if (!brightness.has(colour)) {
+        const value = parseInt(colour.slice(1), 16);
+        brightness.set(colour, 0.299 * (value >> 16) + 0.587 * ((value >> 8) & 255) + 0.114 * (value & 255) > 64);
+    }
+    return brightness.get(colour);
+}
 
 // Calls draw(dx, dy) for every image of a place in a periodic arena that reaches into it; once elsewhere.
 function forEachImage(x, y, reach, draw) {
@@ -382,26 +386,31 @@ function drawTrails() {
     const stride = Math.max(1, Math.round((index - start) / (count > 300 ? 25 : 120)));
     const length = times.length;
     pen.lineCap = pen.lineJoin = "round";
-    for (let object = 0; object < count; object++) {
-        if (categoryOf(object).membrane) continue;
-        for (let piece = 0; piece < pieces; piece++) {
-            const from = start + Math.floor((index - start) * piece / pieces);
-            const to = start + Math.floor((index - start) * (piece + 1) / pieces);
-            const freshness = (piece + 1) / pieces;
-            pen.strokeStyle = colouring.colour(object, to);
-            pen.globalAlpha = 0.05 + 0.7 * freshness ** 2;
-            pen.lineWidth = (0.8 + freshness) / camera.scale;
-            pen.beginPath();
+    for (let piece = 0; piece < pieces; piece++) {
+        const from = start + Math.floor((index - start) * piece / pieces);
+        const to = start + Math.floor((index - start) * (piece + 1) / pieces);
+        const freshness = (piece + 1) / pieces;
+        const paths = new Map();  // by colour
+        for (let object = 0; object < count; object++) {
+            if (categoryOf(object).membrane) continue;
+            const colour = colouring.colour(object, to);
+            if (!paths.has(colour)) paths.set(colour, new Path2D());
+            const path = paths.get(colour);
             let [x, y] = [NaN, NaN];
             const lead = (toX, toY) => {
-                const near = Math.abs(toX - x) <= size[0] / 2 && Math.abs(toY - y) <= size[1] / 2;
-                if (near) pen.lineTo(toX, toY); else pen.moveTo(toX, toY);
+                if (Math.abs(toX - x) <= size[0] / 2 && Math.abs(toY - y) <= size[1] / 2) path.lineTo(toX, toY);
+                else path.moveTo(toX, toY);
                 [x, y] = [toX, toY];
             };
             for (let i = from; i < to; i += stride) lead(track.x[object * length + i], track.y[object * length + i]);
             lead(track.x[object * length + to], track.y[object * length + to]);
             if (piece === pieces - 1) lead(poses[object].x, poses[object].y);
-            pen.stroke();
+        }
+        pen.globalAlpha = 0.05 + 0.7 * freshness ** 2;
+        pen.lineWidth = (0.8 + freshness) / camera.scale;
+        for (const [colour, path] of paths) {
+            pen.strokeStyle = colour;
+            pen.stroke(path);
         }
     }
     pen.globalAlpha = 1;
@@ -527,30 +536,74 @@ function bodyPath(own, x, y, angle, scale = 1) {
     pen.closePath();
 }
 
+// Small disks with their rims as pictures, made once for each colour and zoom; twice as fine as the screen.
+const MAX_SPRITE = 48;  // pixels of a radius
+const MAX_SPRITES = 2000;
+const sprites = new Map();  // by radius, then by colour
+let spriteCount = 0, spritePixel = 0;
+
+function spriteOf(colour, radius, pixel) {
+    if (pixel !== spritePixel || spriteCount >= MAX_SPRITES) {
+        sprites.clear();
+        [spriteCount, spritePixel] = [0, pixel];
+    }
+    if (!sprites.has(radius)) sprites.set(radius, new Map());
+    let sprite = sprites.get(radius).get(colour);
+    if (!sprite) {
+        const half = Math.ceil(radius / pixel) + 2;
+        const picture = new OffscreenCanvas(4 * half, 4 * half);
+        const ink = picture.getContext("2d");
+        ink.arc(2 * half, 2 * half, 2 * radius / pixel, 0, 2 * Math.PI);
+        ink.fillStyle = colour;
+        ink.fill();
+        ink.strokeStyle = palette.edge;
+        ink.lineWidth = 2 * 1.2 * (window.devicePixelRatio || 1);
+        ink.stroke();
+        sprite = {image: picture.transferToImageBitmap(), reach: half * pixel};
+        sprites.get(radius).set(colour, sprite);
+        spriteCount++;
+    }
+    return sprite;
+}
+
 function drawBodies() {
     const pixel = 1 / camera.scale;
+    const fine = pixel / (canvas.width / Math.max(canvas.clientWidth, 1));  // pixel of the screen, mm
+    const [left, top] = toArena(0, 0), [right, bottom] = toArena(canvas.clientWidth, canvas.clientHeight);
+    const ticks = head.categories.map(() => [new Path2D(), new Path2D()]);  // on dark and on bright bodies
     for (let object = 0; object < count; object++) {
         const own = categoryOf(object), {x, y, angle} = poses[object];
         if (!(x === x) || (own.membrane && dots)) continue;
         const colour = colourOf(object);
+        const sprite = own.outline || own.membrane || own.radius > MAX_SPRITE * fine ? null
+            : spriteOf(colour, own.radius, fine);
+        const tick = ticks[head.objects[object][0]][Number(isBright(colour))];
         forEachImage(x, y, own.radius, (dx, dy) => {
-            if (own.membrane) return drawMark(x + dx, y + dy, colour);
-            bodyPath(own, x + dx, y + dy, angle);
-            pen.fillStyle = colour;
-            pen.fill();
-            pen.strokeStyle = palette.edge;
-            pen.lineWidth = 1.2 * pixel;
-            pen.stroke();
+            const [px, py] = [x + dx, y + dy], margin = own.radius + 12 * pixel;
+            if (px + margin < left || px - margin > right || py + margin < top || py - margin > bottom) return;
+            if (own.membrane) return drawMark(px, py, colour);
+            if (sprite) {
+                pen.drawImage(sprite.image, px - sprite.reach, py - sprite.reach, 2 * sprite.reach, 2 * sprite.reach);
+            } else {
+                bodyPath(own, px, py, angle);
+                pen.fillStyle = colour;
+                pen.fill();
+                pen.strokeStyle = palette.edge;
+                pen.lineWidth = 1.2 * pixel;
+                pen.stroke();
+            }
             if (angle !== angle) return;
             const [cos, sin] = [Math.cos(angle) * own.reach, Math.sin(angle) * own.reach];
-            pen.strokeStyle = isBright(colour) ? palette.edge : palette.paper;
-            pen.lineWidth = Math.min(2.2 * pixel, own.reach / 4);
-            pen.beginPath();
-            pen.moveTo(x + dx + 0.25 * cos, y + dy + 0.25 * sin);
-            pen.lineTo(x + dx + 0.95 * cos, y + dy + 0.95 * sin);
-            pen.stroke();
+            tick.moveTo(px + 0.25 * cos, py + 0.25 * sin);
+            tick.lineTo(px + 0.95 * cos, py + 0.95 * sin);
         });
     }
+    pen.lineCap = "butt";
+    ticks.forEach((paths, category) => paths.forEach((path, bright) => {
+        pen.strokeStyle = bright ? palette.edge : palette.paper;
+        pen.lineWidth = Math.min(2.2 * pixel, head.categories[category].reach / 4);
+        pen.stroke(path);
+    }));
 }
 
 // A membrane whose dots the file does not have.
@@ -878,6 +931,7 @@ window.replay = {
     play: () => setPlaying(true),
     pause: () => setPlaying(false),
     setTime, colourBy, select, fit, valuesOf, colourOf,
+    redraw: draw,
     object: (category, id) => head.objects.findIndex(([own, number]) =>
         head.categories[own].name === category && number === id),
     pose: (object) => ({...poses[object]}),
