@@ -278,6 +278,33 @@ def test_frame_shows_what_a_picture_shows(tmp_path: Path, look: Look, boundary: 
     assert (difference > 40).mean() < 0.002
 
 
+def place_of(stills: Stills, x_mm: float, y_mm: float) -> tuple[int, int]:
+    """Row and column of a place in the arena."""
+    x, y = stills.axes.transData.transform((x_mm, y_mm))
+    return int(stills.size[1] - y), int(x)
+
+
+def test_jump_leaves_no_trail(tmp_path: Path) -> None:
+    rows = walkers(1, 2).assign(x=np.array([900.0, 100.0]), y=500.0)
+    stills = Stills(read_recording(write(tmp_path / "jump.feather", rows)), (400, 400), Look(tail_s=1.0))
+    assert pixels(stills, 0.5)[place_of(stills, 500, 500)].max() < 40  # the floor
+
+
+def test_glow_ends_at_the_wall(tmp_path: Path) -> None:
+    rows = walkers(1, 2).assign(x=20.0, y=500.0)
+    stills = Stills(read_recording(write(tmp_path / "wall.feather", rows)), (720, 800), Look())
+    image = pixels(stills, 0.0)
+    assert image[place_of(stills, -13.0, 500)].tolist() == [255, 255, 255]
+    assert image[place_of(stills, 52.0, 500)][0] > 30
+
+
+def test_headings_stand_out_from_bright_and_dark_colours(data: Path) -> None:
+    stills = Stills(read_recording(data), (720, 800), Look())
+    image = pixels(stills, 0.0)
+    assert image[place_of(stills, 500, 116)].max() < 60  # green
+    assert image[place_of(stills, 2500 / 3, 116)].min() > 200  # blue
+
+
 @pytest.mark.parametrize("options", [Look(), Look(3.0, True)])
 def test_frames_are_the_same_each_time_and_whatever_came_before(tmp_path: Path, options: Look) -> None:
     recording = mixed(tmp_path)

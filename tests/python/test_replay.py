@@ -104,6 +104,7 @@ def test_playing_goes_on_to_the_end_and_stops(page: Page) -> None:
     assert page.get_attribute("#play", "aria-label") == "Pause"
     page.wait_for_function("replay.time === 2 && !replay.playing")
     assert page.get_attribute("#play", "aria-label") == "Play"
+    page.select_option("#speed", "0.1")
     page.click("#play")  # from the start again
     page.wait_for_function("replay.playing && replay.time < 2")
     page.keyboard.press("Space")
@@ -130,6 +131,22 @@ def test_robots_shine_in_the_colours_of_their_leds(page: Page) -> None:
     assert pixel(page, x, y - 8) == [210, 0, 0]
     x, y = page.evaluate("replay.screen(2)")
     assert pixel(page, x, y - 8) == [0, 0, 210]
+
+
+def test_lit_robots_glow_and_leave_trails_up_to_where_they_are(page: Page) -> None:
+    page.evaluate("replay.setTime(1.45)")
+    x, y = page.evaluate("replay.screen(0)")
+    radius = (page.evaluate("replay.screen(1)")[0] - x) / (1000 / 3) * 26.5
+    floor = pixel(page, x + 3 * radius, y)
+    assert pixel(page, x + 1.2 * radius, y)[0] > floor[0] + 10
+    behind = (x, y - 1.35 * radius)  # after the last record
+    before = pixel(page, *behind)
+    page.check("#trails")
+    assert pixel(page, *behind)[0] > before[0] + 40
+    assert pixel(page, x, y - 3 * radius)[0] > floor[0] + 10
+    page.select_option("#colour", "state")
+    page.uncheck("#trails")
+    assert pixel(page, x + 1.2 * radius, y) == floor
 
 
 def test_column_colours_robots_and_the_legend_explains(page: Page) -> None:
