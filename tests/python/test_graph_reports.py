@@ -76,7 +76,8 @@ def test_a_command_writes_all_files_and_again_the_same_bytes(name: str, tmp_path
         done = subprocess.run(
             [sys.executable, "-m", "pogosim", *arguments], capture_output=True, text=True, cwd=tmp_path, check=False
         )
-        assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout == f"written to {tmp_path / folder}\n"
         written.append({path.name: path.read_bytes() for path in (tmp_path / folder).iterdir()})
     figures = {f"{figure}{suffix}" for figure in FILES[name] for suffix in (".pdf", ".png")}
     assert set(written[0]) == figures | TABLES[name]

@@ -38,4 +38,4 @@ def test_combinations_of_several_batches_keep_their_arenas(tmp_path: Path) -> No
             write_rows(files[-1], part, metadata)
     runs = trajectories_of(*load_dataframe(files))
     sizes = {(run.labels["objects.robots.nb"], run.arena.name): run.arena.size_mm[0] for run in runs}
-    assert sizes == {(10, "arena0"): 500.0, (10, "arena1"): 600.0, (11, "arena0"): 700.0, (11, "arena1"): 800.0}
+    assert sizes == {(10, "arena0"): 500.0, (10, "arena1"): 600.0, (11, "arena0_2"): 700.0, (11, "arena1_2"): 800.0}
