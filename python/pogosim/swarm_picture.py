@@ -17,6 +17,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from pogosim.command.parser import Parser
 from pogosim.outputs import OutputError, leads_to, real_output
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw, draw_series, notes, round_length, title
@@ -106,7 +107,7 @@ def make_picture(options: argparse.Namespace, prog: str) -> None:
 
 def main(arguments: Sequence[str] | None = None, prog: str = "swarm_picture") -> int:
     """Run the command line; returns the exit code: 0, or 2 if the picture could not be made."""
-    parser = argparse.ArgumentParser(prog=prog, description=(__doc__ or "").splitlines()[0])
+    parser = Parser(prog=prog, description=(__doc__ or "").splitlines()[0])
     parser.add_argument("data", metavar="DATA.feather", help="data file of a run")
     parser.add_argument("picture", metavar="OUT.png", help=f"picture to write ({', '.join(PICTURES)})")
     parser.add_argument("--dpi", type=positive, default=150.0, help="dots per inch (150)")

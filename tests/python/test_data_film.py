@@ -332,3 +332,12 @@ def test_many_sizes_of_disks_do_not_fill_the_memory(tmp_path: Path) -> None:
     for radius in range(100, 1500, 50):
         brush.stamp(DISK, float(radius), 0, 0)
         assert sum(own.width * own.height for own in brush.stamps.values()) < 80e6
+
+
+def test_names_that_look_like_marks_of_the_page_are_names(tmp_path: Path) -> None:
+    rows = walkers(records=3).assign(**{"@@HEAD@@": 1.5}, robot_category="@@SCRIPT@@")
+    data = write(tmp_path / "@@DATA@@.feather", rows)
+    assert film(data, "page.html") == 0
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "<title>@@DATA@@" in page
+    assert '"@@HEAD@@"' in page

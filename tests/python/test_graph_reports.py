@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -289,3 +290,18 @@ def test_an_input_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixtu
         assert module.main(["-i", str(path), "-o", str(tmp_path)]) == 2
         assert "is an input" in capsys.readouterr().err
         assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("output", ["knn_run.pdf", "neighbors_stats.pkl", "stats/deep.csv"])
+@pytest.mark.parametrize("link", [Path.symlink_to, Path.hardlink_to])
+def test_links_to_an_input_are_not_written_over(
+    output: str, link: Callable[[Path, Path], None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = file_of(tmp_path)
+    before = path.read_bytes()
+    other = tmp_path / "out" / output
+    other.parent.mkdir(parents=True)
+    link(other, path)
+    assert runs_of("neighbors", tmp_path) == 2
+    assert f"{other} leads to an input, which might be overwritten" in capsys.readouterr().err
+    assert path.read_bytes() == before

@@ -75,8 +75,18 @@ def test_each_combination_has_its_own_arena() -> None:
 
 
 def test_a_column_run_of_the_users_own_does_not_split_a_run() -> None:
-    run = run_of(line().assign(run=[3, 4] * 5))
+    run = run_of(line().assign(run=[3, 4] * 5), program_version="v0.11.0")
     assert run.position_mm.shape == (5, 2, 2)
+
+
+def test_runs_with_other_robots_or_other_times_are_runs_of_their_own() -> None:
+    later = line().assign(run=1, time=line()["time"] + 0.5)
+    others = line().assign(run=1, robot_id=line()["robot_id"] + 2)
+    for second in (later, others):
+        runs = trajectories_of(pd.concat([line().assign(run=0), second]), metadata_of())
+        assert [run.position_mm.shape for run in runs] == [(5, 2, 2)] * 2
+        batch = {**metadata_of(), "program_version": "v0.11.0", "files": ["a", "b"]}
+        assert len(trajectories_of(pd.concat([line().assign(run=0), second]), batch)) == 2
 
 
 def test_two_rows_of_a_robot_at_one_time_are_refused() -> None:

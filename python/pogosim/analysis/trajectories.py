@@ -108,7 +108,7 @@ def trajectories_of(
     if rows.empty:
         raise AnalysisError("it has no row with a time and a position")
     names = label_columns(rows, metadata)
-    if not rows.duplicated(["time", *OBJECT]).any():  # one run; a column `run` of several values is the user's own
+    if is_one_run(rows, metadata):
         same = {name: rows[name].iloc[0] for name in names if rows[name].nunique(dropna=False) == 1}
         return [run_of(rows, {"run": 0} | same, metadata)]
     if not names:
@@ -118,6 +118,18 @@ def trajectories_of(
         for values, own in rows.groupby(names, sort=True, dropna=False, observed=True)
     ]
     return with_arenas_told_apart(runs)
+
+
+def is_one_run(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> bool:
+    """Tell whether the rows are of one run, whatever its own columns are called.
+
+    What a single run writes says its version, has no combinations, and has each object once at each time.
+    """
+    configuration = metadata.get("configuration")
+    is_batch = isinstance(configuration, dict) and "result_new_columns" in configuration
+    if is_batch or "files" in metadata or combinations_of(metadata) or "program_version" not in metadata:
+        return False
+    return not rows.duplicated(["time", *OBJECT]).any()
 
 
 def with_arenas_told_apart(runs: Sequence[Trajectories]) -> list[Trajectories]:

@@ -6,6 +6,7 @@ import argparse
 import html
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -74,11 +75,9 @@ def page_of(head: dict[str, Any], data: str, name: str) -> str:
         "@@HEAD@@": text,
         "@@DATA@@": data,
     }
-    pieces = (FOLDER / "replay.html").read_text(encoding="utf-8")
-    for mark, part in parts.items():
-        before, after = pieces.split(mark)
-        pieces = before + part + after
-    return pieces
+    page = (FOLDER / "replay.html").read_text(encoding="utf-8")
+    # In one go: names in the data may look like marks.
+    return re.sub("|".join(parts), lambda mark: parts[mark.group()], page).encode("utf-8", "replace").decode("utf-8")
 
 
 def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, list[str]]:

@@ -137,8 +137,7 @@ def read_recording(
     rows, polygons, left_out = one_run(checked(rows), metadata, run, combination)
     configuration = metadata["configuration"]
     categories = read_categories(configuration)
-    rows, colouring = coloured(with_defaults(rows), categories, color_by)
-    rows = completed(rows)
+    rows, colouring = coloured(completed(with_defaults(rows)), categories, color_by)
 
     # In files of earlier versions, walls have no pose.
     is_wall = rows["robot_category"].isin([name for name, own in categories.items() if own.type == "pogowall"])

@@ -15,7 +15,7 @@ from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.milling import centre_of_arena
 from pogosim.analysis.motion import speed
 from pogosim.analysis.trajectories import Trajectories, need_columns
-from pogosim.command.numbers import at_least, positive
+from pogosim.command.numbers import positive, whole
 from pogosim.command.parser import Parser, warn
 from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
 from pogosim.reports.collective_metrics import METRICS, Metric
@@ -39,14 +39,14 @@ def parser(prog: str) -> Parser:
         metavar="MM_S",
         help=f"slower robots have no direction ({MIN_SPEED_MM_S} mm/s)",
     )
-    add("--psi-k", type=at_least(1), default=6, metavar="K", help="symmetry of the bond order (6)")
+    add("--psi-k", type=whole(1, 100), default=6, metavar="K", help="symmetry of the bond order (6)")
     add("--gr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of g(r) (200)")
     add("--gr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (2)")
-    add("--sk-nx", type=at_least(4), default=128, metavar="N", help="columns of the grid of S(k) (128)")
-    add("--sk-ny", type=at_least(4), default=128, metavar="N", help="rows of it (128)")
+    add("--sk-nx", type=whole(4, 4096), default=128, metavar="N", help="columns of the grid of S(k) (128)")
+    add("--sk-ny", type=whole(4, 4096), default=128, metavar="N", help="rows of it (128)")
     add("--v2-ref", type=positive, metavar="MM2_S2", help="mean square speed that Teff_ratio is for (that of all runs)")
-    add("--vort-nx", type=at_least(2), default=64, metavar="N", help="columns of the grid of the velocity field (64)")
-    add("--vort-ny", type=at_least(2), default=64, metavar="N", help="rows of it (64)")
+    add("--vort-nx", type=whole(2, 4096), default=64, metavar="N", help="columns of the velocity field (64)")
+    add("--vort-ny", type=whole(2, 4096), default=64, metavar="N", help="rows of it (64)")
     add("--milling-center", choices=("cm", "arena"), default="cm", help="centre of mass, or of the arena (cm)")
     add("--aligncorr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of C(r) (200)")
     add("--aligncorr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (2)")

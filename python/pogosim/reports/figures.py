@@ -28,14 +28,15 @@ def new_figure(columns: int = 1, rows: int = 1, width: float = 6.0, height: floa
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure as PDF and PNG; parent folders are made. The suffix of the path does not count."""
+    """Write a figure as PDF and PNG; parent folders are made. The path may have one of these suffixes or none."""
     path.parent.mkdir(parents=True, exist_ok=True)
     # Panels are laid out once, not for each format: that takes longer than drawing them.
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)
         figure.set_layout_engine("none")
+    stem = path.stem if path.suffix in METADATA else path.name  # arenas may have dots in their names
     for suffix in FORMATS:
-        figure.savefig(path.with_suffix(suffix), dpi=DPI, metadata=METADATA[suffix])
+        figure.savefig(path.with_name(stem + suffix), dpi=DPI, metadata=METADATA[suffix])
 
 
 def group_names(runs: Sequence[Trajectories]) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.analysis.trajectories import Trajectories
-from pogosim.command.numbers import at_least, positive
+from pogosim.command.numbers import at_least, positive, whole
 from pogosim.command.parser import warn
 from pogosim.reports.figures import group_names, group_of
 from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
@@ -46,7 +46,7 @@ def parse(arguments: Sequence[str] | None, prog: str) -> argparse.Namespace:
     parser.add_argument(
         "--characteristic-length", type=positive, metavar="MM", help="length of the Peclet number (2 radius)"
     )
-    parser.add_argument("--bins", type=at_least(1), default=30, metavar="N", help="bins of heat maps (30)")
+    parser.add_argument("--bins", type=whole(1, 2000), default=30, metavar="N", help="bins of heat maps (30)")
     parser.add_argument("--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (20)")
     parser.add_argument("--gif", action="store_true", help="make films of the traces, too: traces/*.gif")
     return parser.parse_args(arguments)

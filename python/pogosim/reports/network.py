@@ -18,7 +18,7 @@ from pogosim.analysis.network import (
     ten_periods_s,
 )
 from pogosim.analysis.trajectories import Trajectories
-from pogosim.command.numbers import at_least, positive
+from pogosim.command.numbers import positive, whole
 from pogosim.command.parser import warn
 from pogosim.reports.figures import group_names, group_of, groups_of
 from pogosim.reports.groups import by_arena, save_over_time, save_violins
@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze ne
     """Run the command line. Returns the exit code, which is 2 for what cannot be analysed."""
     parser = analysis_parser(prog, "Components, degrees and Laplacian spectra of the proximity graph of robots.")
     parser.add_argument(
-        "--k-first", type=at_least(1), default=5, metavar="K", help="how many small non-zero eigenvalues (5)"
+        "--k-first", type=whole(1, 10_000), default=5, metavar="K", help="how many small non-zero eigenvalues (5)"
     )
     parser.add_argument(
         "--avg-window-s",

@@ -16,11 +16,13 @@ from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser, complain, warn
 from pogosim.outputs import OutputError, leads_to, say
+from pogosim.several_files import files_that_fit, is_pattern
 from pogosim.utils import load_dataframe
 
 # What pandas, numpy and the libraries behind the analyses raise for values that no run has.
 STRANGE_DATA = (ArithmeticError, IndexError, KeyError, MemoryError, RuntimeError, TypeError, ValueError)
 
+OUTPUT_FOLDERS = ("arenas", "stats", "traces")
 OUTPUT_SUFFIXES = (".csv", ".gif", ".json", ".pdf", ".pkl", ".png", ".txt")
 
 
@@ -81,7 +83,18 @@ def output_folder(options: argparse.Namespace) -> Path:
         raise OutputError(f"{folder} is a file; -o wants a folder") from None
     except OSError as error:
         raise OutputError(f"cannot make the folder {folder}: {(error.strerror or str(error)).lower()}") from error
+    refuse_links_to_inputs(folder, options.input)
     return folder
+
+
+def refuse_links_to_inputs(folder: Path, inputs: Sequence[str]) -> None:
+    """Raise OutputError if an output of an analysis could be written over an input, under another name of it."""
+    files = [file for name in inputs for file in (files_that_fit(name) if is_pattern(name) else [Path(name)])]
+    own = [path for path in folder.iterdir() if not path.is_dir()]
+    own += [path for name in OUTPUT_FOLDERS for path in Path(folder, name).rglob("*") if not path.is_dir()]
+    for path in own:
+        if path.suffix in OUTPUT_SUFFIXES and any(leads_to(path, file) for file in files):
+            raise OutputError(f"{path} leads to an input, which might be overwritten; choose another folder with -o")
 
 
 def write_table(table: pd.DataFrame, path: Path, inputs: Sequence[str]) -> None:
