@@ -109,8 +109,8 @@ void Recorder::make_data_file() {
     options.subpart_column = has_subparts(world_);
     options.led_column = output().led_column;
     options.flush_row_count = output().flush_row_count;
-    options.metadata = run_metadata(
-        scenario_, world_.arena, {.seed = seed_, .time_step_s = world_.time_step_s, .is_periodic = world_.periodic});
+    options.metadata = run_metadata(scenario_, world_.arena,
+                                    {.seed = seed_, .time_step_s = world_.time_step_s, .is_periodic = world_.periodic});
     data_file_ = std::make_unique<DataFile>(options, std::move(reserved_));
     note_data_file(options.path, DataFileState::open);
     empty_row_.values.assign(options.user_columns.size(), CellValue());
