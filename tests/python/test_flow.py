@@ -95,6 +95,13 @@ def test_cells_without_robots_on_all_sides_have_no_value() -> None:
     assert np.isfinite(field.velocity[1:-1, 1:8]).all()
 
 
+def test_a_cell_beside_all_robots_near_it_has_no_value() -> None:
+    generator = np.random.default_rng(3)
+    beside = np.stack([generator.uniform(560.0, 640.0, 30), generator.uniform(420.0, 580.0, 30)], axis=1)
+    ((_, field),) = velocity_fields(run_of(beside[None]), np.ones_like(beside)[None], 150.0, (5, 5))
+    assert np.isnan(field.velocity[2, 2]).all()  # its centre is (500, 500)
+
+
 @pytest.mark.parametrize("robots", [1, 3])
 def test_few_robots_are_no_flow(robots: int) -> None:
     position = places()[:robots]

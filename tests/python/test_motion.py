@@ -213,3 +213,16 @@ def test_sliding_mean_is_that_of_the_window_around_each_time() -> None:
     values = np.array([[1.0], [2.0], [np.nan], [8.0], [5.0]])
     np.testing.assert_allclose(sliding_mean(time, values, 2.0)[:, 0], [1.5, 1.5, 5.0, 8.0, 5.0])
     np.testing.assert_allclose(sliding_mean(time, values, 0.0), values)
+
+
+def test_sliding_mean_of_late_times_is_that_of_whole_windows() -> None:
+    time = np.float32(1000.0 + 0.1 * np.arange(200)).astype(float)
+    value = np.arange(200.0)
+    np.testing.assert_allclose(sliding_mean(time, value, 0.6)[3:-3], value[3:-3])
+
+
+def test_persistence_is_that_of_lags_with_many_pairs() -> None:
+    lags = np.arange(100.0)
+    correlation = np.exp(-lags / 200.0)
+    correlation[50:] = 0.7  # of few pairs
+    assert persistence_time(lags, correlation) == pytest.approx(200.0, rel=1e-6)

@@ -47,6 +47,13 @@ def test_cells_add_up_to_the_arena(arena: Arena, robots: int) -> None:
     assert areas(uniform(robots), arena).sum() == pytest.approx(arena.area_mm2, rel=1e-9)
 
 
+def test_cells_of_a_crowd_in_a_corner_fill_a_periodic_arena() -> None:
+    crowd = 0.03 * uniform(300)
+    assert areas(crowd, PERIODIC).sum() == pytest.approx(PERIODIC.area_mm2, rel=1e-9)
+    middle = crowd + 500.0
+    np.testing.assert_allclose(areas(middle, PERIODIC), areas(crowd, PERIODIC), rtol=1e-6)
+
+
 @pytest.mark.parametrize("arena", [PERIODIC, WALLS, RING, L_SHAPE])
 def test_each_point_is_in_the_cell_of_its_nearest_robot(arena: Arena) -> None:
     position, points = uniform(40), uniform(2000, seed=2)

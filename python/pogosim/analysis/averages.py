@@ -54,7 +54,7 @@ def sliding_mean(time_s: Floats, values: Floats, window_s: float) -> Floats:
     Returns:
         The shape of the values; NaN for windows without values.
     """
-    slack = 1e-6 * max(window_s, 1e-3)  # times are stored with 24 bits
+    slack = np.maximum(1e-6 * max(window_s, 1e-3), 2.0**-22 * np.abs(time_s))  # times are stored with 24 bits
     low = np.searchsorted(time_s, time_s - window_s / 2.0 - slack, side="left")
     high = np.searchsorted(time_s, time_s + window_s / 2.0 + slack, side="right")
     known = np.isfinite(values)

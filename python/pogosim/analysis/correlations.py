@@ -28,7 +28,7 @@ class PairCorrelation:
 
     @property
     def g_r(self) -> Floats:
-        """Pair correlation function g(r), shape (B,): 1 for independent places; NaN beyond the size of the arena."""
+        """Pair correlation function g(r), shape (B,): 1 for independent positions; NaN beyond the size of the arena."""
         unknown = np.full(len(self.pairs), np.nan)
         return np.asarray(np.divide(self.pairs, self.expected, out=unknown, where=self.expected > 0.0))
 

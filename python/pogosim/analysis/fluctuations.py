@@ -37,7 +37,7 @@ class NumberFluctuations:
 def number_fluctuations(run: Trajectories) -> NumberFluctuations:
     """Return how much the number of robots in a box differs between boxes and times, by the size of the box.
 
-    sigma ~ N^alpha: alpha is 1/2 for independent places, more in swarms with giant number fluctuations (Narayan,
+    sigma ~ N^alpha: alpha is 1/2 for independent positions, more in swarms with giant number fluctuations (Narayan,
     Ramaswamy, Menon, "Long-lived giant number fluctuations in a swarming granular nematic", Science 317, 2007), and
     less in crystals. A box that takes the part p of the floor has sigma^2 = N (1 - p) for N of independent robots; it
     is divided by 1 - p, so that alpha is 1/2 for large boxes too. The floor is where centres can be

@@ -43,7 +43,7 @@ def film_file(name: str, data: str) -> Path:
         raise OutputError(f"the film {name} would take the place of the data file {data}; name another film")
     path = real_output(name)
     if Path(name).suffix.lower() not in (*FORMATS, PAGE):
-        raise OutputError(f"{name} is no name of a film; let it end in {', '.join(FORMATS)} or {PAGE}")
+        raise OutputError(f"{name}: unknown format of a film; let the name end in {', '.join(FORMATS)} or {PAGE}")
     return path
 
 

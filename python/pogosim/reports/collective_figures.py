@@ -53,7 +53,7 @@ def draw_metric(metric: Metric, runs: Sequence[Trajectories], tables: Sequence[p
 
 
 def draw_square_root(axes: Axes) -> None:
-    """Make both axes logarithmic, and draw what independent places have: sigma = N^(1/2)."""
+    """Make both axes logarithmic, and draw what independent positions have: sigma = N^(1/2)."""
     low, high = axes.dataLim.intervalx
     x = np.array([low, high])
     axes.set(xscale="log", yscale="log")
@@ -61,7 +61,7 @@ def draw_square_root(axes: Axes) -> None:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
         axis.set_minor_formatter(NullFormatter())
-    axes.plot(x, np.sqrt(x), color="grey", linewidth=0.8, linestyle=":", label="independent places, $N^{1/2}$")
+    axes.plot(x, np.sqrt(x), color="grey", linewidth=0.8, linestyle=":", label="independent positions, $N^{1/2}$")
     axes.legend(frameon=False, fontsize="small")
 
 

@@ -277,7 +277,7 @@ METRICS = (
     ),
     Metric(
         "g_r",
-        "pair correlation function g(r), with the pairs of independent places on the same floor as 1",
+        "pair correlation function g(r), with the pairs of independent positions on the same floor as 1",
         compute_g_r,
         {"g_r": "pair correlation g(r)"},
         "distance r (mm)",
@@ -297,7 +297,7 @@ METRICS = (
     ),
     Metric(
         "number_fluct",
-        "standard deviation of the number of robots in boxes by its mean, sigma ~ N^alpha; independent places: 1/2",
+        "standard deviation of the number of robots in boxes by its mean, sigma ~ N^alpha; independent positions: 1/2",
         compute_number_fluct,
         {"std_count": "standard deviation of the number"},
         "mean number of robots in a box",
