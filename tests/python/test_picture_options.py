@@ -192,3 +192,24 @@ def test_all_options_at_once(data: Path) -> None:
     options = ["--at", "0", "1", "--color-by", "fed", "--links", "--tail", "1", "--dpi", "40", "--run", "0"]
     assert main([str(data), str(out), *options]) == 0
     assert out.stat().st_size > 1000
+
+
+def test_speed_is_that_since_the_record_before(data: Path) -> None:
+    rows = read_recording(data, color_by="speed").last.rows
+    assert rows.loc[rows["time"] == 0.0, "speed"].isna().all()
+    np.testing.assert_allclose(rows.loc[rows["time"] > 0.0, "speed"], 100.0, rtol=1e-5)
+    own = read_recording(write(data, walkers().assign(speed=7.0)), color_by="speed").last.rows
+    assert set(own["speed"]) == {7.0}
+
+
+@pytest.mark.parametrize(("boundary", "speed"), [("periodic", 100.0), ("solid", 1900.0)])
+def test_speed_across_a_periodic_border_is_that_of_the_short_way(boundary: str, speed: float, tmp_path: Path) -> None:
+    rows = walkers(records=2)
+    rows["y"] = np.where(rows["time"] > 0.0, 15.0, 965.0)
+    rows["y"] = rows["y"].astype(np.float32)
+    recording = read_recording(write(tmp_path / "a.feather", rows, boundary_condition=boundary), color_by="speed")
+    np.testing.assert_allclose(recording.last.rows["speed"].tail(3), speed, rtol=1e-5)
+
+
+def test_a_picture_may_show_speeds(data: Path) -> None:
+    assert main([str(data), str(data.parent / "speed.png"), "--color-by", "speed"]) == 0

@@ -31,6 +31,7 @@ STEP_S = 0.2
 ETAS = (0.1, 1.0, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.2831853)
 FEW_ETAS = (0.1, 2.0, 3.0, 4.0, 6.2831853)
 SIZES = {40: (8, ETAS), 100: (8, ETAS), 400: (6, FEW_ETAS)}  # runs, noises
+LINE_ETAS, LINE_RUNS = tuple(np.linspace(0.1, 2.0 * np.pi, 22).tolist()), 4  # of the model alone, for its line
 QUICK_SIZES = {40: (4, FEW_ETAS)}
 COLOURS = {40: "#1b6ca8", 100: "#d98200", 400: "#a8321b"}
 MARGIN = 0.01  # robots are 2 % as wide as their range, and push each other
@@ -106,7 +107,9 @@ def measure(folder: Path, quick: bool) -> Outcome:
         )
         comparisons += [against_model, noise_only]
         colour = COLOURS[robots]
-        axes.plot(etas, against_model.expected, color=colour, linewidth=1, label=f"model, N = {robots}")
+        line = etas if quick else LINE_ETAS
+        model = against_model.expected if quick else model_orders(robots, line, LINE_RUNS).mean(axis=0)
+        axes.plot(line, model, color=colour, linewidth=1, label=f"model, N = {robots}")
         axes.errorbar(
             etas,
             against_model.measured,

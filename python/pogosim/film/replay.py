@@ -21,6 +21,7 @@ from pogosim.picture.colouring import scale_of
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import notes, title
 from pogosim.picture.palette import PALETTE, led_colours
+from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import RGB, Recording, coloured
 from pogosim.scene import MEMBRANES, TALKERS, Category, Shape
 
@@ -160,7 +161,8 @@ def pose_tables(packer: Packer, timeline: Timeline) -> dict[str, Any]:
 
 def column_tables(packer: Packer, bodies: Timeline, recording: Recording) -> tuple[list[dict[str, Any]], list[str]]:
     """Add all columns that can be shown, colours of LEDs first; returns what they are, and what cannot be shown."""
-    rows = bodies.rows
+    is_periodic = recording.last.is_periodic
+    rows = with_speed(bodies.rows, bodies.high_mm - bodies.low_mm if is_periodic else None)
     columns = [base_table(packer, bodies, recording)]
     warnings = []
     for name in rows.columns:

@@ -15,6 +15,7 @@ from pogosim.picture.colouring import Colouring, colouring_of
 from pogosim.picture.errors import PictureError
 from pogosim.picture.palette import NO_LED, led_colours
 from pogosim.picture.selection import checked, one_run
+from pogosim.picture.speed import SPEED, with_speed
 from pogosim.scene import (
     COMMUNICATION_RADIUS_MM,
     POGOBOT_RADIUS_MM,
@@ -122,7 +123,7 @@ def read_recording(
     Args:
         path: Feather file, of a run or of a batch of runs.
         run: Number in its column run. None: the first.
-        color_by: Column whose values colour the objects. None: by their LEDs.
+        color_by: Column whose values colour the objects, or "speed" (mm/s). None: by their LEDs.
         combination: Of the options of a batch, from 0 on. None: the first.
 
     Raises:
@@ -137,7 +138,11 @@ def read_recording(
     rows, polygons, left_out = one_run(checked(rows), metadata, run, combination)
     configuration = metadata["configuration"]
     categories = read_categories(configuration)
-    rows, colouring = coloured(completed(with_defaults(rows)), categories, color_by)
+    rows = completed(with_defaults(rows))
+    is_periodic = read_periodic(configuration, metadata.get("resolved_configuration")) and bool(polygons)
+    if color_by == SPEED:
+        rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic else None)
+    rows, colouring = coloured(rows, categories, color_by)
 
     # In files of earlier versions, walls have no pose.
     is_wall = rows["robot_category"].isin([name for name, own in categories.items() if own.type == "pogowall"])
