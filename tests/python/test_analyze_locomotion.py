@@ -170,7 +170,7 @@ def test_file_of_a_killed_run_is_analysed_with_a_warning(tmp_path: Path, capsys:
         (["-i", "data.feather", "--category", "boxes"], "no rows of the category 'boxes'"),
         (["-i", "data.feather", "--window", "0"], "0 is not above 0"),
         (["-i", "data.feather", "--window", "nan"], "'nan' is not a finite number"),
-        (["-i", "data.feather", "--bins", "0"], "'0' is not a whole number of 1 or more"),
+        (["-i", "data.feather", "--bins", "0"], "'0' is not a whole number from 1 to 2000"),
         (["-i", "data.feather", "--steps", "few"], "'few' is not a whole number of 1 or more"),
     ],
 )
