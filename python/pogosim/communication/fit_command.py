@@ -6,14 +6,13 @@ import argparse
 import dataclasses
 import json
 import math
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
 
 from pogosim.command.numbers import finite, positive, whole
-from pogosim.command.parser import Parser, complain
+from pogosim.command.parser import Parser, complain, warn
 from pogosim.communication.fit import OBJECTIVES, Fit, FitError, FitSettings, fit
 from pogosim.communication.measurements import ROBOTS_OWN, MeasurementError, Measurements, read_measurements
 from pogosim.communication.quality import Quality, compare, quality
@@ -208,7 +207,7 @@ def fit_and_report(
     prog: str, data: Path, measurements: Measurements, settings: FitSettings, output: str | None
 ) -> list[str]:
     """Fit, print, and write if a folder is given; returns the names of the files written."""
-    warn(prog, data, measurements, settings)
+    warn_of_measurements(prog, data, measurements, settings)
     names = [RESULTS, RESIDUALS]
     if output is not None:
         from pogosim.communication import fit_plots
@@ -239,23 +238,21 @@ def warn_of_bounds(prog: str, fitted: Fit, settings: FitSettings) -> None:
         value, (low, high) = getattr(fitted.law, name), settings.bounds_of(name)
         for bound, which in ((low, "lower"), (high, "upper")):
             if math.isclose(value, bound, rel_tol=1e-3):
-                print(
-                    f"{prog}: warning: {name} = {value:.6g} is at its {which} bound; the fit may be better with other "
+                warn(
+                    prog,
+                    f"{name} = {value:.6g} is at its {which} bound; the fit may be better with other "
                     f"--bounds {name}=LOW:HIGH",
-                    file=sys.stderr,
                 )
 
 
-def warn(prog: str, data: Path, measurements: Measurements, settings: FitSettings) -> None:
+def warn_of_measurements(prog: str, data: Path, measurements: Measurements, settings: FitSettings) -> None:
     """Say what is doubtful about the measurements."""
     if measurements.left_out:
-        print(
-            f"{prog}: warning: {data}: {measurements.left_out} rows without all numbers are left out", file=sys.stderr
-        )
+        warn(prog, f"{data}: {measurements.left_out} rows without all numbers are left out")
     free = len(parameter_names(LAWS[settings.law])) - len(settings.fixed)
     if len(measurements.rows) < free:
-        print(
-            f"{prog}: warning: {data}: {len(measurements.rows)} measurements do not determine {free} parameters; "
+        warn(
+            prog,
+            f"{data}: {len(measurements.rows)} measurements do not determine {free} parameters; "
             "measure more, or fix some with --fix",
-            file=sys.stderr,
         )

@@ -12,13 +12,13 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, warn
 from pogosim.film.encoder import FORMATS, check_ffmpeg, encode
 from pogosim.film.replay import write_replay
 from pogosim.film.stills import Look, Stills, size_for
 from pogosim.outputs import OutputError, leads_to, real_output, say
 from pogosim.picture.errors import PictureError
-from pogosim.picture.options import add_what_to_draw, load, moment, positive, report, sayings, warn
+from pogosim.picture.options import add_what_to_draw, load, moment, positive, report, sayings
 from pogosim.picture.swarm import Recording
 
 PAGE = ".html"
@@ -43,7 +43,7 @@ def film_file(name: str, data: str) -> Path:
         raise OutputError(f"the film {name} would take the place of the data file {data}; name another film")
     path = real_output(name)
     if Path(name).suffix.lower() not in (*FORMATS, PAGE):
-        raise OutputError(f"{name}: unknown format of a film; let the name end in {', '.join(FORMATS)} or {PAGE}")
+        raise OutputError(f"{name}: unknown format of a film; let it end in {', '.join(FORMATS)} or {PAGE}")
     return path
 
 

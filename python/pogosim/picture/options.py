@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import math
-import sys
 import warnings
 from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from pogosim.command.parser import complain
+from pogosim.command.parser import complain, warn
 from pogosim.outputs import OutputError
 from pogosim.picture.errors import PictureError
 from pogosim.picture.swarm import Recording, read_recording
@@ -43,11 +42,6 @@ def add_what_to_draw(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--combination", type=int, metavar="N", help="of a batch with several combinations of options, this one (0)"
     )
-
-
-def warn(prog: str, text: object) -> None:
-    """Print a warning as one line."""
-    print(f"{prog}: warning: {text}", file=sys.stderr)
 
 
 def load(options: argparse.Namespace, prog: str) -> Recording:

@@ -139,9 +139,9 @@ def read_recording(
     configuration = metadata["configuration"]
     categories = read_categories(configuration)
     rows = completed(with_defaults(rows))
-    is_periodic = read_periodic(configuration, metadata.get("resolved_configuration")) and bool(polygons)
+    is_periodic = read_periodic(configuration, metadata.get("resolved_configuration"))
     if color_by == SPEED:
-        rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic else None)
+        rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic and polygons else None)
     rows, colouring = coloured(rows, categories, color_by)
 
     # In files of earlier versions, walls have no pose.
@@ -160,7 +160,7 @@ def read_recording(
         lamps=read_lamps(configuration),
         rays=ray_names(configuration),
         end_s=float(objects["time"].iloc[-1]),
-        is_periodic=read_periodic(configuration, metadata.get("resolved_configuration")),
+        is_periodic=is_periodic,
         colouring=colouring,
     )
     return Recording(last, rows[is_wall], left_out)
