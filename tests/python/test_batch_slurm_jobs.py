@@ -13,12 +13,13 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm import (
     SlurmJobs,
+    SlurmWorkers,
     bytes_of,
     close,
     idle_jobs,
     job_settings,
     log_folder,
-    outcomes_in,
+    slurm,
     started,
     with_keys,
 )
@@ -326,15 +327,18 @@ def test_run_that_ends_is_progress_and_logs_stay_if_it_failed(
         yield Outcome("key", problem)
 
     monkeypatch.setattr("pogosim.batch.slurm.outcomes_of", ended)
-    jobs = jobs_of(commands)
-    jobs.lost_in_vain = 2
-    run = task(tmp_path)
+    workers = SlurmWorkers(SlurmJobs())
+    workers.jobs = jobs_of(commands)
+    workers.jobs.lost_in_vain = 2
+    workers.first_task = run = task(tmp_path)
     own_folder(log_folder(run))
-    assert [outcome.problem for outcome in outcomes_in([run], None, None, jobs)] == [problem]
-    assert jobs.lost_in_vain == 0
+    assert [outcome.problem for outcome in workers.do([run])] == [problem]
+    assert workers.jobs.lost_in_vain == 0
+    workers.close()
     assert log_folder(run).exists() == bool(problem)
 
 
 def test_batch_without_runs_needs_no_jobs(commands: Commands) -> None:
-    assert list(outcomes_in([], None, None, None)) == []
+    with slurm(SlurmJobs(), keep_idle=False) as do:
+        assert list(do([])) == []
     assert commands.asked("sbatch") == []

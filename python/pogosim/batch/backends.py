@@ -1,19 +1,28 @@
-"""Where runs are done: one after the other, in parallel on this machine, or by Dask.
+"""Where runs are done: one after the other, in parallel on this machine, by Dask, or by jobs of SLURM.
 
-A backend yields the outcomes of runs in the order in which they end. When it is closed before, it ends what is running.
+A backend is opened once, and then does runs, as often as it is asked to. It yields their outcomes in the order in which
+they end. When that is closed before, it ends what is running.
 """
 
 from __future__ import annotations
 
+import contextlib
+import logging
 import os
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
 
 from pogosim.batch.dask_backend import dask
+from pogosim.batch.errors import BatchError, at_least
 from pogosim.batch.run import Outcome, Task, do_run, simulators
+from pogosim.batch.slurm import SlurmJobs, slurm
 
 Outcomes = Generator[Outcome, None, None]
-Backend = Callable[[Sequence[Task], int, "str | None"], Outcomes]
+Do = Callable[[Sequence[Task]], Outcomes]
+
+log = logging.getLogger("pogobatch")
 
 
 def processors() -> int:
@@ -21,33 +30,103 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def sequential(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Outcomes:  # noqa: ARG001
+@dataclass(frozen=True)
+class Workers:
+    """Who does runs, as options say it.
+
+    Args:
+        backend: "multiprocessing", "sequential" or "dask" ("ray" means dask).
+        number: Runs at the same time; None: one per processor.
+        scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
+        slurm_jobs: Jobs of SLURM that do the runs.
+
+    Raises:
+        BatchError: These do not go together.
+    """
+
+    backend: str = "multiprocessing"
+    number: int | None = None
+    scheduler: str | None = None
+    slurm_jobs: SlurmJobs | None = None
+
+    def __post_init__(self) -> None:
+        if self.backend not in BACKENDS:
+            known = ", ".join(name for name in BACKENDS if name != "ray")
+            raise BatchError(f"--backend: expected one of {known}; found '{self.backend}'")
+        if self.scheduler is not None and self.backend == "sequential":
+            raise BatchError(f"--scheduler goes with --backend dask, not with --backend {self.backend}")
+        if self.slurm_jobs is not None and (
+            self.backend != "multiprocessing" or self.number is not None or self.scheduler is not None
+        ):
+            raise BatchError("--slurm goes without --backend, --scheduler and --workers; see --slurm-jobs")
+        if self.number is not None:
+            at_least(1, self.number, "--workers")
+
+    @property
+    def count(self) -> int:
+        """Runs at the same time on this machine."""
+        return processors() if self.number is None else self.number
+
+    def opened(self, keep_idle: bool = False) -> AbstractContextManager[Do]:
+        """Return what does runs until it is closed.
+
+        Args:
+            keep_idle: Keep jobs of SLURM that have nothing to do, for runs that are still to come.
+
+        Raises:
+            BatchError: It cannot be had.
+        """
+        if self.slurm_jobs is not None:
+            return slurm(self.slurm_jobs, keep_idle)
+        if self.backend == "ray":
+            log.warning("--backend ray is replaced by --backend dask")
+        return BACKENDS["dask" if self.scheduler is not None else self.backend](self)
+
+
+def sequential(workers: Workers) -> AbstractContextManager[Do]:  # noqa: ARG001
     """Do runs one after the other."""
-    return by_threads(tasks, workers=1, threads=1)
+    return by_threads(workers=1, threads=1)
 
 
-def parallel(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Outcomes:  # noqa: ARG001
+def parallel(workers: Workers) -> AbstractContextManager[Do]:
     """Do runs in parallel. Each is a process of its own, which a thread waits for.
 
     Some more threads prepare and clean up while all the simulators run that may.
     """
-    return by_threads(tasks, workers, threads=workers + workers // 8 + 1)
+    return by_threads(workers.count, threads=workers.count + workers.count // 8 + 1)
 
 
-def by_threads(tasks: Sequence[Task], workers: int, threads: int) -> Outcomes:
+def by_dask(workers: Workers) -> AbstractContextManager[Do]:
+    """Let Dask do runs."""
+    return dask(workers.count, workers.scheduler)
+
+
+@contextlib.contextmanager
+def by_threads(workers: int, threads: int) -> Iterator[Do]:
     """Do runs in threads, with at most `workers` simulators at the same time."""
     simulators.begin(workers)
-    pool = ThreadPoolExecutor(max(1, min(threads, len(tasks))))
-    is_done = False
-    try:
+    pool = ThreadPoolExecutor(threads)
+
+    def do(tasks: Sequence[Task]) -> Outcomes:
         futures = [pool.submit(do_run, task) for task in tasks]
-        for future in as_completed(futures):
-            yield future.result()
-        is_done = True
+        is_done = False
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+            is_done = True
+        finally:
+            if not is_done:
+                simulators.stop()
+
+    try:
+        yield do
     finally:
-        if not is_done:
-            simulators.stop()
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-BACKENDS: dict[str, Backend] = {"multiprocessing": parallel, "sequential": sequential, "dask": dask, "ray": dask}
+BACKENDS: dict[str, Callable[[Workers], AbstractContextManager[Do]]] = {
+    "multiprocessing": parallel,
+    "sequential": sequential,
+    "dask": by_dask,
+    "ray": by_dask,
+}

@@ -57,26 +57,27 @@ def connected(workers: int, scheduler: str | None) -> tuple[Any, Any]:
         ) from None
 
 
-def dask(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Generator[Outcome, None, None]:
-    """Do runs with Dask. A run whose worker was killed is done again by another one.
+@contextlib.contextmanager
+def dask(workers: int, scheduler: str | None) -> Iterator[Callable[[Sequence[Task]], Generator[Outcome, None, None]]]:
+    """Let Dask do runs. A run whose worker was killed is done again by another one.
 
     Raises:
         BatchError: Dask is not installed, or there is no scheduler; or, later, the scheduler has gone.
     """
     client, cluster = connected(workers, scheduler)
-
-    def close() -> None:
+    try:
+        yield lambda tasks: outcomes_of(tasks, client)
+    finally:
+        with contextlib.suppress(Exception):
+            client.close(timeout=5)
         if cluster is not None:
             with contextlib.suppress(Exception):
                 cluster.close(timeout=5)
-
-    return outcomes_of(tasks, client, close)
 
 
 def outcomes_of(
     tasks: Sequence[Task],
     client: Any,
-    close: Callable[[], None],
     poll: Callable[[], None] | None = None,
     do: Callable[[Task], Outcome] = do_run,
 ) -> Generator[Outcome, None, None]:
@@ -84,8 +85,7 @@ def outcomes_of(
 
     Args:
         tasks: Runs to do.
-        client: Client of Dask; it is closed at the end.
-        close: Called at the end, whatever the reason.
+        client: Client of Dask.
         poll: Called now and then meanwhile.
         do: Does a run, in a worker.
     """
@@ -108,9 +108,6 @@ def outcomes_of(
     finally:
         with contextlib.suppress(Exception):
             client.cancel(futures, force=True)
-        with contextlib.suppress(Exception):
-            client.close(timeout=5)
-        close()
 
 
 def problem_of(error: Exception) -> str:

@@ -48,3 +48,14 @@ def tell(text: str) -> None:
     """Print a line; a batch goes on when nobody reads it."""
     with contextlib.suppress(OSError):
         say(text)
+
+
+def at_least(smallest: int, value: int, name: str) -> int:
+    """Return a whole number.
+
+    Raises:
+        BatchError: It is none, or too small.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or value < smallest:
+        raise BatchError(f"{name}: expected a whole number of at least {smallest}; found {value}")
+    return value

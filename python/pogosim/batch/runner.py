@@ -5,23 +5,22 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import logging
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.backends import BACKENDS, processors
+from pogosim.batch.backends import Workers
 from pogosim.batch.combinations import CombinationsError, combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
-from pogosim.batch.errors import BatchError, cannot, tell
+from pogosim.batch.errors import BatchError, at_least, cannot, tell
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
 from pogosim.batch.names import NamesError, file_name, new_columns
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
-from pogosim.batch.run import Outcome, Task
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
-from pogosim.batch.slurm import SlurmJobs, slurm
+from pogosim.batch.slurm import SlurmJobs
 from pogosim.batch.tasks import Combination, RunSettings, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 
@@ -88,29 +87,19 @@ class PogobotBatchRunner:
         self.simulator_binary = str(simulator_binary)
         self.temp_base = str(temp_base)
         self.output_dir = str(output_dir)
-        self.backend = "dask" if scheduler is not None and backend == "multiprocessing" else backend
+        self.workers = Workers(backend, workers, scheduler, slurm_jobs)
         self.keep_temp = keep_temp
         self.verbose = verbose
         self.retries = at_least(0, retries, "--retries")
         self.gui = gui
         self.only_output = only_output
         self.seed_from = seed_from
-        self.workers = at_least(1, processors() if workers is None else workers, "--workers")
-        self.scheduler = scheduler
-        self.slurm_jobs = slurm_jobs
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
         self.queue: list[Combination] | None = None
         self.run_settings: RunSettings | None = None
         # Configurations of combinations that were written: their text and entries by path.
         self.written: dict[str, tuple[str, dict[str, Any]]] = {}
-        if self.backend not in BACKENDS:
-            known = ", ".join(name for name in BACKENDS if name != "ray")
-            raise BatchError(f"--backend: expected one of {known}; found '{self.backend}'")
-        if self.scheduler is not None and BACKENDS[self.backend] is not BACKENDS["dask"]:
-            raise BatchError(f"--scheduler goes with --backend dask, not with --backend {self.backend}")
-        if slurm_jobs is not None and (self.backend != "multiprocessing" or workers is not None):
-            raise BatchError("--slurm goes without --backend, --scheduler and --workers; see --slurm-jobs")
         if seed_from not in ("run", "config"):
             raise BatchError(f"--seed-from: expected run or config; found '{seed_from}'")
         self.configuration = Configuration(self.multi_config_file)
@@ -232,16 +221,17 @@ class PogobotBatchRunner:
         self.failures, self.simulator_s = execution.failures, 0.0
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
         waiting = execution.waiting(self.temporary)
-        outcomes = self.started(waiting)
-        if len(waiting) == len(execution.tasks):
-            outcomes = removing_stale(outputs, outcomes)
-        else:
-            for output in outputs:
-                remove_stale(output)
-        try:
-            execution.take(outcomes, len(waiting))
-        finally:
-            self.simulator_s = execution.simulator_s
+        with self.workers.opened() as do:
+            outcomes = do(waiting)
+            if len(waiting) == len(execution.tasks):
+                outcomes = removing_stale(outputs, outcomes)
+            else:
+                for output in outputs:
+                    remove_stale(output)
+            try:
+                execution.take(outcomes, len(waiting))
+            finally:
+                self.simulator_s = execution.simulator_s
         report_failures(self.failures)
         for output in outputs:
             of_output = [combination for combination in combinations if combination.output == output]
@@ -251,14 +241,6 @@ class PogobotBatchRunner:
         else:
             self.temporary.forget_finished_runs()
             self.temporary.remove_leftovers()  # of workers that were killed
-
-    def started(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
-        """Make the backend ready for runs, which begin when their outcomes are asked for."""
-        if self.backend == "ray":
-            log.warning("--backend ray is replaced by --backend dask")
-        if self.slurm_jobs is not None:
-            return slurm(tasks, self.slurm_jobs)
-        return BACKENDS[self.backend](tasks, self.workers, self.scheduler)
 
     # ---- Its parts ----
 
@@ -313,14 +295,3 @@ class PogobotBatchRunner:
     def names_error(self, error: NamesError) -> BatchError:
         """Return the error of a wrong name, with its place."""
         return BatchError(f"{self.configuration.where((error.key,))}{str(error).removeprefix(error.key)}")
-
-
-def at_least(smallest: int, value: int, name: str) -> int:
-    """Return a whole number.
-
-    Raises:
-        BatchError: It is none, or too small.
-    """
-    if isinstance(value, bool) or not isinstance(value, int) or value < smallest:
-        raise BatchError(f"{name}: expected a whole number of at least {smallest}; found {value}")
-    return value

@@ -14,7 +14,7 @@ import logging
 import re
 import shutil
 import signal
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -80,23 +80,92 @@ class SlurmJobs:
                 raise BatchError(f"--slurm-{name}: expected one line of text; found {text!r}")
 
 
-def slurm(tasks: Sequence[Task], request: SlurmJobs) -> Generator[Outcome, None, None]:
-    """Do runs in jobs of SLURM. Jobs that are lost are replaced, and their runs are done again.
+@contextlib.contextmanager
+def slurm(request: SlurmJobs, keep_idle: bool) -> Iterator[Callable[[Sequence[Task]], Generator[Outcome, None, None]]]:
+    """Let jobs of SLURM do runs. They are submitted with the first runs, and end when this is closed.
 
-    Raises:
-        BatchError: A package or a command is missing, or SLURM refuses the jobs; later: no job starts, or all are lost.
+    Args:
+        request: What to ask SLURM for.
+        keep_idle: Keep jobs for runs that are still to come; otherwise, those without one are cancelled.
     """
-    if not tasks:
-        return outcomes_in(tasks, None, None, None)
-    dask, distributed = imported("--slurm", "slurm")
-    jobqueue = imported_jobqueue()
-    check_commands()
-    cluster, jobs = started(dask, distributed, jobqueue, tasks, request)
+    jobs = SlurmWorkers(request, keep_idle)
     try:
-        return outcomes_in(tasks, distributed.Client(cluster), cluster, jobs)
-    except BaseException:
-        jobs.cancel()
-        raise
+        yield jobs.do
+    finally:
+        jobs.close()
+
+
+class SlurmWorkers:
+    """Jobs of SLURM that do runs, and what they belong to.
+
+    Jobs that are lost are replaced, and their runs are done again. Logs stay if something went wrong.
+    """
+
+    def __init__(self, request: SlurmJobs, keep_idle: bool = False) -> None:
+        self.request = request
+        self.keep_idle = keep_idle
+        self.client: Any = None
+        self.cluster: Any = None
+        self.jobs: Jobs | None = None
+        self.first_task: Task | None = None
+        self.is_well = True
+
+    def do(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
+        """Do runs.
+
+        Raises:
+            BatchError: A package or a command is missing, or SLURM refuses the jobs; later: no job starts, or all are
+                lost.
+        """
+        if tasks and self.jobs is None:
+            self.start(tasks)
+        elif self.jobs is not None:
+            self.jobs.wanted = max(self.jobs.wanted, jobs_for(tasks, self.request, self.jobs.cores))
+        return self.outcomes(tasks)
+
+    def start(self, tasks: Sequence[Task]) -> None:
+        """Start the scheduler, and submit the jobs."""
+        dask, distributed = imported("--slurm", "slurm")
+        jobqueue = imported_jobqueue()
+        check_commands()
+        self.first_task = tasks[0]
+        self.cluster, self.jobs = started(dask, distributed, jobqueue, tasks, self.request)
+        self.client = distributed.Client(self.cluster)
+
+    def outcomes(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
+        """Yield the outcomes of runs, and look after the jobs meanwhile."""
+        jobs = self.jobs
+        if not tasks or jobs is None:
+            return
+        left = len(tasks)
+
+        def poll() -> None:
+            jobs.poll(left)
+            if not self.keep_idle:
+                jobs.release(idle_jobs(self.cluster, jobs, left))
+
+        ended = outcomes_of(tasks, self.client, poll, do_in_job)
+        try:
+            with contextlib.closing(ended) as outcomes:
+                for outcome in outcomes:
+                    left -= 1
+                    jobs.note_progress()
+                    self.is_well &= not outcome.problem
+                    yield outcome
+        except BatchError:
+            self.is_well = not jobs.has_started
+            raise
+
+    def close(self) -> None:
+        """End the jobs and the scheduler."""
+        if self.jobs is None or self.first_task is None:
+            return
+        folder = log_folder(self.first_task)
+        with contextlib.suppress(Exception):
+            self.client.close(timeout=5)
+        close(self.cluster, self.jobs, folder)
+        if self.is_well and not self.first_task.keep_temp:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def imported_jobqueue() -> Any:
@@ -139,7 +208,7 @@ def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], r
         cluster = jobqueue.SLURMCluster(silence_logs=logging.CRITICAL, **settings)
     except (OSError, ValueError, RuntimeError) as error:
         raise BatchError(f"--slurm: the Dask scheduler cannot be started: {one_line(error)}") from None
-    wanted = min(request.jobs, -(-len(tasks) // cores))
+    wanted = jobs_for(tasks, request, cores)
     start_timeout_s = None if request.wait_min is None else 60 * request.wait_min
     jobs = Jobs(cluster.job_script(), job_name(task), wanted, cores, start_timeout_s, settings["log_directory"])
     atexit.register(jobs.cancel)  # whatever happens to the batch before its first run
@@ -153,6 +222,11 @@ def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], r
     counts = f"{counted(wanted, 'job')} of {counted(cores, 'core')}"
     tell(f"SLURM: submitted {counts}, called {job_name(task)}; logs: {settings['log_directory']}")
     return cluster, jobs
+
+
+def jobs_for(tasks: Sequence[Task], request: SlurmJobs, cores: int) -> int:
+    """Return how many jobs are of use for runs, at most as many as are asked for."""
+    return min(request.jobs, -(-len(tasks) // cores))
 
 
 def with_keys(security: Any, folder: Path) -> Any:
@@ -215,34 +289,6 @@ def log_folder(task: Task) -> Path:
 def job_name(task: Task) -> str:
     """Return the name of all jobs of a batch: the same whenever the same command is given."""
     return f"pogobatch-{hashlib.sha256(task.done_folder.encode()).hexdigest()[:8]}"
-
-
-def outcomes_in(tasks: Sequence[Task], client: Any, cluster: Any, jobs: Jobs | None) -> Generator[Outcome, None, None]:
-    """Yield the outcomes of runs, and look after the jobs meanwhile. Logs stay if something went wrong."""
-    if jobs is None:
-        return
-    left = len(tasks)
-    is_well = True
-    folder = log_folder(tasks[0])
-
-    def poll() -> None:
-        jobs.poll(left)
-        jobs.release(idle_jobs(cluster, jobs, left))
-
-    ended = outcomes_of(tasks, client, lambda: close(cluster, jobs, folder), poll, do_in_job)
-    try:
-        with contextlib.closing(ended) as outcomes:
-            for outcome in outcomes:
-                left -= 1
-                jobs.note_progress()
-                is_well &= not outcome.problem
-                yield outcome
-    except BatchError:
-        is_well = not jobs.has_started
-        raise
-    finally:
-        if is_well and not tasks[0].keep_temp:
-            shutil.rmtree(folder, ignore_errors=True)
 
 
 def idle_jobs(cluster: Any, jobs: Jobs, left: int) -> list[str]:
