@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 import sys
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from tqdm import tqdm
+from tqdm.contrib.logging import logging_redirect_tqdm
 
 from pogosim.batch.run import Outcome, Task
 
@@ -31,10 +33,16 @@ class Failure:
 
 
 class Progress:
-    """How many runs are done: a bar with the time left on a terminal; elsewhere, as in a log file, a line a minute."""
+    """How many runs are done: a bar with the time left on a terminal; elsewhere, as in a log file, a line a minute.
 
-    def __init__(self, total: int) -> None:
+    Args:
+        total: How many there are.
+        unit: What they are: runs, or something else.
+    """
+
+    def __init__(self, total: int, unit: str = "run") -> None:
         self.total = total
+        self.unit = unit
         self.done = 0
         self.started_s = self.said_s = time.monotonic()
         is_terminal = total > 0 and sys.stderr is not None and sys.stderr.isatty()
@@ -42,7 +50,7 @@ class Progress:
         has_size = is_terminal and os.get_terminal_size(sys.stderr.fileno()).columns > 0
         size = {"dynamic_ncols": True} if has_size else {"ncols": 80, "nrows": 24}
         self.bar: tqdm[NoReturn] = tqdm(
-            total=total, unit="run", disable=not is_terminal, file=sys.stderr, smoothing=0.05, **size
+            total=total, unit=unit, disable=not is_terminal, file=sys.stderr, smoothing=0.05, **size
         )
 
     def update(self) -> None:
@@ -53,7 +61,12 @@ class Progress:
         if self.bar.disable and now_s - self.said_s >= LINE_EVERY_S and self.done < self.total:
             self.said_s = now_s
             left_s = (now_s - self.started_s) / self.done * (self.total - self.done)
-            log.info("%d of %d runs are done; %s left", self.done, self.total, tqdm.format_interval(left_s))
+            left = tqdm.format_interval(left_s)
+            log.info("%d of %d %ss are done; %s left", self.done, self.total, self.unit, left)
+
+    def beside(self, *loggers: logging.Logger) -> contextlib.AbstractContextManager[None]:
+        """Let the lines of loggers stand above the bar meanwhile."""
+        return contextlib.nullcontext() if self.bar.disable else logging_redirect_tqdm(list(loggers))
 
     def close(self) -> None:
         """Leave the bar as it is."""

@@ -1,0 +1,198 @@
+"""What a search maximises, and the features by which quality-diversity searches tell solutions apart."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import sys
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.analysis.displacement import compute_msd_per_agent
+from pogosim.batch.errors import one_line
+from pogosim.batch.identity import file_digest
+from pogosim.optimize.errors import OptimizeError
+
+OBJECTIVE_NAMES = ("objective_fn", "compute_objective")
+FEATURES_NAME = "fd_fn"
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What is said of the runs of a candidate.
+
+    Attributes:
+        fitness: The objective, to be maximised; None: the candidate has failed.
+        features: Its features, by name; empty if there are none.
+        problem: Why it has failed, or empty.
+    """
+
+    fitness: float | None
+    features: Mapping[str, float]
+    problem: str = ""
+
+
+class WrongValueError(ValueError):
+    """A function of the user returned something else than expected."""
+
+
+def objective_fn(df: pd.DataFrame) -> float:
+    """Return the mean over robots, runs and arenas of the mean squared displacement in mm^2; -inf without any."""
+    displacement = compute_msd_per_agent(df)
+    return float(displacement["MSD"].mean()) if len(displacement) else -math.inf
+
+
+def fd_fn(df: pd.DataFrame) -> dict[str, float]:
+    """Return the greatest mean squared displacement of a robot, and its standard deviation over robots, in mm^2."""
+    displacement = compute_msd_per_agent(df)["MSD"].to_numpy(dtype=float)
+    if not len(displacement):
+        return {"max MSD (mm^2)": 0.0, "std MSD (mm^2)": 0.0}
+    return {"max MSD (mm^2)": float(np.max(displacement)), "std MSD (mm^2)": float(np.std(displacement))}
+
+
+@dataclass(frozen=True)
+class Objective:
+    """The functions that judge runs.
+
+    Attributes:
+        fitness: From the rows of all runs to a number, or to a number and the features.
+        features: From the rows to the features; None if there is no such function.
+        path: The file they are in; None: those above.
+    """
+
+    fitness: Callable[[pd.DataFrame], Any] = objective_fn
+    features: Callable[[pd.DataFrame], Any] | None = fd_fn
+    path: Path | None = None
+
+    @property
+    def digests(self) -> dict[str, str]:
+        """Digest of the file, or of there being none."""
+        return {"objective": "default" if self.path is None else file_digest(self.path)}
+
+    def judge(self, rows: pd.DataFrame, with_features: bool = False) -> Judgement:
+        """Return what the functions say of rows, as of `pogosim.utils.load_dataframe` for a batch.
+
+        Args:
+            rows: Of all runs of a candidate.
+            with_features: Also compute the features.
+        """
+        name = "the objective"
+        try:
+            returned = self.fitness(rows)
+            fitness, features = split(returned)
+            if with_features:
+                if self.features is not None:
+                    name = "the feature function"
+                    features = self.features(rows)
+                if features is None:
+                    raise WrongValueError("returned no features")
+                named = names_of(features)
+            else:
+                named = {}
+        except (Exception, SystemExit) as error:
+            return Judgement(None, {}, f"{name} {self.blamed(error)}")
+        if not math.isfinite(fitness):
+            return Judgement(None, {}, f"the objective returned {fitness}")
+        return Judgement(fitness, named)
+
+    def blamed(self, error: BaseException) -> str:
+        """Return what a function did: "raised KeyError: 'age' (obj.py:12)"."""
+        if isinstance(error, WrongValueError):
+            return str(error)
+        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if self.is_here(frame.filename)]
+        place = f" ({self.path}:{lines[-1]})" if lines else ""
+        text = one_line(error)
+        return f"raised {type(error).__name__}{f': {text}' if text else ''}{place}"
+
+    def is_here(self, file: str) -> bool:
+        """Tell whether a file is that of the functions."""
+        return self.path is not None and Path(file) == self.path.absolute()
+
+
+def split(returned: Any) -> tuple[float, Any]:
+    """Return the fitness and the features that an objective returned; no features: None."""
+    fitness, features = returned if isinstance(returned, tuple) and len(returned) == 2 else (returned, None)
+    return number_in(fitness), features
+
+
+def number_in(value: Any) -> float:
+    """Return a number of a function of the user."""
+    if isinstance(value, (str, bytes)) or value is None:
+        raise WrongValueError(f"returned {type(value).__name__}, not a number")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise WrongValueError(f"returned {type(value).__name__}, not a number") from None
+
+
+def names_of(features: Any) -> dict[str, float]:
+    """Return features by name: those of a dictionary, or "feature 1", "feature 2", ..."""
+    if not isinstance(features, Mapping):
+        try:
+            values = np.atleast_1d(np.asarray(features, dtype=float)).ravel().tolist()
+        except (TypeError, ValueError):
+            raise WrongValueError(f"returned {type(features).__name__}, not a list of numbers") from None
+        features = {f"feature {i + 1}": value for i, value in enumerate(values)}
+    named = {str(name): number_in(value) for name, value in features.items()}
+    if not named:
+        raise WrongValueError("returned no features")
+    if wrong := [name for name, value in named.items() if not math.isfinite(value)]:
+        raise WrongValueError(f"returned {named[wrong[0]]} for {wrong[0]}")
+    return named
+
+
+def load_objective(path: str, objective_name: str | None, features_name: str | None) -> Objective:
+    """Return the functions in a user's file.
+
+    Args:
+        path: A Python file.
+        objective_name: Name of the objective; None: `objective_fn`, or else `compute_objective`.
+        features_name: Name of the feature function; None: `fd_fn`, if there is one.
+
+    Raises:
+        OptimizeError: There is no such file or function, or it cannot be imported.
+    """
+    module = imported(Path(path))
+    names = (objective_name,) if objective_name is not None else OBJECTIVE_NAMES
+    fitness = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), None)
+    if fitness is None:
+        raise OptimizeError(
+            f"--objective: {path} has no function {' or '.join(names)}; write 'def {names[0]}(df): ...', which returns "
+            "a number, or give the name of yours with --objective-func"
+        )
+    features = getattr(module, features_name or FEATURES_NAME, None)
+    if features_name is not None and not callable(features):
+        raise OptimizeError(f"--features-func: {path} has no function {features_name}")
+    return Objective(fitness, features if callable(features) else None, Path(path))
+
+
+def imported(path: Path) -> ModuleType:
+    """Import a Python file; other modules beside it can be imported from there.
+
+    Raises:
+        OptimizeError: It is not there, or raises something.
+    """
+    if not path.is_file():
+        what = "is a folder" if path.is_dir() else "does not exist"
+        raise OptimizeError(f"--objective: {path} {what}; expected a Python file with a function objective_fn(df)")
+    specification = importlib.util.spec_from_file_location(path.stem, path.absolute())
+    if specification is None or specification.loader is None:
+        raise OptimizeError(f"--objective: {path} is not a Python file: its name does not end with .py")
+    module = importlib.util.module_from_spec(specification)
+    sys.path.insert(0, str(path.absolute().parent))
+    try:
+        specification.loader.exec_module(module)
+    except SyntaxError as error:
+        where = f":{error.lineno}" if error.lineno and error.filename == str(path.absolute()) else ""
+        raise OptimizeError(f"--objective: {path}{where}: {one_line(error.msg)}") from None
+    except (Exception, SystemExit) as error:
+        blame = Objective(path=path).blamed(error)
+        raise OptimizeError(f"--objective: {path} cannot be imported: it {blame}") from None
+    return module

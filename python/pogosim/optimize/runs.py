@@ -1,0 +1,203 @@
+"""Runs of configurations: those of many at once, and the rows of each as soon as its own are done."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from pogosim.batch.backends import Do, Workers
+from pogosim.batch.combinations import CombinationsError, combinations_of
+from pogosim.batch.configuration import Configuration
+from pogosim.batch.errors import BatchError
+from pogosim.batch.identity import find_program, program_digest, world_digest
+from pogosim.batch.names import new_columns, value_at
+from pogosim.batch.reports import report_warnings
+from pogosim.batch.results import Part, RunFile, check_columns, schema_of, write_results
+from pogosim.batch.run import Outcome, Task
+from pogosim.batch.tasks import Combination, RunSettings, tasks_of
+from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.utils import load_dataframe
+
+ARENA = "arena_file"
+
+log = logging.getLogger("pogobatch")
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What became of the runs of a configuration.
+
+    Attributes:
+        number: Which one it is of those that were asked for, from 0 on.
+        rows: All its runs, as `load_dataframe` reads those of a batch; None: a run has failed.
+        problem: Why, or empty.
+    """
+
+    number: int
+    rows: pd.DataFrame | None
+    problem: str
+
+
+@dataclass
+class Wanted:
+    """A configuration whose runs are being done."""
+
+    number: int
+    text: str  # its metadata entry "configuration"
+    combinations: list[Combination]
+    waiting: set[str] = field(default_factory=set)  # keys of runs
+    problem: str = ""
+
+
+class Runs:
+    """Runs configurations of one program, with all combinations of the options that they have.
+
+    Args:
+        configuration: The file in which they begin; files that it names are searched beside it, too.
+        program: Program compiled for Pogosim.
+        temp_base: Folder for files of single runs.
+        output_dir: Folder of the results; with the others, it tells apart what shares a folder for temporary files.
+        workers: Who does the runs.
+        retries: How many times a failed run is repeated.
+        keep_temp: Keep the files of single runs.
+
+    Attributes:
+        simulator_s: Wall-clock time, in s, that simulators have taken, added up.
+        digests: Of the configuration with the files that it names, and of the program.
+    """
+
+    def __init__(
+        self,
+        configuration: Configuration,
+        program: str,
+        temp_base: str,
+        output_dir: str,
+        workers: Workers,
+        retries: int = 5,
+        keep_temp: bool = False,
+    ) -> None:
+        self.configuration = configuration
+        self.workers = workers
+        self.program = program
+        path = find_program(program)
+        beside = configuration.path.absolute().parent
+        batch = batch_name([str(configuration.path), output_dir, program])
+        self.temporary = TemporaryFolder(Path(temp_base).absolute(), batch, keep_temp)
+        self.settings = RunSettings(path, program_digest(path), beside, self.temporary, retries, gui=False)
+        world = world_digest(configuration.entries, (Path.cwd(), beside), self.settings.digests)
+        self.digests = {"configuration": world, "program": self.settings.program_digest}
+        self.simulator_s = 0.0
+        self.warned: dict[str, None] = {}
+        self.do: Do | None = None
+
+    @contextlib.contextmanager
+    def opened(self) -> Iterator[None]:
+        """Keep workers, and the folder for temporary files, as long as there are runs to do.
+
+        Raises:
+            BatchError: They cannot be had.
+        """
+        with self.temporary.locked():
+            self.temporary.remove_leftovers()
+            try:
+                with self.workers.opened(keep_idle=True) as self.do:
+                    yield
+            finally:
+                self.do = None
+                self.temporary.tidy([])
+
+    def rows_of(
+        self,
+        configurations: Sequence[dict[str, Any]],
+        seeds: Sequence[Sequence[int]],
+        save: Callable[[int], tuple[Path, str]] | None = None,
+    ) -> Iterator[Finished]:
+        """Yield the runs of several configurations, each when all its runs are done, in the order of that.
+
+        Args:
+            configurations: What to run.
+            seeds: Seeds of the runs of each, 0 to 2^32-1.
+            save: Says of each, by number, where its rows are to stay, and what the metadata entry "configuration" is;
+                None: nowhere.
+
+        Raises:
+            BatchError: Runs cannot be done.
+        """
+        assert self.do is not None  # within opened()
+        wanted = [self.wanted(number, entries, seeds[number]) for number, entries in enumerate(configurations)]
+        tasks = {task.key: task for one in wanted for part in one.combinations for task in part.tasks}
+        uses = {key: [one for one in wanted if key in one.waiting] for key in tasks}
+        left = {key: len(ones) for key, ones in uses.items()}
+
+        def take(key: str, problem: str) -> Iterator[Finished]:
+            for one in uses[key]:
+                one.waiting.discard(key)
+                one.problem = one.problem or problem
+                if not one.waiting:
+                    yield self.finished(one, save(one.number) if save is not None else None)
+                    for own in {task.key for part in one.combinations for task in part.tasks}:
+                        left[own] -= 1
+                        if left[own] == 0 and not self.temporary.is_kept:
+                            tasks[own].result.unlink(missing_ok=True)
+
+        for key in [key for key, task in tasks.items() if self.temporary.has_finished(task)]:
+            yield from take(key, "")
+        waiting = [task for key, task in tasks.items() if any(key in one.waiting for one in uses[key])]
+        with contextlib.closing(self.do(waiting)) as outcomes:
+            for outcome in outcomes:
+                yield from take(outcome.key, self.problem_of(outcome, tasks[outcome.key]))
+
+    def wanted(self, number: int, entries: dict[str, Any], seeds: Sequence[int]) -> Wanted:
+        """Return the runs of a configuration."""
+        try:
+            combined = combinations_of(entries)
+        except CombinationsError as error:
+            raise BatchError(f"{self.configuration.where(error.path)}: {error.args[0]}") from None
+        combinations = []
+        for combination in combined:
+            columns = new_columns(combination)
+            columns.setdefault(ARENA, value_at(combination, ARENA) if ARENA in combination else None)
+            combinations.append(Combination("", columns, tasks_of(combination, seeds, self.settings)))
+        keys = {task.key for part in combinations for task in part.tasks}
+        return Wanted(number, self.configuration.text, combinations, keys)
+
+    def problem_of(self, outcome: Outcome, task: Task) -> str:
+        """Return why a run has failed, or nothing; warnings of simulators are passed on, each once.
+
+        Raises:
+            BatchError: All runs would fail in the same way.
+        """
+        self.simulator_s += outcome.simulator_s
+        if outcome.is_fatal:
+            raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
+        if outcome.problem:
+            log.debug("run %d failed: %s", task.run, outcome.problem)
+            said = outcome.log.splitlines()[-1:]
+            return f"a run failed: {outcome.problem}{f': {said[0].strip()}' if said else ''}"
+        new = [line for line in outcome.log.splitlines() if line not in self.warned]
+        self.warned.update(dict.fromkeys(new))
+        report_warnings(new)
+        return ""
+
+    def finished(self, one: Wanted, target: tuple[Path, str] | None) -> Finished:
+        """Return the rows of a configuration whose runs are done."""
+        if one.problem:
+            return Finished(one.number, None, one.problem)
+        parts = []
+        for combination in one.combinations:
+            for task in combination.tasks[:1]:
+                check_columns(schema_of(task.result), list(combination.columns), self.program)
+            files = [RunFile(task.result, task.run, task.seed) for task in combination.tasks]
+            parts.append(Part(combination.columns, files))
+        scratch = self.temporary.done / f"joined_{one.number}.feather"
+        path, text = (scratch, one.text) if target is None else target
+        write_results(str(path), parts, text)
+        rows, _ = load_dataframe(path)
+        scratch.unlink(missing_ok=True)
+        return Finished(one.number, rows, "")
