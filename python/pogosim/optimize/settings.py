@@ -1,0 +1,213 @@
+"""How to search: from the command line, from the section `optimization` of the configuration, or by default."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from pogosim.batch.options import shown
+from pogosim.optimize.errors import OptimizeError
+
+SECTION = "optimization"
+COMMON = "common"
+FRESH = "fresh"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to search.
+
+    Attributes:
+        optimizer: Name of the optimiser.
+        max_evals: Evaluations, at least 1.
+        runs: Runs of each candidate, per combination of the options that remain.
+        seed: Seed of the optimiser, 0 to 2^32-1.
+        seeds: "common": all candidates have the runs 0, 1, ... with these seeds. "fresh": each has its own.
+        final_runs: Runs of the best candidate at the end, with seeds that the search has not seen; 0: none.
+        sigma0: Standard deviation with which CMA-ES starts, in the unit cube.
+        popsize: Candidates per generation; None: as usual for the optimiser.
+        qd_shape: Cells of the archive along each feature.
+        qd_ranges: Least and greatest value of each feature; empty: see `feature_ranges`.
+        qd_init_samples: Random candidates at the beginning.
+        qd_batch: Candidates per generation afterwards.
+        qd_mut_pb: Probability that a mutation changes a variable.
+        qd_eta: Crowding degree of polynomial mutation.
+        retries: How many times a failed run is repeated.
+        backend: See `pogosim.batch.backends.Workers`.
+        output_dir: Folder of the results.
+        objective: File with the objective; empty: the default one.
+        objective_func: Name of the objective; None: the usual ones.
+        features_func: Name of the feature function; None: the usual one.
+    """
+
+    optimizer: str = "cmaes"
+    max_evals: int = 50
+    runs: int = 1
+    seed: int = 42
+    seeds: str = COMMON
+    final_runs: int = 10
+    sigma0: float = 0.3
+    popsize: int | None = None
+    qd_shape: tuple[int, ...] = (48, 48)
+    qd_ranges: tuple[tuple[float, float], ...] = ()
+    qd_init_samples: int = 64
+    qd_batch: int = 32
+    qd_mut_pb: float = 0.2
+    qd_eta: float = 20.0
+    retries: int = 5
+    backend: str = "multiprocessing"
+    output_dir: str = "opt_out"
+    objective: str = ""
+    objective_func: str | None = None
+    features_func: str | None = None
+
+
+def whole(least: int, most: int) -> Callable[[Any], int]:
+    """Return a check for whole numbers in a range, which includes both ends."""
+
+    def check(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+            raise ValueError(f"expected a whole number from {least} to {most}")
+        return value
+
+    return check
+
+
+def real(least: float, most: float) -> Callable[[Any], float]:
+    """Return a check for numbers in a range, which includes its upper end only, or both if the lower one is 0."""
+
+    def check(value: Any) -> float:
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+        if not is_number or not least <= value <= most:
+            raise ValueError(f"expected a number from {least:g} to {most:g}")
+        return float(value)
+
+    return check
+
+
+def text(value: Any) -> str:
+    """Check a text."""
+    if not isinstance(value, str) or not value:
+        raise ValueError("expected a text")
+    return value
+
+
+def shape(value: Any) -> tuple[int, ...]:
+    """Check numbers of cells: "48,48" or [48, 48]."""
+    items = value.split(",") if isinstance(value, str) else value if isinstance(value, list) else [value]
+    try:
+        cells = tuple(int(item) for item in items if not isinstance(item, (bool, float)))
+    except (TypeError, ValueError):
+        cells = ()
+    if not cells or len(cells) != len(items) or min(cells) < 1 or math.prod(cells) > 1_000_000:
+        raise ValueError("expected the number of cells along each feature, such as 48,48, a million cells at most")
+    return cells
+
+
+def ranges(value: Any) -> tuple[tuple[float, float], ...]:
+    """Check ranges of features: "0:1,0:500" or [[0, 1], [0, 500]]."""
+    items = [item.split(":") for item in value.split(",")] if isinstance(value, str) else value
+    try:
+        pairs = tuple((float(low), float(high)) for low, high in items)
+        if not pairs or not all(math.isfinite(high - low) and low < high for low, high in pairs):
+            raise ValueError
+    except (TypeError, ValueError):
+        raise ValueError("expected the least and the greatest value of each feature, such as 0:1,0:500") from None
+    return pairs
+
+
+SEED = whole(0, 2**32 - 1)
+COUNT = whole(1, 10_000_000)
+
+# Keys of the section in the configuration, with the names that others' tools know; and how they are checked.
+KEYS: dict[tuple[str, ...], tuple[str, Callable[[Any], Any]]] = {
+    ("algorithm",): ("optimizer", text),
+    ("budget",): ("max_evals", COUNT),
+    ("seed",): ("seed", SEED),
+    ("seeds",): ("seeds", text),
+    ("runs",): ("runs", COUNT),
+    ("final_runs",): ("final_runs", whole(0, 10_000_000)),
+    ("retries",): ("retries", whole(0, 1000)),
+    ("backend",): ("backend", text),
+    ("output_dir",): ("output_dir", text),
+    ("objective",): ("objective", text),
+    ("objective_func",): ("objective_func", text),
+    ("features_func",): ("features_func", text),
+    ("cmaes", "sigma0"): ("sigma0", real(1e-6, 10.0)),
+    ("cmaes", "popsize"): ("popsize", whole(2, 100_000)),
+    ("popsize",): ("popsize", whole(2, 100_000)),
+    ("qd", "shape"): ("qd_shape", shape),
+    ("qd", "ranges"): ("qd_ranges", ranges),
+    ("qd", "init_samples"): ("qd_init_samples", COUNT),
+    ("qd", "batch"): ("qd_batch", COUNT),
+    ("qd", "mut_pb"): ("qd_mut_pb", real(0.0, 1.0)),
+    ("qd", "eta"): ("qd_eta", real(0.0, 1000.0)),
+}
+CHECKS = dict(KEYS.values())
+# Of the optimiser that others' tools use; they mean nothing to ours.
+UNUSED = (("qd", "parallel"), ("qd", "sel_pb"), ("qd", "init_pb"), ("qd", "algo_kwargs"))
+
+
+def flattened(section: Mapping[str, Any]) -> dict[tuple[str, ...], Any]:
+    """Return the entries of the section by their path; maps below it are opened once."""
+    flat: dict[tuple[str, ...], Any] = {}
+    for key, value in section.items():
+        if isinstance(value, dict) and key in ("cmaes", "qd"):
+            flat.update({(str(key), str(name)): entry for name, entry in value.items()})
+        else:
+            flat[(str(key),)] = value
+    return flat
+
+
+def settings_from(
+    section: Any, options: Mapping[str, Any], where: Callable[[tuple[str, ...]], str], warn: Callable[[str], None]
+) -> Settings:
+    """Return the settings: those of the command line, then those of the configuration, then the usual ones.
+
+    Args:
+        section: The entry `optimization` of the configuration; None: there is none.
+        options: Settings of the command line, by name; None: not given.
+        where: Returns the place of an entry in the configuration, for messages.
+        warn: Called with a warning.
+
+    Raises:
+        OptimizeError: One of them is wrong.
+    """
+    if section is not None and not isinstance(section, dict):
+        raise OptimizeError(f"{where((SECTION,))}: expected a map of settings, found {shown(section)}")
+    chosen: dict[str, Any] = {}
+    for path, value in flattened(section or {}).items():
+        if path in UNUSED:
+            warn(f"{where((SECTION, *path))}: has no effect here")
+        elif path not in KEYS:
+            known = ", ".join(".".join(key) for key in KEYS)
+            warn(f"{where((SECTION, *path))}: unknown key, which has no effect; known are {known}")
+        elif value is not None:
+            name, check = KEYS[path]
+            chosen[name] = checked(check, value, where((SECTION, *path)))
+    for field in fields(Settings):
+        value = options.get(field.name)
+        if value is not None:
+            chosen[field.name] = checked(CHECKS[field.name], value, f"--{field.name.replace('_', '-')}")
+    settings = Settings(**chosen)
+    if settings.seeds not in (COMMON, FRESH):
+        raise OptimizeError(f"--seeds: expected {COMMON} or {FRESH}, found '{settings.seeds}'")
+    if settings.max_evals * settings.runs + settings.final_runs >= 2**32:
+        raise OptimizeError(
+            f"--max-evals: {settings.max_evals} times {settings.runs} runs need more seeds than there are"
+        )
+    return settings
+
+
+def checked(check: Callable[[Any], Any], value: Any, name: str) -> Any:
+    """Return a setting.
+
+    Raises:
+        OptimizeError: It is wrong.
+    """
+    try:
+        return check(value)
+    except ValueError as error:
+        raise OptimizeError(f"{name}: {error}, found {shown(value)}") from None
