@@ -17,6 +17,7 @@ SUBCOMMANDS = (
     "new",
     "run",
     "batch",
+    "optimize",
     "analyze",
     "picture",
     "film",

@@ -162,6 +162,16 @@ def check_clusters(found: Installation) -> Finding:  # noqa: ARG001
     return Finding("Clusters", True, f"Dask is installed, {jobqueue}; {slurm}")
 
 
+def check_searches(found: Installation) -> Finding:  # noqa: ARG001
+    """Look whether all optimizers of pogoptim can work."""
+    needs = {"ribs": "mapelites, cma_me, cma_mae", "optuna": "tpe"}
+    lacking = [name for name in needs if importlib.util.find_spec(name) is None]
+    if not lacking:
+        return Finding("Searches", True, "all optimizers of pogoptim work")
+    without = ", ".join(needs[name] for name in lacking)
+    return Finding("Searches", False, f"without the optimizers {without}", 'pip install "pogosim[optimize]"')
+
+
 def check_robots(found: Installation) -> Finding:  # noqa: ARG001
     """Look for the robots' compiler and SDK."""
     name = "riscv64-unknown-elf-gcc"
@@ -188,6 +198,7 @@ CHECKS: dict[str, Callable[[Installation], Finding]] = {
     "Films": check_films,
     "Batches": check_batches,
     "Clusters": check_clusters,
+    "Searches": check_searches,
     "Real robots": check_robots,
 }
 

@@ -28,6 +28,7 @@ SUBCOMMANDS = {
     "new": Subcommand("pogosim.command.new", "make a project: a program, a configuration and a Makefile"),
     "run": Subcommand("pogosim.command.run", "compile a project or a source file, and run it"),
     "batch": Subcommand("pogosim.pogobatch", "run a program many times, with every combination of options"),
+    "optimize": Subcommand("pogosim.pogoptim", "search for the parameters that make an objective as large as possible"),
     "analyze": Subcommand("pogosim.reports.command", "compute what robots did: tables and figures of a data file"),
     "picture": Subcommand("pogosim.swarm_picture", "draw the trajectories of a run"),
     "film": Subcommand("pogosim.film.command", "make a film of a run, or a page to replay it in a browser"),
@@ -79,6 +80,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def pogobatch() -> int:
     """Run the command `pogobatch`, which is `pogosim batch`."""
     return ended("pogobatch", lambda: call("batch", sys.argv[1:], "pogobatch"))
+
+
+def pogoptim() -> int:
+    """Run the command `pogoptim`, which is `pogosim optimize`."""
+    return ended("pogoptim", lambda: call("optimize", sys.argv[1:], "pogoptim"))
 
 
 def recover() -> int:

@@ -1,0 +1,61 @@
+"""The archive of a quality-diversity search: a table, a configuration for each elite, and a heat map."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.batch.configuration import Configuration
+from pogosim.optimize.optimizers.quality_diversity import MapElites
+from pogosim.optimize.plots import ARCHIVE, draw_archive
+from pogosim.optimize.results import configuration_text, write, write_text
+from pogosim.optimize.search import Search
+from pogosim.optimize.variables import as_json
+
+TABLE = "archive.csv"
+ELITES = "elites"
+
+
+def write_archive(folder: Path, search: Search, configuration: Configuration) -> dict[str, Any] | None:
+    """Write the archive; returns its summary, or None if the search has none."""
+    optimizer = search.optimizer
+    if not isinstance(optimizer, MapElites):
+        return None
+    elites = optimizer.elites()
+    shape = search.settings.qd_shape
+    names = list(search.feature_names or ())
+    fitness = np.full(shape, np.nan)
+    rows = []
+    shutil.rmtree(folder / ELITES, ignore_errors=True)
+    for elite in elites:
+        evaluation = search.history[elite.number - 1]
+        fitness[elite.cell] = evaluation.fitness
+        file = f"{ELITES}/{'_'.join(f'{place:02d}' for place in elite.cell)}.yaml"
+        notes = [
+            f"The best candidate in cell {elite.cell}: evaluation {elite.number}, fitness {evaluation.fitness:.6g}.",
+            f"Features: {as_json(dict(evaluation.features))}",
+            f"Values: {as_json(evaluation.values)}",
+        ]
+        write_text(folder / file, configuration_text(search.space, evaluation.values, configuration.path.parent, notes))
+        cell = {f"cell_{i + 1}": place for i, place in enumerate(elite.cell)}
+        values = {"eval": elite.number, "fitness": evaluation.fitness}
+        rows.append({**cell, **values, **evaluation.features, "values": as_json(evaluation.values), "config": file})
+    table = pd.DataFrame(rows)
+    write(folder / TABLE, lambda path: table.to_csv(path, index=False))
+    if len(shape) <= 2:
+        draw_archive(folder / ARCHIVE, fitness, optimizer.ranges, names)
+    filled = np.isfinite(fitness)
+    return {
+        "shape": list(shape),
+        "features": names,
+        "ranges": [list(pair) for pair in optimizer.ranges],
+        "cells_filled": int(np.count_nonzero(filled)),
+        "coverage": float(np.mean(filled)),
+        "qd_score": float(np.nansum(fitness)),
+        "archive": TABLE,
+        "elites": ELITES,
+    }

@@ -1,0 +1,224 @@
+"""The command `pogoptim`, which is `pogosim optimize`."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import logging
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import pogosim
+from pogosim.batch.backends import Workers
+from pogosim.batch.combinations import CombinationsError
+from pogosim.batch.command_line import add_slurm_options, catch_signals, slurm_jobs
+from pogosim.batch.configuration import Configuration
+from pogosim.batch.errors import BatchError, is_text, reason
+from pogosim.batch.names import NamesError
+from pogosim.batch.reports import Progress
+from pogosim.command.parser import Parser
+from pogosim.optimize.errors import OptimizeError
+from pogosim.optimize.history import JOURNAL, Journal
+from pogosim.optimize.objective import Objective, load_objective
+from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, optimizer_for
+from pogosim.optimize.outcome import finish, refresh
+from pogosim.optimize.runs import Runs
+from pogosim.optimize.search import Search, description_of
+from pogosim.optimize.settings import SECTION, Settings, settings_from
+from pogosim.optimize.variables import Space
+from pogosim.outputs import OutputError
+
+DONE = 0
+WRONG = 2
+NOTHING_FOUND = 3
+INTERRUPTED = 130
+
+EPILOG = """Settings can also stand in the section "optimization" of the configuration; the command line comes first.
+Exit codes: 0 the search is complete; 2 usage, configuration or file error; 3 all candidates failed; 130 interrupted."""
+
+log = logging.getLogger("pogosim.optimize")
+
+
+def parser(prog: str) -> Parser:
+    """Return the parser of the command line; `prog` is the name of the command."""
+    usual = Settings()
+    options = Parser(
+        prog=prog,
+        description="Searches for the parameters of a program that make an objective as large as possible.",
+        epilog=EPILOG,
+        allow_abbrev=False,
+    )
+    add = options.add_argument
+    add("-c", "--config", required=True, help="configuration in which some keys have an optimization_domain (YAML)")
+    add("-S", "--simulator-binary", required=True, metavar="PROGRAM", help="program compiled for Pogosim")
+    add("-r", "--runs", type=int, metavar="N", help=f"runs per candidate ({usual.runs})")
+    add("-O", "--objective", metavar="FILE.py", help="Python file with the function objective_fn(df) (mean MSD)")
+    add("--objective-func", metavar="NAME", help="name of that function (objective_fn, or else compute_objective)")
+    add("--features-func", metavar="NAME", help="name of the function that returns features (fd_fn)")
+    add("--optimizer", metavar="NAME", help=f"{', '.join(OPTIMIZERS)} ({usual.optimizer})")
+    add("--max-evals", type=int, metavar="N", help=f"how many candidates are evaluated ({usual.max_evals})")
+    add("--sigma0", type=float, metavar="S", help=f"first step size of CMA-ES, ranges being 1 ({usual.sigma0})")
+    add("--popsize", type=int, metavar="N", help="candidates per generation (as usual for the optimizer)")
+    add("--seed", type=int, help=f"seed of the optimizer ({usual.seed})")
+    add(
+        "--seeds",
+        metavar="common|fresh",
+        help="the runs of all candidates have the same seeds 0, 1, ... (common), or each its own (fresh) (common)",
+    )
+    add(
+        "--final-runs",
+        type=int,
+        metavar="N",
+        help=f"runs of the best candidate at the end, with seeds that the search has not seen ({usual.final_runs})",
+    )
+    add("--resume", action="store_true", help="continue the search that is in the folder of the results")
+    add("-o", "--output-dir", metavar="FOLDER", help=f"folder of the results ({usual.output_dir})")
+    add("-t", "--temp-base", metavar="FOLDER", default="tmp_opt", help="folder for temporary files (tmp_opt)")
+    add("--keep-temp", action="store_true", help="keep the folders of single runs")
+    add("-R", "--retries", type=int, metavar="N", help=f"how many times a failed run is repeated ({usual.retries})")
+    add("-v", "--verbose", action="store_true", help="say more")
+    add("-V", "--version", action="version", version=f"{prog} {pogosim.__version__}")
+    add_quality_diversity_options(options, usual)
+    group = options.add_argument_group("workers")
+    group.add_argument("-j", "--workers", type=int, metavar="N", help="runs at the same time (one per processor)")
+    group.add_argument("--backend", help="multiprocessing (default), sequential or dask")
+    group.add_argument("--scheduler", metavar="tcp://...", help="let the workers of this Dask scheduler do the runs")
+    add_slurm_options(options)
+    return options
+
+
+def add_quality_diversity_options(options: argparse.ArgumentParser, usual: Settings) -> None:
+    """Add the options of MAP-Elites, CMA-ME and CMA-MAE."""
+    group = options.add_argument_group("quality-diversity", f"For the optimizers {', '.join(WITH_FEATURES)}.")
+    add = group.add_argument
+    cells = ",".join(map(str, usual.qd_shape))
+    add("--qd-shape", metavar="N,N", help=f"cells of the archive along each feature ({cells})")
+    add("--qd-ranges", metavar="A:B,A:B", help="least and greatest value of each feature (0:1 if all are, or as seen)")
+    add("--qd-init-samples", type=int, metavar="N", help=f"random candidates at first ({usual.qd_init_samples})")
+    add("--qd-batch", type=int, metavar="N", help=f"candidates per generation afterwards ({usual.qd_batch})")
+
+
+def start_logging(verbose: bool) -> None:
+    """Print messages on standard error, each with the time: "[15:35:47] [INFO] ..."."""
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("[%(asctime)s] [%(levelname)s] %(message)s", datefmt="%H:%M:%S"))
+    for name in ("pogosim.optimize", "pogobatch"):
+        own = logging.getLogger(name)
+        own.handlers = [handler]
+        own.propagate = False
+        own.setLevel(logging.DEBUG if verbose else logging.INFO)
+
+
+def check_names(arguments: argparse.Namespace) -> None:
+    """Check names of files and folders, which stand in configurations and messages.
+
+    Raises:
+        OptimizeError: One of them is no text, or has several lines.
+    """
+    for option in ("config", "simulator_binary", "temp_base", "output_dir", "objective"):
+        name = getattr(arguments, option) or ""
+        if not is_text(name) or "\n" in name:
+            flag = f"--{option.replace('_', '-')}"
+            raise OptimizeError(f"{flag}: the name {name!a} has a line break or bytes that are not UTF-8; rename it")
+
+
+def objective_of(settings: Settings) -> Objective:
+    """Return the functions that judge candidates; without a file, the usual ones, with a warning.
+
+    Raises:
+        OptimizeError: They cannot be had.
+    """
+    if settings.objective:
+        return load_objective(settings.objective, settings.objective_func, settings.features_func)
+    for name in ("objective_func", "features_func"):
+        if getattr(settings, name) is not None:
+            raise OptimizeError(f"--{name.replace('_', '-')} goes with --objective FILE.py")
+    log.warning(
+        "No objective script provided; DEFAULT fitness = mean MSD (features default to [max MSD, std MSD]). "
+        "Yours: --objective FILE.py"
+    )
+    return Objective()
+
+
+def optimize(arguments: argparse.Namespace) -> int:
+    """Do what the command line says; returns the exit code.
+
+    Raises:
+        OptimizeError, BatchError, OutputError: It cannot be done.
+    """
+    check_names(arguments)
+    configuration = Configuration(arguments.config)
+    settings = settings_from(
+        configuration.entries.get(SECTION), vars(arguments), configuration.where, lambda text: log.warning("%s", text)
+    )
+    try:
+        space = Space(configuration.entries)
+    except CombinationsError as error:
+        raise OptimizeError(f"{configuration.where(error.path)}: {error.args[0]}") from None
+    objective = objective_of(settings)
+    with_features = settings.optimizer in WITH_FEATURES
+    if with_features and settings.qd_init_samples >= settings.max_evals:
+        log.warning(
+            "all %d evaluations are random samples: --max-evals is not more than --qd-init-samples, %d",
+            settings.max_evals,
+            settings.qd_init_samples,
+        )
+    optimizer = optimizer_for(space, settings)
+    workers = Workers(settings.backend, arguments.workers, arguments.scheduler, slurm_jobs(arguments))
+    runs = Runs(
+        configuration,
+        arguments.simulator_binary,
+        arguments.temp_base,
+        settings.output_dir,
+        workers,
+        settings.retries,
+        arguments.keep_temp,
+    )
+    digests = runs.digests | objective.digests
+    folder = Path(settings.output_dir)
+    journal = Journal(folder / JOURNAL, description_of(space, settings, digests), arguments.resume)
+    started_s = time.monotonic()
+    with contextlib.closing(journal), runs.opened():
+        if journal.known:
+            log.info("Resuming: %d evaluations are done already", len(journal.known))
+        log.info(
+            "Starting optimization: %s | dim=%d | max_evals=%d (normalized space)",
+            settings.optimizer.upper(),
+            len(space.variables),
+            settings.max_evals,
+        )
+        progress = Progress(settings.max_evals, "evaluation")
+        search = Search(space, objective, settings, optimizer, runs, journal, with_features, progress.update)
+        try:
+            with progress.beside(log, logging.getLogger("pogobatch")):
+                for _ in search.generations():
+                    refresh(folder, search)
+        finally:
+            progress.close()
+        is_found = finish(folder, search, configuration, time.monotonic() - started_s)
+    return DONE if is_found else NOTHING_FOUND
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
+    """Run the command. Returns its exit code, see its help."""
+    parsed = parser(prog).parse_args(arguments)
+    start_logging(parsed.verbose)
+    catch_signals()
+    try:
+        return optimize(parsed)
+    except (OptimizeError, BatchError, OutputError, NamesError) as error:
+        log.error("%s", error)
+    except OSError as error:
+        log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+    except MemoryError:
+        log.error("not enough memory for the runs of a generation; lower --popsize, or save data less often")
+    except KeyboardInterrupt:
+        log.error("interrupted; the same command with --resume continues")
+        return INTERRUPTED
+    return WRONG
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,194 @@
+"""All evaluations of a search, written down one by one, so that a search that was killed can go on where it was.
+
+Each line of the file is a JSON map: first what the search is, then one evaluation each, in the order in which they
+ended. A last line that is not complete belongs to an evaluation that does not count.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from pogosim.batch.errors import cannot
+from pogosim.optimize.errors import OptimizeError
+from pogosim.optimize.objective import Judgement
+
+JOURNAL = "search.jsonl"
+VERSION = 1
+END = "end"  # key of the last line of a search that is finished
+DIGEST = " digest"  # behind the names of what is compared by its digest
+CHANGEABLE = ("max_evals", "final_runs")  # a search may be continued for longer, or for less long
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A candidate that was evaluated.
+
+    Attributes:
+        number: From 1 on, in the order in which candidates were asked for.
+        generation: From 1 on.
+        point: Where in the unit cube.
+        values: Of the variables in use, by name.
+        fitness: None: it has failed.
+        features: By name.
+        problem: Why it has failed, or empty.
+        timestamp: When it ended: "2025-01-31T12:00:00".
+    """
+
+    number: int
+    generation: int
+    point: list[float]
+    values: dict[str, Any]
+    fitness: float | None
+    features: Mapping[str, float]
+    problem: str
+    timestamp: str
+
+    @property
+    def judgement(self) -> Judgement:
+        """What came out."""
+        return Judgement(self.fitness, dict(self.features), self.problem)
+
+
+class Journal:
+    """The file with the evaluations of a search.
+
+    Attributes:
+        known: Evaluations of an earlier part of the search, by number.
+    """
+
+    def __init__(self, path: Path, description: Mapping[str, Any], resume: bool) -> None:
+        """Open the journal of a new search, or that of one to continue.
+
+        Args:
+            path: The file. It is left as it is until there is an evaluation.
+            description: What the search is; one that is continued must be the same.
+            resume: Continue the search that is there, if there is one.
+
+        Raises:
+            OptimizeError: A search is there that is not finished, or another one; or it is running.
+            BatchError: The file cannot be read or written.
+        """
+        self.path = path
+        self.description = {"version": VERSION, **description}
+        self.known: dict[int, Evaluation] = {}
+        self.is_finished = False
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self.file: IO[bytes] = path.open("a+b")
+            self.lock()
+            self.end: int | None = self.read(resume)  # of the lines to keep, in bytes
+        except OSError as error:
+            raise cannot("write", path, error) from None
+        if self.known and not resume:
+            if not self.is_finished:
+                raise OptimizeError(
+                    f"{path.parent} has a search that is not finished, with {len(self.known)} evaluations: --resume "
+                    f"continues it; for another one, choose another folder with -o, or remove {path}"
+                )
+            self.known, self.end = {}, 0
+
+    def lock(self) -> None:
+        """Keep another search from writing here.
+
+        Raises:
+            OptimizeError: One does.
+        """
+        try:
+            fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise OptimizeError(
+                f"another search is writing to {self.path.parent}; wait for it, or choose another folder with -o"
+            ) from None
+        except OSError:
+            pass  # no locks on this file system
+
+    def read(self, resume: bool) -> int:
+        """Read what is there; returns where its last complete line ends, in bytes."""
+        self.file.seek(0)
+        end = 0
+        for number, line in enumerate(self.file):
+            if not line.endswith(b"\n"):
+                break
+            try:
+                self.take(json.loads(line), is_first=number == 0, resume=resume)
+            except (ValueError, TypeError, AttributeError):
+                raise OptimizeError(
+                    f"{self.path}:{number + 1}: not a line of a search; remove it and those after it to continue "
+                    "what is before, or choose another folder with -o"
+                ) from None
+            end += len(line)
+        return end
+
+    def take(self, entry: Any, is_first: bool, resume: bool) -> None:
+        """Take a line."""
+        if is_first:
+            if entry["version"] != VERSION:
+                raise ValueError
+            if resume:
+                self.compare(entry)
+        elif END in entry:
+            self.is_finished = True
+        else:
+            self.is_finished = False
+            evaluation = Evaluation(**entry)
+            self.known[evaluation.number] = evaluation
+
+    def compare(self, there: Mapping[str, Any]) -> None:
+        """Check that the search that is there is this one.
+
+        Raises:
+            OptimizeError: It is another one; says what differs.
+        """
+        own = json.loads(json.dumps(self.description))
+        for key in dict.fromkeys([*own, *there]):
+            if key not in CHANGEABLE and there.get(key) != own.get(key):
+                name, is_digest = key.removesuffix(DIGEST), key.endswith(DIGEST)
+                values = f"{name} was {there.get(key)}, and is {own.get(key)} now"
+                what = f"the {name} has changed" if is_digest else values
+                raise OptimizeError(
+                    f"--resume: {self.path.parent} has another search: {what}; choose another folder with -o, or give "
+                    "the command as it was"
+                )
+
+    def add(self, evaluation: Evaluation) -> None:
+        """Write down an evaluation, so that it stays even if the machine stops."""
+        self.write(asdict(evaluation))
+
+    def finish(self, evaluations: int) -> None:
+        """Write down that the search has come to its end."""
+        self.write({END: evaluations})
+
+    def write(self, entry: Mapping[str, Any]) -> None:
+        """Append a line; before the first one, remove what is not part of the search.
+
+        Raises:
+            BatchError: It cannot be written.
+        """
+        try:
+            if self.end is not None:
+                self.file.truncate(self.end)
+                if not self.end:
+                    self.file.write(line_of(self.description))
+                self.end = None
+            self.file.write(line_of(entry))
+            self.file.flush()
+            os.fsync(self.file.fileno())
+        except OSError as error:
+            raise cannot("write", self.path, error) from None
+
+    def close(self) -> None:
+        """Let others write. An empty file goes away."""
+        if self.path.exists() and self.path.stat().st_size == 0:
+            self.path.unlink()
+        self.file.close()
+
+
+def line_of(entry: Mapping[str, Any]) -> bytes:
+    """Return a line of JSON."""
+    return json.dumps(entry, default=str).encode() + b"\n"

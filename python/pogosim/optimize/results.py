@@ -1,0 +1,149 @@
+"""What a search leaves in its folder: tables, configurations, and a summary."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.batch.combinations import overlay
+from pogosim.batch.configuration import dump_configuration
+from pogosim.batch.errors import cannot
+from pogosim.batch.names import COLUMNS, FORMAT
+from pogosim.batch.tasks import FILES_BESIDE, found_beside
+from pogosim.optimize.history import Evaluation
+from pogosim.optimize.settings import SECTION
+from pogosim.optimize.variables import Space, Values, as_json
+from pogosim.outputs import partial_output, real_output
+
+HISTORY = "opt_history.csv"
+HISTORY_TABLE = "opt_history.feather"
+BEST = "best_config.yaml"
+BEST_ROWS = "best_results.feather"
+SUMMARY = "summary.json"
+NOT_FOR_ONE_RUN = (SECTION, FORMAT, COLUMNS)
+
+
+@dataclass(frozen=True)
+class FreshRuns:
+    """What the best candidate does in runs that the search has not seen.
+
+    Attributes:
+        seeds: Of the runs that could be judged.
+        fitness: Of each, alone.
+        mean: Their mean.
+        low: Lower end of the 95 % confidence interval of the mean, NaN for fewer than two runs.
+        high: Upper end.
+    """
+
+    seeds: Sequence[int]
+    fitness: Sequence[float]
+    mean: float
+    low: float
+    high: float
+
+
+def best_so_far(history: Sequence[Evaluation]) -> pd.Series[float]:
+    """Return the greatest fitness up to each evaluation; NaN before the first one that has not failed."""
+    fitness = pd.Series([np.nan if e.fitness is None else e.fitness for e in history], dtype=float)
+    return fitness.cummax().ffill()
+
+
+def history_table(history: Sequence[Evaluation]) -> pd.DataFrame:
+    """Return all evaluations: number, generation, fitness (NaN: failed), values, features, problem and time of each."""
+    columns: dict[str, Any] = {
+        "eval": [e.number for e in history],
+        "generation": [e.generation for e in history],
+        "fitness": pd.Series([e.fitness for e in history], dtype=float),
+        "best_so_far": best_so_far(history),
+    }
+    for attribute in ("values", "features"):
+        maps: list[Mapping[str, Any]] = [getattr(e, attribute) for e in history]
+        for name in dict.fromkeys(name for entries in maps for name in entries):
+            columns[name] = plain_column([entries.get(name) for entries in maps])
+    columns["problem"] = [e.problem for e in history]
+    columns["timestamp"] = [e.timestamp for e in history]
+    return pd.DataFrame(columns)
+
+
+def plain_column(values: Sequence[Any]) -> Sequence[Any]:
+    """Return values that have one type as they are, and others as text."""
+    kinds = {type(value) for value in values if value is not None}
+    if len(kinds) <= 1 and not kinds & {list, dict}:
+        return values
+    if kinds <= {int, float}:
+        return [None if value is None else float(value) for value in values]
+    return [None if value is None else str(value) for value in values]
+
+
+def write_history(folder: Path, history: Sequence[Evaluation]) -> None:
+    """Write all evaluations as CSV, with the columns that others' tools have, too, and as Feather.
+
+    Raises:
+        BatchError: A file cannot be written.
+    """
+    lines = pd.DataFrame(
+        {
+            "eval": [e.number for e in history],
+            "fitness": pd.Series([e.fitness for e in history], dtype=float),
+            "best_so_far": best_so_far(history),
+            "u_internal": [json.dumps(e.point) for e in history],
+            "values": [as_json(e.values) for e in history],
+            "timestamp": [e.timestamp for e in history],
+            "generation": [e.generation for e in history],
+            "features": [as_json(dict(e.features)) for e in history],
+            "problem": [e.problem for e in history],
+        }
+    )
+    write(folder / HISTORY, lambda path: lines.to_csv(path, index=False))
+    write(folder / HISTORY_TABLE, lambda path: history_table(history).to_feather(path))
+
+
+def write(path: Path, writer: Any) -> None:
+    """Write a file, which appears when it is complete.
+
+    Raises:
+        BatchError: It cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with partial_output(real_output(path)) as partial:
+            writer(partial)
+    except OSError as error:
+        raise cannot("write", path, error) from None
+
+
+def configuration_text(space: Space, values: Values, folder: Path, notes: Sequence[str]) -> str:
+    """Return a configuration with values in it, for the simulator.
+
+    Args:
+        space: What was searched.
+        values: Of the variables in use.
+        folder: Of the configuration that was searched: files beside it are found from elsewhere, too.
+        notes: Comments at its beginning.
+    """
+    entries = space.configuration(values, is_flat=True)
+    own = {key: value for key, value in entries.items() if key not in NOT_FOR_ONE_RUN}
+    named = {key: found_beside(own[key], folder.absolute()) for key in FILES_BESIDE if key in own}
+    kept = {key: entries[key] for key in (FORMAT, COLUMNS) if key in entries}
+    comments = "".join(f"# {line}\n" for line in notes)
+    return comments + dump_configuration(overlay(overlay(own, named), kept))
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text.
+
+    Raises:
+        BatchError: It cannot be written.
+    """
+    write(path, lambda partial: partial.write_text(text))
+
+
+def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
+    """Write `summary.json`."""
+    write_text(folder / SUMMARY, json.dumps(summary, indent=2, default=str, ensure_ascii=False) + "\n")
