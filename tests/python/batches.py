@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -46,8 +47,8 @@ def batch(folder: Path, *more: str, program: Path | None = None) -> Run:
     return run_main(folder, arguments(program or example("helloworld"), *more)[len(COMMAND) :])
 
 
-def run_main(folder: Path, options: list[str]) -> Run:
-    """Run the command in this process, in a folder."""
+def run_main(folder: Path, options: list[str], command: Callable[[list[str]], int] = main) -> Run:
+    """Run a command in this process, in a folder."""
     output, errors = io.StringIO(), io.StringIO()
     here = Path.cwd()
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
@@ -55,7 +56,7 @@ def run_main(folder: Path, options: list[str]) -> Run:
         os.chdir(folder)
         with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
             try:
-                code = main(options)
+                code = command(options)
             except SystemExit as end:
                 code = end.code if isinstance(end.code, int) else 1
     finally:

@@ -26,7 +26,8 @@ class CmaEs:
     """CMA-ES in the unit cube.
 
     A point beyond a wall is evaluated at the nearest point of the cube, and loses fitness with the square of its
-    distance from there: optima on walls are reached, and the distribution does not drift away (section B.5 of the tutorial).
+    distance from there: optima on walls are reached, and the distribution does not drift away (section B.5 of the
+    tutorial).
     """
 
     def __init__(self, space: Space, settings: Settings) -> None:
