@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,7 @@ def fd_fn(df):
 """
 
 
-def write_search(folder: Path, changes: dict[str, object] | None = None, objective: str = OBJECTIVE) -> Path:
+def write_search(folder: Path, changes: Mapping[str, object] | None = None, objective: str = OBJECTIVE) -> Path:
     """Write space.yaml and obj.py in a folder, which is made; None takes a key out."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "space.yaml").write_text(yaml.safe_dump(scene({**SPACE, **(changes or {})}), sort_keys=False))

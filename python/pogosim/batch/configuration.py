@@ -113,7 +113,9 @@ class Configuration:
             self.take_repeated_keys(value, (*path, name))
 
     def where(self, path: Sequence[str]) -> str:
-        """Return where an entry stands: "conf/a.yaml:12: objects.robots.nb"."""
+        """Return where an entry stands: "conf/a.yaml:12: objects.robots.nb"; of all, the name of the file."""
+        if not path:
+            return str(self.path)
         node, line = self.root, 1
         for step in path:
             if isinstance(node, yaml.MappingNode):

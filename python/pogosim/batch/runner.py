@@ -21,7 +21,7 @@ from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm import SlurmJobs
-from pogosim.batch.tasks import Combination, RunSettings, tasks_of
+from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 
 MAX_RUNS = 10_000_000  # in memory, about 1 kB each
@@ -284,9 +284,7 @@ class PogobotBatchRunner:
                 entries = Configuration(path).entries
         except OSError as error:
             raise cannot("read", path, error) from None
-        if entries.get("enable_data_logging") is False:
-            where = self.configuration.where(("enable_data_logging",))
-            raise BatchError(f"{where}: is false, so runs write no data to join; set it to true")
+        check_logs_data(entries, self.configuration)
         assert self.run_settings is not None  # within prepared()
         columns = self.compute_new_columns(entries)
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]

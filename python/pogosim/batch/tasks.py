@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.configuration import dump_configuration
+from pogosim.batch.configuration import Configuration, dump_configuration
+from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import run_key, world_digest
 from pogosim.batch.run import Task
 from pogosim.batch.temporary import TemporaryFolder
@@ -36,6 +37,17 @@ class RunSettings:
     retries: int
     gui: bool
     digests: dict[Path, str] = field(default_factory=dict)  # of files that configurations name
+
+
+def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> None:
+    """Check that runs write data.
+
+    Raises:
+        BatchError: They do not; says where that stands.
+    """
+    if entries.get("enable_data_logging") is False:
+        where = configuration.where(("enable_data_logging",))
+        raise BatchError(f"{where}: is false, so runs write no data to join; set it to true")
 
 
 def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings) -> list[Task]:

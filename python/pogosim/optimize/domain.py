@@ -32,7 +32,7 @@ class Real:
     def value_at(self, position: float) -> float:
         """Return the value at a position from 0 to 1."""
         if self.is_log:
-            value = self.low * math.exp(position * math.log(self.high / self.low))
+            value = math.pow(self.low, 1.0 - position) * math.pow(self.high, position)
         else:
             value = self.low + position * (self.high - self.low)
         return min(max(value, self.low), self.high)

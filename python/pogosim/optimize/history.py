@@ -81,17 +81,33 @@ class Journal:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self.file: IO[bytes] = path.open("a+b")
-            self.lock()
-            self.end: int | None = self.read(resume)  # of the lines to keep, in bytes
         except OSError as error:
             raise cannot("write", path, error) from None
-        if self.known and not resume:
-            if not self.is_finished:
-                raise OptimizeError(
-                    f"{path.parent} has a search that is not finished, with {len(self.known)} evaluations: --resume "
-                    f"continues it; for another one, choose another folder with -o, or remove {path}"
-                )
-            self.known, self.end = {}, 0
+        self.end: int | None = 0  # of the lines to keep, in bytes; None: only they are there
+        try:
+            self.lock()
+            self.end = self.read(resume)
+            if not resume:
+                self.refuse_unfinished()
+        except OSError as error:
+            self.close()
+            raise cannot("read", path, error) from None
+        except BaseException:
+            self.close()
+            raise
+
+    def refuse_unfinished(self) -> None:
+        """Forget the search that is there.
+
+        Raises:
+            OptimizeError: It is not finished.
+        """
+        if self.known and not self.is_finished:
+            raise OptimizeError(
+                f"{self.path.parent} has a search that is not finished, with {len(self.known)} evaluations: --resume "
+                f"continues it; for another one, choose another folder with -o, or remove {self.path}"
+            )
+        self.known, self.end = {}, 0
 
     def lock(self) -> None:
         """Keep another search from writing here.
@@ -117,7 +133,7 @@ class Journal:
                 break
             try:
                 self.take(json.loads(line), is_first=number == 0, resume=resume)
-            except (ValueError, TypeError, AttributeError):
+            except (ValueError, TypeError, AttributeError, KeyError):
                 raise OptimizeError(
                     f"{self.path}:{number + 1}: not a line of a search; remove it and those after it to continue "
                     "what is before, or choose another folder with -o"

@@ -20,7 +20,7 @@ from pogosim.batch.names import new_columns, value_at
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import Part, RunFile, check_columns, schema_of, write_results
 from pogosim.batch.run import Outcome, Task
-from pogosim.batch.tasks import Combination, RunSettings, tasks_of
+from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.utils import load_dataframe
 
@@ -108,6 +108,7 @@ class Runs:
             try:
                 with self.workers.opened(keep_idle=True) as self.do:
                     yield
+                self.temporary.forget_finished_runs()
             finally:
                 self.do = None
                 self.temporary.tidy([])
@@ -161,6 +162,7 @@ class Runs:
             raise BatchError(f"{self.configuration.where(error.path)}: {error.args[0]}") from None
         combinations = []
         for combination in combined:
+            check_logs_data(combination, self.configuration)
             columns = new_columns(combination)
             columns.setdefault(ARENA, value_at(combination, ARENA) if ARENA in combination else None)
             combinations.append(Combination("", columns, tasks_of(combination, seeds, self.settings)))
