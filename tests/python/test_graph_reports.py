@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from in_process import pogosim
 from matplotlib.figure import Figure
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
 from pogosim.analysis.trajectories import trajectories_of
@@ -69,20 +70,23 @@ def runs_of(name: str, folder: Path, *options: str) -> int:
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_command_writes_all_files_and_again_the_same_bytes(name: str, tmp_path: Path) -> None:
+def test_a_command_writes_all_files_and_again_the_same_bytes(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.undo()  # with the files of figures
     data = file_of(tmp_path)
-    written = []
-    for folder in ("first", "second"):
-        arguments = ["analyze", name, "-i", str(data), "-o", str(tmp_path / folder)]
-        done = subprocess.run(
-            [sys.executable, "-m", "pogosim", *arguments], capture_output=True, text=True, cwd=tmp_path, check=False
-        )
-        assert (done.returncode, done.stderr) == (0, "")
-        assert done.stdout == f"written to {tmp_path / folder}\n"
-        written.append({path.name: path.read_bytes() for path in (tmp_path / folder).iterdir()})
+    arguments = ["analyze", name, "-i", str(data), "-o"]
+    program = [sys.executable, "-m", "pogosim", *arguments, "first"]
+    apart = subprocess.run(program, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert (apart.returncode, apart.stdout, apart.stderr) == (0, "written to first\n", "")
+    here = pogosim(tmp_path, *arguments, "second")
+    assert (here.code, here.text) == (0, "written to second\n")
+    first, second = (
+        {path.name: path.read_bytes() for path in (tmp_path / folder).iterdir()} for folder in ("first", "second")
+    )
     figures = {f"{figure}{suffix}" for figure in FILES[name] for suffix in (".pdf", ".png")}
-    assert set(written[0]) == figures | TABLES[name]
-    assert written[0] == written[1]
+    assert set(first) == figures | TABLES[name]
+    assert first == second
 
 
 @pytest.mark.parametrize("module", COMMANDS)
