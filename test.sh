@@ -100,10 +100,11 @@ release_tests() {
     suite "C++ tests (Release)" "$reports/release.xml" run_ctest build/release "$reports/release.xml"
 }
 
+# One process more than processors: many tests wait most of their time. tests/python/conftest.py has the order of files.
 python_tests() {
     suite "Python tests" "$reports/python.xml" \
-        "$python" -m pytest -q -c pyproject.toml --rootdir . --numprocesses "$(processors)" --dist loadfile \
-        tests/python --junitxml "$reports/python.xml"
+        "$python" -m pytest -q -c pyproject.toml --rootdir . --numprocesses $(($(processors) + 1)) --dist loadfile \
+        --no-loadscope-reorder tests/python --junitxml "$reports/python.xml"
 }
 
 # sanitizes COMPILER: whether a program can be built with its sanitizers; it is left in $reports/leak.

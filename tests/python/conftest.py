@@ -28,6 +28,19 @@ for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, sig
         signal.signal(number, signal.SIG_DFL)
 
 
+# Files that take longest, 150 to 40 s each: if one of them starts last, all processors but one wait for its end.
+LONGEST = [
+    *("parameter_study", "docs", "validation", "analyze_locomotion", "graph_reports", "signals", "window_input"),
+    *("batch_runs", "batch_slurm", "mixed_scene", "window", "headers", "misbehaviour", "pictures", "vicsek", "film"),
+]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Start with the files that take longest."""
+    order = {f"test_{name}": place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(order)))
+
+
 @pytest.fixture(scope="session")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Compile:
     """Return a function from the name of a file in tests/programs to the program, compiled at the first call."""
