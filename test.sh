@@ -129,9 +129,10 @@ sanitized_tests() {
     fi
     # The build also runs the test programs, to list their tests.
     export ASAN_OPTIONS=detect_leaks=$leaks UBSAN_OPTIONS=print_stacktrace=1
-    # The second compiler: Release is built with the system's, gcc on Linux.
+    # The second compiler: Release is built with the system's, gcc on Linux. -g1: reports name lines, not variables.
     check "Debug build with sanitizers ($cpp)" build_tree "build/sanitized-$c" Debug \
-        -DCMAKE_C_COMPILER=$c -DCMAKE_CXX_COMPILER=$cpp -DPOGOSIM_SANITIZE=ON -DPOGOSIM_WERROR=ON \
+        -DCMAKE_C_COMPILER=$c -DCMAKE_CXX_COMPILER=$cpp -DCMAKE_CXX_FLAGS_DEBUG=-g1 \
+        -DPOGOSIM_SANITIZE=ON -DPOGOSIM_WERROR=ON \
         -DPOGOSIM_BUILD_EXAMPLES=OFF -DPOGOSIM_BUILD_TESTS=ON -DPOGOSIM_BUILD_BENCH=OFF || return 0
     suite "C++ tests (sanitizers, $cpp)" "$reports/sanitized.xml" run_ctest "build/sanitized-$c" "$reports/sanitized.xml"
 }
