@@ -34,6 +34,7 @@ SUBCOMMANDS = {
     "film": Subcommand("pogosim.film.command", "make a film of a run, or a page to replay it in a browser"),
     "recover": Subcommand("pogosim.recover", "make a complete data file of a run that was killed"),
     "arena": Subcommand("pogosim.geometry.command", "draw, check, scale and convert arenas"),
+    "calibrate": Subcommand("pogosim.calibration.command", "fit the motion of simulated robots to tracks of real ones"),
     "fit-comm": Subcommand("pogosim.communication.fit_command", "fit a law of reception to measurements"),
     "best-psend": Subcommand("pogosim.communication.sending_command", "compute how often robots should send"),
     "doctor": Subcommand("pogosim.command.doctor", "say what works on this machine, and what is missing for what"),

@@ -1,0 +1,1 @@
+"""From simulation to reality: the motion parameters of robots, from their tracked trajectories."""

@@ -1,0 +1,253 @@
+"""`pogosim calibrate`: fits the motion of simulated robots to tracks of real ones."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pogosim.calibration.errors import CalibrationError
+from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile
+from pogosim.calibration.parameters import BIAS, NAMES, chosen, start_bias, start_values
+from pogosim.calibration.reading import read_track_table
+from pogosim.calibration.result import as_json, bias_is_known, configuration_block, found_parameters, misfits
+from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses
+from pogosim.calibration.simulation import Simulator
+from pogosim.calibration.statistics import statistics_of, tracker_noise
+from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
+from pogosim.calibration.units import (
+    ANGLES_RAD,
+    LENGTHS_MM,
+    UnitOptions,
+    in_millimetres,
+    in_radians,
+    with_headings,
+    y_down,
+)
+from pogosim.command.numbers import positive, whole
+from pogosim.command.parser import Parser, complain, warn
+from pogosim.command.run import RunError, program_of
+from pogosim.installation import InstallationError, find_installation
+from pogosim.outputs import OutputError, leads_to, partial_output, real_output, say
+
+PROTOCOL = Path(__file__).with_name("protocol.c")
+RESULT, LINES, PICTURE = "calibration.json", "calibration.yaml", "calibration.png"
+
+
+def parser(prog: str) -> Parser:
+    """Return the parser of the command line."""
+    made = Parser(
+        prog=prog,
+        description="Fits speed, noise and bias of simulated robots to tracks of real ones (docs/calibration.md), and "
+        "prints the lines for a configuration.",
+    )
+    made.add_argument(
+        "tracks", nargs="?", metavar="TRACKS", help="CSV file with the columns time, id, x, y, angle; or a data file"
+    )
+    made.add_argument("-c", "--config", metavar="CONF.yaml", help="arena, and the robots with the values to start from")
+    made.add_argument(
+        "-S",
+        "--simulator-binary",
+        metavar="PROGRAM",
+        help="what the robots ran: a program, a .c or .cpp file, or a project (default: the program of --protocol)",
+    )
+    made.add_argument(
+        "--protocol", metavar="FILE.c", help="write the program to run on the robots, and do nothing else"
+    )
+    made.add_argument(
+        "--category", metavar="NAME", help="the robots' entry in `objects` (the only one of type pogobot)"
+    )
+    made.add_argument("--parameters", metavar="A,B", help=f"fit only these of {', '.join(NAMES)}")
+    made.add_argument("-o", "--output-dir", metavar="DIR", help=f"folder for {RESULT}, {LINES} and {PICTURE}")
+    units = made.add_argument_group("units of the tracks (recognised and printed, if not given)")
+    units.add_argument("--length-unit", choices=[*LENGTHS_MM, "px"])
+    units.add_argument("--mm-per-pixel", type=positive, metavar="MM", help="size of a pixel, for positions in pixels")
+    units.add_argument("--angle-unit", choices=list(ANGLES_RAD))
+    units.add_argument("--y-up", action="store_true", help="y points up, and angles are counter-clockwise")
+    units.add_argument("--fps", type=positive, metavar="N", help="frames per second, if times are frame numbers")
+    made.add_argument("--runs", type=whole(1, 1000), default=3, metavar="N", help="runs to average (3)")
+    made.add_argument("--seed", type=whole(0, 2**32 - 10**4), default=42, metavar="N", help="of the first run (42)")
+    made.add_argument(
+        "-j", "--jobs", type=whole(1, 10**4), default=os.cpu_count() or 1, metavar="N", help="runs at once"
+    )
+    return made
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """Tracks that are ready to be compared with.
+
+    Attributes:
+        tracks: In mm and rad, with headings.
+        noise: First guess of the errors of the tracker in mm and rad.
+        facts: What was said of them.
+    """
+
+    tracks: Tracks
+    noise: tuple[float, float]
+    facts: list[str]
+
+
+def prepare(prog: str, options: argparse.Namespace, scene: Scene) -> Prepared:
+    """Read tracks, and say how they are understood.
+
+    Raises:
+        CalibrationError: They cannot be used.
+        OSError: They cannot be read.
+    """
+    facts: list[str] = []
+
+    def tell(text: str) -> None:
+        facts.append(text)
+        say(text)
+
+    def caution(text: str) -> None:
+        warn(prog, text)
+
+    table = read_track_table(Path(options.tracks), scene.category, caution)
+    tracks = on_grid(table, *frame_numbers(table, options.fps, caution), caution)
+    tell(f"tracks: {tracks.robots} robots, {tracks.length_s:.4g} s, {1.0 / tracks.frame_s:.4g} frames/s")
+    unit_options = UnitOptions(options.length_unit, options.mm_per_pixel, options.angle_unit, options.y_up)
+    tracks = in_millimetres(tracks, table.units.get("x"), unit_options, scene.size_mm, tell, caution)
+    tracks = cut(tracks, scene.radius_mm, caution)
+    tracks = in_radians(tracks, table.units.get("angle"), unit_options, tell, caution)
+    tracks = in_arena(continuous(y_down(tracks, unit_options, scene.size_mm[1], tell)), scene, caution)
+    noise = tracker_noise(tracks)
+    return Prepared(with_headings(tracks, noise[0]), noise, facts)
+
+
+def compiled(what: str | None, temporary: Path) -> Path:
+    """Return the program that the robots ran.
+
+    Raises:
+        CalibrationError: There is none.
+    """
+    source = Path(what) if what else Path(shutil.copy(PROTOCOL, temporary / "protocol.c"))
+    try:
+        return program_of(source, find_installation())
+    except (InstallationError, RunError, ValueError) as error:
+        raise CalibrationError(str(error)) from None
+
+
+def write_protocol(path: Path) -> None:
+    """Write the program to run on the robots; raises OutputError or OSError if it cannot be written."""
+    real = real_output(path)
+    if real.exists():
+        raise OutputError(f"{path} exists already; choose another name")
+    with partial_output(real) as partial:
+        shutil.copyfile(PROTOCOL, partial)
+    say(f"written: {path}")
+
+
+def check_outputs(folder: Path, inputs: Sequence[Path]) -> None:
+    """Make the folder of results; raises OutputError or OSError if they cannot be written there."""
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder} is not a folder; choose another one with -o")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in (RESULT, LINES, PICTURE):
+        real_output(folder / name)
+        if any(leads_to(folder / name, path) for path in inputs):
+            raise OutputError(f"{folder / name} is an input, which would be lost; choose another folder with -o")
+    if not os.access(folder, os.W_OK):
+        raise OutputError(f"{folder} cannot be written; choose another folder with -o")
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate") -> int:
+    """Run the command. Returns its exit code: 0 done, 2 nothing could be fitted, or written."""
+    made = parser(prog)
+    options = made.parse_args(arguments)
+    try:
+        if options.protocol is not None:
+            write_protocol(Path(options.protocol))
+            return 0
+        if options.tracks is None or options.config is None:
+            made.error("expected TRACKS and -c CONF.yaml, or --protocol FILE.c")
+        calibrate(prog, options)
+    except (CalibrationError, OutputError) as error:
+        return complain(prog, error)
+    except OSError as error:
+        return complain(prog, f"{error.filename or options.output_dir}: {(error.strerror or str(error)).lower()}")
+    return 0
+
+
+def calibrate(prog: str, options: argparse.Namespace) -> None:
+    """Fit, print, and write if a folder is given."""
+    free, scene = chosen(options.parameters), read_scene(Path(options.config), options.category)
+    if options.output_dir is not None:
+        check_outputs(Path(options.output_dir), [Path(options.tracks), Path(options.config)])
+    prepared = prepare(prog, options, scene)
+    poses = start_poses(prepared.tracks, scene, lambda text: warn(prog, text))
+    with tempfile.TemporaryDirectory(prefix="pogosim-calibrate-") as folder:
+        temporary = Path(folder)
+        program = compiled(options.simulator_binary, temporary)
+        simulator = Simulator(
+            program, scene.entries, scene.path.parent, scene.category, poses, prepared.tracks, temporary
+        )
+        settings = Settings(
+            free, start_values(scene.settings), start_bias(scene.settings), options.seed, options.runs, options.jobs
+        )
+        matcher = Matcher(simulator, statistics_of(prepared.tracks), settings)
+        progress = say if sys.stdout is not None and sys.stdout.isatty() else (lambda _text: None)
+        fitted = fit(matcher, prepared.noise, progress)
+    report(prog, options, scene, prepared, matcher, fitted)
+
+
+def report(
+    prog: str, options: argparse.Namespace, scene: Scene, prepared: Prepared, matcher: Matcher, fitted: Fit
+) -> None:
+    """Print the result, what is doubtful about it, and write it if a folder is given."""
+    settings, noise = matcher.settings, fitted.values
+    found = found_parameters(fitted, settings.start)
+    with_bias = BIAS in settings.free
+    of_angle = f", {noise['tracker_noise_rad']:.2g} rad" if noise["tracker_noise_rad"] else ""
+    say(f"noise of the tracker: {noise['tracker_noise_mm']:.2g} mm{of_angle}")
+    side = handedness(median_profile(prepared.tracks), median_profile(fitted.tracks), fitted.tracks.frame_s)
+    say_what_is_doubtful(prog, side, with_bias and bias_is_known(fitted))
+    for line in misfits(matcher.measured, fitted):
+        warn(prog, f"the simulation does not reproduce the {line} (another program, or pushes that it does not know?)")
+    block = configuration_block(scene.category, found, fitted, with_bias)
+    say("")
+    say(block)
+    if options.output_dir is None:
+        return
+    from pogosim.calibration.figure import picture
+
+    facts = {
+        "tracks": Path(options.tracks).name,
+        "program": Path(options.simulator_binary).name if options.simulator_binary else PROTOCOL.name,
+        "seed": settings.seed,
+        "runs": settings.runs,
+        "robots": prepared.tracks.robots,
+        "length_s": prepared.tracks.length_s,
+        "understood": prepared.facts,
+        "turns": side,
+    }
+    content = {
+        RESULT: as_json(scene.category, found, fitted, matcher.measured, facts).encode(),
+        LINES: (block + "\n").encode(),
+        PICTURE: picture(prepared.tracks, fitted.tracks),
+    }
+    for name, data in content.items():
+        with partial_output(real_output(Path(options.output_dir) / name)) as partial:
+            partial.write_bytes(data)
+    say("")
+    say(f"written to {options.output_dir}: {', '.join(content)}")
+
+
+def say_what_is_doubtful(prog: str, side: str, bias: bool) -> None:
+    """Say whether tracks may be mirrored, which changes the sign of the bias."""
+    if side == "mirrored":
+        warn(prog, "the robots turn to the other side than the program says: is the film mirrored, or y up (--y-up)?")
+    elif side == "unknown" and bias:
+        say("the sign of the bias: as that of the angles; a mirrored film cannot be told with this program")
+    elif bias:
+        say("turns: to the same side as in the program, so the tracks are not mirrored")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
