@@ -136,10 +136,10 @@ def test_tracks_without_angles_still_show_speeds(
     here: Path, camera: pd.DataFrame, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write(camera.drop(columns="angle"), here / "tracks.csv")
-    found = calibrated(here, "--parameters", "max_linear_speed,max_angular_speed")
+    found = calibrated(here, "--parameters", "max_linear_speed,max_angular_speed,linear_noise_stddev")
     assert found["parameters"]["max_linear_speed"]["value"] == pytest.approx(TRUE["max_linear_speed"], rel=0.1)
     assert found["parameters"]["max_angular_speed"]["value"] == pytest.approx(TRUE["max_angular_speed"], rel=0.15)
-    assert set(found["parameters"]) == {"max_linear_speed", "max_angular_speed"}
+    assert set(found["parameters"]) == {"max_linear_speed", "max_angular_speed", "linear_noise_stddev"}
     assert "the tracks have no angles" in capsys.readouterr().err
 
 

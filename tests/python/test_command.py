@@ -23,6 +23,7 @@ SUBCOMMANDS = (
     "film",
     "recover",
     "arena",
+    "calibrate",
     "fit-comm",
     "best-psend",
     "doctor",

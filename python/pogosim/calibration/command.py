@@ -35,6 +35,7 @@ from pogosim.command.run import RunError, program_of
 from pogosim.installation import InstallationError, find_installation
 from pogosim.outputs import OutputError, leads_to, partial_output, real_output, say
 
+NEED_HEADINGS = ("angular_noise_stddev", BIAS)
 PROTOCOL = Path(__file__).with_name("protocol.c")
 RESULT, LINES, PICTURE = "calibration.json", "calibration.yaml", "calibration.png"
 
@@ -188,6 +189,9 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
         simulator = Simulator(
             program, scene.entries, scene.path.parent, scene.category, poses, prepared.tracks, temporary
         )
+        if not prepared.tracks.has_angles and options.parameters is None:
+            free = [name for name in free if name not in NEED_HEADINGS]
+            warn(prog, f"without angles, {' and '.join(NEED_HEADINGS)} are not fitted (--parameters to try)")
         settings = Settings(
             free, start_values(scene.settings), start_bias(scene.settings), options.seed, options.runs, options.jobs
         )

@@ -142,7 +142,7 @@ class Matcher:
         return np.nan_to_num(np.column_stack(columns))
 
     def comparable(self) -> npt.NDArray[np.bool_]:
-        """Tell which statistics to fit: not those of a noise that is not fitted, and may be wrong. Shape (statistics,)."""
+        """Tell which statistics to fit: none of a noise that is not fitted, and may be wrong. Shape (statistics,)."""
         return np.array([about == "" or about in self.settings.free for about in self.measured.about])
 
     def biases(self, values: Mapping[str, float], runs: Sequence[int]) -> tuple[Floats, float]:
