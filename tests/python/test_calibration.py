@@ -149,7 +149,11 @@ def test_a_mirrored_film_is_noticed(here: Path, camera: pd.DataFrame, capsys: py
     assert main(options) == 0
     assert "is the film mirrored" in capsys.readouterr().err
     assert main([*options, "--y-up"]) == 0
-    assert "mirrored" not in capsys.readouterr().err
+    captured = capsys.readouterr()
+    assert "mirrored" not in captured.err
+    # Noise and turning speed that are not fitted, and wrong, do not spoil what is.
+    line = next(line for line in captured.out.splitlines() if "max_linear_speed:" in line)
+    assert float(line.split()[1]) == pytest.approx(TRUE["max_linear_speed"], rel=0.1)
 
 
 def test_one_robot_and_a_data_file_will_do(
@@ -251,6 +255,14 @@ def test_bad_options_are_refused_in_a_line(
     assert {path: path.read_bytes() for path in here.iterdir()} == before
 
 
+def test_robots_that_stand_are_not_calibrated(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    draws = np.random.default_rng(6)
+    rows = short_tracks()
+    write(rows.assign(x=200.0 + 0.5 * draws.standard_normal(len(rows))), here / "tracks.csv")
+    assert main(["tracks.csv", "-c", "conf.yaml", "--length-unit", "mm"]) == 2
+    assert capsys.readouterr().err.splitlines()[-1].startswith("pogosim calibrate: the robots hardly move")
+
+
 # Reading.
 
 
@@ -302,6 +314,16 @@ def test_frame_numbers_and_milliseconds_are_times() -> None:
     assert grid(numbered, fps=10.0).length_s == pytest.approx(9.9)
     table = TrackTable(rows.assign(time=1000.0 * rows["time"]), "tracks.csv", {"time": "ms"})
     assert frame_numbers(table, None, no_warning)[1] == pytest.approx(0.1)
+
+
+def test_irregular_times_and_late_robots_are_put_into_their_frames() -> None:
+    rows, draws = short_tracks(), np.random.default_rng(7)
+    shaken = rows.assign(time=rows["time"] + 0.015 * draws.standard_normal(len(rows)))
+    warnings: list[str] = []
+    numbers, frame_s = frame_numbers(TrackTable(shaken, "tracks.csv"), None, warnings.append)
+    assert frame_s == pytest.approx(0.1, rel=0.002)
+    assert numbers.tolist() == np.rint(rows["time"] * 10).astype(int).tolist()
+    assert "irregular by 1" in warnings[0]
 
 
 SIZE_MM = np.array([1000.0, 1000.0])

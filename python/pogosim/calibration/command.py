@@ -18,7 +18,7 @@ from pogosim.calibration.reading import read_track_table
 from pogosim.calibration.result import as_json, bias_is_known, configuration_block, found_parameters, misfits
 from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses
 from pogosim.calibration.simulation import Simulator
-from pogosim.calibration.statistics import statistics_of, tracker_noise
+from pogosim.calibration.statistics import check_motion, statistics_of, tracker_noise
 from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
 from pogosim.calibration.units import (
     ANGLES_RAD,
@@ -112,13 +112,15 @@ def prepare(prog: str, options: argparse.Namespace, scene: Scene) -> Prepared:
 
     table = read_track_table(Path(options.tracks), scene.category, caution)
     tracks = on_grid(table, *frame_numbers(table, options.fps, caution), caution)
-    tell(f"tracks: {tracks.robots} robots, {tracks.length_s:.4g} s, {1.0 / tracks.frame_s:.4g} frames/s")
+    robots = f"{tracks.robots} robot{'' if tracks.robots == 1 else 's'}"
+    tell(f"tracks: {robots}, {tracks.length_s:.4g} s, {1.0 / tracks.frame_s:.4g} frames/s")
     unit_options = UnitOptions(options.length_unit, options.mm_per_pixel, options.angle_unit, options.y_up)
     tracks = in_millimetres(tracks, table.units.get("x"), unit_options, scene.size_mm, tell, caution)
     tracks = cut(tracks, scene.radius_mm, caution)
     tracks = in_radians(tracks, table.units.get("angle"), unit_options, tell, caution)
     tracks = in_arena(continuous(y_down(tracks, unit_options, scene.size_mm[1], tell)), scene, caution)
     noise = tracker_noise(tracks)
+    check_motion(tracks, noise[0])
     return Prepared(with_headings(tracks, noise[0]), noise, facts)
 
 

@@ -26,7 +26,9 @@ from pogosim.calibration.units import with_headings
 
 BIAS_STEP = 40  # motor power units, to either side, to see what a bias does
 LOG_STEP, STEP = 0.15, 1.0  # in scales of a parameter, to see what it does
-DAMPINGS = tuple(key for key, parameter in PARAMETERS.items() if not parameter.is_logarithmic)
+# Dampings, and the speeds that they are like.
+ALIKE = {"body_linear_damping": "max_linear_speed", "body_angular_damping": "max_angular_speed"}
+DAMPINGS = tuple(ALIKE)
 ITERATIONS = 6
 JACOBIANS = (0, 1)  # iterations that look at the sensitivities again
 RIDGE = 0.05  # of the normal equations: a parameter without effect stays where it is
@@ -142,8 +144,9 @@ class Matcher:
         return np.nan_to_num(np.column_stack(columns))
 
     def comparable(self) -> npt.NDArray[np.bool_]:
-        """Tell which statistics to fit: none of a noise that is not fitted, and may be wrong. Shape (statistics,)."""
-        return np.array([about == "" or about in self.settings.free for about in self.measured.about])
+        """Tell which statistics to fit: none of a parameter that stays as it is. Shape (statistics,)."""
+        shown = {"", *self.settings.free, *(ALIKE[key] for key in DAMPINGS if key in self.settings.free)}
+        return np.array([about in shown for about in self.measured.about])
 
     def biases(self, values: Mapping[str, float], runs: Sequence[int]) -> tuple[Floats, float]:
         """Return the bias of each tracked robot in motor power units, by interpolation between simulated ones.
@@ -159,7 +162,9 @@ class Matcher:
             rates[domain[0]].append(median_turn_rate(self.tracked(values, domain, run)))
         low, high = (float(np.nanmean(np.concatenate(rates[side]))) for side in (-BIAS_STEP, BIAS_STEP))
         slope = (high - low) / (2 * BIAS_STEP)
-        scatter = np.nanmean([np.nanstd(own) for side in rates.values() for own in side]) / max(abs(slope), 1e-9)
+        known = [own[np.isfinite(own)] for side in rates.values() for own in side]
+        variances = [np.var(own, ddof=1) for own in known if len(own) > 1]
+        scatter = np.sqrt(np.mean(variances)) / max(abs(slope), 1e-9) if variances else np.nan
         if not np.isfinite(slope) or abs(slope) < 1e-9:
             return np.full(len(self.measured.bias), np.nan), np.inf
         return (self.measured.bias - (low + high) / 2.0) / slope, float(scatter)
@@ -255,7 +260,7 @@ def fit(matcher: Matcher, noise: tuple[float, float], report: Report) -> Fit:
     for iteration in range(ITERATIONS):
         if BIAS in settings.free:
             by_robot, bias_error = matcher.biases(values, [0])
-            bias = bias_range(by_robot, bias_error) if np.isfinite(bias_error) else bias
+            bias = bias_range(by_robot, bias_error) if np.isfinite(by_robot).any() else bias
         runs = range(1 if iteration in JACOBIANS[:1] else settings.runs)
         simulated, error = total_error(matcher, values, bias, runs, own_error)
         both = usable & np.isfinite(simulated)
@@ -299,7 +304,7 @@ def ended(
     by_robot, bias_error = np.zeros(0), np.inf
     if BIAS in matcher.settings.free:
         by_robot, bias_error = matcher.biases(values, every)
-        bias = bias_range(by_robot, bias_error) if np.isfinite(bias_error) else bias
+        bias = bias_range(by_robot, bias_error) if np.isfinite(by_robot).any() else bias
     simulated, error = total_error(matcher, values, bias, every, own_error)
     sensitivity = matcher.sensitivity(values, bias, looked_at)
     both = np.isfinite(simulated) & np.isfinite(matcher.measured.logarithms()[0]) & matcher.comparable()

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pogosim.calibration.fit import DAMPINGS, Fit
+from pogosim.calibration.fit import ALIKE, DAMPINGS, Fit
 from pogosim.calibration.identifiability import Verdict, verdicts, weakest_direction
 from pogosim.calibration.parameters import ALL, BIAS, NOISES, PARAMETERS, TRACKER
 from pogosim.calibration.statistics import Statistics
@@ -18,7 +18,6 @@ from pogosim.calibration.tracks import Floats
 from pogosim.yaml_1_2 import dump_yaml
 
 MISFIT_ERRORS, MISFIT_SHARE = 4.0, 0.1
-ALIKE = {"body_linear_damping": "max_linear_speed", "body_angular_damping": "max_angular_speed"}
 
 
 @dataclass(frozen=True)
@@ -90,8 +89,10 @@ def bias_words(fitted: Fit) -> str:
     if len(known) == 0:
         return "not seen; as it was"
     low, high = fitted.bias
+    if len(known) == 1:
+        return "of one robot, which says nothing of others"
     text = f"of {len(known)} robots, +- {fitted.bias_error:.2g} each"
-    if low == high and len(known) > 1:
+    if low == high:
         return f"{text}: robots do not differ"
     return text
 

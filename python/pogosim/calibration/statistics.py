@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.parameters import NOISES
 from pogosim.calibration.tracks import Floats, Ints, Tracks
 
@@ -28,6 +29,8 @@ TURNS = (0.05, 0.95)  # quantiles of the turn rate
 # tracks may begin and end in the middle of a phase.
 CERTAIN, MIXED = 0.005, 0.03
 LEAST_SAMPLES = 10
+LEAST_MOTION_MM = 0.5
+LINEAR, ANGULAR = "max_linear_speed", "max_angular_speed"
 
 # Of a Gaussian of standard deviation 1: quantiles of the length of a vector in the plane, and of the size of a number.
 RAYLEIGH_QUANTILE = math.sqrt(-2.0 * math.log(1.0 - POSITION_JITTER))
@@ -41,7 +44,7 @@ class Statistics:
 
     Attributes:
         names: What each is: "speed, fastest tenth (mm/s)".
-        about: Key of the noise that a statistic shows, which spoils a fit with wrong noise; "": none in particular.
+        about: Key of the noise that a statistic shows, which spoils a fit with wrong noise; LINEAR: none in particular.
         floor: Relative error of each that is always assumed. Shape (statistics,).
         by_robot: Shape (statistics, robots); NaN where a robot was not seen long enough.
         bias: Median turn rate of each robot in rad/s, which shows its bias. Shape (robots,).
@@ -130,14 +133,14 @@ def statistics_of(tracks: Tracks) -> Statistics:
     middle = quantile(turning, 0.5)
     found: list[tuple[str, str, float, Floats]] = [
         ("speed, fastest tenth (mm/s)", "", CERTAIN, quantile(speed, FAST)),
-        ("speed, root mean square (mm/s)", "", MIXED, root_mean_square(speed)),
+        ("speed, root mean square (mm/s)", LINEAR, MIXED, root_mean_square(speed)),
         (
             "turn rate, half range (rad/s)",
-            "",
+            ANGULAR,
             CERTAIN,
             (quantile(turning, TURNS[1]) - quantile(turning, TURNS[0])) / 2.0,
         ),
-        ("turn rate, root mean square around the median (rad/s)", "", MIXED, root_mean_square(turning - middle)),
+        ("turn rate, root mean square around the median (rad/s)", ANGULAR, MIXED, root_mean_square(turning - middle)),
     ]
     for number, lag in enumerate(lags(tracks)):
         # From frame to frame, jitter is that of the tracker.
@@ -160,12 +163,30 @@ def tracker_noise(tracks: Tracks) -> tuple[float, float]:
 
     Returns:
         Standard deviation of x and of y in mm, and of the heading in rad (NaN without headings).
+
+    Raises:
+        CalibrationError: Too little is seen.
     """
-    position = float(np.nanmean(position_jitter(tracks, 1))) / (RAYLEIGH_QUANTILE * SECOND_DIFFERENCE)
+    if not np.isfinite(jitter := position_jitter(tracks, 1)).any():
+        raise CalibrationError("no robot is seen in three frames in a row, often enough: too many gaps")
+    position = float(np.nanmean(jitter)) / (RAYLEIGH_QUANTILE * SECOND_DIFFERENCE)
     angle = math.nan
     if tracks.has_angles and np.isfinite(own := angle_jitter(tracks, 1)).any():
         angle = float(np.nanmean(own)) / (HALF_NORMAL_QUANTILE * SECOND_DIFFERENCE)
     return position, angle
+
+
+def check_motion(tracks: Tracks, noise_mm: float) -> None:
+    """Raise CalibrationError if robots hardly move, or are not seen long enough to tell."""
+    fast = quantile(speeds(tracks), FAST)
+    if not np.isfinite(fast).any():
+        raise CalibrationError(f"no robot is seen for {WINDOW_S:g} s without a gap, often enough to tell its speed")
+    moved_mm = float(np.nanmax(fast)) * WINDOW_S
+    if moved_mm < max(LEAST_MOTION_MM, 2.0 * noise_mm):
+        raise CalibrationError(
+            f"the robots hardly move: the fastest cover {moved_mm:.2g} mm in {WINDOW_S:g} s, and the errors of the "
+            f"tracker are {noise_mm:.2g} mm; film robots that drive (--protocol), and check the unit of the tracks"
+        )
 
 
 def mean_square_displacement(tracks: Tracks, lags_s: Floats) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -67,23 +68,37 @@ def frame_numbers(table: TrackTable, fps: float | None, warn: Warn) -> tuple[Int
     if "time" not in rows:
         raise CalibrationError(f"{table.source} has frame numbers but no times; say how many frames a second: --fps N")
     time_s = rows["time"].to_numpy() * (1e-3 if table.units.get("time") == "ms" else 1.0)
-    distinct, place = np.unique(time_s, return_inverse=True)
-    if len(distinct) < 2:
+    if len(np.unique(time_s)) < 2:
         raise CalibrationError(f"{table.source} holds one moment only; expected tracks over some time")
-    steps = np.diff(distinct)
-    usual = float(np.median(steps))
-    if usual * SLOWEST_FPS > 1.0:
-        raise CalibrationError(
-            f"{table.source}: {usual:g} s from row to row; expected {SLOWEST_FPS:g} frames a second or more; "
-            "if the times are frame numbers, give --fps N; if they are milliseconds, call the column time_ms"
-        )
-    # Frames that all robots miss are gaps; the mean time between frames is more precise than the median.
-    numbers = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / usual), 0.0))]).astype(np.int64)
-    frame_s = float(np.polyfit(numbers, distinct, 1)[0])
-    jitter = float(np.std(distinct - distinct[0] - numbers * frame_s)) / frame_s
+    frame_s = time_between_frames(time_s, rows["id"].to_numpy(), table.source)
+    since = (time_s - time_s.min()) / frame_s
+    # Frames may begin between two whole ones, if the first row is late.
+    since = since - np.angle(np.mean(np.exp(2j * np.pi * since))) / (2.0 * np.pi)
+    numbers = np.rint(since).astype(np.int64)
+    jitter = float(np.std(since - numbers))
     if jitter > 0.1:
         warn(f"{table.source}: the times are irregular by {jitter:.0%} of a frame; they are rounded to whole frames")
-    return numbers[place], frame_s
+    return numbers - numbers.min(), frame_s
+
+
+def time_between_frames(time_s: Floats, ids: npt.NDArray[Any], source: str) -> float:
+    """Return the time between frames, more precisely than the median over the rows of each robot.
+
+    Raises:
+        CalibrationError: It is too long for tracks.
+    """
+    order = np.lexsort((time_s, ids.astype(str)))
+    steps, same = np.diff(time_s[order]), ids[order][1:] == ids[order][:-1]
+    steps = steps[same & (steps > 0.0)]
+    usual = float(np.median(steps)) if len(steps) else float(np.ptp(time_s))
+    if usual * SLOWEST_FPS > 1.0:
+        raise CalibrationError(
+            f"{source}: {usual:g} s from row to row; expected {SLOWEST_FPS:g} frames a second or more; "
+            "if the times are frame numbers, give --fps N; if they are milliseconds, call the column time_ms"
+        )
+    frames = np.rint(steps / usual)
+    near = frames <= LONGEST_GAP_S / usual + 1.0
+    return float(steps[near].sum() / frames[near].sum()) if frames[near].any() else usual
 
 
 def on_grid(table: TrackTable, frames: Ints, frame_s: float, warn: Warn) -> Tracks:
