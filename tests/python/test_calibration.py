@@ -258,7 +258,8 @@ def test_bad_options_are_refused_in_a_line(
 def test_robots_that_stand_are_not_calibrated(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     draws = np.random.default_rng(6)
     rows = short_tracks()
-    write(rows.assign(x=200.0 + 0.5 * draws.standard_normal(len(rows))), here / "tracks.csv")
+    shaken = 0.5 * draws.standard_normal((2, len(rows)))
+    write(rows.assign(x=200.0 + shaken[0], y=rows["y"] + shaken[1]), here / "tracks.csv")
     assert main(["tracks.csv", "-c", "conf.yaml", "--length-unit", "mm"]) == 2
     assert capsys.readouterr().err.splitlines()[-1].startswith("pogosim calibrate: the robots hardly move")
 

@@ -30,6 +30,7 @@ TURNS = (0.05, 0.95)  # quantiles of the turn rate
 CERTAIN, MIXED = 0.005, 0.03
 LEAST_SAMPLES = 10
 LEAST_MOTION_MM = 0.5
+LEAST_MOTION_ERRORS = 4.0  # of the tracker; robots that stand seem to cover three at times
 LINEAR, ANGULAR = "max_linear_speed", "max_angular_speed"
 
 # Of a Gaussian of standard deviation 1: quantiles of the length of a vector in the plane, and of the size of a number.
@@ -182,7 +183,7 @@ def check_motion(tracks: Tracks, noise_mm: float) -> None:
     if not np.isfinite(fast).any():
         raise CalibrationError(f"no robot is seen for {WINDOW_S:g} s without a gap, often enough to tell its speed")
     moved_mm = float(np.nanmax(fast)) * WINDOW_S
-    if moved_mm < max(LEAST_MOTION_MM, 2.0 * noise_mm):
+    if moved_mm < max(LEAST_MOTION_MM, LEAST_MOTION_ERRORS * noise_mm):
         raise CalibrationError(
             f"the robots hardly move: the fastest cover {moved_mm:.2g} mm in {WINDOW_S:g} s, and the errors of the "
             f"tracker are {noise_mm:.2g} mm; film robots that drive (--protocol), and check the unit of the tracks"
