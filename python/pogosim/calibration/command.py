@@ -11,6 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pogosim.batch.backends import Workers
+from pogosim.batch.errors import BatchError
+from pogosim.batch.rows import Runs
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile
 from pogosim.calibration.parameters import BIAS, NAMES, chosen, start_bias, start_values
@@ -74,7 +77,7 @@ def parser(prog: str) -> Parser:
     made.add_argument("--runs", type=whole(1, 1000), default=3, metavar="N", help="runs to average (3)")
     made.add_argument("--seed", type=whole(0, 2**32 - 10**4), default=42, metavar="N", help="of the first run (42)")
     made.add_argument(
-        "-j", "--jobs", type=whole(1, 10**4), default=os.cpu_count() or 1, metavar="N", help="runs at once"
+        "-j", "--workers", type=whole(1, 10**4), metavar="N", help="runs at the same time (one per processor)"
     )
     return made
 
@@ -137,6 +140,16 @@ def compiled(what: str | None, temporary: Path) -> Path:
         raise CalibrationError(str(error)) from None
 
 
+def trial_runs(scene: Scene, program: Path, temporary: Path, workers: int | None) -> Runs:
+    """Return what runs the program in the scene; raises CalibrationError if it is no program of the simulator."""
+    try:
+        return Runs(
+            scene.configuration, str(program), str(temporary), str(temporary), Workers(number=workers), retries=0
+        )
+    except BatchError as error:
+        raise CalibrationError(str(error)) from None
+
+
 def write_protocol(path: Path) -> None:
     """Write the program to run on the robots; raises OutputError or OSError if it cannot be written."""
     real = real_output(path)
@@ -188,18 +201,16 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
     with tempfile.TemporaryDirectory(prefix="pogosim-calibrate-") as folder:
         temporary = Path(folder)
         program = compiled(options.simulator_binary, temporary)
-        simulator = Simulator(
-            program, scene.entries, scene.path.parent, scene.category, poses, prepared.tracks, temporary
-        )
+        runs = trial_runs(scene, program, temporary, options.workers)
+        simulator = Simulator(runs, scene.entries, scene.category, poses, prepared.tracks)
         if not prepared.tracks.has_angles and options.parameters is None:
             free = [name for name in free if name not in NEED_HEADINGS]
             warn(prog, f"without angles, {' and '.join(NEED_HEADINGS)} are not fitted (--parameters to try)")
-        settings = Settings(
-            free, start_values(scene.settings), start_bias(scene.settings), options.seed, options.runs, options.jobs
-        )
+        settings = Settings(free, start_values(scene.settings), start_bias(scene.settings), options.seed, options.runs)
         matcher = Matcher(simulator, statistics_of(prepared.tracks), settings)
         progress = say if sys.stdout is not None and sys.stdout.isatty() else (lambda _text: None)
-        fitted = fit(matcher, prepared.noise, progress)
+        with runs.opened():
+            fitted = fit(matcher, prepared.noise, progress)
     report(prog, options, scene, prepared, matcher, fitted)
 
 

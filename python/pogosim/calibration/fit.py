@@ -10,7 +10,6 @@ parameters.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -48,7 +47,6 @@ class Settings:
         bias: Range of the bias at the start.
         seed: Of the first simulated run.
         runs: Simulated runs whose statistics are averaged.
-        jobs: Runs at the same time.
     """
 
     free: Sequence[str]
@@ -56,7 +54,6 @@ class Settings:
     bias: Bias = (0, 0)
     seed: int = 42
     runs: int = 3
-    jobs: int = 1
 
 
 @dataclass(frozen=True)
@@ -104,9 +101,8 @@ class Matcher:
     def prepare(self, candidates: Sequence[Candidate]) -> None:
         """Run candidates that were not run yet, some at the same time."""
         todo = [candidate for candidate in dict.fromkeys(candidates) if candidate not in self.runs]
-        with ThreadPoolExecutor(self.settings.jobs) as pool:
-            for candidate, rows in zip(todo, pool.map(self.simulator.simulate, todo), strict=True):
-                self.runs[candidate] = self.simulator.seen(rows)
+        for candidate, rows in zip(todo, self.simulator.simulate(todo), strict=True):
+            self.runs[candidate] = self.simulator.seen(rows)
 
     def tracked(self, values: Mapping[str, float], bias: Bias, run: int) -> Tracks:
         """Return a simulated run as the tracker would see it, with its errors: the same draws in all candidates."""

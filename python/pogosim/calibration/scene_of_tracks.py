@@ -29,16 +29,19 @@ class Scene:
     """The configuration of the tracked robots.
 
     Attributes:
-        entries: The whole configuration.
-        path: Its file.
+        configuration: The user's.
         category: Name of the robots' entry in `objects`.
         arena: Its walls, in mm.
     """
 
-    entries: dict[str, Any]
-    path: Path
+    configuration: Configuration
     category: str
     arena: Outline
+
+    @property
+    def entries(self) -> dict[str, Any]:
+        """The whole configuration."""
+        return self.configuration.entries
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -65,9 +68,10 @@ def read_scene(path: Path, category: str | None) -> Scene:
         CalibrationError: It is none, or it has no such robots or no arena with walls.
     """
     try:
-        entries = Configuration(path).entries
+        configuration = Configuration(path)
     except BatchError as error:
         raise CalibrationError(str(error)) from None
+    entries = configuration.entries
     objects = entries.get("objects")
     found = objects if isinstance(objects, dict) else {}
     robots = [str(name) for name, own in found.items() if isinstance(own, dict) and type_of(own) == "pogobot"]
@@ -81,7 +85,7 @@ def read_scene(path: Path, category: str | None) -> Scene:
     arena = arena_of(entries, path)
     if arena.periodic or read_periodic(entries):
         raise CalibrationError(f"{path} has a periodic arena; real robots are tracked in one with walls")
-    return Scene(entries, path, category or robots[0], arena)
+    return Scene(configuration, category or robots[0], arena)
 
 
 def arena_of(entries: dict[str, Any], path: Path) -> Outline:
@@ -120,7 +124,9 @@ def start_poses(tracks: Tracks, scene: Scene, warn: Warn) -> Floats:
     outer, *holes = scene.arena.polygons
     free = shapely.Polygon(outer, holes).buffer(-(scene.radius_mm + MARGIN_MM))
     if free.is_empty:
-        raise CalibrationError(f"{scene.path}: the arena has no room for a robot of radius {scene.radius_mm:g} mm")
+        raise CalibrationError(
+            f"{scene.configuration.path}: the arena has no room for a robot of radius {scene.radius_mm:g} mm"
+        )
     poses, moved = [], []
     for robot in range(tracks.robots):
         seen = np.isfinite(tracks.position_mm[:, robot, 0])

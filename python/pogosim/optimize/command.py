@@ -18,13 +18,13 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
 from pogosim.batch.reports import Progress
+from pogosim.batch.rows import Runs
 from pogosim.command.parser import Parser
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
 from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, optimizer_for
 from pogosim.optimize.outcome import finish, refresh
-from pogosim.optimize.runs import Runs
 from pogosim.optimize.search import Search, description_of
 from pogosim.optimize.settings import SECTION, Settings, settings_from
 from pogosim.optimize.variables import Space

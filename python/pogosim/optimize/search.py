@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from pogosim.batch.rows import Runs
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import Evaluation, Journal
 from pogosim.optimize.objective import Judgement, Objective
 from pogosim.optimize.optimizers.base import Answer, Floats, Optimizer
-from pogosim.optimize.runs import Runs
 from pogosim.optimize.settings import FRESH, Settings
 from pogosim.optimize.variables import Space, Values, as_json
 
