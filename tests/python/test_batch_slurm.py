@@ -11,10 +11,14 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from batches import COMMAND, ENVIRONMENT, arguments, batch, results, script, wait_until_gone
 from batches import write_options as write
 from running import ROOT, Run, example, run_command
+from searches import COMMAND as SEARCH
+from searches import history, search, write_search
+from searches import options as search_options
 
 RUNS = ("-r", "3")
 JOBS = ("--slurm", "--slurm-jobs", "2", "--slurm-memory", "500M")
@@ -131,6 +135,21 @@ def test_jobs_do_the_runs_and_leave_nothing_but_the_same_bytes(
     wait_until(lambda: not jobs(site))
     used = ask(site, "squeue", "--states=all", "--noheader", "--format=%C %l %P %k")
     assert set(used) == {"2 10:00 main mine"}
+
+
+def test_search_keeps_its_jobs_from_generation_to_generation(site: dict[str, str], tmp_path: Path) -> None:
+    for name in ("here", "there"):
+        write_search(tmp_path / name)
+    settings = ("--max-evals", "15", "--final-runs", "2")  # three generations
+    assert search(tmp_path / "here", *settings).code == 0
+    folder = tmp_path / "there"
+    command = [*SEARCH, *search_options(*settings, *JOBS)]
+    result = subprocess.run(command, cwd=folder, env=site, capture_output=True, text=True, timeout=100, check=False)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.count("SLURM: submitted 2 jobs of 1 core") == 1
+    pd.testing.assert_frame_equal(history(folder), history(tmp_path / "here"))
+    assert sorted(path.name for path in folder.iterdir()) == ["obj.py", "opt_out", "space.yaml"]
+    wait_until(lambda: not jobs(site))
 
 
 def test_run_of_a_cancelled_job_is_done_again_in_another(

@@ -92,6 +92,14 @@ def test_history_and_results_are_the_same_whatever_the_number_of_workers(tmp_pat
         assert (one / name).read_bytes() == (three / name).read_bytes()
 
 
+def test_dask_does_the_runs_of_a_search(tmp_path: Path) -> None:
+    for backend in ("sequential", "dask"):
+        write_search(tmp_path / backend, objective=NOISY)
+        more = ("--backend", backend, "--seeds", "fresh")
+        assert search(tmp_path / backend, "--max-evals", "9", "--final-runs", "2", *more).code == 0
+    pd.testing.assert_frame_equal(history(tmp_path / "sequential"), history(tmp_path / "dask"))
+
+
 # ---- Noise ----
 
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pogosim.batch.dask_backend import dask
 from pogosim.batch.errors import BatchError, at_least
 from pogosim.batch.run import Outcome, Task, do_run, simulators
-from pogosim.batch.slurm import SlurmJobs, slurm
+from pogosim.batch.slurm import CORES, SlurmJobs, slurm
 
 Outcomes = Generator[Outcome, None, None]
 Do = Callable[[Sequence[Task]], Outcomes]
@@ -64,7 +64,9 @@ class Workers:
 
     @property
     def count(self) -> int:
-        """Runs at the same time on this machine."""
+        """Runs at the same time; of a Dask scheduler, as many as this machine would do."""
+        if self.slurm_jobs is not None:
+            return self.slurm_jobs.jobs * (self.slurm_jobs.cores or CORES)
         return processors() if self.number is None else self.number
 
     def opened(self, keep_idle: bool = False) -> AbstractContextManager[Do]:
