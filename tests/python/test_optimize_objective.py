@@ -11,6 +11,24 @@ from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.objective import Objective, load_objective
 from pogosim.pogoptim import fd_fn, objective_fn
 
+# As the article prints it, without imports.
+LISTING = '''
+def objective_fn(df: pd.DataFrame) -> float:
+    """Return the mean of per-agent MSD across *all* runs and arenas."""
+    msd_df = compute_msd_per_agent(df)
+    if msd_df.empty:
+        logger.warning("Default MSD objective: empty input produced no MSD values; returning -inf")
+        return float('-inf')
+    return float(msd_df['MSD'].mean())
+
+def fd_fn(df: pd.DataFrame) -> np.ndarray:
+    """Return default 2-D features for QD: (max MSD, stddev MSD)."""
+    msd_df = compute_msd_per_agent(df)
+    if msd_df.empty:
+        return np.array([0.0, 0.0], dtype=float)
+    vals = np.asarray(msd_df["MSD"], dtype=float)
+    return np.array([float(np.max(vals)), float(np.std(vals, ddof=0))], dtype=float)
+'''
 ROWS = pd.DataFrame({"time": [0.0, 1.0], "x": [1.0, 3.0]})
 
 
@@ -43,6 +61,12 @@ def test_default_objective_is_the_mean_over_robots_of_their_mean_squared_displac
     assert list(fd_fn(moved(10.0, 20.0)).values()) == pytest.approx([1000.0, 375.0])
     assert objective_fn(moved(10.0)[:0]) == -math.inf
     assert list(fd_fn(moved(10.0)[:0]).values()) == [0.0, 0.0]
+
+
+def test_listing_of_the_article_is_an_objective_as_it_stands(tmp_path: Path) -> None:
+    said = load_objective(written(tmp_path, LISTING), None, None).judge(moved(10.0, 20.0), with_features=True)
+    assert said.fitness == pytest.approx(625.0)
+    assert list(said.features.values()) == pytest.approx([1000.0, 375.0])
 
 
 @pytest.mark.parametrize(

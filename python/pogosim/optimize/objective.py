@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import logging
 import math
 import sys
 import traceback
@@ -22,6 +23,11 @@ from pogosim.optimize.errors import OptimizeError
 
 OBJECTIVE_NAMES = ("objective_fn", "compute_objective")
 FEATURES_NAME = "fd_fn"
+
+# What a user's file need not import: the article's listing does not.
+READY = {"compute_msd_per_agent": compute_msd_per_agent, "np": np, "pd": pd}
+
+log = logging.getLogger("pogosim.optimize")
 
 
 @dataclass(frozen=True)
@@ -174,7 +180,7 @@ def load_objective(path: str, objective_name: str | None, features_name: str | N
 
 
 def imported(path: Path) -> ModuleType:
-    """Import a Python file; other modules beside it can be imported from there.
+    """Import a Python file, with READY and `logger` in it; other modules beside it can be imported from there.
 
     Raises:
         OptimizeError: It is not there, or raises something.
@@ -186,6 +192,7 @@ def imported(path: Path) -> ModuleType:
     if specification is None or specification.loader is None:
         raise OptimizeError(f"--objective: {path} is not a Python file: its name does not end with .py")
     module = importlib.util.module_from_spec(specification)
+    vars(module).update(READY, logger=log)
     sys.path.insert(0, str(path.absolute().parent))
     try:
         specification.loader.exec_module(module)
