@@ -21,6 +21,7 @@ from pyarrow import feather
 from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
 from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
+from pogosim.shared_metadata import shared
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 
@@ -45,7 +46,8 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
         it remains a string if it is not a list of polygons.
         "combinations": of a batch, a list with a dictionary per combination of options.
         "files": of several files, the list of their names.
-        The `attrs` of the dataframe are a copy of the metadata, with lists in place of arrays.
+        The `attrs` of the dataframe are a copy of the metadata, with lists in place of arrays. All that is selected
+        from the dataframe shares them.
 
     Raises:
         FileNotFoundError: There is no such file, or none that fits the pattern.
@@ -59,7 +61,7 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
         rows, metadata = join_files([(file, *load_file(file)) for file in files_that_fit(path)])
     else:
         rows, metadata = load_file(Path(path))
-    rows.attrs = plain(metadata)
+    rows.attrs = {name: shared(plain(value)) for name, value in metadata.items()}
     return rows, metadata
 
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import logging
 import math
 from pathlib import Path
@@ -9,10 +10,12 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from pogosim.utils import init_logging, load_dataframe, parse_configuration, save_figure
 from pyarrow import feather
+from running import example, run
 
 
 def write(path: Path, metadata: dict[str, str]) -> Path:
@@ -181,3 +184,13 @@ def test_small_arenas_with_robots_outside_remain_as_they_are(tmp_path: Path) -> 
     table = pa.table({"x": [5.0, 5000.0], "y": [5.0, 5000.0]}).replace_schema_metadata({"arena_polygons": polygons})
     feather.write_feather(table, tmp_path / "small.feather")
     assert load_dataframe(tmp_path / "small.feather")[1]["arena_polygons"][0].max() == 10.0
+
+
+def test_selections_share_the_metadata_of_a_dataframe(tmp_path: Path) -> None:
+    rows, metadata = load_dataframe(run(example("helloworld"), tmp_path).folder / "data.feather")
+    assert rows["x"].attrs["configuration"] is rows.attrs["configuration"]
+    assert rows.attrs["configuration"] == metadata["configuration"]
+    assert rows.attrs["configuration"] is not metadata["configuration"]
+    for dump in (yaml.safe_dump, yaml.dump):
+        assert yaml.safe_load(dump(rows.attrs["arena_polygons"])) == rows.attrs["arena_polygons"]
+    assert json.loads(json.dumps(rows.attrs["configuration"])) == metadata["configuration"]

@@ -99,8 +99,6 @@ def trajectories_of(
         AnalysisError: A column is missing, there is no position, or the runs cannot be told apart.
     """
     metadata = cast(Mapping[str, Any], rows.attrs) if metadata is None else metadata
-    rows = rows.copy(deep=False)
-    rows.attrs = {}  # pandas copies all of them with each selection
     need_columns(rows, ["time", "x", "y"])
     need_numbers(rows, ["time", "x", "y", "angle"])
     rows = of_category(with_objects(rows), metadata, category)

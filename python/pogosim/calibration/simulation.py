@@ -99,7 +99,6 @@ class Simulator:
                 if done.rows is None:
                     raise CalibrationError(f"{self.runs.program} failed in a trial run: {done.problem}")
                 rows[done.number] = done.rows
-                done.rows.attrs = {}  # pandas copies them with every column
         except BatchError as error:
             raise CalibrationError(str(error)) from None
         return [rows[number] for number in range(len(candidates))]

@@ -131,7 +131,6 @@ def read_recording(
         OSError, ValueError: It cannot be read.
     """
     rows, metadata = load_dataframe(path)
-    rows.attrs = {}  # pandas copies them with every operation
     missing = {"time", "x", "y"} - set(rows.columns)
     if missing:
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
