@@ -10,7 +10,6 @@ The exit code is 1 if a scene disagrees, 2 if one cannot run. Needs the library 
 from __future__ import annotations
 
 import argparse
-import re
 import subprocess
 import sys
 import tempfile
@@ -19,29 +18,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pictures import DOCS, keep
+from quotes import quote
 from validation import SCENES, picture_of
 
 PAGE = DOCS / "validation.md"
-
-
-def block(name: str) -> re.Pattern[str]:
-    """Match what the page quotes of a scene: a code block after a comment with its name."""
-    return re.compile(rf"(<!-- {name} -->\n\n```\n)(.*?)^```$", re.DOTALL | re.MULTILINE)
-
-
-def quoted(name: str) -> list[str]:
-    """Return the lines that the page quotes of a scene."""
-    found = block(name).search(PAGE.read_text(encoding="utf-8"))
-    return found[2].splitlines() if found else []
-
-
-def quote(name: str, lines: Sequence[str]) -> None:
-    """Replace what the page quotes of a scene."""
-    page = PAGE.read_text(encoding="utf-8")
-    text, count = block(name).subn(lambda found: "\n".join((found[1] + lines[0], *lines[1:], "```")), page)
-    if count != 1:
-        sys.exit(f"{PAGE}: expected one place for the numbers of {name}, found {count}")
-    PAGE.write_text(text, encoding="utf-8")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -67,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{name} ({time.monotonic() - start_s:.0f} s)", *outcome.lines, sep="\n", flush=True)
         if options.keep:
             keep(picture_of(outcome), DOCS / f"validation_{name}.png")
-            quote(name, outcome.lines)
+            quote(PAGE, name, outcome.lines)
         disagreements += sum(not comparison.agrees for comparison in outcome.comparisons)
     return 1 if disagreements else 0
 

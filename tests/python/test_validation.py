@@ -12,6 +12,7 @@ import pytest
 import validate
 import validation
 from matplotlib.figure import Figure
+from quotes import quote, quoted
 from running import ROOT, compile_program, pkg_config
 from validation.agreement import FALSE_ALARM, Comparison, absolute, relative, two_samples
 from validation.experiment import Outcome, batch, changed
@@ -31,9 +32,9 @@ def test_robots_do_what_theory_says_and_the_page_quotes_it(scene: str, tmp_path:
     assert [comparison.line for comparison in outcome.comparisons if not comparison.agrees] == []
     assert validation.picture_of(outcome).image.startswith(b"\x89PNG")
 
-    quoted = validate.quoted(scene)[1:]
-    assert [line for line in quoted if not line.endswith("% of the tolerance: agrees")] == []
-    assert {line.name for line in outcome.comparisons} <= {line.partition(":")[0] for line in quoted}
+    lines = quoted(PAGE, scene)[1:]
+    assert [line for line in lines if not line.endswith("% of the tolerance: agrees")] == []
+    assert {line.name for line in outcome.comparisons} <= {line.partition(":")[0] for line in lines}
 
 
 @pytest.mark.parametrize("source", PROGRAMS, ids=lambda source: source.stem)
@@ -139,16 +140,15 @@ def test_script_prints_what_disagrees_and_says_so_in_its_exit_code(
         assert comparison.line.endswith(verdict)
 
 
-def test_numbers_are_written_into_the_page(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_numbers_are_written_into_the_page(tmp_path: Path) -> None:
     page = tmp_path / "validation.md"
     page.write_text(PAGE.read_text())
-    monkeypatch.setattr(validate, "PAGE", page)
     for lines in (["2 runs", "a: agrees"], ["3 runs", "b \\1: agrees", "c: agrees"]):
-        validate.quote("voter", lines)
-        assert validate.quoted("voter") == lines
+        quote(page, "voter", lines)
+        assert quoted(page, "voter") == lines
     page.write_text("nothing")
     with pytest.raises(SystemExit, match="expected one place"):
-        validate.quote("voter", lines)
+        quote(page, "voter", lines)
 
 
 @pytest.mark.parametrize(

@@ -44,10 +44,10 @@ def compiler_flags() -> tuple[str, ...]:
     return tuple(subprocess.run(asked, env=environment, check=True, capture_output=True, text=True).stdout.split())
 
 
-def compile_program(name: str, folder: Path) -> Path:
-    """Compile docs/validation/NAME.c into a folder. Raises CalledProcessError if the compiler fails."""
+def compile_program(name: str, folder: Path, sources: Path = SOURCES) -> Path:
+    """Compile NAME.c of a folder into another one. Raises CalledProcessError if the compiler fails."""
     program = folder / name
-    command = ["cc", "-std=c11", "-O1", "-g", "-Wall", "-Wextra", str(SOURCES / f"{name}.c"), "-o", str(program)]
+    command = ["cc", "-std=c11", "-O1", "-g", "-Wall", "-Wextra", str(sources / f"{name}.c"), "-o", str(program)]
     subprocess.run([*command, *compiler_flags()], check=True)
     return program
 

@@ -1,0 +1,113 @@
+"""Quality-diversity searches on a robot that drives an arc and stops: which cells they fill of those that can be.
+
+The robot of docs/tuning/dash.c drives with the powers L and R of its motors, 0 to 1, for the time t up to T = 5 s. With
+the greatest speed V, and W twice the greatest angular speed of the configuration, its path is s = V (L + R) t / 2 long,
+its heading changes by h = W (L - R) t, and its displacement is the chord d = s sin(h / 2) / (h / 2). At the same change
+of heading, paths are shortest if one motor alone turns the robot, and longest if the other one runs at full power all
+the time:
+
+    V |h| / (2 W)  <=  s  <=  V (T - |h| / (2 W))
+
+Everything between can be had, so cells are reachable or not; and the least time in which a robot gets to (d, h) is
+t = s / V + |h| / (2 W). Both bounds of d and this time are monotonic in |h| up to 3, and t grows with d, so in each
+cell, what is best is at its least |h|.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+from matplotlib.figure import Figure
+from pictures import DOCS
+from validation.experiment import compile_program
+
+from .searches import Claim, Found, Outcome, search
+
+NAME = "archive"
+SOURCES = DOCS / "tuning"
+LABELS = {"mapelites": "MAP-Elites", "cma_me": "CMA-ME", "cma_mae": "CMA-MAE"}
+QUICK_LABELS = {"mapelites": "MAP-Elites"}
+CELLS = 10
+LONGEST_MM, LARGEST_RAD = 500.0, 3.0  # ranges of the features
+SPEED_MM_S, TURN_RAD_S, LONGEST_S = 100.0, 0.6, 5.0  # V, W, T
+ENOUGH, QUICK_ENOUGH = 0.6, 0.4
+EVALUATIONS = 600
+QUICK_EVALUATIONS = 160
+
+Floats = npt.NDArray[np.float64]
+
+
+def chord(path_mm: Floats, heading_rad: Floats) -> Floats:
+    """Return the displacement of a robot after an arc."""
+    return np.asarray(path_mm * np.sinc(heading_rad / (2.0 * np.pi)))
+
+
+def bounds(heading_rad: Floats) -> tuple[Floats, Floats]:
+    """Return the least and the greatest displacement in mm at which a robot can have a heading."""
+    turning_mm = SPEED_MM_S * np.abs(heading_rad) / (2.0 * TURN_RAD_S)
+    return chord(turning_mm, heading_rad), chord(SPEED_MM_S * LONGEST_S - turning_mm, heading_rad)
+
+
+def least_times() -> Floats:
+    """Return the least time in s to get to each cell, NaN if none can get there, of shape (CELLS, CELLS)."""
+    edges = np.linspace(-LARGEST_RAD, LARGEST_RAD, CELLS + 1)
+    heading = np.where(edges[:-1] * edges[1:] <= 0.0, 0.0, np.minimum(np.abs(edges[:-1]), np.abs(edges[1:])))
+    low, high = bounds(heading)
+    start, end = (np.linspace(0.0, LONGEST_MM, CELLS + 1)[i : i + CELLS, None] for i in (0, 1))
+    nearest = np.maximum(start, low)
+    time_s = nearest / chord(np.ones(CELLS), heading) / SPEED_MM_S + np.abs(heading) / (2.0 * TURN_RAD_S)
+    return np.where((low < end) & (high > start), time_s, np.nan)
+
+
+def times_of(found: Found) -> Floats:
+    """Return the time in s of the elite of each cell, NaN where there is none."""
+    table = pd.read_csv(found.folder / "archive.csv")
+    times = np.full((CELLS, CELLS), np.nan)
+    times[table["cell_1"], table["cell_2"]] = -table["fitness"]
+    return times
+
+
+def draw(times: dict[str, Floats]) -> Figure:
+    """Draw the archives beside what can be reached."""
+    panels = {"the fastest there is": least_times(), **times}
+    figure = Figure(figsize=(2.6 * len(panels) + 1.0, 3.0), layout="constrained")
+    axes = figure.subplots(1, len(panels), sharey=True)
+    heading = np.linspace(-LARGEST_RAD, LARGEST_RAD, 301)
+    for panel, (name, values) in zip(axes, panels.items(), strict=True):
+        extent = (-LARGEST_RAD, LARGEST_RAD, 0.0, LONGEST_MM)
+        image = panel.imshow(values, origin="lower", extent=extent, aspect="auto", vmin=0.0, vmax=LONGEST_S)
+        for bound in bounds(heading):
+            panel.plot(heading, bound, color="0.2", linewidth=1)
+        panel.set(xlabel="heading (rad)", title=f"{LABELS.get(name, name)}", ylim=(0.0, LONGEST_MM))
+    axes[0].set_ylabel("displacement (mm)")
+    figure.colorbar(image, ax=axes, label="time (s)")
+    return figure
+
+
+def measure(folder: Path, quick: bool) -> Outcome:
+    """Search with each optimiser, and count cells."""
+    folder.mkdir(parents=True, exist_ok=True)
+    program = compile_program("dash", folder, SOURCES)
+    least = least_times()
+    reachable = np.isfinite(least)
+    evaluations, enough = (QUICK_EVALUATIONS, QUICK_ENOUGH) if quick else (EVALUATIONS, ENOUGH)
+    lines, claims = [f"{evaluations} evaluations; {reachable.sum()} of {reachable.size} cells can be reached"], []
+    times: dict[str, Floats] = {}
+    for name, label in (QUICK_LABELS if quick else LABELS).items():
+        options = ["--optimizer", name, "--max-evals", str(evaluations)]
+        times[name] = times_of(search(program, SOURCES / "dash.yaml", folder / name, options))
+        filled = np.isfinite(times[name])
+        share = (filled & reachable).sum() / reachable.sum()
+        late_s = np.nanmean(times[name] - least)
+        right, wrong = (filled & reachable).sum(), (filled & ~reachable).sum()
+        lines.append(
+            f"{label}: {right} of them filled ({100 * share:.0f} %), {wrong} others; {late_s:.2f} s slower than the "
+            "fastest there is, on average"
+        )
+        text = f"{label} fills {100 * enough:.0f} % of what can be reached, and nothing else"
+        claims.append(Claim(text, bool(share >= enough and not (filled & ~reachable).any())))
+    tables = tuple(pd.DataFrame(values).rename(columns=str) for values in times.values())
+    return Outcome(tuple(lines), tuple(claims), draw(times), tables)
