@@ -30,7 +30,16 @@ PAGES_WITH_COMMANDS = [
     README,
     *(
         ROOT / "docs" / f"{name}.md"
-        for name in ("batches", "command_line", "data_file", "examples", "installing", "pictures", "window")
+        for name in (
+            "batches",
+            "command_line",
+            "data_file",
+            "examples",
+            "installing",
+            "optimization",
+            "pictures",
+            "window",
+        )
     ),
 ]
 SCRIPTS = ("build.sh", "demo.sh", "test.sh")  # run by test.sh itself

@@ -13,7 +13,7 @@ from pictures import from_figure
 from quotes import quoted
 from running import ROOT, compile_program, pkg_config
 from tuning import SCENES
-from tuning.archive import CELLS, LARGEST_RAD, LONGEST_MM, LONGEST_S, SPEED_MM_S, TURN_RAD_S, bounds, least_times
+from tuning.archive import CELLS, LARGEST_RAD, LONGEST_MM, arcs, bounds, chord, least_times
 from tuning.searches import Claim, Outcome
 
 PAGE = ROOT / "docs" / "optimization.md"
@@ -40,15 +40,15 @@ def test_page_names_every_scene() -> None:
     assert re.findall(r"<!-- (\w+) -->", PAGE.read_text()) == list(SCENES)
 
 
+def test_chord_is_what_short_steps_along_the_arc_add_up_to() -> None:
+    heading = np.linspace(-LARGEST_RAD, LARGEST_RAD, 7)
+    steps = (np.arange(1000) + 0.5) / 1000
+    summed = np.abs(np.mean(np.exp(1j * np.outer(steps, heading)), axis=0))
+    assert chord(np.full(7, 300.0), heading) == pytest.approx(300.0 * summed, rel=1e-5)
+
+
 def test_arcs_end_in_the_cells_that_can_be_reached_and_take_no_less_than_the_least_time() -> None:
-    random = np.random.default_rng(1)
-    left, right = random.random((2, 200_000))
-    time_s = LONGEST_S * random.random(200_000)
-    heading = TURN_RAD_S * (left - right) * time_s
-    # The chord, by summing up short steps along the arc.
-    steps = (np.arange(100) + 0.5) / 100
-    path_mm = SPEED_MM_S * (left + right) / 2 * time_s
-    displacement = path_mm * np.abs(np.mean([np.exp(1j * heading * step) for step in steps], axis=0))
+    displacement, heading, time_s = arcs(200_000, seed=1)
     low, high = bounds(heading)
     assert (displacement > low - 0.1).all()
     assert (displacement < high + 0.1).all()

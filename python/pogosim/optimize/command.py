@@ -34,6 +34,7 @@ DONE = 0
 WRONG = 2
 NOTHING_FOUND = 3
 INTERRUPTED = 130
+REFRESHING = 20  # how much longer a search runs than it writes down what it has found so far
 
 EPILOG = """Settings can also stand in the section "optimization" of the configuration; the command line comes first.
 Exit codes: 0 the search is complete; 2 usage, configuration or file error; 3 all candidates failed; 130 interrupted."""
@@ -193,8 +194,14 @@ def optimize(arguments: argparse.Namespace) -> int:
         search = Search(space, objective, settings, optimizer, runs, journal, with_features, progress.update)
         try:
             with progress.beside(log, logging.getLogger("pogobatch")):
+                due_s = 0.0
                 for _ in search.generations():
-                    refresh(folder, search)
+                    began_s = time.monotonic()
+                    if began_s >= due_s:
+                        refresh(folder, search)
+                        # All is written each time, which takes longer and longer; the journal has every evaluation.
+                        due_s = time.monotonic() + REFRESHING * (time.monotonic() - began_s)
+                refresh(folder, search)
         finally:
             progress.close()
         is_found = finish(folder, search, configuration, time.monotonic() - started_s)

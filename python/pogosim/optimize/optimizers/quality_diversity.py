@@ -203,7 +203,9 @@ class CmaMae(CmaMe):
     def start(self, known: Sequence[Answer]) -> None:
         """Make the archive of the best, and the one that rewards."""
         MapElites.start(self, known)
-        least = min(answer.judgement.fitness for answer in known if answer.judgement.fitness is not None)
+        fitness = [answer.judgement.fitness for answer in known if answer.judgement.fitness is not None]
+        # Below all that is to come, or a new cell with a candidate worse than the first ones would be no improvement.
+        least = min(fitness) - (max(fitness) - min(fitness))
         self.rising = self.grid(learning_rate=LEARNING_RATE, threshold_min=least)
         self.add_rising(known)
         self.emitter = self.emitter_for(self.rising)
