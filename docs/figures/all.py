@@ -5,7 +5,8 @@
     .venv/bin/python docs/figures/all.py --check    # draws none; exit code 1 if any shows what no longer is so
 
 Needs the examples (./build.sh). What a run does, to the last bit, depends on the compiler and the C library: the
-pictures are those of Debian 12 on x86-64. Those of docs/optimization.md take much longer: docs/figures/tune.py draws them.
+pictures are those of Debian 12 on x86-64. Those of docs/optimization.md take much longer, so docs/figures/tune.py draws
+them.
 """
 
 from __future__ import annotations

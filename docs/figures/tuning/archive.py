@@ -116,7 +116,7 @@ def measure(folder: Path, quick: bool) -> Outcome:
         f"{reachable.sum()} of {reachable.size} cells can be reached; {evaluations} random candidates fill "
         f"{100 * random_share(evaluations):.0f} % of these"
     ]
-    claims = []
+    claims, others = [], 0
     times: dict[str, Floats] = {}
     for name, label in (QUICK_LABELS if quick else LABELS).items():
         options = ["--optimizer", name, "--max-evals", str(evaluations)]
@@ -129,8 +129,9 @@ def measure(folder: Path, quick: bool) -> Outcome:
             f"{label}, {evaluations} evaluations: {right} of them filled ({100 * share:.0f} %), {late_s:.2f} s slower "
             "than the fastest there is, on average"
         )
-        claims.append(Claim(f"{label} fills nothing else", bool(wrong == 0)))
+        others += int(wrong)
         if name == "mapelites":
             claims.append(Claim(f"{label} fills {100 * enough:.0f} % of what can be reached", bool(share >= enough)))
+    claims.append(Claim("no other cells are filled", others == 0))
     tables = tuple(pd.DataFrame(values).rename(columns=str) for values in times.values())
     return Outcome(tuple(lines), tuple(claims), draw(times), tables)

@@ -1,8 +1,8 @@
 """run_and_tumble gets the farthest with the longest runs: a search must find the end of the range.
 
 The displacement of a random walk grows with its persistence, as long as runs are short compared with the arena. So the
-optimum of `run_duration_max` in conf/optim/simple.yaml, from 10 to 1000 ms, is 1000. The search begins at 50, and CMA-ES
-with its usual first step needs more evaluations than these for one in ten seeds; so it takes longer steps.
+optimum of `run_duration_max` in conf/optim/simple.yaml, from 10 to 1000 ms, is 1000. The search begins at 50. With its
+usual first step, CMA-ES needs more evaluations than these for one or two in ten seeds; so it takes longer steps.
 """
 
 from __future__ import annotations
