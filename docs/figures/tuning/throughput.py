@@ -25,9 +25,8 @@ def measure(folder: Path, quick: bool) -> Outcome:
     wall_clock_s, simulator_s = summary["wall_clock_s"], summary["simulator_s"]
     share = simulator_s / (WORKERS * wall_clock_s)
     lines = (
-        f"{summary['evaluations']} evaluations of {summary['runs']} runs with {WORKERS} workers: {wall_clock_s:.0f} s",
-        f"simulators: {simulator_s:.0f} s, {100 * share:.0f} % of {WORKERS} x {wall_clock_s:.0f} s; load "
-        f"{os.getloadavg()[1]:.1f} on {os.cpu_count()} processors",
+        f"{summary['evaluations']} evaluations of {summary['runs']} runs, {WORKERS} workers: {wall_clock_s:.0f} s, "
+        f"{100 * share:.0f} % of it in simulators; load {os.getloadavg()[1]:.1f}, {os.cpu_count()} processors",
     )
     claim = Claim(f"over {100 * ENOUGH:.0f} % of the time in simulators", share > ENOUGH)
     return Outcome(lines, () if quick else (claim,))
