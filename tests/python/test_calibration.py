@@ -14,6 +14,7 @@ import pytest
 import yaml
 from pogosim.calibration import statistics
 from pogosim.calibration.command import PROTOCOL, main
+from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.fit import bias_range
 from pogosim.calibration.identifiability import verdicts, weakest_direction, without_own_effect
 from pogosim.calibration.reading import TrackTable, column_of
@@ -292,6 +293,16 @@ def grid(rows: pd.DataFrame, warnings: list[str] | None = None, fps: float | Non
 )
 def test_columns_are_known_by_other_names(name: str, meaning: tuple[str, str] | None) -> None:
     assert column_of(name) == meaning
+
+
+@pytest.mark.parametrize("wrong_s", [1e6, 1e9, 1e300])
+def test_row_with_a_wrong_time_is_named_and_takes_no_memory(wrong_s: float) -> None:
+    rows = pd.DataFrame([(0.1 * i, 0, float(i), 0.0) for i in range(100)], columns=["time", "id", "x", "y"])
+    rows.loc[41, "time"] = wrong_s
+    with pytest.raises(
+        CalibrationError, match=r"row 42 is .* away from the middle of the others; expected 1000000 frames"
+    ):
+        grid(rows)
 
 
 def test_tracks_are_cut_at_gaps_and_jumps_and_nowhere_else() -> None:

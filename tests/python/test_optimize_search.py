@@ -280,7 +280,7 @@ def test_search_of_a_program_that_writes_no_data_is_one_line(tmp_path: Path) -> 
         (["--objective-func", "mine"], "--objective: obj.py has no function mine"),
         (["-S", "none"], "the simulator none does not exist; expected a program compiled for Pogosim"),
         (["-c", "none.yaml"], "cannot read the configuration none.yaml: No such file or directory"),
-        (["-o", "obj.py"], "cannot write obj.py/search.jsonl: "),
+        (["-o", "obj.py"], "--output-dir: obj.py is not a folder; choose another one with -o"),
         (["-j", "0"], "--workers: expected a whole number of at least 1; found 0"),
     ],
 )

@@ -67,8 +67,9 @@ class Configuration:
             raise cannot("read the configuration", path, error) from None
         except UnicodeDecodeError:
             raise BatchError(f"{path} is not a configuration: it is not text in UTF-8") from None
-        loader = BatchLoader(self.text)
+        loader: BatchLoader | None = None
         try:
+            loader = BatchLoader(self.text)
             self.root = loader.get_single_node()
             if isinstance(self.root, yaml.MappingNode):
                 self.take_repeated_keys(self.root, ())
@@ -80,7 +81,8 @@ class Configuration:
             what = "it refers to itself" if isinstance(error, RecursionError) else one_line(error)
             raise BatchError(f"{path} is not valid YAML: {what}") from None
         finally:
-            loader.dispose()
+            if loader is not None:
+                loader.dispose()
         if self.root is None:
             raise BatchError(f"{path} is empty; a configuration needs at least arena_file and objects")
         if not isinstance(self.root, yaml.MappingNode):

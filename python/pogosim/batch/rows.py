@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,12 +20,14 @@ from pogosim.batch.identity import find_program, program_digest, world_digest
 from pogosim.batch.names import new_columns, value_at
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import Part, RunFile, check_columns, schema_of, write_results
-from pogosim.batch.run import Outcome, Task
+from pogosim.batch.run import Outcome, Task, place_in
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.utils import load_dataframe
 
 ARENA = "arena_file"
+RUN_FAILED = "a run failed"  # how such problems begin
+WHEN = re.compile(r"^\[[^\]]*\] (?=\[)")  # the date of a line in the log
 
 log = logging.getLogger("pogobatch")
 
@@ -180,8 +183,9 @@ class Runs:
             raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
         if outcome.problem:
             log.debug("run %d failed: %s", task.run, outcome.problem)
-            said = outcome.log.splitlines()[-1:]
-            return f"a run failed: {outcome.problem}{f': {said[0].strip()}' if said else ''}"
+            lines = [line for line in outcome.log.splitlines() if line.strip()]
+            said = place_in(Path(outcome.folder)).sub("the configuration", WHEN.sub("", lines[-1])) if lines else ""
+            return f"{RUN_FAILED}: {outcome.problem}{': ' if said else ''}{said}"
         new = [line for line in outcome.log.splitlines() if line not in self.warned]
         self.warned.update(dict.fromkeys(new))
         report_warnings(new)

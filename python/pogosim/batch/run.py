@@ -173,9 +173,14 @@ def printable(line: str) -> str:
     return "".join(c if c.isprintable() or c == "\t" else "?" for c in line)
 
 
+def place_in(folder: Path) -> re.Pattern[str]:
+    """Return what finds places in the configuration of a run, which is a temporary file, in a text."""
+    return re.compile(re.escape(str(folder)) + r"/test\.yaml(:\d+)?")
+
+
 def warnings_in(folder: Path) -> str:
     """Return the warnings in the log of a run, each once, without dates and places in its configuration."""
-    place = re.compile(re.escape(str(folder)) + r"/test\.yaml(:\d+)?")
+    place = place_in(folder)
     found: dict[str, None] = {}
     with contextlib.suppress(OSError), (folder / LOG).open("rb") as file:
         while len(found) < MAX_WARNINGS and (line := file.readline(LONGEST_LINE)):

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pogosim.batch.backends import Workers
+from pogosim.batch.command_line import catch_signals
 from pogosim.batch.errors import BatchError
 from pogosim.batch.rows import Runs
 from pogosim.calibration.errors import CalibrationError
@@ -38,6 +39,7 @@ from pogosim.command.run import RunError, program_of
 from pogosim.installation import InstallationError, find_installation
 from pogosim.outputs import OutputError, leads_to, partial_output, real_output, say
 
+INTERRUPTED = 130
 NEED_HEADINGS = ("angular_noise_stddev", BIAS)
 PROTOCOL = Path(__file__).with_name("protocol.c")
 RESULT, LINES, PICTURE = "calibration.json", "calibration.yaml", "calibration.png"
@@ -174,7 +176,7 @@ def check_outputs(folder: Path, inputs: Sequence[Path]) -> None:
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate") -> int:
-    """Run the command. Returns its exit code: 0 done, 2 nothing could be fitted, or written."""
+    """Run the command. Returns its exit code: 0 done, 2 nothing could be fitted, or written, 130 interrupted."""
     made = parser(prog)
     options = made.parse_args(arguments)
     try:
@@ -183,7 +185,13 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate"
             return 0
         if options.tracks is None or options.config is None:
             made.error("expected TRACKS and -c CONF.yaml, or --protocol FILE.c")
+        catch_signals()
         calibrate(prog, options)
+    except KeyboardInterrupt:
+        complain(prog, "interrupted; nothing is written")
+        return INTERRUPTED
+    except MemoryError:
+        return complain(prog, "not enough memory for tracks of this length; use a part of the film")
     except (CalibrationError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:

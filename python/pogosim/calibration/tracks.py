@@ -14,6 +14,7 @@ from pogosim.calibration.reading import TrackTable, Warn
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
+MOST_FRAMES = 1_000_000  # eleven hours at 25 frames/s
 LONGEST_GAP_S = 0.25  # that a track bridges; robots turn by less than half a turn in it
 LEAST_TRACK_S = 2.0
 LEAST_LENGTH_S = 5.0
@@ -63,6 +64,7 @@ def frame_numbers(table: TrackTable, fps: float | None, warn: Warn) -> tuple[Int
     rows = table.rows
     if fps is not None:
         frames = rows["frame"] if "frame" in rows else rows["time"]
+        check_length(frames.to_numpy(), table.source, "frame")
         numbers = np.rint(frames.to_numpy()).astype(np.int64)
         return numbers - numbers.min(), 1.0 / fps
     if "time" not in rows:
@@ -71,6 +73,7 @@ def frame_numbers(table: TrackTable, fps: float | None, warn: Warn) -> tuple[Int
     if len(np.unique(time_s)) < 2:
         raise CalibrationError(f"{table.source} holds one moment only; expected tracks over some time")
     frame_s = time_between_frames(time_s, rows["id"].to_numpy(), table.source)
+    check_length(time_s / frame_s, table.source, f"frame of {frame_s:.3g} s")
     since = (time_s - time_s.min()) / frame_s
     # Frames may begin between two whole ones, if the first row is late.
     since = since - np.angle(np.mean(np.exp(2j * np.pi * since))) / (2.0 * np.pi)
@@ -79,6 +82,21 @@ def frame_numbers(table: TrackTable, fps: float | None, warn: Warn) -> tuple[Int
     if jitter > 0.1:
         warn(f"{table.source}: the times are irregular by {jitter:.0%} of a frame; they are rounded to whole frames")
     return numbers - numbers.min(), frame_s
+
+
+def check_length(frames: Floats, source: str, unit: str) -> None:
+    """Check that a film is not longer than memory allows, as it would be with one wrong time.
+
+    Raises:
+        CalibrationError: It is; says where.
+    """
+    if np.ptp(frames) > MOST_FRAMES:
+        middle = float(np.median(frames))
+        row = int(np.argmax(np.abs(frames - middle)))
+        raise CalibrationError(
+            f"{source}: row {row + 1} is {abs(frames[row] - middle):.3g} times a {unit} away from the middle of the "
+            f"others; expected {MOST_FRAMES} frames at most: correct its time, or remove it"
+        )
 
 
 def time_between_frames(time_s: Floats, ids: npt.NDArray[Any], source: str) -> float:

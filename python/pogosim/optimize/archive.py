@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +11,27 @@ import pandas as pd
 
 from pogosim.batch.configuration import Configuration
 from pogosim.optimize.optimizers.quality_diversity import MapElites
-from pogosim.optimize.plots import ARCHIVE, draw_archive
-from pogosim.optimize.results import configuration_text, write, write_text
+from pogosim.optimize.plots import draw_archive
+from pogosim.optimize.results import (
+    ARCHIVE,
+    ARCHIVE_TABLE,
+    ELITES,
+    configuration_text,
+    free_name,
+    write,
+    write_text,
+)
 from pogosim.optimize.search import Search
 from pogosim.optimize.variables import as_json
 
-TABLE = "archive.csv"
-ELITES = "elites"
+OWN = re.compile(r"\d{2,}(_\d{2,})*\.yaml")
+
+
+def remove_elites(folder: Path) -> None:
+    """Remove the configurations of elites of an earlier search, and nothing else."""
+    for path in folder.glob("*.yaml"):
+        if OWN.fullmatch(path.name) and path.is_file():
+            path.unlink()
 
 
 def write_archive(folder: Path, search: Search, configuration: Configuration) -> dict[str, Any] | None:
@@ -30,7 +44,7 @@ def write_archive(folder: Path, search: Search, configuration: Configuration) ->
     names = list(search.feature_names or ())
     fitness = np.full(shape, np.nan)
     rows = []
-    shutil.rmtree(folder / ELITES, ignore_errors=True)
+    remove_elites(folder / ELITES)
     for elite in elites:
         evaluation = search.history[elite.number - 1]
         fitness[elite.cell] = evaluation.fitness
@@ -43,9 +57,10 @@ def write_archive(folder: Path, search: Search, configuration: Configuration) ->
         write_text(folder / file, configuration_text(search.space, evaluation.values, configuration.path.parent, notes))
         cell = {f"cell_{i + 1}": place for i, place in enumerate(elite.cell)}
         values = {"eval": elite.number, "fitness": evaluation.fitness}
-        rows.append({**cell, **values, **evaluation.features, "values": as_json(evaluation.values), "config": file})
+        features = {free_name(name, {*cell, *values}): value for name, value in evaluation.features.items()}
+        rows.append({**cell, **values, **features, "values": as_json(evaluation.values), "config": file})
     table = pd.DataFrame(rows)
-    write(folder / TABLE, lambda path: table.to_csv(path, index=False))
+    write(folder / ARCHIVE_TABLE, lambda path: table.to_csv(path, index=False))
     if len(shape) <= 2:
         draw_archive(folder / ARCHIVE, fitness, optimizer.ranges, names)
     filled = np.isfinite(fitness)
@@ -56,6 +71,6 @@ def write_archive(folder: Path, search: Search, configuration: Configuration) ->
         "cells_filled": int(np.count_nonzero(filled)),
         "coverage": float(np.mean(filled)),
         "qd_score": float(np.nansum(fitness)),
-        "archive": TABLE,
+        "archive": ARCHIVE_TABLE,
         "elites": ELITES,
     }

@@ -25,6 +25,7 @@ from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
 from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, optimizer_for
 from pogosim.optimize.outcome import finish, refresh
+from pogosim.optimize.results import check_outputs
 from pogosim.optimize.search import Search, description_of
 from pogosim.optimize.settings import SECTION, Settings, settings_from
 from pogosim.optimize.variables import Space
@@ -166,6 +167,8 @@ def optimize(arguments: argparse.Namespace) -> int:
             settings.max_evals,
             settings.qd_init_samples,
         )
+    folder = Path(settings.output_dir)
+    check_outputs(folder, [arguments.config, arguments.simulator_binary, *filter(None, [settings.objective])])
     optimizer = optimizer_for(space, settings)
     workers = Workers(settings.backend, arguments.workers, arguments.scheduler, slurm_jobs(arguments))
     runs = Runs(
@@ -178,7 +181,6 @@ def optimize(arguments: argparse.Namespace) -> int:
         arguments.keep_temp,
     )
     digests = runs.digests | objective.digests
-    folder = Path(settings.output_dir)
     journal = Journal(folder / JOURNAL, description_of(space, settings, digests), arguments.resume)
     started_s = time.monotonic()
     with contextlib.closing(journal), runs.opened():
@@ -219,6 +221,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
         log.error("%s", error)
     except OSError as error:
         log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+    except UnicodeEncodeError:
+        log.error("%s: a value is no text in UTF-8 (such as \\ud800)", parsed.config)
     except MemoryError:
         log.error("not enough memory for the runs of a generation; lower --popsize, or save data less often")
     except KeyboardInterrupt:

@@ -11,6 +11,8 @@ from pogosim.batch.options import DEFAULT, DOMAIN, LIST, OptionsError, shown
 
 KEYS = ("type", "min", "max", "init", "log", "choices")
 TYPES = ("int", "float", "categorical")
+LARGEST = 1e300
+LARGEST_WHOLE = 2**52  # so that positions from 0 to 1 tell whole numbers apart
 
 
 @dataclass(frozen=True)
@@ -221,7 +223,8 @@ def number(entries: dict[str, Any], kind: str, default: Any) -> Real | Whole:
 
 def is_number(value: Any, kind: str) -> bool:
     """Tell whether a value is a finite number of a kind, "int" or "float"."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not -1e300 < value < 1e300:
+    largest = LARGEST_WHOLE if kind == "int" else LARGEST
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not -largest <= value <= largest:
         return False
     return kind == "float" or value == int(value)
 

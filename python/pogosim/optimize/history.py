@@ -49,6 +49,20 @@ class Evaluation:
     problem: str
     timestamp: str
 
+    def check(self) -> None:
+        """Raise ValueError if it is not what a search wrote."""
+        are_right = (
+            isinstance(self.number, int),
+            isinstance(self.point, list) and all(isinstance(x, float) for x in self.point),
+            isinstance(self.values, dict),
+            self.fitness is None or isinstance(self.fitness, float),
+            isinstance(self.features, dict) and all(isinstance(value, float) for value in self.features.values()),
+            isinstance(self.problem, str),
+            isinstance(self.timestamp, str),
+        )
+        if not all(are_right):
+            raise ValueError
+
     @property
     def judgement(self) -> Judgement:
         """What came out."""
@@ -133,7 +147,7 @@ class Journal:
                 break
             try:
                 self.take(json.loads(line), is_first=number == 0, resume=resume)
-            except (ValueError, TypeError, AttributeError, KeyError):
+            except (ValueError, TypeError, AttributeError, KeyError, RecursionError):
                 raise OptimizeError(
                     f"{self.path}:{number + 1}: not a line of a search; remove it and those after it to continue "
                     "what is before, or choose another folder with -o"
@@ -153,6 +167,7 @@ class Journal:
         else:
             self.is_finished = False
             evaluation = Evaluation(**entry)
+            evaluation.check()
             self.known[evaluation.number] = evaluation
 
     def compare(self, there: Mapping[str, Any]) -> None:

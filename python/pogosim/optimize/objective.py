@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import logging
 import math
+import os
 import sys
 import traceback
 from collections.abc import Callable, Mapping
@@ -23,6 +24,7 @@ from pogosim.optimize.errors import OptimizeError
 
 OBJECTIVE_NAMES = ("objective_fn", "compute_objective")
 FEATURES_NAME = "fd_fn"
+LARGEST = 1e150  # of a fitness and of features: what is computed from their squares is finite
 
 # What a user's file need not import: the article's listing does not.
 READY = {"compute_msd_per_agent": compute_msd_per_agent, "np": np, "pd": pd}
@@ -90,6 +92,7 @@ class Objective:
             with_features: Also compute the features.
         """
         name = "the objective"
+        here = Path.cwd()
         try:
             returned = self.fitness(rows)
             fitness, features = split(returned)
@@ -102,9 +105,13 @@ class Objective:
                 named = names_of(features)
             else:
                 named = {}
-        except (Exception, SystemExit) as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # whatever a user's function raises, it is this candidate that has failed
             return Judgement(None, {}, f"{name} {self.blamed(error)}")
-        if not math.isfinite(fitness):
+        finally:
+            os.chdir(here)  # a relative path is where it was, whatever the function did
+        if not abs(fitness) <= LARGEST:
             return Judgement(None, {}, f"the objective returned {fitness}")
         return Judgement(fitness, named)
 
@@ -114,7 +121,7 @@ class Objective:
             return str(error)
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if self.is_here(frame.filename)]
         place = f" ({self.path}:{lines[-1]})" if lines else ""
-        text = one_line(error)
+        text = one_line(error).encode(errors="backslashreplace").decode()
         return f"raised {type(error).__name__}{f': {text}' if text else ''}{place}"
 
     def is_here(self, file: str) -> bool:
@@ -149,7 +156,7 @@ def names_of(features: Any) -> dict[str, float]:
     named = {str(name): number_in(value) for name, value in features.items()}
     if not named:
         raise WrongValueError("returned no features")
-    if wrong := [name for name, value in named.items() if not math.isfinite(value)]:
+    if wrong := [name for name, value in named.items() if not abs(value) <= LARGEST]:
         raise WrongValueError(f"returned {named[wrong[0]]} for {wrong[0]}")
     return named
 
@@ -188,18 +195,24 @@ def imported(path: Path) -> ModuleType:
     if not path.is_file():
         what = "is a folder" if path.is_dir() else "does not exist"
         raise OptimizeError(f"--objective: {path} {what}; expected a Python file with a function objective_fn(df)")
-    specification = importlib.util.spec_from_file_location(path.stem, path.absolute())
+    specification = importlib.util.spec_from_file_location(f"pogoptim_objective_{path.stem}", path.absolute())
     if specification is None or specification.loader is None:
         raise OptimizeError(f"--objective: {path} is not a Python file: its name does not end with .py")
     module = importlib.util.module_from_spec(specification)
     vars(module).update(READY, logger=log)
+    sys.modules[module.__name__] = module  # dataclasses look for their module there
+    here = Path.cwd()
     sys.path.insert(0, str(path.absolute().parent))
     try:
         specification.loader.exec_module(module)
     except SyntaxError as error:
         where = f":{error.lineno}" if error.lineno and error.filename == str(path.absolute()) else ""
         raise OptimizeError(f"--objective: {path}{where}: {one_line(error.msg)}") from None
-    except (Exception, SystemExit) as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
         blame = Objective(path=path).blamed(error)
         raise OptimizeError(f"--objective: {path} cannot be imported: it {blame}") from None
+    finally:
+        os.chdir(here)
     return module

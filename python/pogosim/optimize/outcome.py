@@ -15,14 +15,16 @@ from pogosim.batch.results import RUN
 from pogosim.confidence import mean_over_runs
 from pogosim.optimize.archive import write_archive
 from pogosim.optimize.history import Evaluation
-from pogosim.optimize.plots import CONVERGENCE, draw_convergence
+from pogosim.optimize.plots import draw_convergence
 from pogosim.optimize.results import (
     BEST,
     BEST_ROWS,
+    CONVERGENCE,
     HISTORY,
     HISTORY_TABLE,
     FreshRuns,
     configuration_text,
+    remove_stale,
     write_history,
     write_summary,
     write_text,
@@ -56,11 +58,11 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
     best = search.best
     simulator_s = search.runs.simulator_s
     if best is None:
+        remove_stale(folder)
         log.error("all %d candidates have failed; see the column problem of %s", len(search.history), folder / HISTORY)
         search.journal.finish(len(search.history))
         return False
     fresh = fresh_runs(folder, search, best)
-    draw_convergence(folder / CONVERGENCE, search.history, fresh)
     archive = write_archive(folder, search, configuration)
     summary: dict[str, Any] = {
         "optimizer": search.settings.optimizer,
@@ -88,6 +90,7 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
     }
     write_summary(folder, summary)
     search.journal.finish(len(search.history))
+    draw_convergence(folder / CONVERGENCE, search.history, fresh)
     tell(folder, best, fresh)
     return True
 

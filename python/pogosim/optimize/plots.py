@@ -13,8 +13,6 @@ from pogosim.optimize.results import FreshRuns, best_so_far
 from pogosim.picture.palette import INK
 from pogosim.reports.figures import new_figure, save
 
-CONVERGENCE = "fitness_vs_eval.png"
-ARCHIVE = "archive.png"
 DOT, LINE, FRESH, FAILED = "#8fa8c8", "#1f4e9e", "#c2571a", "#b3261e"
 
 

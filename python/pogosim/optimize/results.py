@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,16 +16,24 @@ from pogosim.batch.configuration import dump_configuration
 from pogosim.batch.errors import cannot
 from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.batch.tasks import FILES_BESIDE, found_beside
-from pogosim.optimize.history import Evaluation
+from pogosim.optimize.errors import OptimizeError
+from pogosim.optimize.history import JOURNAL, Evaluation
 from pogosim.optimize.settings import SECTION
 from pogosim.optimize.variables import Space, Values, as_json
-from pogosim.outputs import partial_output, real_output
+from pogosim.outputs import leads_to, partial_output, real_output
 
 HISTORY = "opt_history.csv"
 HISTORY_TABLE = "opt_history.feather"
 BEST = "best_config.yaml"
 BEST_ROWS = "best_results.feather"
 SUMMARY = "summary.json"
+CONVERGENCE = "fitness_vs_eval.png"
+ARCHIVE_TABLE = "archive.csv"
+ARCHIVE = "archive.png"
+ELITES = "elites"
+# What a search writes; of pictures, another format, too.
+PICTURES = tuple(Path(name).with_suffix(suffix).name for name in (CONVERGENCE, ARCHIVE) for suffix in (".pdf", ".png"))
+OUTPUTS = (JOURNAL, HISTORY, HISTORY_TABLE, BEST, BEST_ROWS, SUMMARY, ARCHIVE_TABLE, *PICTURES)
 NOT_FOR_ONE_RUN = (SECTION, FORMAT, COLUMNS)
 
 
@@ -48,6 +56,34 @@ class FreshRuns:
     high: float
 
 
+def check_outputs(folder: Path, inputs: Sequence[str]) -> None:
+    """Check that results take the place of no input, under any name of it.
+
+    Raises:
+        OptimizeError: One would.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise OptimizeError(f"--output-dir: {folder} is not a folder; choose another one with -o")
+    elites = sorted((folder / ELITES).glob("*")) if (folder / ELITES).is_dir() else []
+    for path in [*(folder / name for name in OUTPUTS), *elites]:
+        for name in inputs:
+            if leads_to(path, name):
+                raise OptimizeError(f"{name} is an input that {path} would replace; choose another folder with -o")
+
+
+def remove_stale(folder: Path) -> None:
+    """Remove what an earlier search has found.
+
+    Raises:
+        BatchError: It cannot be removed.
+    """
+    for name in (BEST, BEST_ROWS, SUMMARY, ARCHIVE_TABLE, *PICTURES):
+        try:
+            (folder / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise cannot("remove", folder / name, error) from None
+
+
 def best_so_far(history: Sequence[Evaluation]) -> pd.Series[float]:
     """Return the greatest fitness up to each evaluation; NaN before the first one that has not failed."""
     fitness = pd.Series([np.nan if e.fitness is None else e.fitness for e in history], dtype=float)
@@ -65,15 +101,23 @@ def history_table(history: Sequence[Evaluation]) -> pd.DataFrame:
     for attribute in ("values", "features"):
         maps: list[Mapping[str, Any]] = [getattr(e, attribute) for e in history]
         for name in dict.fromkeys(name for entries in maps for name in entries):
-            columns[name] = plain_column([entries.get(name) for entries in maps])
+            columns[free_name(name, columns)] = plain_column([entries.get(name) for entries in maps])
     columns["problem"] = [e.problem for e in history]
     columns["timestamp"] = [e.timestamp for e in history]
     return pd.DataFrame(columns)
 
 
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return a name for a column of the user's that no other column has."""
+    own = ("problem", "timestamp", "config", "values")
+    return free_name(f"user.{name}", taken) if name in taken or name in own else name
+
+
 def plain_column(values: Sequence[Any]) -> Sequence[Any]:
     """Return values that have one type as they are, and others as text."""
     kinds = {type(value) for value in values if value is not None}
+    if int in kinds and any(isinstance(value, int) and abs(value) >= 2**63 for value in values):
+        kinds = {list}  # too large for a column of numbers
     if len(kinds) <= 1 and not kinds & {list, dict}:
         return values
     if kinds <= {int, float}:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import re
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,13 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from pogosim.batch.rows import Runs
+from pogosim.batch.rows import RUN_FAILED, Runs
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import Evaluation, Journal
 from pogosim.optimize.objective import Judgement, Objective
 from pogosim.optimize.optimizers.base import Answer, Floats, Optimizer
 from pogosim.optimize.settings import FRESH, Settings
 from pogosim.optimize.variables import Space, Values, as_json
+
+VALUES = re.compile(r"'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?")  # in which failures of runs of one kind differ
+MOST_PROBLEMS = 10  # that are mentioned
 
 log = logging.getLogger("pogosim.optimize")
 
@@ -154,9 +158,14 @@ class Search:
 
     def warn(self, problem: str) -> None:
         """Say why a candidate has failed, once for each reason."""
-        if problem and problem not in self.problems:
-            self.problems.add(problem)
-            log.warning("a candidate has failed, and so do others with the same problem: %s", problem)
+        kind = VALUES.sub("...", problem) if problem.startswith(RUN_FAILED) else problem
+        if not problem or kind in self.problems or len(self.problems) > MOST_PROBLEMS:
+            return
+        self.problems.add(kind)
+        if len(self.problems) > MOST_PROBLEMS:
+            log.warning("candidates fail for other reasons, too; see the column problem of the history")
+        else:
+            log.warning("a candidate has failed (others with the same problem are not mentioned): %s", problem)
 
     def consistent(self, evaluation: Evaluation) -> Evaluation:
         """Return an evaluation, which has failed if it has not the features that the first ones have."""

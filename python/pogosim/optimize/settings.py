@@ -79,7 +79,7 @@ def real(least: float, most: float) -> Callable[[Any], float]:
     """Return a check for numbers in a range, which includes its upper end only, or both if the lower one is 0."""
 
     def check(value: Any) -> float:
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not is_number or not least <= value <= most:
             raise ValueError(f"expected a number from {least:g} to {most:g}")
         return float(value)
