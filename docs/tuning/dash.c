@@ -1,8 +1,8 @@
 // A robot that drives one arc and stops: what it reaches follows from its parameters in closed form.
 //
 // With the powers L and R of its motors, from 0 to 1, it drives at v = max_linear_speed (L + R) / 2 and turns at
-// w = 2 max_angular_speed (L - R), for the time T. So its heading changes by w T, and it gets as far as the chord of the
-// arc, |2 v / w sin(w T / 2)|.
+// w = 2 max_angular_speed (L - R), for the time T. So its heading changes by w T, and it gets as far as the chord of
+// the arc, |2 v / w sin(w T / 2)|.
 #include "pogobase.h"
 
 typedef struct {

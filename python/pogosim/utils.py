@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import functools
 import json
 import logging
 import os
@@ -126,10 +127,16 @@ def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
         Arrays of shape (corners, 2) in the unit of the file (mm); the text itself if it cannot be parsed.
     """
     try:
-        arrays = polygons_of(parse_yaml(text) or [])
+        arrays = outlines_in(text)
     except WRONG_VALUES:
         return text
-    return arrays if all(array.ndim == 2 for array in arrays) else text
+    return [array.copy() for array in arrays] if all(array.ndim == 2 for array in arrays) else text
+
+
+@functools.lru_cache(maxsize=8)
+def outlines_in(text: str) -> tuple[npt.NDArray[np.float64], ...]:
+    """Parse polygons; those of the last arenas are remembered, as many files are of one arena."""
+    return tuple(polygons_of(parse_yaml(text) or []))
 
 
 def in_millimetres(

@@ -146,15 +146,15 @@ TREE: dict[str, Any] = {
 
 def test_variables_are_found_wherever_they_are_and_alternatives_are_one_of_them() -> None:
     names = [variable.name for variable in variables_of(TREE)]
-    assert names == ["density", "objects.robots", "objects.robots.slow.speed", "list.1.deep"]
+    assert names == ["density", "kind", "objects.robots.slow.speed", "list.1.deep"]
 
 
 def test_point_is_a_configuration_with_the_chosen_alternative_and_the_options_that_remain() -> None:
     space = Space(copy.deepcopy(TREE))
     slow = space.values_at([0.25, 0.0, 0.5, 0.9])
-    assert slow == {"density": 0.25, "objects.robots": "slow", "objects.robots.slow.speed": 5, "list.1.deep": "y"}
+    assert slow == {"density": 0.25, "kind": "slow", "objects.robots.slow.speed": 5, "list.1.deep": "y"}
     fast = space.values_at([0.25, 0.9, 0.5, 0.9])
-    assert fast == {"density": 0.25, "objects.robots": "fast", "list.1.deep": "y"}  # no speed to choose
+    assert fast == {"density": 0.25, "kind": "fast", "list.1.deep": "y"}  # no speed to choose
     made = combinations_of(space.configuration(slow))
     assert [combination["radius"] for combination in made] == [1, 2]
     assert made[0]["objects"]["robots"] == {"nb": 10, "speed": 5, "led": "red"}
@@ -168,6 +168,12 @@ def test_flat_configuration_has_no_alternatives_any_more() -> None:
     assert flat["objects"] == {"robots": {"nb": 10, "speed": 100}}
     assert (flat["kind"], flat["list"], flat["density"]) == ("fast", [1, {"deep": "x"}], 0.25)
     assert (flat["radius"], flat["optimization"]) == (TREE["radius"], TREE["optimization"])
+
+
+def test_names_of_variables_are_their_own_even_if_labels_are_not() -> None:
+    alternatives = {"batch_hierarchical_options": {"name": "kind", "a": {}, "b": {}}}
+    names = [variable.name for variable in Space({"one": alternatives, "two": alternatives}).variables]
+    assert names == ["one", "two"]
 
 
 def test_search_starts_where_the_configuration_says() -> None:

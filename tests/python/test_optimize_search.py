@@ -128,6 +128,30 @@ def test_mean_on_fresh_seeds_is_reported_with_its_interval(tmp_path: Path) -> No
     assert said in result.errors
 
 
+def test_fresh_seeds_are_those_that_no_candidate_had(tmp_path: Path) -> None:
+    write_search(tmp_path, objective=NOISY)
+    assert search(tmp_path, "--max-evals", "5", "-r", "2", "--seeds", "fresh", "--final-runs", "3").code == 0
+    assert summary(tmp_path)["best_fresh"]["seeds"] == [10, 11, 12]
+
+
+def test_search_in_which_nothing_makes_a_difference_says_so(tmp_path: Path) -> None:
+    write_search(tmp_path, objective="def objective_fn(df): return 24")
+    result = search(tmp_path, "--max-evals", "8", "--final-runs", "1")
+    assert result.code == 0
+    assert "[WARNING] all candidates have the same fitness, 24: does the objective depend on" in result.errors
+    assert "does the program read parameters.a, parameters.b, parameters.c?" in result.errors
+
+
+def test_search_replaces_an_earlier_one_as_a_whole_and_says_so(tmp_path: Path) -> None:
+    write_search(tmp_path)
+    assert search(tmp_path, "--max-evals", "8", "--optimizer", "mapelites", "--qd-init-samples", "5").code == 0
+    assert (tmp_path / "opt_out" / "archive.csv").exists()
+    result = search(tmp_path, "--max-evals", "4", "--final-runs", "0")
+    assert "An earlier search in opt_out is finished; the results of this one replace it" in result.errors
+    left = {path.name for path in (tmp_path / "opt_out").iterdir()}
+    assert not any(name.startswith(("archive", "elites", "best_results")) for name in left)
+
+
 def test_same_candidate_is_not_run_twice(tmp_path: Path) -> None:
     few = {"parameters": {"b": {"optimization_domain": {"type": "int", "min": 1, "max": 3}}}}
     write_search(tmp_path, few, "def objective_fn(df): return 1.0")
@@ -166,7 +190,7 @@ def test_choice_of_an_alternative_is_a_parameter(tmp_path: Path) -> None:
     changes = {"parameters": {}, "objects.robots.nb": 1, "objects.robots.batch_hierarchical_options": alternatives}
     write_search(tmp_path, changes, "def objective_fn(df): return float(df['robot_id'].nunique())")
     assert search(tmp_path, "--max-evals", "8", "--final-runs", "1").code == 0
-    assert summary(tmp_path)["best_values"] == {"objects.robots": "many"}
+    assert summary(tmp_path)["best_values"] == {"kind": "many"}
     result = run_command(example("helloworld"), tmp_path, ["-c", "opt_out/best_config.yaml", "-g", "-q"])
     assert result.code == 0
     assert load_dataframe(tmp_path / "data.feather")[0]["robot_id"].nunique() == 4
@@ -185,7 +209,7 @@ def test_settings_stand_in_the_configuration_and_the_command_line_comes_first(tm
     result = search(tmp_path, "--max-evals", "4")
     assert result.code == 0
     assert "space.yaml:" in result.errors
-    assert "optimization.speed: unknown key, which has no effect; known are algorithm, budget," in result.errors
+    assert "optimization.speed: unknown key, which has no effect; did you mean 'seed'?" in result.errors
     assert "optimization.qd.sel_pb: has no effect here" in result.errors
     entries = summary(tmp_path, "there")
     assert (entries["optimizer"], entries["evaluations"], entries["seed"]) == ("random", 4, 5)

@@ -11,7 +11,7 @@ from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.objective import Judgement
 from pogosim.optimize.optimizers.base import Answer, Optimizer
 from pogosim.optimize.optimizers.mutation import mutated
-from pogosim.optimize.optimizers.quality_diversity import MapElites, folded
+from pogosim.optimize.optimizers.quality_diversity import CmaMe, MapElites, folded
 from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, optimizer_for
 from pogosim.optimize.settings import Settings
 from pogosim.optimize.variables import Space, Variable
@@ -143,6 +143,51 @@ def test_evolution_strategy_finds_whole_numbers_and_choices() -> None:
 def test_population_is_that_of_the_literature_or_as_asked_for() -> None:
     assert [len(made("cmaes", reals(d)).ask()) for d in (1, 3, 10)] == [4, 7, 10]
     assert len(made("cmaes", reals(3), popsize=12).ask()) == 12
+
+
+def test_evolution_strategy_moves_away_from_failures() -> None:
+    def fails_right(point: Sequence[float]) -> float | None:
+        return None if point[0] > 0.5 else float(point[0])
+
+    for seed in range(3):
+        answers = searched(made("cmaes", reals(1), seed=seed), fails_right, 80)
+        late = [answer.judgement.fitness for answer in answers[-40:]]
+        assert sum(fitness is None for fitness in late) < 30
+        assert best(answers) > 0.49
+
+
+def test_restart_has_twice_the_population() -> None:
+    optimizer = made("cmaes", reals(1), popsize=4, sigma0=0.01)
+    sizes = {4}
+    for _ in range(400):
+        points = optimizer.ask()
+        sizes.add(len(points))
+        if len(sizes) > 1:
+            break
+        optimizer.tell([Answer(1, point, Judgement(hill(point), {})) for point in points])
+    assert sizes == {4, 8}
+
+
+@pytest.mark.parametrize("name", ["cma_me", "cma_mae"])
+def test_strategies_that_fill_archives_learn_even_if_some_candidates_fail(name: str) -> None:
+    count = 0
+
+    def every_tenth_fails(point: Sequence[float]) -> float | None:
+        nonlocal count
+        count += 1
+        return None if count % 10 == 0 else hill(point)
+
+    def score(function: Function) -> tuple[float, int]:
+        optimizer = made(name, reals(4), qd_shape=(10, 10), qd_init_samples=50, qd_batch=32)
+        answers = searched(optimizer, function, 1500)
+        assert isinstance(optimizer, CmaMe)
+        elites = [answers[elite.number - 1].judgement.fitness or 0.0 for elite in optimizer.elites()]
+        return sum(elites), optimizer.emitter.itrs + optimizer.emitter.restarts
+
+    undisturbed, steps = score(hill)
+    disturbed, steps_with_failures = score(every_tenth_fails)
+    assert min(steps, steps_with_failures) > 40
+    assert disturbed > 0.9 * undisturbed
 
 
 # ---- Others ----

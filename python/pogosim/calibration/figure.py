@@ -1,4 +1,4 @@
-"""The picture of a calibration: measured and simulated speeds, turn rates and mean square displacements."""
+"""The picture of a calibration: measured and simulated speeds, turn rates and mean squared displacements."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def histogram(axes: Axes, measured: Floats, simulated: Floats, label: str) -> No
 
 
 def displacement(axes: Axes, measured: Tracks, simulated: Tracks) -> None:
-    """Draw the mean square displacement over lags."""
+    """Draw the mean squared displacement over lags."""
     last_s = max(measured.length_s / 4.0, 2.0 * measured.frame_s)
     lags = np.unique(np.rint(np.geomspace(1.0, last_s / measured.frame_s, 30)).astype(int)) * measured.frame_s
     axes.loglog(lags, mean_square_displacement(measured, lags), "o", color=MEASURED, alpha=0.6, label="measured")
     axes.loglog(lags, mean_square_displacement(simulated, lags), color=SIMULATED, linewidth=1.6, label="simulated")
-    axes.set(xlabel="lag (s)", ylabel="mean square displacement (mm$^2$)")
+    axes.set(xlabel="lag (s)", ylabel="mean squared displacement (mm$^2$)")
 
 
 def picture(measured: Tracks, simulated: Tracks) -> bytes:

@@ -253,7 +253,7 @@ def fit(matcher: Matcher, noise: tuple[float, float], report: Report) -> Fit:
         )
     by_robot, bias_error, sensitivity = np.zeros(0), np.inf, np.zeros((0, 0))
     best: tuple[float, dict[str, float], Bias] = (np.inf, values, bias)
-    for iteration in range(ITERATIONS):
+    for iteration in range(ITERATIONS + 1):
         if BIAS in settings.free:
             by_robot, bias_error = matcher.biases(values, [0])
             bias = bias_range(by_robot, bias_error) if np.isfinite(by_robot).any() else bias
@@ -261,10 +261,13 @@ def fit(matcher: Matcher, noise: tuple[float, float], report: Report) -> Fit:
         simulated, error = total_error(matcher, values, bias, runs, own_error)
         both = usable & np.isfinite(simulated)
         residual = np.where(both, measured - simulated, 0.0)
-        misfit = float(np.sum((residual / error) ** 2))
-        report(f"iteration {iteration + 1}: misfit {misfit / max(int(both.sum()), 1):.3g} per statistic")
-        if misfit < best[0]:
+        misfit = float(np.sum((residual / error) ** 2)) / max(int(both.sum()), 1)
+        report(f"iteration {iteration + 1}: misfit {misfit:.3g} per statistic")
+        # The first iteration has fewer runs and larger errors: its misfit is no measure for the others.
+        if misfit < best[0] or iteration == 1:
             best = (misfit, dict(values), bias)
+        if iteration == ITERATIONS:
+            break  # the last step has been looked at
         if iteration in JACOBIANS:
             names = looked_at if iteration == 0 else free
             sensitivity = matcher.sensitivity(values, bias, names)

@@ -191,7 +191,7 @@ def check_motion(tracks: Tracks, noise_mm: float) -> None:
 
 
 def mean_square_displacement(tracks: Tracks, lags_s: Floats) -> Floats:
-    """Return the mean square displacement over lags, averaged over times and robots, mm2. Shape (lags,)."""
+    """Return the mean squared displacement over lags, averaged over times and robots, mm2. Shape (lags,)."""
     values = []
     for lag_s in lags_s:
         lag = tracks.frames_in(float(lag_s))

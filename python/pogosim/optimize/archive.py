@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -18,20 +17,12 @@ from pogosim.optimize.results import (
     ELITES,
     configuration_text,
     free_name,
+    remove_elites,
     write,
     write_text,
 )
 from pogosim.optimize.search import Search
 from pogosim.optimize.variables import as_json
-
-OWN = re.compile(r"\d{2,}(_\d{2,})*\.yaml")
-
-
-def remove_elites(folder: Path) -> None:
-    """Remove the configurations of elites of an earlier search, and nothing else."""
-    for path in folder.glob("*.yaml"):
-        if OWN.fullmatch(path.name) and path.is_file():
-            path.unlink()
 
 
 def write_archive(folder: Path, search: Search, configuration: Configuration) -> dict[str, Any] | None:
@@ -44,7 +35,7 @@ def write_archive(folder: Path, search: Search, configuration: Configuration) ->
     names = list(search.feature_names or ())
     fitness = np.full(shape, np.nan)
     rows = []
-    remove_elites(folder / ELITES)
+    remove_elites(folder)
     for elite in elites:
         evaluation = search.history[elite.number - 1]
         fitness[elite.cell] = evaluation.fitness

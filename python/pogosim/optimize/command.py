@@ -19,13 +19,14 @@ from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
+from pogosim.batch.tasks import check_logs_data
 from pogosim.command.parser import Parser
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
 from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, optimizer_for
 from pogosim.optimize.outcome import finish, refresh
-from pogosim.optimize.results import check_outputs
+from pogosim.optimize.results import check_outputs, remove_stale
 from pogosim.optimize.search import Search, description_of
 from pogosim.optimize.settings import SECTION, Settings, settings_from
 from pogosim.optimize.variables import Space
@@ -169,6 +170,7 @@ def optimize(arguments: argparse.Namespace) -> int:
         )
     folder = Path(settings.output_dir)
     check_outputs(folder, [arguments.config, arguments.simulator_binary, *filter(None, [settings.objective])])
+    check_logs_data(configuration.entries, configuration)
     optimizer = optimizer_for(space, settings)
     workers = Workers(settings.backend, arguments.workers, arguments.scheduler, slurm_jobs(arguments))
     runs = Runs(
@@ -184,6 +186,8 @@ def optimize(arguments: argparse.Namespace) -> int:
     journal = Journal(folder / JOURNAL, description_of(space, settings, digests), arguments.resume)
     started_s = time.monotonic()
     with contextlib.closing(journal), runs.opened():
+        if journal.replaces:
+            log.info("An earlier search in %s is finished; the results of this one replace it", folder)
         if journal.known:
             log.info("Resuming: %d evaluations are done already", len(journal.known))
         log.info(
@@ -199,6 +203,8 @@ def optimize(arguments: argparse.Namespace) -> int:
                 due_s = 0.0
                 for _ in search.generations():
                     began_s = time.monotonic()
+                    if not due_s and not journal.known:
+                        remove_stale(folder)
                     if began_s >= due_s:
                         refresh(folder, search)
                         # All is written each time, which takes longer and longer; the journal has every evaluation.

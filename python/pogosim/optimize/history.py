@@ -74,6 +74,7 @@ class Journal:
 
     Attributes:
         known: Evaluations of an earlier part of the search, by number.
+        replaces: An earlier search is there, which is finished; its place is taken by this one.
     """
 
     def __init__(self, path: Path, description: Mapping[str, Any], resume: bool) -> None:
@@ -97,6 +98,7 @@ class Journal:
             self.file: IO[bytes] = path.open("a+b")
         except OSError as error:
             raise cannot("write", path, error) from None
+        self.replaces = False
         self.end: int | None = 0  # of the lines to keep, in bytes; None: only they are there
         try:
             self.lock()
@@ -121,6 +123,7 @@ class Journal:
                 f"{self.path.parent} has a search that is not finished, with {len(self.known)} evaluations: --resume "
                 f"continues it; for another one, choose another folder with -o, or remove {self.path}"
             )
+        self.replaces = bool(self.known)
         self.known, self.end = {}, 0
 
     def lock(self) -> None:

@@ -101,7 +101,9 @@ class Objective:
                     name = "the feature function"
                     features = self.features(rows)
                 if features is None:
-                    raise WrongValueError("returned no features")
+                    raise WrongValueError(
+                        f"returned no features; write {FEATURES_NAME}(df), or return (fitness, features)"
+                    )
                 named = names_of(features)
             else:
                 named = {}

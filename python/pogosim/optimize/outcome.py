@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +18,15 @@ from pogosim.optimize.archive import write_archive
 from pogosim.optimize.history import Evaluation
 from pogosim.optimize.plots import draw_convergence
 from pogosim.optimize.results import (
+    ARCHIVE,
     BEST,
     BEST_ROWS,
     CONVERGENCE,
+    ELITES,
     HISTORY,
     HISTORY_TABLE,
     FreshRuns,
     configuration_text,
-    remove_stale,
     write_history,
     write_summary,
     write_text,
@@ -58,10 +60,10 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
     best = search.best
     simulator_s = search.runs.simulator_s
     if best is None:
-        remove_stale(folder)
         log.error("all %d candidates have failed; see the column problem of %s", len(search.history), folder / HISTORY)
         search.journal.finish(len(search.history))
         return False
+    warn_if_flat(search)
     fresh = fresh_runs(folder, search, best)
     archive = write_archive(folder, search, configuration)
     summary: dict[str, Any] = {
@@ -91,11 +93,28 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
     write_summary(folder, summary)
     search.journal.finish(len(search.history))
     draw_convergence(folder / CONVERGENCE, search.history, fresh)
-    tell(folder, best, fresh)
+    tell(best, fresh)
+    if archive is not None:
+        cells = f"{archive['cells_filled']} of {math.prod(archive['shape'])} cells"
+        log.info("Archive: %s filled; see %s and %s", cells, folder / ARCHIVE, folder / ELITES)
+    log.info("Written to %s; run it: %s -c %s", folder, search.runs.program, folder / BEST)
     return True
 
 
-def tell(folder: Path, best: Evaluation, fresh: FreshRuns | None) -> None:
+def warn_if_flat(search: Search) -> None:
+    """Warn if no parameter made a difference."""
+    fitness = {e.fitness for e in search.history if e.fitness is not None}
+    values = {as_json(e.values) for e in search.history}
+    if len(fitness) == 1 and len(values) > 1:
+        log.warning(
+            "all candidates have the same fitness, %.6g: does the objective depend on what the parameters change, and "
+            "does the program read %s?",
+            fitness.pop(),
+            ", ".join(variable.name for variable in search.space.variables),
+        )
+
+
+def tell(best: Evaluation, fresh: FreshRuns | None) -> None:
     """Say what the best candidate is."""
     if fresh is None:
         log.info("Done. Best fitness: %.6g, in the search", best.fitness)
@@ -104,7 +123,6 @@ def tell(folder: Path, best: Evaluation, fresh: FreshRuns | None) -> None:
         seeds = f"{len(fresh.seeds)} fresh seed{'s' if len(fresh.seeds) != 1 else ''}"
         log.info("Done. Best fitness: %.6g on %s%s; %.6g in the search", fresh.mean, seeds, interval, best.fitness)
     log.info("Best values: %s", as_json(best.values))
-    log.info("Written to %s; run it: PROGRAM -c %s", folder, folder / BEST)
 
 
 def as_entries(fresh: FreshRuns) -> dict[str, Any]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +33,7 @@ CONVERGENCE = "fitness_vs_eval.png"
 ARCHIVE_TABLE = "archive.csv"
 ARCHIVE = "archive.png"
 ELITES = "elites"
+ELITE = re.compile(r"\d{2,}(_\d{2,})*\.yaml")  # what configurations of elites are called
 # What a search writes; of pictures, another format, too.
 PICTURES = tuple(Path(name).with_suffix(suffix).name for name in (CONVERGENCE, ARCHIVE) for suffix in (".pdf", ".png"))
 OUTPUTS = (JOURNAL, HISTORY, HISTORY_TABLE, BEST, BEST_ROWS, SUMMARY, ARCHIVE_TABLE, *PICTURES)
@@ -71,17 +74,28 @@ def check_outputs(folder: Path, inputs: Sequence[str]) -> None:
                 raise OptimizeError(f"{name} is an input that {path} would replace; choose another folder with -o")
 
 
+def remove_elites(folder: Path) -> None:
+    """Remove the configurations of elites of an earlier search, and nothing else."""
+    for path in (folder / ELITES).glob("*.yaml"):
+        if ELITE.fullmatch(path.name) and path.is_file():
+            path.unlink()
+    with contextlib.suppress(OSError):
+        (folder / ELITES).rmdir()  # if nothing else is in it
+
+
 def remove_stale(folder: Path) -> None:
     """Remove what an earlier search has found.
 
     Raises:
         BatchError: It cannot be removed.
     """
-    for name in (BEST, BEST_ROWS, SUMMARY, ARCHIVE_TABLE, *PICTURES):
-        try:
-            (folder / name).unlink(missing_ok=True)
-        except OSError as error:
-            raise cannot("remove", folder / name, error) from None
+    try:
+        remove_elites(folder)
+        for name in OUTPUTS:
+            if name != JOURNAL:
+                (folder / name).unlink(missing_ok=True)
+    except OSError as error:
+        raise cannot("remove", error.filename or folder, error) from None
 
 
 def best_so_far(history: Sequence[Evaluation]) -> pd.Series[float]:

@@ -52,7 +52,7 @@ class Search:
     history: list[Evaluation] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.judged: dict[str, Judgement] = {}  # by values; only if all candidates have the same seeds
+        self.judged: dict[str, Judgement] = {}  # by values; of use if all candidates have the same seeds
         self.feature_names: tuple[str, ...] | None = None
         self.problems: set[str] = set()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
@@ -146,6 +147,8 @@ KEYS: dict[tuple[str, ...], tuple[str, Callable[[Any], Any]]] = {
     ("qd", "eta"): ("qd_eta", real(0.0, 1000.0)),
 }
 CHECKS = dict(KEYS.values())
+# Options by the name that they have on the command line.
+KEYS.update({(name,): (name, check) for name, check in CHECKS.items() if (name,) not in KEYS})
 # Of the optimiser that others' tools use; they mean nothing to ours.
 UNUSED = (("qd", "parallel"), ("qd", "sel_pb"), ("qd", "init_pb"), ("qd", "algo_kwargs"))
 
@@ -182,8 +185,10 @@ def settings_from(
         if path in UNUSED:
             warn(f"{where((SECTION, *path))}: has no effect here")
         elif path not in KEYS:
-            known = ", ".join(".".join(key) for key in KEYS)
-            warn(f"{where((SECTION, *path))}: unknown key, which has no effect; known are {known}")
+            names = [".".join(key) for key in KEYS]
+            near = difflib.get_close_matches(".".join(path), names, n=1)
+            advice = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(names)}"
+            warn(f"{where((SECTION, *path))}: unknown key, which has no effect; {advice}")
         elif value is not None:
             name, check = KEYS[path]
             chosen[name] = checked(check, value, where((SECTION, *path)))

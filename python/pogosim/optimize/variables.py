@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,15 +29,17 @@ class Variable:
         path: Where it is: keys from the top level on, with the names of alternatives (`batch_hierarchical_options`) in
             which it is. The path of a map with alternatives stands for the choice of one.
         domain: Its values.
+        label: The `name` that alternatives have in the configuration, or empty.
     """
 
     path: Path
     domain: Domain
+    label: str = ""
 
     @property
     def name(self) -> str:
-        """Its dotted path."""
-        return ".".join(self.path)
+        """Its label, or else its dotted path."""
+        return self.label or ".".join(self.path)
 
 
 def variables_of(entries: dict[str, Any]) -> list[Variable]:
@@ -74,7 +77,7 @@ def variables_in(node: Any, path: Path) -> Iterator[Variable]:
     if HIERARCHICAL_OPTIONS in node:
         names = [name for name, _, _ in alternatives_of(node, path)]
         if len(names) > 1:
-            yield Variable(path, Categorical(tuple(names), 0))
+            yield Variable(path, Categorical(tuple(names), 0), node[HIERARCHICAL_OPTIONS].get(NAME) or "")
         for name in names:
             chosen = alternative(node, name)
             for key, value in chosen.items():
@@ -86,6 +89,12 @@ def alternative(node: dict[str, Any], name: str) -> dict[str, Any]:
     options = node[HIERARCHICAL_OPTIONS]
     entries = next(value for key, value in options.items() if str(key) == name)
     return entries or {}
+
+
+def with_own_names(variables: list[Variable]) -> list[Variable]:
+    """Return variables of which no two have the same name: labels that several have are left out."""
+    names = Counter(variable.name for variable in variables)
+    return [replace(variable, label="") if names[variable.name] > 1 else variable for variable in variables]
 
 
 class Space:
@@ -103,7 +112,7 @@ class Space:
 
     def __init__(self, entries: dict[str, Any]) -> None:
         self.entries = entries
-        self.variables = variables_of(entries)
+        self.variables = with_own_names(variables_of(entries))
         if not self.variables:
             raise CombinationsError(
                 (),

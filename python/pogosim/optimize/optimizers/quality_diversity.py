@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from pogosim.optimize.errors import OptimizeError
-from pogosim.optimize.optimizers.base import Answer, Floats
+from pogosim.optimize.optimizers.base import Answer, Floats, penalised
 from pogosim.optimize.optimizers.mutation import mutated
 from pogosim.optimize.optimizers.packages import imported
 from pogosim.optimize.settings import Settings
@@ -179,7 +179,7 @@ class CmaMe(MapElites):
         return folded(self.asked)
 
     def learn(self, answers: Sequence[Answer], known: Sequence[Answer]) -> None:
-        """Reward the points that improved the archive; those that failed are left out."""
+        """Reward the points that improved the archive; those that failed rank last."""
         said = self.add(known)
         self.reward(answers, known, said)
 
@@ -187,11 +187,16 @@ class CmaMe(MapElites):
         """Tell the evolution strategy what its points did to the archive."""
         if len(answers) < len(self.asked):
             return  # the end of the search
-        if len(known) < len(answers):
-            return  # it can only be told of all of them
-        objective = [answer.judgement.fitness for answer in known]
-        numbers = {EVALUATION: [answer.number for answer in known]}
-        self.emitter.tell(self.asked, objective, features_of(known), said, **numbers)
+        # Those that failed did nothing for the archive, and are worse than all: the strategy moves away from them.
+        has_failed = np.array([answer.judgement.fitness is None for answer in answers])
+        features = np.empty((len(answers), len(self.ranges)))
+        features[has_failed] = np.mean(self.ranges, axis=1)
+        features[~has_failed] = features_of(known)
+        status, value = np.zeros(len(answers), dtype=np.int32), np.empty(len(answers))
+        status[~has_failed], value[~has_failed] = said["status"], said["value"]
+        value[has_failed] = np.min(said["value"]) - 1.0
+        numbers = {EVALUATION: [answer.number for answer in answers]}
+        self.emitter.tell(self.asked, penalised(answers), features, {"status": status, "value": value}, **numbers)
 
 
 class CmaMae(CmaMe):
