@@ -29,20 +29,7 @@ def test_searches_find_what_they_must_and_the_page_quotes_it(scene: str, tmp_pat
         assert (PAGE.parent / f"tuning_{scene}.png").is_file()
 
 
-# What is not so, as the page says, too.
-NOT_SHOWN = {
-    "longest_runs": "one of ten searches ends at 898 ms, not above 900 ms",
-    "phototaxis": "60 evaluations do not show that CMA-ES is better than random search: p = 0.43",
-}
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [
-        pytest.param(name, marks=pytest.mark.xfail(strict=True, reason=NOT_SHOWN[name])) if name in NOT_SHOWN else name
-        for name in SCENES
-    ],
-)
+@pytest.mark.parametrize("scene", SCENES)
 def test_page_says_that_every_search_found_it(scene: str) -> None:
     lines = quoted(PAGE, scene)
     assert [line for line in lines if line.endswith(": NO")] == []

@@ -27,9 +27,15 @@ from pogosim.utils import load_dataframe
 
 ARENA = "arena_file"
 RUN_FAILED = "a run failed"  # how such problems begin
+VALUES = re.compile(r"'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?")  # in which messages of one kind differ
 WHEN = re.compile(r"^\[[^\]]*\] (?=\[)")  # the date of a line in the log
 
 log = logging.getLogger("pogobatch")
+
+
+def kind_of(message: str) -> str:
+    """Return a message of a simulator without the values in it, in which candidates differ."""
+    return VALUES.sub("...", message)
 
 
 @dataclass(frozen=True)
@@ -96,7 +102,7 @@ class Runs:
         world = world_digest(configuration.entries, (Path.cwd(), beside), self.settings.digests)
         self.digests = {"configuration": world, "program": self.settings.program_digest}
         self.simulator_s = 0.0
-        self.warned: dict[str, None] = {}
+        self.warned: dict[str, str] = {}  # the first warning of each kind
         self.do: Do | None = None
 
     @contextlib.contextmanager
@@ -186,9 +192,9 @@ class Runs:
             lines = [line for line in outcome.log.splitlines() if line.strip()]
             said = place_in(Path(outcome.folder)).sub("the configuration", WHEN.sub("", lines[-1])) if lines else ""
             return f"{RUN_FAILED}: {outcome.problem}{': ' if said else ''}{said}"
-        new = [line for line in outcome.log.splitlines() if line not in self.warned]
-        self.warned.update(dict.fromkeys(new))
-        report_warnings(new)
+        new = {kind_of(line): line for line in outcome.log.splitlines() if kind_of(line) not in self.warned}
+        self.warned.update(new)
+        report_warnings(new.values())
         return ""
 
     def finished(self, one: Wanted, target: tuple[Path, str] | None) -> Finished:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import logging
-import re
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from pogosim.batch.rows import RUN_FAILED, Runs
+from pogosim.batch.rows import RUN_FAILED, Runs, kind_of
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import Evaluation, Journal
 from pogosim.optimize.objective import Judgement, Objective
@@ -20,7 +19,6 @@ from pogosim.optimize.optimizers.base import Answer, Floats, Optimizer
 from pogosim.optimize.settings import FRESH, Settings
 from pogosim.optimize.variables import Space, Values, as_json
 
-VALUES = re.compile(r"'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?")  # in which failures of runs of one kind differ
 MOST_PROBLEMS = 10  # that are mentioned
 
 log = logging.getLogger("pogosim.optimize")
@@ -158,7 +156,7 @@ class Search:
 
     def warn(self, problem: str) -> None:
         """Say why a candidate has failed, once for each reason."""
-        kind = VALUES.sub("...", problem) if problem.startswith(RUN_FAILED) else problem
+        kind = kind_of(problem) if problem.startswith(RUN_FAILED) else problem
         if not problem or kind in self.problems or len(self.problems) > MOST_PROBLEMS:
             return
         self.problems.add(kind)
