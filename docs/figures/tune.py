@@ -22,6 +22,7 @@ from quotes import quote
 from tuning import SCENES
 
 PAGE = DOCS / "optimization.md"
+NAMES = ("tuning_archive.png", "tuning_phototaxis.png")  # pictures that --keep draws
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

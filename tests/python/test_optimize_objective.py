@@ -109,7 +109,10 @@ def test_objective_is_a_number_or_a_problem(
         ),
         ("def objective_fn(df): return 1.0\ndef fd_fn(df): return 0.5", (1.0, {"feature 1": 0.5}, "")),
         ("def objective_fn(df): return 1.0, [9]\ndef fd_fn(df): return {'own': 2}", (1.0, {"own": 2.0}, "")),
-        ("def objective_fn(df): return 1.0", (None, {}, "the objective returned no features")),
+        (
+            "def objective_fn(df): return 1.0",
+            (None, {}, "the objective returned no features; write fd_fn(df), or return (fitness, features)"),
+        ),
         (
             "def objective_fn(df): return 1.0\ndef fd_fn(df): return []",
             (None, {}, "the feature function returned no features"),

@@ -110,9 +110,9 @@ def by_threads(workers: int, threads: int) -> Iterator[Do]:
     pool = ThreadPoolExecutor(threads)
 
     def do(tasks: Sequence[Task]) -> Outcomes:
-        futures = [pool.submit(do_run, task) for task in tasks]
         is_done = False
         try:
+            futures = [pool.submit(do_run, task) for task in tasks]
             for future in as_completed(futures):
                 yield future.result()
             is_done = True
@@ -122,6 +122,9 @@ def by_threads(workers: int, threads: int) -> Iterator[Do]:
 
     try:
         yield do
+    except BaseException:
+        simulators.stop()  # also if Ctrl-C comes before the first outcome
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
