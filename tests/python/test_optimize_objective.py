@@ -29,6 +29,7 @@ def fd_fn(df: pd.DataFrame) -> np.ndarray:
     vals = np.asarray(msd_df["MSD"], dtype=float)
     return np.array([float(np.max(vals)), float(np.std(vals, ddof=0))], dtype=float)
 '''
+NO_FEATURES = "the objective returned no features; write fd_fn(df), or return (fitness, features)"
 ROWS = pd.DataFrame({"time": [0.0, 1.0], "x": [1.0, 3.0]})
 
 
@@ -111,7 +112,7 @@ def test_objective_is_a_number_or_a_problem(
         ("def objective_fn(df): return 1.0, [9]\ndef fd_fn(df): return {'own': 2}", (1.0, {"own": 2.0}, "")),
         (
             "def objective_fn(df): return 1.0",
-            (None, {}, "the objective returned no features; write fd_fn(df), or return (fitness, features)"),
+            (None, {}, NO_FEATURES),
         ),
         (
             "def objective_fn(df): return 1.0\ndef fd_fn(df): return []",
