@@ -90,13 +90,13 @@ void warm_up(Simulation& simulation) {
 
 /// A robot alone has all code and libraries loaded, which then counts for nobody's memory.
 void load_code() {
-    Simulation simulation(scenario_of(1), {});
+    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(1), {});
     warm_up(simulation);
 }
 
 Result run_once(int robots) {
     double const bytes_before = resident_bytes();
-    Simulation simulation(scenario_of(robots), {.measure_stages = true});
+    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(robots), {.measure_stages = true});
     warm_up(simulation);
     StageClock const warm = simulation.stages();
     Result result;
@@ -110,7 +110,7 @@ Result run_once(int robots) {
         result.stage_s[s] = simulation.stages().spent_s(static_cast<Stage>(s)) - warm.spent_s(static_cast<Stage>(s));
     }
     result.bytes_per_robot =
-        (resident_bytes() - bytes_before) / robots - static_cast<double>(Programs::user_data_bytes());
+        (resident_bytes() - bytes_before) / robots - static_cast<double>(*pogosim_this_program.user_data_bytes);
     result.hash = hash_of(simulation.world());
     return result;
 }

@@ -9,12 +9,12 @@ include(CMakePackageConfigHelpers)
 if(SKBUILD)
     # A Python package: in site-packages/pogosim/simulator/lib, with pyarrow beside pogosim. Wheels cannot hold links, so the
     # library has no versions in its name.
-    set_target_properties(pogosim PROPERTIES
+    set_target_properties(pogosim_library PROPERTIES
         INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>/../../../pyarrow")
 else()
     # The installed library finds what is not in a system folder where it was at build time. CMake leaves folders inside of
     # the project out of that, such as the one of the Arrow in .venv, so this one is named.
-    set_target_properties(pogosim PROPERTIES
+    set_target_properties(pogosim_library PROPERTIES
         VERSION "${PROJECT_VERSION}"
         SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
         INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}"
@@ -22,7 +22,8 @@ else()
 endif()
 target_include_directories(pogosim INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 
-install(TARGETS pogosim EXPORT pogosimTargets
+install(TARGETS pogosim pogosim_part_of_programs pogosim_library EXPORT pogosimTargets
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(TARGETS pogosim_window LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")  # libpogosim looks for it beside itself
@@ -62,6 +63,9 @@ function(pogosim_build_settings folder)
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.mk.in" "${folder}/pogosim.mk" @ONLY)
 endfunction()
 
+if(APPLE)
+    set(symbol_prefix "_")
+endif()
 file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 set(prefix "\${pcfiledir}/${to_prefix}")
 set(includedir "${prefix}${CMAKE_INSTALL_INCLUDEDIR}")
@@ -74,9 +78,9 @@ install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" "${PROJECT_BINARY_DIR}/cm
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 set(includedir "${PROJECT_SOURCE_DIR}/include")
-get_target_property(libdir pogosim LIBRARY_OUTPUT_DIRECTORY)
+get_target_property(libdir pogosim_library LIBRARY_OUTPUT_DIRECTORY)
 if(NOT libdir)
-    get_target_property(libdir pogosim BINARY_DIR)
+    get_target_property(libdir pogosim_library BINARY_DIR)
 endif()
 set(interfacedir "${PROJECT_SOURCE_DIR}/src/interface")
 set(shared_state "${PROJECT_BINARY_DIR}/tools/pogosim-shared-state")

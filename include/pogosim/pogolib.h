@@ -31,8 +31,13 @@ extern "C++" {
 #define POGOLIB_RELEASE_VERSION "v2.6"
 
 // A variable of which each robot has its own: the simulator puts in the value of the robot that is running.
-// Thread-local, so that robots can run on several threads.
+// Thread-local, so that robots can run on several threads; the model makes each access a single instruction, in shared
+// objects, too.
+#ifdef __ELF__
+#define POGO_PER_ROBOT __thread __attribute__((tls_model("initial-exec")))
+#else
 #define POGO_PER_ROBOT __thread
+#endif
 #define POGO_BEGIN_API _Pragma("GCC visibility push(default)")
 #define POGO_END_API _Pragma("GCC visibility pop")
 

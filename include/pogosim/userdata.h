@@ -36,12 +36,12 @@
     extern char REGISTER_USERDATA_once; \
     POGO_ASK_FOR_USERDATA(__COUNTER__)  \
     POGO_MAYBE_SEMICOLON
-/// Defines `mydata`; once per program. Without it, the linker reports `REGISTER_USERDATA_once` as undefined.
+/// Tells the simulator how large user data are; once per program. Without it, the linker reports
+/// `REGISTER_USERDATA_once` as undefined.
 #define REGISTER_USERDATA(T)                     \
     POGO_SHARED char REGISTER_USERDATA_once = 0; \
     POGO_SHARED size_t UserdataSize = sizeof(T); \
     POGO_CONSTRUCT_USERDATA(T)                   \
-    POGO_PER_ROBOT T* mydata = 0;                \
     POGO_MAYBE_SEMICOLON
 
 // In C++ the user data of each robot are constructed, as the global of a real robot is.
@@ -61,8 +61,8 @@ inline void operator delete(void*, pogosim_place) noexcept {}
 #define POGO_CONSTRUCT_USERDATA(T)
 #endif
 
-// The library has a `mydata` for programs without user data, so without REGISTER_USERDATA a program would link, but
-// robots would have no memory to write to. An unused constant refers to a symbol that only REGISTER_USERDATA defines.
+// The library has the `mydata` of all programs, so without REGISTER_USERDATA a program would link, but robots would
+// have no memory to write to. An unused constant refers to a symbol that only REGISTER_USERDATA defines.
 #define POGO_ASK_FOR_USERDATA(number) POGO_ASK_FOR_USERDATA_RAW(number)
 #define POGO_ASK_FOR_USERDATA_RAW(number) \
     __attribute__((used)) static char const* const pogo_user_data_##number = &REGISTER_USERDATA_once;

@@ -1,7 +1,6 @@
 #include "app/restart.hpp"
 
 #include <fmt/format.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -62,14 +61,6 @@ std::optional<Restart> restart_of(std::string const& text) {
     return restart;
 }
 
-/// Timers outlive execv(). Before the next run has its handlers, they would end it.
-void stop_timers() {
-    itimerval const none = {};
-    for (auto const timer : {ITIMER_REAL, ITIMER_VIRTUAL, ITIMER_PROF}) {
-        setitimer(timer, &none, nullptr);
-    }
-}
-
 }  // namespace
 
 std::optional<Restart> take_restart() {
@@ -86,7 +77,6 @@ void restart_program(char** argv, std::filesystem::path const& folder, Restart c
     std::error_code ignored;
     std::filesystem::current_path(folder, ignored);  // the program may have left it
     setenv(kVariable, text_of(restart).c_str(), /*overwrite=*/1);
-    stop_timers();
 #ifdef __linux__
     execv("/proc/self/exe", argv);
 #endif

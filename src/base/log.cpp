@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@ namespace {
 
 constexpr auto kDatedPattern = "[%Y-%m-%d %H:%M:%S.%e] [%^%l%$] %v";
 constexpr auto kMinimalPattern = "%v";
+constexpr auto kRobotLogger = "robot";
 constexpr std::chrono::seconds kFlushPeriod{2};
 
 /// Standard output below `warn`, standard error from there on.
@@ -55,24 +57,6 @@ private:
     spdlog::sinks::stderr_color_sink_st error_;
 };
 
-struct Loggers {
-    std::shared_ptr<spdlog::logger> simulator;
-    std::shared_ptr<spdlog::logger> robots;
-    LockedFile lock{};  // of the console file
-};
-
-/// The first failure to write the console file; empty: none.
-std::string& first_failure() {
-    static std::string text;
-    return text;
-}
-
-void keep_first_failure(std::string const& text) {
-    if (first_failure().empty()) {
-        first_failure() = text;
-    }
-}
-
 /// Each message is a single line, whatever names it quotes.
 class OneLineLogger final : public spdlog::logger {
 public:
@@ -87,18 +71,45 @@ private:
     }
 };
 
+/// Passes lines on to whoever wants them.
+class LineSink final : public spdlog::sinks::sink {
+public:
+    explicit LineSink(std::function<void(LogLine const&)> take) : take_(std::move(take)) {}
+    void log(spdlog::details::log_msg const& message) override {
+        take_({.is_of_robot = std::string_view(message.logger_name.data(), message.logger_name.size()) == kRobotLogger,
+               .level = message.level,
+               .text = std::string(message.payload.data(), message.payload.size())});
+    }
+    void flush() override {}
+    void set_pattern(std::string const& /*pattern*/) override {}
+    void set_formatter(std::unique_ptr<spdlog::formatter> /*formatter*/) override {}
+
+private:
+    std::function<void(LogLine const&)> take_;
+};
+
 template <class Logger>
-std::shared_ptr<spdlog::logger> make_logger(char const* name, std::vector<spdlog::sink_ptr> const& sinks) {
+std::shared_ptr<spdlog::logger> make_logger(char const* name, std::vector<spdlog::sink_ptr> const& sinks,
+                                            std::string& first_failure) {
     auto logger = std::make_shared<Logger>(name, sinks.begin(), sinks.end());
     logger->set_level(spdlog::level::debug);
     logger->flush_on(spdlog::level::warn);
-    logger->set_error_handler(keep_first_failure);
+    logger->set_error_handler([&first_failure](std::string const& text) {
+        if (first_failure.empty()) {
+            first_failure = text;
+        }
+    });
     return logger;
 }
 
 spdlog::sink_ptr make_console(LogOptions const& options) {
-    auto console = std::make_shared<ConsoleSink>();
-    console->set_pattern(options.minimal ? kMinimalPattern : kDatedPattern);
+    spdlog::sink_ptr console;
+    if (options.on_line) {
+        console = std::make_shared<LineSink>(options.on_line);
+    } else {
+        console = std::make_shared<ConsoleSink>();
+        console->set_pattern(options.minimal ? kMinimalPattern : kDatedPattern);
+    }
     console->set_level(options.quiet     ? spdlog::level::warn
                        : options.verbose ? spdlog::level::debug
                                          : spdlog::level::info);
@@ -155,54 +166,78 @@ spdlog::sink_ptr make_file(LogOptions const& options, LockedFile& lock) {
     }
 }
 
-Loggers make_loggers(LogOptions const& options) {
+}  // namespace
+
+struct Log::Loggers {
+    std::shared_ptr<spdlog::logger> simulator;
+    std::shared_ptr<spdlog::logger> robots;
+    LockedFile lock{};            // of the console file
+    std::string first_failure{};  // to write the console file; empty: none
+    std::chrono::steady_clock::time_point next_flush = std::chrono::steady_clock::now() + kFlushPeriod;
+};
+
+Log::Log(LogOptions const& options) : loggers_(std::make_unique<Loggers>()) {
     std::vector<spdlog::sink_ptr> simulator_sinks{make_console(options)};
     std::vector<spdlog::sink_ptr> robot_sinks;
     if (options.show_robot_lines) {
         robot_sinks.push_back(simulator_sinks.front());
     }
-    LockedFile lock;
     if (!options.file.empty()) {
-        simulator_sinks.push_back(make_file(options, lock));
+        simulator_sinks.push_back(make_file(options, loggers_->lock));
         robot_sinks.push_back(simulator_sinks.back());
     }
-    return {make_logger<OneLineLogger>("pogosim", simulator_sinks), make_logger<spdlog::logger>("robot", robot_sinks),
-            std::move(lock)};
+    loggers_->simulator = make_logger<OneLineLogger>("pogosim", simulator_sinks, loggers_->first_failure);
+    loggers_->robots = make_logger<spdlog::logger>(kRobotLogger, robot_sinks, loggers_->first_failure);
 }
 
-Loggers& loggers() {
-    static Loggers instance = make_loggers({});
-    return instance;
+Log::~Log() = default;
+
+/// The log of this thread.
+struct CurrentLog {
+    static std::unique_ptr<Log>& of_process() {
+        static std::unique_ptr<Log> log = std::make_unique<Log>(LogOptions{});
+        return log;
+    }
+    static Log::Loggers& loggers() { return *(of_thread != nullptr ? *of_thread : *of_process()).loggers_; }
+
+    static constinit thread_local Log* of_thread;  // null: that of the process
+};
+constinit thread_local Log* CurrentLog::of_thread = nullptr;
+
+LogScope::LogScope(Log* log) : before_(CurrentLog::of_thread) {
+    CurrentLog::of_thread = log;
 }
 
-}  // namespace
+LogScope::~LogScope() {
+    CurrentLog::of_thread = before_;
+}
 
 void start_logging(LogOptions const& options) {
-    first_failure().clear();
-    loggers().lock = LockedFile();  // this process may open the same console file again
-    loggers() = make_loggers(options);
+    CurrentLog::of_process().reset();  // this process may open the same console file again
+    CurrentLog::of_process() = std::make_unique<Log>(LogOptions{});
+    CurrentLog::of_process() = std::make_unique<Log>(options);
 }
 
 spdlog::logger& log() {
-    return *loggers().simulator;
+    return *CurrentLog::loggers().simulator;
 }
 spdlog::logger& robot_log() {
-    return *loggers().robots;
+    return *CurrentLog::loggers().robots;
 }
 
 void flush_logs() {
-    loggers().simulator->flush();
-    loggers().robots->flush();
+    CurrentLog::loggers().simulator->flush();
+    CurrentLog::loggers().robots->flush();
 }
 
 void silence_logs() {
-    loggers().simulator->set_level(spdlog::level::off);
-    loggers().robots->set_level(spdlog::level::off);
+    CurrentLog::loggers().simulator->set_level(spdlog::level::off);
+    CurrentLog::loggers().robots->set_level(spdlog::level::off);
 }
 
 void flush_logs_if_due() {
     using Clock = std::chrono::steady_clock;
-    static Clock::time_point next = Clock::now() + kFlushPeriod;
+    Clock::time_point& next = CurrentLog::loggers().next_flush;
     if (Clock::now() >= next) {
         flush_logs();
         next = Clock::now() + kFlushPeriod;
@@ -211,8 +246,8 @@ void flush_logs_if_due() {
 
 void check_logs() {
     flush_logs();
-    if (!first_failure().empty()) {
-        throw OutputError("cannot write the console file (console_filename): " + first_failure());
+    if (std::string const& failure = CurrentLog::loggers().first_failure; !failure.empty()) {
+        throw OutputError("cannot write the console file (console_filename): " + failure);
     }
 }
 

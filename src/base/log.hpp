@@ -1,22 +1,62 @@
 // The console log. Two loggers share the sinks: `log()` speaks for the simulator, `robot_log()` for user programs'
 // printf lines. Debug and information go to the standard output, warnings and errors to the standard error.
+//
+// A run may have a log of its own, see LogScope; all others share that of the process.
 #pragma once
 
 #include <spdlog/logger.h>
 
+#include <functional>
+#include <memory>
 #include <string>
 
 namespace pogosim {
+
+struct LogLine {
+    bool is_of_robot = false;  // printed by a program
+    int level = 0;             // as of spdlog: 1 debug, 2 information, 3 warning, 4 error
+    std::string text{};
+};
 
 struct LogOptions {
     bool verbose = false;          // debug messages on console and file
     bool quiet = false;            // console: warnings and errors only; takes precedence over verbose
     bool show_robot_lines = true;  // printf lines of robots on the console (the file always has them)
     bool minimal = false;          // console lines without date and level
-    std::string file;              // path of the console file; empty: none
+    std::string file{};            // path of the console file; empty: none
+    // Gets the lines instead of the console; empty: nobody does.
+    std::function<void(LogLine const& line)> on_line{};
 };
 
-/// Installs loggers and sinks. Parent folders of the file are created. Throws OutputError if it cannot be opened.
+/// Loggers and their sinks.
+class Log {
+public:
+    /// Parent folders of the file are created. Throws OutputError if it cannot be opened.
+    explicit Log(LogOptions const& options);
+    ~Log();
+    Log(Log const&) = delete;
+    Log& operator=(Log const&) = delete;
+
+private:
+    friend class LogScope;
+    friend struct CurrentLog;
+    struct Loggers;
+    std::unique_ptr<Loggers> loggers_;
+};
+
+/// As long as this lives, what follows is about this log in this thread; null: that of the process.
+class LogScope {
+public:
+    explicit LogScope(Log* log);
+    ~LogScope();
+    LogScope(LogScope const&) = delete;
+    LogScope& operator=(LogScope const&) = delete;
+
+private:
+    Log* before_;
+};
+
+/// Gives the process another log. Throws like Log's constructor.
 void start_logging(LogOptions const& options);
 
 /// Usable before start_logging: messages from level info on then go to the console.

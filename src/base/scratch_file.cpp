@@ -6,35 +6,63 @@
 #include <atomic>
 #include <climits>
 #include <cstring>
+#include <utility>
 
 namespace pogosim {
 
 namespace {
 
-struct Scratch {
-    std::array<char, PATH_MAX> path{};  // plain memory: the heap may be destroyed
-    std::atomic<pid_t> owner = 0;       // 0: no file
+// Plain memory for signal handlers: the heap may be destroyed. Files beyond are removed by their objects alone.
+constexpr int kSlots = 64;
+struct Slot {
+    std::atomic<bool> taken = false;
+    std::atomic<pid_t> owner = 0;  // 0: no file
+    std::array<char, PATH_MAX> path{};
 };
+std::array<Slot, kSlots> slots;
 
-Scratch scratch;
+int register_path(std::filesystem::path const& path, pid_t owner) {
+    if (path.native().size() >= PATH_MAX) {
+        return -1;
+    }
+    for (int i = 0; i < kSlots; ++i) {
+        Slot& slot = slots.at(static_cast<std::size_t>(i));
+        if (!slot.taken.exchange(true)) {
+            std::strcpy(slot.path.data(), path.c_str());
+            slot.owner = owner;
+            return i;
+        }
+    }
+    return -1;
+}
 
 }  // namespace
 
-void remember_scratch_file(std::filesystem::path const& path) {
-    forget_scratch_file();
-    if (path.native().size() < scratch.path.size()) {
-        std::strcpy(scratch.path.data(), path.c_str());
-        scratch.owner = getpid();
+ScratchFile::ScratchFile(std::filesystem::path path)
+    : path_(std::move(path)), owner_(getpid()), slot_(register_path(path_, owner_)) {}
+
+void ScratchFile::release() noexcept {
+    if (slot_ >= 0) {
+        Slot& slot = slots.at(static_cast<std::size_t>(slot_));
+        slot.owner = 0;
+        slot.taken = false;
+        slot_ = -1;
     }
+    path_.clear();
 }
 
-void forget_scratch_file() {
-    scratch.owner = 0;
+void ScratchFile::remove() noexcept {
+    if (!path_.empty() && owner_ == getpid()) {
+        unlink(path_.c_str());
+    }
+    release();
 }
 
-void remove_scratch_file() noexcept {
-    if (scratch.owner.exchange(0) == getpid()) {
-        unlink(scratch.path.data());
+void remove_scratch_files() noexcept {
+    for (Slot& slot : slots) {
+        if (slot.owner.exchange(0) == getpid()) {
+            unlink(slot.path.data());
+        }
     }
 }
 

@@ -1,18 +1,36 @@
-// The file that a run writes next to its data file before replacing it. One at a time; it must not be left behind, even
-// if the program ends in a signal handler.
+// A file that a run writes next to its data file before replacing it. It must not be left behind, even if the program
+// ends in a signal handler.
 #pragma once
+
+#include <sys/types.h>
 
 #include <filesystem>
 
 namespace pogosim {
 
-/// Registers the scratch file.
-void remember_scratch_file(std::filesystem::path const& path);
+/// Removed with this object, and by remove_scratch_files(), if this process made it.
+class ScratchFile {
+public:
+    /// None.
+    ScratchFile() = default;
+    /// Registers a file that is there.
+    explicit ScratchFile(std::filesystem::path path);
+    ~ScratchFile() { remove(); }
+    ScratchFile(ScratchFile const&) = delete;
+    ScratchFile& operator=(ScratchFile const&) = delete;
 
-/// The scratch file has become a user's file, or is gone.
-void forget_scratch_file();
+    /// The file has become a user's file, or is gone.
+    void release() noexcept;
 
-/// Removes it, if there is one and this process made it. May be called in a signal handler.
-void remove_scratch_file() noexcept;
+    void remove() noexcept;
+
+private:
+    std::filesystem::path path_;  // empty: none
+    pid_t owner_ = 0;
+    int slot_ = -1;
+};
+
+/// Removes those of this process. May be called in a signal handler.
+void remove_scratch_files() noexcept;
 
 }  // namespace pogosim

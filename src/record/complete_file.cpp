@@ -65,14 +65,12 @@ CompleteFile::CompleteFile(std::filesystem::path path, int descriptor)
       stream_(std::make_shared<DescriptorStream>(descriptor)) {
     try_lock(descriptor);  // it will be the data file
     if (!path_.empty()) {
-        remember_scratch_file(path_);
+        scratch_.emplace(path_);
     }
 }
 
 CompleteFile::~CompleteFile() {
-    if (!path_.empty()) {
-        remove_scratch_file();
-    }
+    scratch_.reset();
     if (getpid() == owner_) {
         flock(descriptor_, LOCK_UN);  // children of this process may still have the file open
     }
@@ -137,11 +135,9 @@ arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::copy_with(std::shared
     auto options = arrow::ipc::IpcReadOptions::Defaults();
     options.use_threads = false;
     ARROW_ASSIGN_OR_RAISE(auto const reader, arrow::ipc::RecordBatchFileReader::Open(input, options));
-    // There is one scratch file at a time. Without a name, this one goes with the process.
-    if (!path_.empty()) {
-        remove_scratch_file();
-        path_.clear();
-    }
+    // Without a name, this one goes with the process.
+    scratch_.reset();
+    path_.clear();
     ARROW_ASSIGN_OR_RAISE(auto copy, start(unfinished, schema));
     for (int i = 0; i < reader->num_record_batches(); ++i) {
         ARROW_ASSIGN_OR_RAISE(auto const batch, reader->ReadRecordBatch(i));
@@ -193,7 +189,7 @@ Status CompleteFile::take_the_place_of(LockedFile const& unfinished) {
     int reason = ENOENT;
     if (can_be_renamed_to(unfinished)) {
         if (std::rename(path_.c_str(), unfinished.path().c_str()) == 0) {
-            forget_scratch_file();
+            scratch_->release();
             if (synced_) {
                 sync_folder_of(unfinished.path());
             }

@@ -9,8 +9,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/locked_file.hpp"
+#include "base/scratch_file.hpp"
 #include "record/descriptor_stream.hpp"
 
 namespace pogosim {
@@ -58,6 +60,7 @@ private:
     arrow::Result<std::filesystem::path> copy_to_new(std::filesystem::path const& path, int descriptor) const;
 
     std::filesystem::path path_;  // beside the unfinished one; empty: it has no name
+    std::optional<ScratchFile> scratch_;
     int descriptor_;
     pid_t owner_;
     bool synced_ = false;

@@ -3,12 +3,15 @@
 #include <concepts>
 #include <cstring>
 #include <limits>
+#include <string>
 
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
+using pogosim::BoundVariable;
 using pogosim::context;
+using pogosim::ParameterSource;
 using pogosim::require_argument;
 using pogosim::require_robot;
 using pogosim::without_exceptions;
@@ -21,84 +24,116 @@ void check_call(char const* function, void const* variable, char const* name) {
     require_argument(name, function, "the name");
 }
 
+// How values of each type get into a variable. An absent value changes nothing.
+
+void assign_bool(ParameterSource& source, std::string const& name, void* variable, std::size_t /*size*/) {
+    if (auto const found = source.boolean(name)) {
+        *static_cast<bool*>(variable) = *found;
+    }
+}
+
 template <std::integral T>
-void read_integer(char const* function, T* variable, char const* name, T default_value) {
-    check_call(function, variable, name);
-    without_exceptions([&] {
-        auto const found =
-            context.services->parameters->integer(name, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
-        *variable = found ? static_cast<T>(*found) : default_value;
-    });
+void assign_integer(ParameterSource& source, std::string const& name, void* variable, std::size_t /*size*/) {
+    if (auto const found = source.integer(name, std::numeric_limits<T>::min(), std::numeric_limits<T>::max())) {
+        *static_cast<T*>(variable) = static_cast<T>(*found);
+    }
 }
 
 template <std::floating_point T>
-void read_number(char const* function, T* variable, char const* name, T default_value) {
-    check_call(function, variable, name);
-    without_exceptions([&] {
-        auto const found = context.services->parameters->number(name, std::numeric_limits<T>::max());
-        *variable = found ? static_cast<T>(*found) : default_value;
-    });
+void assign_number(ParameterSource& source, std::string const& name, void* variable, std::size_t /*size*/) {
+    if (auto const found = source.number(name, std::numeric_limits<T>::max())) {
+        *static_cast<T*>(variable) = static_cast<T>(*found);
+    }
 }
 
 template <std::floating_point T>
-void read_numbers(char const* function, T* array, char const* name, std::size_t size) {
+void assign_numbers(ParameterSource& source, std::string const& name, void* array, std::size_t size) {
+    if (auto const found = source.numbers(name, size, std::numeric_limits<T>::max())) {
+        std::transform(found->begin(), found->end(), static_cast<T*>(array),
+                       [](double value) { return static_cast<T>(value); });
+    }
+}
+
+void assign_text(ParameterSource& source, std::string const& name, void* text, std::size_t size) {
+    auto const found = source.text(name);
+    if (found && size > 0) {
+        std::size_t const length = std::min(found->size(), size - 1);
+        std::memcpy(text, found->data(), length);
+        static_cast<char*>(text)[length] = '\0';
+    }
+}
+
+/// Only what lives as long as the run may be set later: not a variable on the stack.
+bool is_in_program(void const* variable) {
+    return std::ranges::any_of(context.services->program_memory, [variable](auto const& memory) {
+        return variable >= memory.data() && variable < memory.data() + memory.size();
+    });
+}
+
+void bind(BoundVariable const& bound) {
+    bound.read(*context.services->parameters, bound.name, bound.variable, bound.size);
+    if (is_in_program(bound.variable)) {
+        context.services->bound_variables.push_back(bound);
+    }
+}
+
+template <class T>
+void read_value(char const* function, decltype(BoundVariable::read) read, T* variable, char const* name,
+                T default_value) {
+    check_call(function, variable, name);
+    without_exceptions([&] {
+        *variable = default_value;
+        bind({.name = name, .read = read, .variable = variable});
+    });
+}
+
+template <class T>
+void read_several(char const* function, decltype(BoundVariable::read) read, T* array, char const* name,
+                  std::size_t size) {
     check_call(function, array, name);
-    without_exceptions([&] {
-        if (auto const found = context.services->parameters->numbers(name, size, std::numeric_limits<T>::max())) {
-            std::transform(found->begin(), found->end(), array, [](double value) { return static_cast<T>(value); });
-        }
-    });
+    without_exceptions([&] { bind({.name = name, .read = read, .variable = array, .size = size}); });
 }
 
 }  // namespace
 
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value) {
-    check_call(__func__, variable, name);
-    without_exceptions([&] { *variable = context.services->parameters->boolean(name).value_or(default_value); });
+    read_value(__func__, assign_bool, variable, name, default_value);
 }
 
 void init_float_from_configuration(float* variable, char const* name, float const default_value) {
-    read_number(__func__, variable, name, default_value);
+    read_value(__func__, assign_number<float>, variable, name, default_value);
 }
 void init_double_from_configuration(double* variable, char const* name, double const default_value) {
-    read_number(__func__, variable, name, default_value);
+    read_value(__func__, assign_number<double>, variable, name, default_value);
 }
 void init_int32_from_configuration(int32_t* variable, char const* name, int32_t const default_value) {
-    read_integer(__func__, variable, name, default_value);
+    read_value(__func__, assign_integer<int32_t>, variable, name, default_value);
 }
 void init_uint32_from_configuration(uint32_t* variable, char const* name, uint32_t const default_value) {
-    read_integer(__func__, variable, name, default_value);
+    read_value(__func__, assign_integer<uint32_t>, variable, name, default_value);
 }
 void init_int16_from_configuration(int16_t* variable, char const* name, int16_t const default_value) {
-    read_integer(__func__, variable, name, default_value);
+    read_value(__func__, assign_integer<int16_t>, variable, name, default_value);
 }
 void init_uint16_from_configuration(uint16_t* variable, char const* name, uint16_t const default_value) {
-    read_integer(__func__, variable, name, default_value);
+    read_value(__func__, assign_integer<uint16_t>, variable, name, default_value);
 }
 void init_int8_from_configuration(int8_t* variable, char const* name, int8_t const default_value) {
-    read_integer(__func__, variable, name, default_value);
+    read_value(__func__, assign_integer<int8_t>, variable, name, default_value);
 }
 void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t const default_value) {
-    read_integer(__func__, variable, name, default_value);
+    read_value(__func__, assign_integer<uint8_t>, variable, name, default_value);
 }
 
 void init_float_array_from_configuration(float* array, char const* name, size_t const size) {
-    read_numbers(__func__, array, name, size);
+    read_several(__func__, assign_numbers<float>, array, name, size);
 }
 void init_double_array_from_configuration(double* array, char const* name, size_t const size) {
-    read_numbers(__func__, array, name, size);
+    read_several(__func__, assign_numbers<double>, array, name, size);
 }
 
 void init_string_from_configuration(char* text, char const* name, size_t const size) {
-    check_call(__func__, text, name);
-    without_exceptions([&] {
-        auto const found = context.services->parameters->text(name);
-        if (found && size > 0) {
-            std::size_t const length = std::min(found->size(), size - 1);
-            std::memcpy(text, found->data(), length);
-            text[length] = '\0';
-        }
-    });
+    read_several(__func__, assign_text, text, name, size);
 }
 
 void refuse_parameter(char const* name, char const* expected) {

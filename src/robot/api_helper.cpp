@@ -1,13 +1,12 @@
-// pogolib/helper.h, and three functions of the C library: rand() and srand(), which on simulated robots draw from the
-// robot's own stream as they do on real ones, and exit(), which ends the run so that its data file is complete.
-// Programs call them by their usual names; this library comes before libc in the search order.
-#include <dlfcn.h>
-
+// pogolib/helper.h, and what the program's part of the simulator (src/program) makes of three functions of the C
+// library: rand() and srand() draw from the robot's own stream, as they do on real robots, and exit() ends the run so
+// that its data file is complete.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
+#include "pogosim/program.h"
 #include "robot/context.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/last_words.hpp"
@@ -38,17 +37,15 @@ pogosim::RandomStream& current_stream() {
 
 }  // namespace
 
-extern "C" {
-
-__attribute__((visibility("default"))) int rand(void) noexcept {
+int pogosim_rand() {
     return static_cast<int>(current_stream().bits() & static_cast<unsigned>(RAND_MAX));
 }
 
-__attribute__((visibility("default"))) void srand(unsigned seed) noexcept {
+void pogosim_srand(unsigned seed) {
     current_stream() = stream_of_seed(seed);
 }
 
-__attribute__((visibility("default"))) void exit(int status) noexcept {
+void pogosim_exit(int status) {
     char what[32];
     std::snprintf(what, sizeof(what), "called exit(%d)", status);
     auto const code = static_cast<pogosim::ExitCode>(status & 0xFF);
@@ -64,9 +61,7 @@ __attribute__((visibility("default"))) void exit(int status) noexcept {
     if (pogosim::run_stage() == pogosim::RunStage::before_main) {
         std::fprintf(stderr, "pogosim: the user program %s before main(). The run did not start.\n", what);
     }
-    reinterpret_cast<void (*)(int)>(dlsym(RTLD_NEXT, "exit"))(status);
-    std::abort();  // not reached
-}
+    std::exit(status);
 }
 
 void pogobot_init() {

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,6 +38,14 @@ public:
     virtual void check_range(std::string const& name, double value, double min, double max) = 0;
 };
 
+/// A variable of the program that was set to the value of a parameter, and can be set to another one.
+struct BoundVariable {
+    std::string name;  // of the parameter
+    void (*read)(ParameterSource& source, std::string const& name, void* variable, std::size_t size) = nullptr;
+    void* variable = nullptr;
+    std::size_t size = 1;  // of an array, or a text with its end
+};
+
 /// The user's columns and the row being filled.
 struct DataExport {
     std::vector<ColumnSpec> columns;
@@ -52,6 +62,8 @@ struct RunServices {
     ParameterSource* parameters = nullptr;
     std::uint32_t seed = 0;  // of the run
     DataExport data;
+    std::vector<std::span<std::byte>> program_memory{};  // its variables, and user data
+    std::vector<BoundVariable> bound_variables{};
     bool stop_requested = false;
     std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once
     std::vector<std::string_view> warned;           // formats of warn_once

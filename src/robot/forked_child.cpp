@@ -9,7 +9,9 @@
 
 #include "base/log.hpp"
 #include "robot/caught_signals.hpp"
+#include "robot/guard_state.hpp"
 #include "robot/last_words.hpp"
+#include "robot/process.hpp"
 
 namespace pogosim {
 
@@ -19,10 +21,15 @@ std::atomic<bool> forked = false;
 
 /// Otherwise the child would inherit the parent's unwritten output and also write it.
 void before_fork() {
-    std::fflush(nullptr);
+    if (process_is_ours() || active_guard != nullptr) {
+        std::fflush(nullptr);
+    }
 }
 
 void in_child() {
+    if (!process_is_ours() && active_guard == nullptr) {
+        return;  // a child of the host's own
+    }
     forked = true;
     if (run_stage() != RunStage::finished) {  // else the logs may be gone
         silence_logs();
@@ -33,7 +40,8 @@ void in_child() {
 }  // namespace
 
 void watch_for_forks() {
-    pthread_atfork(before_fork, nullptr, in_child);
+    static int const registered = pthread_atfork(before_fork, nullptr, in_child);
+    static_cast<void>(registered);
 }
 
 bool is_forked_child() {

@@ -1,20 +1,67 @@
-// State shared by the fence around user code (user_guard.cpp) and its watchdog (user_watch.cpp). Not included anywhere
-// else.
+// State of the fence around the user code of one run, shared by the fence (user_guard.cpp), its watch (user_watch.cpp)
+// and the last words (last_words.cpp). Not included anywhere else.
 #pragma once
 
 #include <pthread.h>
 
+#include <array>
 #include <atomic>
 #include <csetjmp>
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
 
+#include "robot/last_words.hpp"
 #include "robot/signal_text.hpp"
+#include "robot/thread_timer.hpp"
 #include "robot/user_guard.hpp"
 
 namespace pogosim {
 
-struct Guard {
-    pthread_t thread{};  // the simulator's: the only one that may jump
+/// A request to end the run.
+struct EndRequest {
+    SignalText<512> what;
+    ExitCode code = ExitCode::user_program;
+    bool in_other_thread = false;
+    double made_s = 0.0;
+};
+enum class RequestState { none, being_made, made };
+
+/// Of processor time.
+struct ProcessorWatch {
+    double timeout_s = 0.0;  // of one call of user code; 0: none
+    double period_s = 0.0;
+    unsigned long calls_seen = 0;
+    double seen_at_s = 0.0;  // processor time of the thread when the present call was first seen
+    bool retrying = false;
+};
+
+/// State since a stop was requested.
+struct WallClockWatch {
+    char const* request_name = "";  // "SIGTERM"
+    unsigned long calls_seen = 0;
+    double call_began_s = 0.0;  // of the call of user code that was seen last
+    bool told = false;
+};
+
+/// Over the data file, after user code was left by force.
+struct RescueWatch {
+    std::uint64_t writes_seen = 0;
+    double last_write_s = 0.0;
+};
+
+/// Where the data file stands, for last words. Plain memory: the heap may be destroyed.
+struct DataFileNote {
+    std::atomic<DataFileState> state = DataFileState::none;
+    std::array<char, 1024> path{};
+};
+
+struct RunGuard {
+    RunGuard(void const* code, double timeout_s);
+
+    pthread_t thread{};  // that works for the run: the only one that may jump
+    int depth = 0;       // of GuardedThread
+    void const* program_base = nullptr;
     sigjmp_buf return_point{};
     std::atomic<bool> inside = false;
     // Where a crash outside user code goes.
@@ -30,49 +77,80 @@ struct Guard {
     bool too_long = false;
     std::atomic<bool> crashed = false;
     std::atomic<bool> left_by_force = false;
+
+    // Requests to stop.
+    std::atomic<int> interrupts = 0;
+    std::atomic<double> interrupted_s = 0.0;  // when the last one came
+    EndRequest request;
+    std::atomic<RequestState> request_state = RequestState::none;
+    std::atomic<char const*> hurry_request = nullptr;  // of another thread: hurry_user_code() with this name
+
+    // The watch.
+    std::atomic<bool> is_watching = false;
+    ProcessorWatch busy;
+    WallClockWatch waiting;
+    RescueWatch rescue;
+    ThreadTimer processor_timer;
+    ThreadTimer wall_timer;
+
+    // Last words.
+    DataFileNote data_file;
+    LastWords last_words;
+    bool has_last_look = false;  // at destroyed memory, in give_up_rescue()
 };
 
-extern Guard guard;
+/// The run for which this thread works; null: none.
+extern constinit thread_local RunGuard* active_guard;
 
-bool on_simulator_thread();
+/// The run that an executable is for: signals from outside, and crashes of threads that nobody knows, are for it. Null
+/// before and after it, and in other processes.
+extern constinit std::atomic<RunGuard*> process_run;
 
-void set_reason(char const* text);
+void set_reason(RunGuard& guard, char const* text);
 
 /// User code is left in the middle, or the simulator has crashed. What follows, until the data file is complete, may
 /// crash or hang for ever: then the program ends with its last words, which are composed here. For signal handlers.
-void begin_rescue(char const* what, ExitCode code, bool in_other_thread);
+void begin_rescue(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread);
 
 /// The rescue has failed: memory is destroyed, or a lock held, beyond what the run needs to end well.
-[[noreturn]] void give_up_rescue();
+[[noreturn]] void give_up_rescue(RunGuard& guard);
 
-[[noreturn]] void jump_out(ExitCode code);
+[[noreturn]] void jump_out(RunGuard& guard, ExitCode code);
 
 /// False inside a library function such as malloc(), which may hold a lock that would never be released.
-bool is_in_user_program(void const* signal_context);
+bool is_in_user_program(RunGuard const& guard, void const* signal_context);
 
 /// Requests the end of the run from anywhere: another thread, or a signal handler. User code is aborted as soon as it
 /// holds no lock, as far as that can be determined; the simulator's own code runs to its end. Only the first request
 /// counts.
-void request_end(char const* what, ExitCode code, bool in_other_thread);
-
-struct EndRequest {
-    SignalText<512> what;
-    ExitCode code = ExitCode::user_program;
-    bool in_other_thread = false;
-    double made_s = 0.0;
-};
+void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread);
 
 /// Null while there is none.
-EndRequest const* end_request();
+EndRequest const* end_request(RunGuard const& guard);
 
 /// It has been met: what remains is to save the data.
-void drop_end_request();
+void drop_end_request(RunGuard& guard);
 
-void start_watch(double timeout_s);
+/// In an executable, crashes are reported from the start to the end of the process.
+void catch_crashes_of_process();
+
+/// A signal asks the run to end: if user code does not return soon, prints what the run is waiting for, and aborts it
+/// after `user_code_timeout` of wall-clock time. For signal handlers.
+void hurry_user_code(RunGuard& guard, char const* request_name);
+
+/// A second one: aborts user code. Returns at once; does nothing outside user code. For signal handlers.
+void abandon_user_code(RunGuard& guard);
+
+/// Handlers of the signals of the watch, until they are given back.
+void catch_watch_signals();
+void give_back_watch_signals();
+
+/// Watches over the thread that calls this.
+void start_watch(RunGuard& guard);
 
 /// From now on the only thing that is watched is that the data file gets on.
-void watch_rescue();
+void watch_rescue(RunGuard& guard);
 
-void stop_watch();
+void stop_watch(RunGuard& guard);
 
 }  // namespace pogosim

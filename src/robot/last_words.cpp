@@ -9,22 +9,32 @@
 #include "base/escaped.hpp"
 #include "base/scratch_file.hpp"
 #include "robot/context.hpp"
+#include "robot/guard_state.hpp"
 
 namespace pogosim {
 
 namespace {
 
-using Words = SignalText<4096>;
+using Words = LastWords;
 
-std::atomic<RunStage> stage = RunStage::before_main;
-std::atomic<DataFileState> data_file_state = DataFileState::none;
-std::array<char, 1024> data_file_path{};
-Words last_words;
+std::atomic<RunStage> stage = RunStage::hosted;
+DataFileNote kept_data_file;  // of the run that is over
+Words words_outside_runs;
+
+Words& last_words() {
+    return active_guard != nullptr ? active_guard->last_words : words_outside_runs;
+}
+
+DataFileNote const& data_file_note() {
+    RunGuard const* const run = active_guard != nullptr ? active_guard : process_run.load();
+    return run != nullptr ? run->data_file : kept_data_file;
+}
 
 void append_data_file(Words& words) {
-    if (data_file_state != DataFileState::none) {
-        words << " The data file '" << data_file_path.data()
-              << (data_file_state == DataFileState::complete
+    DataFileNote const& note = data_file_note();
+    if (note.state != DataFileState::none) {
+        words << " The data file '" << note.path.data()
+              << (note.state == DataFileState::complete
                       ? "' is complete."
                       : "' could not be completed; recover its rows with pogosim-recover.");
     }
@@ -75,7 +85,7 @@ void append_time(PlaceText& text) {
 /// Runs are reproducible: suggests the same one, ended after the previous step.
 SignalText<256> advice_to_repeat() {
     SignalText<256> advice;
-    if (data_file_state == DataFileState::open) {
+    if (data_file_note().state == DataFileState::open) {
         World const& world = *context.world;
         double const time_before_s = std::max(0.0, static_cast<double>(world.step) - 0.5) * world.time_step_s;
         advice << " For the data up to that point, run it again with -s ";
@@ -86,7 +96,7 @@ SignalText<256> advice_to_repeat() {
 }
 
 void prepare_words_of_run(char const* what) {
-    last_words = words_of_run("", what, "");
+    last_words() = words_of_run("", what, "");
     if (context.world == nullptr) {
         return;
     }
@@ -94,12 +104,12 @@ void prepare_words_of_run(char const* what) {
     where << " in " << context.phase << ", tick ";
     where.whole(pogobot_ticks);
     append_time(where);
-    last_words = words_of_run(where.c_str(), what, "");
+    last_words() = words_of_run(where.c_str(), what, "");
     SignalText<256> const advice = advice_to_repeat();
-    last_words = words_of_run(where.c_str(), what, advice.c_str());
+    last_words() = words_of_run(where.c_str(), what, advice.c_str());
     PlaceText exact;
     exact << " in " << running_place().c_str();
-    last_words = words_of_run(exact.c_str(), what, advice.c_str());
+    last_words() = words_of_run(exact.c_str(), what, advice.c_str());
 }
 
 }  // namespace
@@ -113,12 +123,16 @@ RunStage run_stage() {
 }
 
 void note_data_file(std::string const& path, DataFileState state) {
-    std::strncpy(data_file_path.data(), escaped(path).c_str(), data_file_path.size() - 1);
-    data_file_state = state;
+    if (active_guard != nullptr) {
+        DataFileNote& note = active_guard->data_file;
+        std::strncpy(note.path.data(), escaped(path).c_str(), note.path.size() - 1);
+        note.state = state;
+    }
 }
 
-bool data_file_is_complete() {
-    return data_file_state == DataFileState::complete;
+void keep_data_file_note(DataFileNote const& note) {
+    kept_data_file.path = note.path;
+    kept_data_file.state = note.state.load();
 }
 
 PlaceText running_place() {
@@ -135,19 +149,21 @@ PlaceText running_place() {
 }
 
 void prepare_last_words(char const* what, bool in_other_thread) {
-    switch (stage) {
+    bool const is_in_run = active_guard != nullptr;
+    switch (is_in_run ? RunStage::running : stage.load()) {
         case RunStage::before_main:
-            last_words = words_before_main(what, in_other_thread);
+            last_words() = words_before_main(what, in_other_thread);
             break;
+        case RunStage::hosted:
         case RunStage::preparing:
-            last_words = words_of_preparation(what);
+            last_words() = words_of_preparation(what);
             break;
         case RunStage::finished:
-            last_words = words_after_run(what, in_other_thread);
+            last_words() = words_after_run(what, in_other_thread);
             break;
         case RunStage::running:
             if (in_other_thread) {
-                last_words = words_of_run(" in a thread that it started", what, "");
+                last_words() = words_of_run(" in a thread that it started", what, "");
             } else {
                 prepare_words_of_run(what);
             }
@@ -156,33 +172,34 @@ void prepare_last_words(char const* what, bool in_other_thread) {
 }
 
 void prepare_plain_last_words(char const* what) {
-    last_words = {};
-    last_words << "pogosim: " << what << ".";
-    append_data_file(last_words);
+    last_words() = {};
+    last_words() << "pogosim: " << what << ".";
+    append_data_file(last_words());
 }
 
 void prepare_last_words_of_interrupt(char const* signal_name) {
-    last_words = {};
-    last_words << "pogosim: " << signal_name;
+    last_words() = {};
+    last_words() << "pogosim: " << signal_name;
     switch (stage) {
+        case RunStage::hosted:
         case RunStage::before_main:
-            last_words << " before main(), where constructors of static objects run: this run has no data file.";
+            last_words() << " before main(), where constructors of static objects run: this run has no data file.";
             break;
         case RunStage::preparing:
         case RunStage::running:
-            last_words << " before the first robot ran: this run has no data file.";
+            last_words() << " before the first robot ran: this run has no data file.";
             break;
         case RunStage::finished:
-            last_words << " after the run, while destructors of static objects and exit handlers ran.";
-            append_data_file(last_words);
+            last_words() << " after the run, while destructors of static objects and exit handlers ran.";
+            append_data_file(last_words());
             break;
     }
 }
 
 void end_with_last_words(int code) {
-    last_words << "\n";
-    last_words.write_to_stderr();
-    remove_scratch_file();
+    last_words() << "\n";
+    last_words().write_to_stderr();
+    remove_scratch_files();
     _exit(code);
 }
 

@@ -9,6 +9,7 @@
 namespace pogosim {
 
 enum class RunStage {
+    hosted,       // the process is not ours
     before_main,  // static constructors
     preparing,    // the configuration is read and the world is built; no user code
     running,      // from the first call of main() to the end of the data file
@@ -20,11 +21,15 @@ enum class DataFileState { none, open, complete };
 void enter_stage(RunStage stage);
 RunStage run_stage();
 
-/// The state of the data file, for the message.
+/// The state of the data file of the run for which this thread works, for the message.
 void note_data_file(std::string const& path, DataFileState state);
 
-bool data_file_is_complete();
+struct DataFileNote;
 
+/// The run is over; its data file is still named in last words.
+void keep_data_file_note(DataFileNote const& note);
+
+using LastWords = SignalText<4096>;
 using PlaceText = SignalText<512>;
 
 /// "user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s": which user code runs. For signal handlers.

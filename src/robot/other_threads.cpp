@@ -26,35 +26,63 @@ void use_for_signals(void* memory) {
     sigaltstack(&stack, nullptr);
 }
 
-/// A stack for signal handlers, as long as the thread lives.
+/// Memory for a stack of signal handlers, as long as the thread lives.
 class SignalStack {
 public:
-    SignalStack() {
-        if (memory_ != MAP_FAILED) {
-            use_for_signals(memory_);
-        }
-    }
+    SignalStack() = default;
     ~SignalStack() {
-        if (memory_ != MAP_FAILED) {
-            stack_t none = {};
-            none.ss_flags = SS_DISABLE;
-            sigaltstack(&none, nullptr);
+        if (exists()) {
+            stack_t now = {};
+            if (sigaltstack(nullptr, &now) == 0 && now.ss_sp == memory_) {
+                now.ss_flags = SS_DISABLE;
+                sigaltstack(&now, nullptr);
+            }
             munmap(memory_, kSignalStackBytes);
         }
     }
     SignalStack(SignalStack const&) = delete;
     SignalStack& operator=(SignalStack const&) = delete;
 
+    bool exists() const { return memory_ != MAP_FAILED; }
+    void use() const { use_for_signals(memory_); }
+
 private:
     void* memory_ = mmap(nullptr, kSignalStackBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
 };
 
+SignalStack const& signal_stack() {
+    static thread_local SignalStack const stack;
+    return stack;
+}
+
 [[maybe_unused]] void prepare_thread_for_crashes() {
     note_stack();
-    static thread_local SignalStack const stack;
+    if (signal_stack().exists()) {
+        signal_stack().use();
+    }
 }
 
 }  // namespace
+
+SignalStackScope::SignalStackScope() {
+    static thread_local bool is_noted = false;
+    if (!is_noted) {
+        is_noted = true;
+        note_stack();
+    }
+    bool const is_large = sigaltstack(nullptr, &before_) == 0 && (before_.ss_flags & SS_DISABLE) == 0 &&
+                          before_.ss_size >= kSignalStackBytes;
+    if (!is_large && signal_stack().exists()) {
+        signal_stack().use();
+        is_switched_ = true;
+    }
+}
+
+SignalStackScope::~SignalStackScope() {
+    if (is_switched_) {
+        sigaltstack(&before_, nullptr);
+    }
+}
 
 void prepare_main_thread_for_crashes() {
     note_stack();

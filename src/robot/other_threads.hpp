@@ -2,9 +2,25 @@
 // of the simulator does not end by itself.
 #pragma once
 
+#include <csignal>
+
 namespace pogosim {
 
 /// For the thread that calls main(). Threads that the program starts prepare themselves.
 void prepare_main_thread_for_crashes();
+
+/// For a thread that works for a run: as long as this lives, the thread's signal handlers have a stack that is large
+/// enough. One that a host has given it, which may be small, comes back afterwards.
+class SignalStackScope {
+public:
+    SignalStackScope();
+    ~SignalStackScope();
+    SignalStackScope(SignalStackScope const&) = delete;
+    SignalStackScope& operator=(SignalStackScope const&) = delete;
+
+private:
+    stack_t before_{};
+    bool is_switched_ = false;
+};
 
 }  // namespace pogosim

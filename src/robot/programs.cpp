@@ -19,11 +19,9 @@
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
-// What the user's program defines. The weak ones stand in for a program without REGISTER_USERDATA.
 extern "C" {
-__attribute__((weak, visibility("default"))) std::size_t UserdataSize = 0;
-__attribute__((weak, visibility("default"))) void (*UserdataConstruct)(void*) = nullptr;
-__attribute__((weak, visibility("default"))) __thread void* mydata = nullptr;
+// What programs declare as a pointer to their type of user data.
+__attribute__((visibility("default"))) POGO_PER_ROBOT void* mydata = nullptr;
 
 POGO_PER_ROBOT void (*callback_global_setup)() = nullptr;
 POGO_PER_ROBOT void (*callback_create_data_schema)() = nullptr;
@@ -45,8 +43,9 @@ constexpr char const* kSystemCategory = "__system";
 constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
 
-std::size_t user_data_stride() {
-    std::size_t const bytes = std::max<std::size_t>(UserdataSize, 1);
+/// Bytes from one robot's user data to the next one's.
+std::size_t stride_of(std::size_t user_data_bytes) {
+    std::size_t const bytes = std::max<std::size_t>(user_data_bytes, 1);
     return (bytes + kUserDataAlignment - 1) / kUserDataAlignment * kUserDataAlignment;
 }
 
@@ -102,27 +101,20 @@ void measure_velocity(Accelerometer& meter, Vec2 velocity_mm_s, std::int64_t clo
     meter.current_us = clock_us;
 }
 
-char const* program_name() {
-#ifdef __APPLE__
-    return getprogname();
-#else
-    return program_invocation_name;
-#endif
-}
-
 /// Like the C library, calls main() with arguments, whether it takes them or not. C leaves that undefined, and
 /// clang's sanitizer says so.
 #ifdef __clang__
 [[clang::no_sanitize("function")]]
 #endif
-void call_main(char** arguments) {
+void call_main(int (*function)(), char** arguments) {
     using Main = int (*)(int, char**, char**);
-    reinterpret_cast<Main>(reinterpret_cast<void (*)()>(&robot_main))(1, arguments, environ);
+    reinterpret_cast<Main>(reinterpret_cast<void (*)()>(function))(1, arguments, environ);
 }
 
 }  // namespace
 
-Programs::Programs(World& world, RunServices& services, std::uint64_t seed) : world_(world), services_(services) {
+Programs::Programs(ProgramImage image, World& world, RunServices& services, std::uint64_t seed)
+    : image_(std::move(image)), world_(world), services_(services) {
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
         return fmt::format("the computers of {} robots, {} bytes each", count, sizeof(Computer));
@@ -133,11 +125,25 @@ Programs::Programs(World& world, RunServices& services, std::uint64_t seed) : wo
 }
 
 Programs::~Programs() {
-    context = {};
+    if (context.world == &world_) {
+        context = {};
+    }
 }
 
-std::size_t Programs::user_data_bytes() {
-    return UserdataSize;
+std::size_t Programs::user_data_stride() const {
+    return stride_of(image_.user_data_bytes);
+}
+
+Programs::Thread::Thread(Programs& programs) : programs_(programs) {
+    callback_global_setup = programs.callbacks_.global_setup;
+    callback_create_data_schema = programs.callbacks_.create_data_schema;
+    callback_global_step = programs.callbacks_.global_step;
+}
+
+Programs::Thread::~Thread() {
+    programs_.callbacks_ = {.global_setup = callback_global_setup,
+                            .create_data_schema = callback_create_data_schema,
+                            .global_step = callback_global_step};
 }
 
 void Programs::allocate_user_data() {
@@ -146,7 +152,7 @@ void Programs::allocate_user_data() {
     std::size_t const blocks = computers_.size() + 1;
     auto const purpose = [&] {
         return fmt::format("the user data (USERDATA) of {} robots and the global step, {} bytes each",
-                           computers_.size(), UserdataSize);
+                           computers_.size(), image_.user_data_bytes);
     };
     allocate_for(purpose, static_cast<double>(stride) * static_cast<double>(blocks), [&] {
         if (stride > std::numeric_limits<std::ptrdiff_t>::max() / blocks) {
@@ -158,6 +164,8 @@ void Programs::allocate_user_data() {
         computers_[i].user_data = user_data_.data() + i * stride;
     }
     system_.user_data = user_data_.data() + computers_.size() * stride;
+    services_.program_memory = image_.variables;
+    services_.program_memory.emplace_back(user_data_.data(), stride * blocks);
 }
 
 void Programs::draw_individual_differences(std::uint64_t seed) {
@@ -227,9 +235,9 @@ void Programs::call_as_system(std::uint32_t robot, char const* phase, void (*fun
 
 /// In C++, what a robot does with its globals before main().
 void Programs::construct_user_data(std::uint32_t robot) {
-    if (UserdataConstruct != nullptr) {
+    if (image_.construct_user_data != nullptr) {
         enter(robot, "constructor of USERDATA");
-        UserdataConstruct(mydata);
+        image_.construct_user_data(mydata);
         leave();
     }
 }
@@ -238,9 +246,9 @@ void Programs::run_main(std::uint32_t robot) {
     enter(robot, "main");
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
     // A program may modify its arguments, so each robot gets a fresh copy.
-    program_name_ = program_name();
+    program_name_ = image_.name;
     main_arguments_ = {program_name_.data(), nullptr};
-    call_main(main_arguments_.data());
+    call_main(image_.main, main_arguments_.data());
     leave();
     Program& program = computer(robot).program;
     program.export_data = callback_export_data;
@@ -253,7 +261,8 @@ void Programs::run_global_setup() {
     auto const count = static_cast<std::uint32_t>(computers_.size());
     std::uint32_t const robot = count == 0 ? kNone : count - 1;
     auto const digest = [this, robot] {
-        return std::hash<std::string_view>()({reinterpret_cast<char const*>(computer(robot).user_data), UserdataSize});
+        return std::hash<std::string_view>()(
+            {reinterpret_cast<char const*>(computer(robot).user_data), user_data_bytes()});
     };
     std::size_t const before = digest();
     call_as_system(robot, "callback_global_setup", callback_global_setup);
@@ -264,7 +273,7 @@ void Programs::run_global_setup() {
 
 void Programs::start() {
     auto const count = static_cast<std::uint32_t>(computers_.size());
-    warn_of_large_user_data(UserdataSize);
+    warn_of_large_user_data(user_data_bytes());
     construct_user_data(kNone);
     for (std::uint32_t i = 0; i < count; ++i) {
         construct_user_data(i);

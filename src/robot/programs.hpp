@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "robot/context.hpp"
 #include "robot/fenced_memory.hpp"
+#include "robot/program_image.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -17,11 +19,23 @@ namespace pogosim {
 class Programs {
 public:
     /// Makes a computer for each robot of the world and one for the global step. `services` and `world` outlive this.
-    Programs(World& world, RunServices& services, std::uint64_t seed);
+    Programs(ProgramImage image, World& world, RunServices& services, std::uint64_t seed);
     ~Programs();
 
     Programs(Programs const&) = delete;
     Programs& operator=(Programs const&) = delete;
+
+    /// As long as this lives, the callbacks of the whole run are those that this program has set.
+    class Thread {
+    public:
+        explicit Thread(Programs& programs);
+        ~Thread();
+        Thread(Thread const&) = delete;
+        Thread& operator=(Thread const&) = delete;
+
+    private:
+        Programs& programs_;
+    };
 
     /// Constructs the user data of C++ programs, runs main() for each robot, then callback_global_setup, then every
     /// user_init.
@@ -56,6 +70,10 @@ public:
 
     /// The state of this robot's computer between two of its ticks.
     Computer const& computer_of(std::size_t robot) const { return computers_[robot]; }
+    std::span<Computer const> computers() const { return computers_; }
+
+    /// The user data of all robots: bytes from one robot's to the next one's.
+    std::size_t user_data_stride() const;
 
     /// Reach of a message that this robot sends now, at its present emitter power, mm; 0: it sends none.
     float ir_range_mm(std::size_t robot) const {
@@ -66,9 +84,16 @@ public:
     int highest_loop_hz() const;
 
     /// Bytes of one robot's user data.
-    static std::size_t user_data_bytes();
+    std::size_t user_data_bytes() const { return image_.user_data_bytes; }
 
 private:
+    /// Set by SET_CALLBACK(), for the run as a whole.
+    struct Callbacks {
+        void (*global_setup)() = nullptr;
+        void (*create_data_schema)() = nullptr;
+        void (*global_step)() = nullptr;
+    };
+
     void allocate_user_data();
     void draw_individual_differences(std::uint64_t seed);
     void enter(std::uint32_t robot, char const* phase);
@@ -82,6 +107,8 @@ private:
     void tick(std::uint32_t robot);
     Computer& computer(std::uint32_t robot);
 
+    ProgramImage image_;
+    Callbacks callbacks_;
     World& world_;
     RunServices& services_;
     std::vector<Computer> computers_;

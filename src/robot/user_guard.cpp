@@ -5,26 +5,41 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <mutex>
 
 #include "base/background_thread.hpp"
-#include "interface/pogobase_inside.hpp"
 #include "robot/caught_signals.hpp"
 #include "robot/crash_name.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/guard_state.hpp"
 #include "robot/last_words.hpp"
 #include "robot/other_threads.hpp"
+#include "robot/process.hpp"
 
 namespace pogosim {
 
-Guard guard;
+constinit thread_local RunGuard* active_guard = nullptr;
+constinit std::atomic<RunGuard*> process_run = nullptr;
 
 namespace {
 
 constexpr double kNsPerS = 1e9;
+constexpr double kSameRequestS = 0.1;  // timeout(1) and batch systems signal a process and its group: twice at once
 constexpr auto kOwnMemoryAdvice =
     ", most likely because the user program wrote to memory it does not own; build the program with "
     "-fsanitize=address to find out where";
+
+/// Signals that no run may lose: those of crashes, and of the watch.
+class CaughtSignals {
+public:
+    void need();
+    void need_no_more();
+
+private:
+    std::mutex mutex_;
+    int needs_ = 0;
+};
+CaughtSignals caught_signals;
 
 /// For good, without ending the program.
 [[noreturn]] void stop_this_thread() {
@@ -37,51 +52,72 @@ constexpr auto kOwnMemoryAdvice =
 }
 
 /// The run ends as soon as the simulator's thread is back in control.
-[[noreturn]] void end_run_from_background_thread(char const* crash) {
+[[noreturn]] void end_run_from_background_thread(RunGuard& run, char const* crash) {
     note_crash_of_background_thread();
     SignalText<512> what;
     what << "the simulator crashed while it was drawing pictures (" << crash << ")" << kOwnMemoryAdvice;
-    request_end(what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    request_end(run, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
     stop_this_thread();
 }
 
 void on_crash(int signal, siginfo_t* info, void* signal_context) {
-    CrashText const what = crash_name(signal, *info, signal_context);
-    if (on_background_thread()) {
-        end_run_from_background_thread(what.c_str());
-    }
-    if (is_other_thread_of_run()) {
+    RunGuard* const guard = active_guard;
+    if (guard == nullptr && process_run != nullptr) {
+        CrashText const what = crash_name(signal, *info, signal_context);
+        if (on_background_thread()) {
+            end_run_from_background_thread(*process_run, what.c_str());
+        }
         end_run_from_thread(what.c_str(), ExitCode::user_program);
     }
-    if (guard.crashed.exchange(true)) {
-        give_up_rescue();
+    if (guard == nullptr) {
+        if (!process_is_ours()) {
+            pass_on(signal, info, signal_context);
+            return;
+        }
+        CrashText const what = crash_name(signal, *info, signal_context);
+        prepare_last_words(what.c_str(), !on_main_thread());
+        end_with_last_words(static_cast<int>(ExitCode::user_program));
     }
-    begin_rescue(what.c_str(), ExitCode::user_program, !on_simulator_thread());
-    if (guard.inside) {
-        jump_out(ExitCode::user_program);
+    CrashText const what = crash_name(signal, *info, signal_context);
+    if (guard->crashed.exchange(true)) {
+        give_up_rescue(*guard);
     }
-    if (on_simulator_thread() && guard.rescuable.exchange(false)) {
-        siglongjmp(guard.rescue_point, 1);
+    begin_rescue(*guard, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    if (guard->inside) {
+        jump_out(*guard, ExitCode::user_program);
     }
-    give_up_rescue();
+    if (guard->rescuable.exchange(false)) {
+        siglongjmp(guard->rescue_point, 1);
+    }
+    give_up_rescue(*guard);
 }
 
-/// Before the constructors of the program, so that their crashes are also reported: this library is initialised first.
-__attribute__((constructor)) void install_crash_handlers() {
-    guard.thread = pthread_self();
-    prepare_main_thread_for_crashes();
-    for (int const signal : kCrashSignals) {
-        catch_signal(signal, SA_ONSTACK, on_crash);
+void CaughtSignals::need() {
+    std::lock_guard const lock(mutex_);
+    if (needs_++ == 0) {
+        for (int const signal : kCrashSignals) {
+            catch_signal(signal, SA_ONSTACK, on_crash);
+        }
+        catch_watch_signals();
     }
-    watch_for_forks();
 }
 
-UserFailure requested_failure(EndRequest const& request) {
+void CaughtSignals::need_no_more() {
+    std::lock_guard const lock(mutex_);
+    if (--needs_ == 0) {
+        give_back_watch_signals();
+        for (int const signal : kCrashSignals) {
+            give_back_signal(signal);
+        }
+    }
+}
+
+UserFailure requested_failure(RunGuard& guard, EndRequest const& request) {
     if (!guard.left_by_force) {
-        begin_rescue(request.what.c_str(), request.code, request.in_other_thread);
+        begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
     }
     UserFailure failure{request.what.c_str(), request.code, false, request.in_other_thread};
-    drop_end_request();
+    drop_end_request(guard);
     return failure;
 }
 
@@ -91,7 +127,7 @@ std::string text_of(std::exception const& error) {
                                                                   : std::string("C++ exception: ") + error.what();
 }
 
-UserFailure exception_failure(std::string const& what) {
+UserFailure exception_failure(RunGuard& guard, std::string const& what) {
     guard.inside = false;
     if (is_forked_child()) {
         end_forked_child(static_cast<int>(ExitCode::user_program));
@@ -99,7 +135,65 @@ UserFailure exception_failure(std::string const& what) {
     return {what, ExitCode::user_program};
 }
 
+void const* base_of(void const* code) {
+    Dl_info program;
+    return code != nullptr && dladdr(code, &program) != 0 ? program.dli_fbase : nullptr;
+}
+
 }  // namespace
+
+void catch_crashes_of_process() {
+    caught_signals.need();
+}
+
+RunGuard::RunGuard(void const* code, double timeout_s)
+    : program_base(base_of(code)),
+      busy{.timeout_s = timeout_s},
+      processor_timer(TimerClock::processor, SIGPROF, this),
+      wall_timer(TimerClock::wall, SIGALRM, this) {}
+
+UserGuard::UserGuard(void const* code, double timeout_s) : state_(std::make_unique<RunGuard>(code, timeout_s)) {}
+
+UserGuard::~UserGuard() = default;
+
+bool UserGuard::was_left_by_force() const {
+    return state_->left_by_force;
+}
+
+bool UserGuard::interrupted() const {
+    return state_->interrupts > 0;
+}
+
+GuardedThread::GuardedThread(UserGuard& guard) : guard_(*guard.state_), before_(active_guard) {
+    if (guard_.depth++ == 0) {
+        caught_signals.need();
+        watch_for_forks();
+        stack_.emplace();
+        guard_.thread = pthread_self();
+        guard_.inside = false;
+        start_watch(guard_);
+    }
+    active_guard = &guard_;
+}
+
+GuardedThread::~GuardedThread() {
+    if (--guard_.depth == 0) {
+        stop_watch(guard_);
+        caught_signals.need_no_more();
+    }
+    active_guard = before_;
+}
+
+ProcessRun::ProcessRun(UserGuard& guard) {
+    enter_stage(RunStage::running);
+    process_run = guard.state_.get();
+}
+
+ProcessRun::~ProcessRun() {
+    keep_data_file_note(process_run.load()->data_file);
+    process_run = nullptr;
+    enter_stage(RunStage::finished);
+}
 
 double monotonic_s() {
     timespec now = {};
@@ -107,70 +201,52 @@ double monotonic_s() {
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) / kNsPerS;
 }
 
-bool on_simulator_thread() {
-    return pthread_equal(pthread_self(), guard.thread) != 0;
-}
-
-void set_reason(char const* text) {
+void set_reason(RunGuard& guard, char const* text) {
     guard.what = {};
     guard.what << text;
 }
 
-void begin_rescue(char const* what, ExitCode code, bool in_other_thread) {
-    set_reason(what);
+void begin_rescue(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread) {
+    set_reason(guard, what);
     guard.code = code;
     guard.in_other_thread = in_other_thread;
     guard.left_by_force = true;
-    watch_rescue();
+    watch_rescue(guard);
     prepare_last_words(what, in_other_thread);
 }
 
-void give_up_rescue() {
-    static std::atomic<bool> composed = false;  // looking at destroyed memory again may lead here again
-    if (data_file_is_complete() && !composed.exchange(true)) {
+void give_up_rescue(RunGuard& guard) {
+    bool const looked = guard.has_last_look;  // looking at destroyed memory again may lead here again
+    guard.has_last_look = true;
+    if (guard.data_file.state == DataFileState::complete && !looked) {
         prepare_last_words(guard.what.c_str(), guard.in_other_thread);
     }
     end_with_last_words(static_cast<int>(guard.code));
 }
 
-void jump_out(ExitCode code) {
+void jump_out(RunGuard& guard, ExitCode code) {
     guard.code = code;
     guard.inside = false;
     siglongjmp(guard.return_point, 1);
 }
 
-bool is_in_user_program(void const* signal_context) {
+bool is_in_user_program(RunGuard const& guard, void const* signal_context) {
     void* const counter = program_counter(signal_context);
     Dl_info here;
-    Dl_info program;
-    bool const known = counter != nullptr && dladdr(counter, &here) != 0 &&
-                       dladdr(reinterpret_cast<void*>(&robot_main), &program) != 0;
-    return !known || here.dli_fbase == program.dli_fbase;
-}
-
-void install_user_guard(double timeout_s) {
-    guard.thread = pthread_self();
-    guard.inside = false;
-    guard.crashed = false;
-    guard.left_by_force = false;
-    note_data_file("", DataFileState::none);
-    enter_stage(RunStage::running);
-    start_watch(timeout_s);
-}
-
-void remove_user_guard() {
-    stop_watch();
-    enter_stage(RunStage::finished);
+    bool const known = counter != nullptr && guard.program_base != nullptr && dladdr(counter, &here) != 0;
+    return !known || here.dli_fbase == guard.program_base;
 }
 
 std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
-    if (EndRequest const* const request = end_request()) {
-        return requested_failure(*request);
+    RunGuard& guard = *active_guard;
+    if (EndRequest const* const request = end_request(guard)) {
+        return requested_failure(guard, *request);
     }
     if (sigsetjmp(guard.return_point, 0) != 0) {
-        EndRequest const* const request = end_request();
-        return request != nullptr ? requested_failure(*request)
-                                  : UserFailure{guard.what.c_str(), guard.code, guard.refused, false, guard.too_long};
+        RunGuard& run = *active_guard;
+        EndRequest const* const request = end_request(run);
+        return request != nullptr ? requested_failure(run, *request)
+                                  : UserFailure{run.what.c_str(), run.code, run.refused, false, run.too_long};
     }
     guard.entered_s.store(monotonic_s(), std::memory_order_relaxed);
     guard.inside = true;
@@ -180,23 +256,24 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
     try {
         body();
     } catch (std::exception const& error) {
-        return exception_failure(text_of(error));
+        return exception_failure(guard, text_of(error));
     } catch (...) {
-        return exception_failure("C++ exception");
+        return exception_failure(guard, "C++ exception");
     }
     guard.inside = false;
     if (is_forked_child()) {
         end_forked_child(0);
     }
-    if (EndRequest const* const request = end_request()) {
-        return requested_failure(*request);
+    if (EndRequest const* const request = end_request(guard)) {
+        return requested_failure(guard, *request);
     }
     return std::nullopt;
 }
 
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body) {
+    RunGuard& guard = *active_guard;
     if (sigsetjmp(guard.rescue_point, 0) != 0) {
-        return UserFailure{std::string("the simulator crashed (") + guard.what.c_str() + ")" + kOwnMemoryAdvice,
+        return UserFailure{std::string("the simulator crashed (") + active_guard->what.c_str() + ")" + kOwnMemoryAdvice,
                            ExitCode::user_program};
     }
     guard.rescuable = true;
@@ -209,15 +286,16 @@ void restart_watch() {
     if (is_forked_child()) {
         end_forked_child(0);  // the next robot is the parent's
     }
-    guard.calls.store(guard.calls.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    std::atomic<unsigned long>& calls = active_guard->calls;
+    calls.store(calls.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
 bool inside_user_code() {
-    return guard.inside && on_simulator_thread();
+    return active_guard != nullptr && active_guard->inside;
 }
 
-bool was_left_by_force() {
-    return guard.left_by_force;
+bool interrupted() {
+    return active_guard != nullptr && active_guard->interrupts > 0;
 }
 
 void leave_user_code(char const* what, ExitCode code) {
@@ -229,27 +307,30 @@ void leave_user_code(char const* what, ExitCode code) {
         std::fprintf(stderr, "pogosim: %s\n", what);
         std::abort();
     }
-    set_reason(what);
-    jump_out(code);
+    set_reason(*active_guard, what);
+    jump_out(*active_guard, code);
 }
 
 void refuse_user_code(char const* what) {
-    guard.refused = true;
+    if (active_guard != nullptr) {
+        active_guard->refused = true;
+    }
     leave_user_code(what, ExitCode::usage);
 }
 
 bool is_other_thread_of_run() {
-    return run_stage() == RunStage::running && !on_simulator_thread();
+    return active_guard == nullptr && process_run != nullptr;
 }
 
 void end_run_from_thread(char const* what, ExitCode code) {
-    request_end(what, code, /*in_other_thread=*/true);
+    request_end(*process_run, what, code, /*in_other_thread=*/true);
     stop_this_thread();
 }
 
 void check_end_of_thread() {
     constexpr auto kWhat = "called pthread_exit(), which ends the only thread that can run the simulator";
-    if (!on_simulator_thread() || is_forked_child()) {
+    bool const is_simulators = active_guard != nullptr || (process_is_ours() && on_main_thread());
+    if (!is_simulators || is_forked_child()) {
         return;
     }
     if (inside_user_code()) {
@@ -269,8 +350,32 @@ void called_without_robot(char const* function) {
     }
     what << "while no robot was running; call it in main(), user_init(), user_step() or a callback";
     std::fflush(nullptr);
-    prepare_last_words(what.c_str(), !on_simulator_thread());
+    prepare_last_words(what.c_str(), !on_main_thread());
     end_with_last_words(static_cast<int>(ExitCode::user_program));
+}
+
+int note_interrupt(int signal, char const* name) {
+    RunGuard* const run = process_run;
+    if (run == nullptr) {
+        return 0;
+    }
+    if (active_guard != run) {
+        pthread_kill(run->thread, signal);
+        return 0;
+    }
+    double const now_s = monotonic_s();
+    bool const same = run->interrupts > 0 && now_s - run->interrupted_s < kSameRequestS;
+    run->interrupted_s = now_s;
+    if (same) {
+        return 0;
+    }
+    int const count = ++run->interrupts;
+    if (count == 1) {
+        hurry_user_code(*run, name);
+    } else {
+        abandon_user_code(*run);
+    }
+    return count;
 }
 
 }  // namespace pogosim

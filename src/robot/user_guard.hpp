@@ -15,11 +15,13 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <new>
 #include <optional>
 #include <string>
 
 #include "base/memory.hpp"
+#include "robot/other_threads.hpp"
 
 namespace pogosim {
 
@@ -35,12 +37,61 @@ struct UserFailure {
     bool too_long = false;         // it had not returned after user_code_timeout
 };
 
-/// Starts the run: limits processor time from now on. `timeout_s` is the processor time that one call of user code may
-/// take; 0: no limit. Call it before user code runs, in the thread that will call it.
-void install_user_guard(double timeout_s);
+struct RunGuard;
 
-/// Ends the run: stops the watchdog; subsequent failures happen after the run.
-void remove_user_guard();
+/// The fence of one run.
+class UserGuard {
+public:
+    /// `code`: any place in the code of the program. `timeout_s`: processor time that one call of user code may take;
+    /// 0: no limit.
+    UserGuard(void const* code, double timeout_s);
+    ~UserGuard();
+    UserGuard(UserGuard const&) = delete;
+    UserGuard& operator=(UserGuard const&) = delete;
+
+    /// True if user code was aborted: no destructor or atexit() handler may rely on its memory and locks.
+    bool was_left_by_force() const;
+
+    /// A signal has asked this run to end.
+    bool interrupted() const;
+
+    /// The run is to end, says another thread of the simulator; `request_name` says by what. If user code does not
+    /// return soon, prints what the run is waiting for, and aborts it after `user_code_timeout` of wall-clock time.
+    void hurry(char const* request_name);
+
+private:
+    friend class GuardedThread;
+    friend class ProcessRun;
+    std::unique_ptr<RunGuard> state_;
+};
+
+/// As long as this lives, the thread works for a run: crashes in it, and what is below, are that run's, and signal
+/// handlers are installed, which are given back at the end. One in another for the same thread is allowed; a run has
+/// one thread at a time.
+class GuardedThread {
+public:
+    explicit GuardedThread(UserGuard& guard);
+    ~GuardedThread();
+    GuardedThread(GuardedThread const&) = delete;
+    GuardedThread& operator=(GuardedThread const&) = delete;
+
+private:
+    RunGuard& guard_;
+    RunGuard* before_;
+    std::optional<SignalStackScope> stack_{};
+};
+
+/// As long as this lives, signals that ask this process to end are for that run, and so are crashes in threads that the
+/// program has started: an executable is for one run at a time.
+class ProcessRun {
+public:
+    explicit ProcessRun(UserGuard& guard);
+    ~ProcessRun();
+    ProcessRun(ProcessRun const&) = delete;
+    ProcessRun& operator=(ProcessRun const&) = delete;
+};
+
+// The following are about the run for which this thread works; call_user_code() and call_simulator_code() need one.
 
 /// Runs `body`, which calls user code. Returns nothing if it returned normally. Not reentrant.
 std::optional<UserFailure> call_user_code(std::function<void()> const& body);
@@ -55,8 +106,8 @@ void restart_watch();
 /// True while user code runs inside call_user_code, for the thread that runs it.
 bool inside_user_code();
 
-/// True if user code was aborted: no destructor or atexit() handler may rely on its memory and locks.
-bool was_left_by_force();
+/// True if this run was asked to end by a signal.
+bool interrupted();
 
 /// Ends the running call_user_code with this failure. Does not return; outside user code it aborts.
 [[noreturn]] void leave_user_code(char const* what, ExitCode code);
@@ -78,21 +129,13 @@ bool is_other_thread_of_run();
 /// be spared: user code is left with a failure, and elsewhere the program ends with a message, with exit code 3.
 void check_end_of_thread();
 
-/// This signal requests a stop for the first time: if user code does not return soon, prints what the run is waiting
-/// for, and aborts it after `user_code_timeout` of wall-clock time. For signal handlers.
-void hurry_user_code(char const* request_name);
-
-/// The same from another thread of the simulator.
-void hurry_user_code_from_thread(char const* request_name);
-
-/// Second request: aborts user code. Returns at once; does nothing outside user code. For signal handlers.
-void abandon_user_code();
+/// A signal asks the process's run to end: the first one hurries user code, see UserGuard::hurry(); a second one aborts
+/// it. Returns how many have come; 0 if there is no such run, or the signal was passed on to its thread. For handlers
+/// of signals that may come on any thread.
+int note_interrupt(int signal, char const* name);
 
 /// Seconds of the monotonic clock. Also for signal handlers.
 double monotonic_s();
-
-/// For handlers of signals that may come on any thread: false when the signal has been passed on to the simulator's.
-bool is_signal_for_this_thread(int signal);
 
 /// Runs part of an interface function that may throw. An exception ends user code with its message and exit code 2,
 /// instead of running through C frames.

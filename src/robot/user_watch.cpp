@@ -1,9 +1,10 @@
 // The watch over user code that does not return: by the processor time of its thread (SIGPROF), which a program on a
 // busy machine does not use up by waiting; and, once the run was asked to end, by wall-clock time (SIGALRM), which runs
 // in sleep(), too. After user code was left by force, SIGALRM watches over the data file alone.
-#include <sys/time.h>
+#include <pthread.h>
 
 #include <algorithm>
+#include <csignal>
 #include <ctime>
 #include <string_view>
 
@@ -28,39 +29,6 @@ constexpr double kPatienceS = 10.0;     // for user code without a limit, and fo
 constexpr double kRescueLookPeriodS = 0.25;
 constexpr double kSlowestDiskBytesPerS = 1e7;
 
-struct ProcessorWatch {
-    double timeout_s = 0.0;
-    double period_s = kWatchPeriodS;
-    unsigned long calls_seen = 0;
-    double seen_at_s = 0.0;  // processor time of the thread when the present call was first seen
-    bool retrying = false;
-};
-
-/// State since a stop was requested.
-struct WallClockWatch {
-    char const* request_name = "";  // "SIGTERM"
-    unsigned long calls_seen = 0;
-    double call_began_s = 0.0;  // of the call of user code that was seen last
-    bool told = false;
-};
-
-/// Over the data file, after user code was left by force.
-struct RescueWatch {
-    std::uint64_t writes_seen = 0;
-    double last_write_s = 0.0;
-};
-
-ProcessorWatch busy;
-WallClockWatch waiting;
-RescueWatch rescue;
-
-std::atomic<bool> is_watching = false;             // a run is going on
-std::atomic<char const*> hurry_request = nullptr;  // of another thread: hurry_user_code() with this name
-
-enum class RequestState { none, being_made, made };
-EndRequest request;
-std::atomic<RequestState> request_state = RequestState::none;
-
 /// A program for the SDK alone has its endless loop where the robot starts.
 bool is_at_robots_start() {
     std::string_view const phase = context.phase;
@@ -69,32 +37,34 @@ bool is_at_robots_start() {
 
 constexpr auto kMoveTheLoop = ": move the body of its endless loop into user_step (see docs/porting.md)";
 
-/// `which`: ITIMER_PROF or ITIMER_REAL; 0 s stops it.
-void set_timer(decltype(ITIMER_PROF) which, double period_s) {
-    itimerval timer = {};
-    timer.it_interval.tv_usec = static_cast<suseconds_t>(period_s * 1e6);
-    timer.it_value = timer.it_interval;
-    setitimer(which, &timer, nullptr);
-}
-
 double thread_processor_time_s() {
     timespec now = {};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-/// The timer counts the processor time of all threads, and so only says when to look.
-void on_watch(int signal, siginfo_t* /*info*/, void* signal_context) {
-    if (!is_signal_for_this_thread(signal)) {
+/// The run whose timer has sent this signal to this thread; null: it is somebody else's.
+RunGuard* run_of(siginfo_t const& info) {
+    RunGuard* const guard = active_guard;
+    bool const is_timers = info.si_code != SI_TIMER || info.si_value.sival_ptr == guard;  // or sent by hurry()
+    return guard != nullptr && is_timers ? guard : nullptr;
+}
+
+void on_watch(int signal, siginfo_t* info, void* signal_context) {
+    RunGuard* const run = run_of(*info);
+    if (run == nullptr) {
+        pass_on(signal, info, signal_context);
         return;
     }
+    RunGuard& guard = *run;
+    ProcessorWatch& busy = guard.busy;
     double const now_s = thread_processor_time_s();
     if (!guard.inside || guard.calls != busy.calls_seen) {
         busy.calls_seen = guard.calls;
         busy.seen_at_s = now_s;
         if (busy.retrying) {
             busy.retrying = false;
-            set_timer(ITIMER_PROF, busy.period_s);
+            guard.processor_timer.arm(busy.period_s);
         }
         return;
     }
@@ -102,10 +72,10 @@ void on_watch(int signal, siginfo_t* /*info*/, void* signal_context) {
     if (too_long_s < 0.0) {
         return;
     }
-    if (!is_in_user_program(signal_context) && too_long_s < kLongestRetryS) {
+    if (!is_in_user_program(guard, signal_context) && too_long_s < kLongestRetryS) {
         if (!busy.retrying) {
             busy.retrying = true;
-            set_timer(ITIMER_PROF, kRetryPeriodS);
+            guard.processor_timer.arm(kRetryPeriodS);
         }
         return;
     }
@@ -116,12 +86,14 @@ void on_watch(int signal, siginfo_t* /*info*/, void* signal_context) {
                                   : "; messages and sensors do not change while user code runs, so a step must not "
                                     "wait for them in a loop");
     guard.too_long = true;
-    begin_rescue(what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
-    jump_out(ExitCode::user_program);
+    begin_rescue(guard, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    jump_out(guard, ExitCode::user_program);
 }
 
 /// Tells the waiting user what is going on, once.
-void tell_what_is_waited_for() {
+void tell_what_is_waited_for(RunGuard& guard) {
+    WallClockWatch& waiting = guard.waiting;
+    ProcessorWatch const& busy = guard.busy;
     if (waiting.told) {
         return;
     }
@@ -143,24 +115,26 @@ void tell_what_is_waited_for() {
 }
 
 /// Aborts user code as requested, where it is safe.
-void look_after_request(void const* signal_context, double now_s) {
+void look_after_request(RunGuard& guard, void const* signal_context, double now_s) {
+    EndRequest const& request = guard.request;
     double const asked_since_s = now_s - request.made_s;
     if (!guard.inside) {
         // call_user_code() sees the request, unless the simulator waits for a lock that is gone.
         if (asked_since_s > kPatienceS) {
-            begin_rescue(request.what.c_str(), request.code, request.in_other_thread);
-            give_up_rescue();
+            begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
+            give_up_rescue(guard);
         }
         return;
     }
-    if (is_in_user_program(signal_context) || asked_since_s > kLongestRetryS) {
-        begin_rescue(request.what.c_str(), request.code, request.in_other_thread);
-        jump_out(request.code);
+    if (is_in_user_program(guard, signal_context) || asked_since_s > kLongestRetryS) {
+        begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
+        jump_out(guard, request.code);
     }
 }
 
 /// A large file, or a slow disk, takes its time.
-void look_after_rescue(double now_s) {
+void look_after_rescue(RunGuard& guard, double now_s) {
+    RescueWatch& rescue = guard.rescue;
     SaveProgress const& progress = save_progress();
     std::uint64_t const writes = progress.writes;
     if (writes != rescue.writes_seen) {
@@ -169,34 +143,39 @@ void look_after_rescue(double now_s) {
     }
     double const limit_s = kPatienceS + static_cast<double>(progress.bytes) / kSlowestDiskBytesPerS;
     if (now_s - rescue.last_write_s > limit_s) {
-        give_up_rescue();
+        give_up_rescue(guard);
     }
 }
 
-void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
+void on_look(int signal, siginfo_t* info, void* signal_context) {
+    RunGuard* const run = run_of(*info);
+    if (run == nullptr) {
+        pass_on(signal, info, signal_context);
+        return;
+    }
+    RunGuard& guard = *run;
     double const now_s = monotonic_s();
     if (guard.left_by_force) {
-        look_after_rescue(now_s);
+        look_after_rescue(guard, now_s);
         return;
     }
-    if (!is_signal_for_this_thread(signal)) {
+    if (end_request(guard) != nullptr) {
+        look_after_request(guard, signal_context, now_s);
         return;
     }
-    if (end_request() != nullptr) {
-        look_after_request(signal_context, now_s);
+    if (char const* const name = guard.hurry_request.exchange(nullptr)) {
+        hurry_user_code(guard, name);
         return;
     }
-    if (char const* const name = hurry_request.exchange(nullptr)) {
-        hurry_user_code(name);
-        return;
-    }
+    WallClockWatch& waiting = guard.waiting;
+    ProcessorWatch const& busy = guard.busy;
     if (guard.calls != waiting.calls_seen) {
         waiting.calls_seen = guard.calls;
         waiting.call_began_s = now_s;
         return;
     }
     if (now_s - waiting.call_began_s > (guard.inside ? kPromptReturnS : kPromptEndS)) {
-        tell_what_is_waited_for();
+        tell_what_is_waited_for(guard);
     }
     double const limit_s = busy.timeout_s > 0.0 ? busy.timeout_s : kPatienceS;
     if (guard.inside && now_s - waiting.call_began_s > limit_s) {
@@ -209,93 +188,99 @@ void on_look(int signal, siginfo_t* /*info*/, void* signal_context) {
             what << " s after " << waiting.request_name << " requested a stop";
         }
         what << (is_at_robots_start() ? kMoveTheLoop : "");
-        request_end(what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
+        request_end(guard, what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
     }
 }
 
 }  // namespace
 
-void request_end(char const* what, ExitCode code, bool in_other_thread) {
+void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread) {
     RequestState expected = RequestState::none;
-    if (guard.left_by_force || !request_state.compare_exchange_strong(expected, RequestState::being_made)) {
+    if (guard.left_by_force || !guard.request_state.compare_exchange_strong(expected, RequestState::being_made)) {
         return;
     }
+    EndRequest& request = guard.request;
     request.what = {};
     request.what << what;
     request.code = code;
     request.in_other_thread = in_other_thread;
     request.made_s = monotonic_s();
-    request_state = RequestState::made;
-    set_timer(ITIMER_REAL, kRetryPeriodS);
+    guard.request_state = RequestState::made;
+    guard.wall_timer.arm(kRetryPeriodS);
 }
 
-void drop_end_request() {
-    request_state = RequestState::none;
+void drop_end_request(RunGuard& guard) {
+    guard.request_state = RequestState::none;
 }
 
-EndRequest const* end_request() {
-    return request_state.load(std::memory_order_acquire) == RequestState::made ? &request : nullptr;
+EndRequest const* end_request(RunGuard const& guard) {
+    return guard.request_state.load(std::memory_order_acquire) == RequestState::made ? &guard.request : nullptr;
 }
 
-void start_watch(double timeout_s) {
-    request_state = RequestState::none;
-    hurry_request = nullptr;
-    busy = {.timeout_s = timeout_s};
-    is_watching = true;
+void catch_watch_signals() {
     catch_signal(SIGALRM, SA_RESTART, on_look);
-    if (timeout_s > 0.0) {
-        busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
-        catch_signal(SIGPROF, SA_RESTART, on_watch);
-        set_timer(ITIMER_PROF, busy.period_s);
+    catch_signal(SIGPROF, SA_RESTART, on_watch);
+}
+
+void give_back_watch_signals() {
+    give_back_signal(SIGALRM);
+    give_back_signal(SIGPROF);
+}
+
+void start_watch(RunGuard& guard) {
+    guard.is_watching = true;
+    guard.wall_timer.prepare();
+    if (guard.left_by_force) {
+        watch_rescue(guard);
+    }
+    if (double const timeout_s = guard.busy.timeout_s; timeout_s > 0.0) {
+        guard.busy.calls_seen = 0;
+        guard.busy.retrying = false;
+        guard.busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
+        guard.processor_timer.arm(guard.busy.period_s);
     }
 }
 
-void watch_rescue() {
-    rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s()};
-    catch_signal(SIGALRM, SA_RESTART, on_look);
-    set_timer(ITIMER_REAL, kRescueLookPeriodS);
+void watch_rescue(RunGuard& guard) {
+    guard.rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s()};
+    catch_signal(SIGALRM, SA_RESTART, on_look);  // the program may have taken it
+    guard.wall_timer.arm(kRescueLookPeriodS);
 }
 
-void stop_watch() {
-    is_watching = false;
-    set_timer(ITIMER_PROF, 0.0);
-    set_timer(ITIMER_REAL, 0.0);
+void stop_watch(RunGuard& guard) {
+    guard.is_watching = false;
+    guard.processor_timer.remove();
+    guard.wall_timer.remove();
 }
 
-bool is_signal_for_this_thread(int signal) {
-    if (on_simulator_thread()) {
-        return true;
-    }
-    pthread_kill(guard.thread, signal);
-    return false;
-}
-
-void hurry_user_code(char const* request_name) {
-    if (guard.left_by_force || !is_watching) {
+void hurry_user_code(RunGuard& guard, char const* request_name) {
+    if (guard.left_by_force || !guard.is_watching) {
         return;  // the timer watches over the data file, or the run is over: nobody would stop it
     }
     double const now_s = monotonic_s();
     double const entered_s = guard.entered_s.load(std::memory_order_relaxed);
-    bool const has_limit = busy.timeout_s > 0.0;
-    waiting = {.request_name = request_name,
-               .calls_seen = guard.calls,
-               .call_began_s = guard.inside && has_limit ? entered_s : now_s};
+    bool const has_limit = guard.busy.timeout_s > 0.0;
+    guard.waiting = {.request_name = request_name,
+                     .calls_seen = guard.calls,
+                     .call_began_s = guard.inside && has_limit ? entered_s : now_s};
     if (guard.inside && now_s - entered_s > kPromptReturnS) {
-        tell_what_is_waited_for();
+        tell_what_is_waited_for(guard);
     }
-    set_timer(ITIMER_REAL, kLookPeriodS);
+    guard.wall_timer.arm(kLookPeriodS);
 }
 
-void hurry_user_code_from_thread(char const* request_name) {
-    hurry_request = request_name;
-    pthread_kill(guard.thread, SIGALRM);
+void UserGuard::hurry(char const* request_name) {
+    if (state_->is_watching) {
+        state_->hurry_request = request_name;
+        pthread_kill(state_->thread, SIGALRM);
+    }
 }
 
-void abandon_user_code() {
+void abandon_user_code(RunGuard& guard) {
     if (guard.inside) {
         SignalText<512> what;
         what << "interrupted again before it returned" << (is_at_robots_start() ? kMoveTheLoop : "");
-        request_end(what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
+        request_end(guard, what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
     }
 }
 

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <csignal>
 
@@ -30,12 +29,6 @@ constexpr std::array kInterrupts{
     SignalName{SIGQUIT, "Ctrl-\\ (SIGQUIT)"},
 };
 
-// timeout(1) and batch systems send a signal to the process and to its group: it may come twice at once.
-constexpr double kSameRequestS = 0.1;
-
-std::atomic<int> interrupts_seen = 0;
-std::atomic<double> last_seen_s = 0.0;
-
 char const* name_of(int signal) {
     for (SignalName const& interrupt : kInterrupts) {
         if (interrupt.signal == signal) {
@@ -55,22 +48,7 @@ void on_interrupt(int signal, siginfo_t* /*info*/, void* /*context*/) {
     if (run_stage() != RunStage::running) {
         end_outside_of_the_run(signal);
     }
-    if (!is_signal_for_this_thread(signal)) {
-        return;
-    }
-    double const now_s = monotonic_s();
-    bool const same = interrupts_seen > 0 && now_s - last_seen_s < kSameRequestS;
-    last_seen_s = now_s;
-    if (same) {
-        return;
-    }
-    int const count = ++interrupts_seen;
-    if (count == 1) {
-        hurry_user_code(name_of(signal));
-    } else {
-        abandon_user_code();
-    }
-    if (count > 2 && !inside_user_code()) {
+    if (note_interrupt(signal, name_of(signal)) > 2 && !inside_user_code()) {
         prepare_plain_last_words("interrupted three times; exiting immediately");
         end_with_last_words(static_cast<int>(ExitCode::interrupted));
     }
@@ -107,14 +85,6 @@ void catch_interrupts() {
             catch_signal(interrupt.signal, SA_RESTART, on_interrupt);
         }
     }
-}
-
-void forget_interrupts() {
-    interrupts_seen = 0;
-}
-
-bool interrupted() {
-    return interrupts_seen > 0;
 }
 
 }  // namespace pogosim

@@ -13,10 +13,4 @@ void ignore_broken_outputs();
 /// not.
 void catch_interrupts();
 
-/// Those so far asked an earlier run to end.
-void forget_interrupts();
-
-/// True once one of them has come.
-bool interrupted();
-
 }  // namespace pogosim

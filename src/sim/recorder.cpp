@@ -172,6 +172,12 @@ void Recorder::save_if_due() {
     }
 }
 
+void Recorder::save_now() {
+    if (data_file_) {
+        data_file_->save();
+    }
+}
+
 void Recorder::add_metadata(std::string const& key, std::string const& value) {
     if (data_file_) {
         data_file_->add_metadata(key, value);

@@ -37,6 +37,9 @@ public:
     /// OutputError.
     void save_if_due();
 
+    /// Saves rows now. Throws OutputError.
+    void save_now();
+
     /// From now on, `rows` gets what is recorded of robots; null: nobody does. `rows` outlives this.
     void show(RecordedRows* rows);
 
@@ -45,6 +48,9 @@ public:
 
     /// Completes the file. Throws OutputError.
     void close();
+
+    /// Lets go of the complete file, so that another run may write it.
+    void release() { data_file_.reset(); }
 
     /// Behind a message about a run that ended early: where its data is. Empty before close() has completed the file.
     std::string note() const;

@@ -15,7 +15,6 @@
 #include "base/memory.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
-#include "sim/interrupt.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/progress_bar.hpp"
 #include "sim/window_driver.hpp"
@@ -38,24 +37,17 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     }
 }
 
-/// However a run ends, later failures and interrupts have no data to save.
-struct RunEnd {
-    RunEnd() = default;
-    RunEnd(RunEnd const&) = delete;
-    RunEnd& operator=(RunEnd const&) = delete;
-    ~RunEnd() { remove_user_guard(); }
-};
-
 }  // namespace
 
-Simulation::Simulation(Scenario scenario, RunOptions options)
+Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions options)
     : scenario_(std::move(scenario)),
       options_(std::move(options)),
       seed_(seed_of(scenario_)),
       world_(build_world(scenario_, seed_)),
       parameters_(scenario_.parameters),
+      guard_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
-      programs_(world_, services_, seed_),
+      programs_(std::move(program), world_, services_, seed_),
       lighting_(lamps_of(scenario_, world_), world_),
       physics_(make_physics(scenario_, world_)),
       recorder_(scenario_, world_, programs_, services_.data, seed_),
@@ -95,20 +87,34 @@ bool Simulation::is_over() const {
 }
 
 ExitCode Simulation::run() {
-    RunEnd const at_end;
-    std::optional<UserFailure> failure;
-    std::optional<std::string> shortage;  // of memory, outside user code
+    Thread const thread(*this);
+    return conclude(attempt([this] { return run_steps(); }));
+}
+
+Outcome Simulation::attempt(std::function<std::optional<UserFailure>()> const& part) {
+    Thread const thread(*this);
+    Outcome outcome;
     std::optional<UserFailure> const crash = call_simulator_code([&] {
         try {
-            failure = run_steps();
+            outcome.failure = part();
         } catch (OutOfMemory const& error) {
-            shortage = error.what();
+            outcome.shortage = error.what();
         } catch (std::bad_alloc const&) {
-            shortage = kOutOfMemory;
+            outcome.shortage = kOutOfMemory;
         }
     });
-    if (shortage) {
-        std::string const message = fmt::format("t = {:.4f} s: {}", world_.time_s(), *shortage);
+    if (crash) {
+        outcome.failure = crash;
+    } else if (!outcome.failed()) {
+        outcome.failure = call_user_code([] {});  // a thread of the program may have failed in the meantime
+    }
+    return outcome;
+}
+
+ExitCode Simulation::conclude(Outcome const& outcome) {
+    Thread const thread(*this);
+    if (outcome.shortage) {
+        std::string const message = fmt::format("t = {:.4f} s: {}", world_.time_s(), *outcome.shortage);
         try {
             finish();
         } catch (std::exception const&) {
@@ -117,11 +123,7 @@ ExitCode Simulation::run() {
         }
         throw OutOfMemory(message + recorder_.note());
     }
-    if (crash) {
-        failure = crash;
-    } else if (!failure) {
-        failure = call_user_code([] {});  // a thread of the program may have failed in the meantime
-    }
+    std::optional<UserFailure> const& failure = outcome.failure;
     if (failure) {
         // The message last, since it says what has become of the data file. When completing that crashes, because
         // memory is destroyed, the last words of the first crash are said.
@@ -188,13 +190,15 @@ std::optional<UserFailure> Simulation::run_steps() {
         progress.show(world_.step);
     }
     progress.finish(world_.step);
-    if (!failure) {
-        failure = call_user_code([this] {
-            programs_.end();
-            programs_.print_unfinished_lines();
-        });
-    }
-    return failure;
+    return failure ? failure : end_programs();
+}
+
+std::optional<UserFailure> Simulation::end_programs() {
+    Thread const thread(*this);
+    return call_user_code([this] {
+        programs_.end();
+        programs_.print_unfinished_lines();
+    });
 }
 
 void Simulation::open_window() {
@@ -207,6 +211,7 @@ void Simulation::open_window() {
             setup.speed_up = setup.restored->speed_up;
         }
         setup.restart_problem = options_.restart_problem;
+        setup.hurry = [this](char const* what) { guard_.hurry(what); };
         setup.scenery = snapshots().scenery();
         window_ = std::make_unique<WindowDriver>(*this, setup);
     } catch (std::runtime_error const& error) {
@@ -225,10 +230,9 @@ void Simulation::save_while_waiting() {
 }
 
 std::optional<UserFailure> Simulation::start() {
+    Thread const thread(*this);
     log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s", seed_, world_.robots.size(),
-                Programs::user_data_bytes(), step_count(), world_.time_step_s);
-    forget_interrupts();
-    install_user_guard(scenario_.user_code_timeout_s);
+                programs_.user_data_bytes(), step_count(), world_.time_step_s);
     lighting_.update(world_);
     if (auto failure = call_user_code([this] { programs_.start(); })) {
         return failure;
@@ -246,6 +250,7 @@ std::optional<UserFailure> Simulation::start() {
 }
 
 std::optional<UserFailure> Simulation::step() {
+    Thread const thread(*this);
     stages_.begin_step();
     lighting_.update(world_);
     stages_.end(Stage::light);
@@ -269,6 +274,7 @@ std::optional<UserFailure> Simulation::step() {
 }
 
 std::optional<UserFailure> Simulation::click(std::uint32_t robot) {
+    Thread const thread(*this);
     bool has_callback = false;
     auto failure = call_user_code([&] { has_callback = programs_.click(robot); });
     if (has_callback || failure) {
@@ -277,12 +283,16 @@ std::optional<UserFailure> Simulation::click(std::uint32_t robot) {
     return failure;
 }
 
-bool Simulation::move_object(std::uint32_t object, Vec2 centre_mm) {
+FreePlaces const& Simulation::free_places() {
     if (!free_places_) {
         free_places_.emplace(world_);
     }
+    return *free_places_;
+}
+
+bool Simulation::move_object(std::uint32_t object, Vec2 centre_mm) {
     Object const& moved = world_.objects[object];
-    Vec2 const place_mm = free_places_->nearest(moved, centre_mm);
+    Vec2 const place_mm = free_places().nearest(moved, centre_mm);
     if (place_mm == pogosim::centre_mm(world_, moved)) {
         return false;
     }
@@ -291,7 +301,43 @@ bool Simulation::move_object(std::uint32_t object, Vec2 centre_mm) {
     return true;
 }
 
+bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_rad) {
+    Object const& moved = world_.objects[object];
+    if (moved.body == kNone) {
+        return false;
+    }
+    bool const is_finite = std::isfinite(centre_mm.x) && std::isfinite(centre_mm.y) && std::isfinite(heading_rad);
+    if (!is_finite || !free_places().is_free(moved, centre_mm)) {
+        throw ConfigError(
+            fmt::format("({:g}, {:g}) mm is no place for an object: it is in a wall or outside of the arena",
+                        centre_mm.x, centre_mm.y));
+    }
+    physics_->set_pose(world_, moved, centre_mm, heading_rad);
+    touches_.add_move(object, world_.time_s());
+    return true;
+}
+
+bool Simulation::set_parameter(std::string const& name, std::string const& yaml_value) {
+    Node changed = scenario_.parameters;
+    apply_override(changed, fmt::format("{}={}", name, yaml_value));
+    UserParameters source(changed);
+    bool has_variable = false;
+    for (BoundVariable const& bound : services_.bound_variables) {
+        if (bound.name == name) {
+            bound.read(source, bound.name, bound.variable, bound.size);
+            has_variable = true;
+        }
+    }
+    return has_variable;
+}
+
+void Simulation::save_now() {
+    Thread const thread(*this);
+    recorder_.save_now();
+}
+
 bool Simulation::finish() {
+    Thread const thread(*this);
     if (std::string const touched = touches_.text(); !touched.empty()) {
         recorder_.add_metadata("touched", touched);
     }

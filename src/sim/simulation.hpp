@@ -7,11 +7,13 @@
 #include <optional>
 #include <string>
 
+#include "base/log.hpp"
 #include "comms/ir_channel.hpp"
 #include "config/scenario.hpp"
 #include "light/lighting.hpp"
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
+#include "robot/program_image.hpp"
 #include "robot/programs.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/inspector.hpp"
@@ -32,6 +34,7 @@ struct RunOptions {
     bool progress_bar = false;
     bool measure_stages = false;  // for benchmarks
     bool strict = false;          // unread parameters are an error
+    std::shared_ptr<Log> log{};   // null: that of the process
     std::string film{};           // file of a film of the run; empty: none
     bool window = false;
     std::string program_name{};          // for the window's title
@@ -40,10 +43,18 @@ struct RunOptions {
     std::function<std::string()> restart_problem = [] { return std::string(); };
 };
 
+/// What became of a part of a run.
+struct Outcome {
+    std::optional<UserFailure> failure{};   // of the program
+    std::optional<std::string> shortage{};  // of memory, outside user code
+
+    bool failed() const { return failure || shortage; }
+};
+
 class Simulation {
 public:
     /// Builds the world. Throws ConfigError.
-    Simulation(Scenario scenario, RunOptions options);
+    Simulation(ProgramImage program, Scenario scenario, RunOptions options);
     ~Simulation();
 
     Simulation(Simulation const&) = delete;
@@ -57,8 +68,36 @@ public:
     // The same in parts, for tests and benchmarks. start() once, then steps, then finish().
     std::optional<UserFailure> start();
     std::optional<UserFailure> step();
+    std::optional<UserFailure> end_programs();
     /// True if all pictures were written.
     bool finish();
+
+    // For hosts, which step as they like: each part of the run inside attempt(), which lets nothing but OutputError and
+    // ConfigError out, and conclude() at the end, or when an attempt has failed.
+
+    Outcome attempt(std::function<std::optional<UserFailure>()> const& part);
+
+    /// Completes the files, then says in the log what failed, if anything did, or what may be wrong with the program.
+    ExitCode conclude(Outcome const& outcome);
+
+    /// After conclude(): other runs may write the files of this one.
+    void release_files() { recorder_.release(); }
+
+    /// The simulated time is over, or somebody has asked the run to end.
+    bool is_over() const;
+
+    std::uint32_t seed() const { return seed_; }
+
+    /// Puts an object (index into World::objects) elsewhere, at rest. False for one without a body. The data file says
+    /// that the run was touched. Throws ConfigError for a place in a wall or outside of the arena.
+    bool set_pose(std::uint32_t object, Vec2 centre_mm, float heading_rad);
+
+    /// Gives the variables that the program has set to the value of `parameters.NAME` another one. False if there are
+    /// none. Throws ConfigError for a value that the program would have been refused.
+    bool set_parameter(std::string const& name, std::string const& yaml_value);
+
+    /// Brings the file of a run that goes on up to date. Throws OutputError.
+    void save_now();
 
     /// After run(): how the user wants the run again; absent otherwise.
     std::optional<Restart> restart();
@@ -86,6 +125,9 @@ public:
     /// True from the first click that ran a callback, or the first move, on.
     bool is_touched() const { return touches_.any(); }
 
+    /// The fence around this run's user code, for whoever owns the process.
+    UserGuard& guard() { return guard_; }
+
     World const& world() const { return world_; }
     IrChannel const& channel() const { return channel_; }
     Programs const& programs() const { return programs_; }
@@ -93,10 +135,19 @@ public:
     std::int64_t step_count() const;  // steps of the whole run
 
 private:
+    /// This thread works for this run.
+    struct Thread {
+        explicit Thread(Simulation& simulation)
+            : logging(simulation.options_.log.get()), guarded(simulation.guard_), programs(simulation.programs_) {}
+        LogScope logging;
+        GuardedThread guarded;
+        Programs::Thread programs;
+    };
+
     std::optional<UserFailure> run_steps();
     void fit_time_step();
     void open_window();
-    bool is_over() const;
+    FreePlaces const& free_places();
     void report(UserFailure const& failure) const;
     void report_unread_parameters() const;
 
@@ -105,6 +156,7 @@ private:
     std::uint32_t seed_;
     World world_;
     UserParameters parameters_;
+    UserGuard guard_;
     RunServices services_;
     Programs programs_;
     Lighting lighting_;

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "base/log.hpp"
-#include "sim/interrupt.hpp"
+#include "robot/user_guard.hpp"
 #include "sim/simulation.hpp"
 
 namespace pogosim {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "pogosim/version.h"
-#include "robot/user_guard.hpp"
 #include "sim/pictures.hpp"
 
 namespace pogosim {
@@ -18,7 +17,6 @@ WindowSetup window_setup(Scenario const& scenario, World const& world, std::stri
     setup.duration_s = scenario.simulation_time_s;
     setup.time_step_s = world.time_step_s;
     setup.speed_up = scenario.view.gui_speed_up;
-    setup.hurry = hurry_user_code_from_thread;
     return setup;
 }
 

@@ -6,51 +6,71 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "support/temporary_folder.hpp"
 
 namespace pogosim {
 namespace {
 
-class ScratchFile : public testing::Test {
+class ScratchFiles : public testing::Test {
 protected:
-    ScratchFile() {
-        std::ofstream(path()) << "on its way";
-        remember_scratch_file(path());
+    std::string path(char const* name = "scratch") const { return folder_ / name; }
+    std::string made(char const* name = "scratch") const {
+        std::ofstream(path(name)) << "on its way";
+        return path(name);
     }
-    ~ScratchFile() override { forget_scratch_file(); }
-
-    std::string path() const { return folder_ / "scratch"; }
+    static bool is_there(std::string const& path) { return std::filesystem::exists(path); }
 
 private:
     TemporaryFolder folder_;
 };
 
-TEST_F(ScratchFile, IsRemovedOnceByTheProcessThatMadeIt) {
-    remove_scratch_file();
-    EXPECT_FALSE(std::filesystem::exists(path()));
-    std::ofstream(path()) << "of the user";
-    remove_scratch_file();
-    EXPECT_TRUE(std::filesystem::exists(path()));
+TEST_F(ScratchFiles, AreRemovedWithTheirObjects) {
+    { ScratchFile const file(made()); }
+    EXPECT_FALSE(is_there(path()));
 }
 
-TEST_F(ScratchFile, ThatHasBecomeTheUsersStays) {
-    forget_scratch_file();
-    remove_scratch_file();
-    EXPECT_TRUE(std::filesystem::exists(path()));
+TEST_F(ScratchFiles, AreRemovedOnceWhenTheProcessEndsEarly) {
+    ScratchFile one(made("one"));
+    ScratchFile const other(made("other"));
+    one.release();
+    remove_scratch_files();
+    EXPECT_TRUE(is_there(path("one"))) << "it has become the user's";
+    EXPECT_FALSE(is_there(path("other")));
+    made("other");
+    remove_scratch_files();
+    EXPECT_TRUE(is_there(path("other"))) << "of the user";
 }
 
-TEST_F(ScratchFile, IsNotRemovedByAChildOfTheProcess) {
-    pid_t const child = fork();
-    if (child == 0) {
-        remove_scratch_file();
-        _exit(0);
+/// Those of two runs do not know of each other.
+TEST_F(ScratchFiles, AreRemovedInAnyNumberAndOrder) {
+    std::vector<std::unique_ptr<ScratchFile>> files;
+    for (int i = 0; i < 100; ++i) {
+        files.push_back(std::make_unique<ScratchFile>(made(std::to_string(i).c_str())));
     }
-    waitpid(child, nullptr, 0);
-    EXPECT_TRUE(std::filesystem::exists(path()));
-    remove_scratch_file();
-    EXPECT_FALSE(std::filesystem::exists(path()));
+    files[3].reset();
+    EXPECT_FALSE(is_there(path("3")));
+    EXPECT_TRUE(is_there(path("2")) && is_there(path("4")) && is_there(path("99")));
+    files.clear();
+    EXPECT_FALSE(is_there(path("2")) || is_there(path("99")));
+}
+
+TEST_F(ScratchFiles, AreNotRemovedByAChildOfTheProcess) {
+    {
+        ScratchFile file(made());
+        pid_t const child = fork();
+        if (child == 0) {
+            remove_scratch_files();
+            file.remove();
+            _exit(0);
+        }
+        waitpid(child, nullptr, 0);
+        EXPECT_TRUE(is_there(path()));
+    }
+    EXPECT_FALSE(is_there(path()));
 }
 
 }  // namespace

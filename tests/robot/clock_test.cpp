@@ -16,7 +16,8 @@ namespace {
 /// A run of one robot; the test's functions note what they see in static variables.
 std::unique_ptr<Simulation> run_one(void (*init)(), void (*step)(), double seconds) {
     testing::use_program(init, step);
-    auto simulation = std::make_unique<Simulation>(testing::square_scene({testing::robots(1)}), RunOptions{});
+    auto simulation = std::make_unique<Simulation>(testing::test_program(), testing::square_scene({testing::robots(1)}),
+                                                   RunOptions{});
     EXPECT_FALSE(simulation->start());
     EXPECT_FALSE(testing::run_for(*simulation, seconds));
     return simulation;
@@ -49,7 +50,7 @@ TEST(Clock, ZeroHertzTicksAtEachStep) {
 
 TEST(Clock, TimeStepIsLoweredWhenARobotTicksFaster) {
     testing::use_program([] { main_loop_hz = 200; }, nullptr);
-    Simulation simulation(testing::square_scene({testing::robots(1)}), {});
+    Simulation simulation(testing::test_program(), testing::square_scene({testing::robots(1)}), {});
     ASSERT_FALSE(simulation.start());
     EXPECT_DOUBLE_EQ(simulation.world().time_step_s, 0.005);
 }
@@ -71,7 +72,7 @@ TEST(Clock, LateTickIsReportedOnTheErrorLedForASecond) {
             msleep(100);
         }
     });
-    Simulation simulation(testing::square_scene({testing::robots(1)}), {});
+    Simulation simulation(testing::test_program(), testing::square_scene({testing::robots(1)}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 0.5));
     EXPECT_EQ(simulation.world().robots.led[0][3], (Rgb{25, 0, 0}));
@@ -165,7 +166,7 @@ TEST(Clock, DriftMakesClocksDiffer) {
     ObjectSpec spec = testing::article_robot();
     spec.robot->clock_drift_stddev_us = 500.0F;
     testing::use_program(nullptr, nullptr);
-    Simulation simulation(testing::square_scene({testing::robots(30, spec)}, 2000.0), {});
+    Simulation simulation(testing::test_program(), testing::square_scene({testing::robots(30, spec)}, 2000.0), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 20.0));
     double sum = 0.0;
@@ -193,7 +194,7 @@ TEST(Clock, DriftTakesHalfOfATickAtMost) {
                                  fastest = std::min(fastest, tick_us);
                              }
                          });
-    Simulation simulation(testing::square_scene({testing::robots(30, spec)}, 2000.0), {});
+    Simulation simulation(testing::test_program(), testing::square_scene({testing::robots(30, spec)}, 2000.0), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 2.0));
     // Ticks of 16 ms: whoever is in a hurry takes 8.

@@ -71,7 +71,8 @@ TEST(Imu, GyroscopeShowsHowFastTheHeadingChanges) {
         main_loop_hz = 0;  // a tick at each step
         read_imu();
     });
-    Simulation simulation(testing::square_scene({testing::robot_at({2500, 2500}, spec)}, 5000.0), {});
+    Simulation simulation(testing::test_program(),
+                          testing::square_scene({testing::robot_at({2500, 2500}, spec)}, 5000.0), {});
     ASSERT_FALSE(simulation.start());
     readings.clear();
     for (int i = 0; i < 100; ++i) {
@@ -131,7 +132,7 @@ TEST(Imu, ForwardIsForwardWhateverTheHeading) {
     });
     Scenario scenario = testing::square_scene({testing::robots(49)}, 2000.0);
     scenario.formation.name = "chessboard";  // 100 mm apart, headings at random
-    Simulation simulation(std::move(scenario), {});
+    Simulation simulation(testing::test_program(), std::move(scenario), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 0.03));
     ASSERT_EQ(starts.size(), 49U);
@@ -172,7 +173,7 @@ TEST(Imu, CollisionWithAWallIsABackwardAcceleration) {
         read_imu();
         hardest = std::min(hardest, readings.back().acceleration[1]);
     });
-    Simulation simulation(testing::square_scene({testing::robot_at({950, 500})}), {});
+    Simulation simulation(testing::test_program(), testing::square_scene({testing::robot_at({950, 500})}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 0.2));
     EXPECT_EQ(hardest, 0.0F);  // not there yet: 23.5 mm at 100 mm/s
@@ -188,7 +189,7 @@ TEST(Imu, TemperatureIsTheArenasWithinTheChipsRange) {
     for (auto const& [arena, chip] : {std::pair{25.0, 25.0F}, std::pair{200.0, 85.0F}, std::pair{-90.0, -40.0F}}) {
         Scenario scenario = testing::square_scene({testing::robots(1)});
         scenario.arena_temperature_c = arena;
-        Simulation simulation(std::move(scenario), {});
+        Simulation simulation(testing::test_program(), std::move(scenario), {});
         ASSERT_FALSE(simulation.start());
         EXPECT_FLOAT_EQ(temperature, chip);
     }

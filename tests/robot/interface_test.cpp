@@ -26,7 +26,7 @@ TEST(Program, MainRunsOncePerRobotAndInitAfterAllMains) {
         pogobot_start([] { order.push_back('i'); }, nullptr);
         SET_CALLBACK(callback_global_setup, [] { order.push_back('g'); });
     };
-    Simulation simulation(square_scene({robots(2)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(2)}), {});
     ASSERT_FALSE(simulation.start());
     EXPECT_EQ(order, (std::vector<char>{'m', 'm', 'g', 'i', 'i'}));
 }
@@ -39,14 +39,15 @@ TEST(Program, EachCategoryRunsTheControllerOfItsName) {
         pogobot_start([] { ran.emplace_back(1, get_current_robot_category()); }, nullptr, "guards");
         pogobot_start([] { ran.emplace_back(2, get_current_robot_category()); }, nullptr, "nobody");
     };
-    Simulation simulation(square_scene({robots(1), robots(1, testing::article_robot(), "guards")}), {});
+    Simulation simulation(testing::test_program(),
+                          square_scene({robots(1), robots(1, testing::article_robot(), "guards")}), {});
     ASSERT_FALSE(simulation.start());
     EXPECT_EQ(ran, (std::vector<std::pair<int, std::string>>{{0, "robots"}, {1, "guards"}}));
 }
 
 TEST(Program, RobotWithoutControllerTicksAllTheSame) {
     testing::program_main = [] {};
-    Simulation simulation(square_scene({robots(1)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(1)}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 1.0));
     EXPECT_NEAR(simulation.programs().ticks(0), 62, 1);
@@ -62,7 +63,7 @@ TEST(UserData, IsZeroAtFirstAndEachRobotsOwn) {
             mydata->number[0] = pogobot_helper_getid();
         },
         [] { mydata->number[0] += 100; });
-    Simulation simulation(square_scene({robots(5)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(5)}), {});
     static std::vector<std::int64_t> last;
     last.clear();
     testing::program_main = [main = testing::program_main] {
@@ -71,7 +72,7 @@ TEST(UserData, IsZeroAtFirstAndEachRobotsOwn) {
     };
     Scenario scenario = square_scene({robots(5)});
     scenario.simulation_time_s = 0.16;
-    Simulation run(std::move(scenario), {});
+    Simulation run(testing::test_program(), std::move(scenario), {});
     EXPECT_EQ(run.run(), ExitCode::done);
     EXPECT_TRUE(all_zero);
     EXPECT_EQ(last, (std::vector<std::int64_t>{1000, 1001, 1002, 1003, 1004}));
@@ -79,7 +80,7 @@ TEST(UserData, IsZeroAtFirstAndEachRobotsOwn) {
 
 TEST(LoopGlobals, AreEachRobotsOwn) {
     testing::use_program([] { main_loop_hz = pogobot_helper_getid() == 0 ? 10 : 40; }, nullptr);
-    Simulation simulation(square_scene({robots(2)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(2)}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 2.0));
     EXPECT_NEAR(simulation.programs().ticks(0), 20, 1);
@@ -94,7 +95,7 @@ TEST(RandomNumbers, SeedsDifferOnEveryRobotAndRepeatWithTheRun) {
         seeds.clear();
         Scenario scenario = square_scene({robots(300)}, 4000.0);
         scenario.seed = seed;
-        Simulation simulation(std::move(scenario), {});
+        Simulation simulation(testing::test_program(), std::move(scenario), {});
         ASSERT_FALSE(simulation.start());
         runs.push_back(seeds);
     }
@@ -117,7 +118,7 @@ std::vector<std::vector<int16_t>> seeds_of_three_robots(int extra) {
         }
     };
     testing::use_program(take, take);
-    Simulation simulation(square_scene({robots(3)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(3)}), {});
     EXPECT_FALSE(simulation.start());
     EXPECT_FALSE(testing::run_for(simulation, 0.3));
     return seeds;
@@ -156,7 +157,7 @@ TEST(RandomNumbers, SrandGivesTheSameNumbersOnEveryRobotAndRandTouchesOnlyItsOwn
                                  numbers[pogobot_helper_getid()].push_back(rand());
                              }
                          });
-    Simulation simulation(square_scene({robots(3)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(3)}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 1.0));
     EXPECT_EQ(numbers[0], numbers[1]);
@@ -172,7 +173,7 @@ TEST(Leds, UnknownOnesAreIgnored) {
             pogobot_led_setColors(7, 8, 9, 5);
         },
         nullptr);
-    Simulation simulation(square_scene({robots(1)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(1)}), {});
     ASSERT_FALSE(simulation.start());
     EXPECT_EQ(simulation.world().robots.led[0], (Leds{Rgb{1, 2, 3}, {}, {}, {}, Rgb{4, 5, 6}}));
 }
@@ -199,7 +200,7 @@ TEST(Motors, MemoryHoldsDirectionsAndPowersPerRobot) {
             seen.push_back(pogobot_motor_dir_mem_get(nullptr));
         },
         nullptr);
-    Simulation simulation(square_scene({robots(1)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(1)}), {});
     ASSERT_FALSE(simulation.start());
     EXPECT_EQ(seen, (std::vector<int>{0, 0, 1, 0, 0, 512, 512, 0, 2, 1, 3, -1}));
 }
@@ -218,6 +219,7 @@ TEST(Messages, ReachANeighbourInTheStepAfterTheyWereSent) {
         },
         nullptr);
     Simulation simulation(
+        testing::test_program(),
         square_scene({robot_at({450, 500}), robot_at({550, 500}, testing::article_robot(), "others")}), {});
     testing::program_main = [main = testing::program_main] {
         main();
@@ -256,7 +258,7 @@ std::vector<message_t> heard_by_the_right_one(void (*send)()) {
         }
     });
     Scenario scenario = square_scene({robot_at({500, 450}), robot_at({500, 530})});
-    Simulation simulation(std::move(scenario), {});
+    Simulation simulation(testing::test_program(), std::move(scenario), {});
     EXPECT_FALSE(simulation.start());
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
     return heard;
@@ -337,7 +339,7 @@ TEST(Messages, OnlySoManyAreProcessedPerTickAndTheRestIsDropped) {
                 }
             }
         });
-    Simulation simulation(square_scene({robot_at({450, 500}), robot_at({530, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({450, 500}), robot_at({530, 500})}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 1.0));
     EXPECT_EQ(handled, 2);
@@ -361,7 +363,7 @@ TEST(GlobalStep, RunsInItsOwnContextSixtyTimesASecond) {
             }
         });
     };
-    Simulation simulation(square_scene({robots(3)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robots(3)}), {});
     EXPECT_EQ(simulation.run(), ExitCode::done);
     EXPECT_EQ(calls, 50);
     EXPECT_EQ(category, "__system");

@@ -42,7 +42,8 @@ TEST(Motion, OneMotorAloneTurnsAtTwiceTheMaximalAngularSpeed) {
 TEST(Motion, TurningRobotRunsACircleOfRadiusSpeedOverTurnRate) {
     // Half the speed, 50 mm/s, at 4 rad/s: 12.5 mm. One turn takes pi / 2 s.
     testing::use_program([] { pogobot_motor_set(motorL, motorFull); }, nullptr);
-    Simulation simulation(testing::square_scene({testing::robot_at({2500, 2500})}, 5000.0), {});
+    Simulation simulation(testing::test_program(), testing::square_scene({testing::robot_at({2500, 2500})}, 5000.0),
+                          {});
     ASSERT_FALSE(simulation.start());
     Vec2 low{5000, 5000};
     Vec2 high{0, 0};
@@ -92,7 +93,7 @@ TEST(Motion, AngularNoiseOfStddevSSpreadsHeadingsAsARandomWalk) {
     spec.robot->angular_noise_stddev = 1.0F;
     testing::use_program([] { pogobot_motor_set(motorL, motorStop); }, nullptr);
     Scenario scenario = testing::square_scene({testing::robots(400, spec)}, 6000.0);
-    Simulation simulation(std::move(scenario), {});
+    Simulation simulation(testing::test_program(), std::move(scenario), {});
     ASSERT_FALSE(simulation.start());
     std::vector<float> const start = simulation.world().bodies.heading_rad;
     ASSERT_FALSE(testing::run_for(simulation, 4.0));
@@ -110,7 +111,7 @@ TEST(Motion, LinearNoiseIsInUnitsOf100MmPerSecond) {
     ObjectSpec spec = testing::article_robot();
     spec.robot->linear_noise_stddev = 0.1F;
     testing::use_program([] { pogobot_motor_set(motorL, motorStop); }, nullptr);
-    Simulation simulation(testing::square_scene({testing::robots(400, spec)}, 6000.0), {});
+    Simulation simulation(testing::test_program(), testing::square_scene({testing::robots(400, spec)}, 6000.0), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 0.01));
     double squares = 0.0;

@@ -47,7 +47,7 @@ std::vector<std::string> const kCategories{"robots", "walls",         "pogobject
 TEST(Categories, IdsGoUpFromZeroForRobotsAndDownFrom65535ForAllElse) {
     testing::program_main = nullptr;
     config_file::Warnings const idle;
-    Simulation const simulation(one_of_each(), {});
+    Simulation const simulation(testing::test_program(), one_of_each(), {});
     std::vector<int> ids;
     std::vector<std::string> names;
     for (Object const& object : simulation.world().objects) {
@@ -76,7 +76,7 @@ TEST(Categories, EachRunsTheControllerOfItsName) {
                 [] { ++steps[get_current_robot_category()]; }, category.c_str());
         }
     };
-    Simulation simulation(one_of_each(), {});
+    Simulation simulation(testing::test_program(), one_of_each(), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 1.6));
     EXPECT_EQ(inits, (std::map<std::string, std::vector<int>>{{"robots", {0, 1}},
@@ -95,7 +95,7 @@ TEST(Categories, EachRunsTheControllerOfItsName) {
 TEST(Categories, WithoutAControllerWarnOnceAndTick) {
     testing::use_program(nullptr, nullptr);
     config_file::Warnings const warnings;
-    Simulation simulation(one_of_each(), {});
+    Simulation simulation(testing::test_program(), one_of_each(), {});
     ASSERT_FALSE(simulation.start());
     std::vector<std::string> const lines = warnings.lines();
     ASSERT_EQ(lines.size(), kCategories.size() - 1);
@@ -121,7 +121,7 @@ TEST(Categories, GlobalStepSeesAllRobotsAndHasDataOfItsOwn) {
             mydata->number[0] = ++mydata->number[1];
         });
     };
-    Simulation simulation(one_of_each(), {});
+    Simulation simulation(testing::test_program(), one_of_each(), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 0.5));
     EXPECT_EQ(categories, std::set<std::string>{"__system"});
@@ -139,7 +139,7 @@ TEST(Categories, RobotEndIsCalledOnceForEveryRobotWallAndMembrane) {
     };
     Scenario scenario = one_of_each();
     scenario.simulation_time_s = 0.1;
-    Simulation simulation(std::move(scenario), {});
+    Simulation simulation(testing::test_program(), std::move(scenario), {});
     EXPECT_EQ(simulation.run(), ExitCode::done);
     EXPECT_EQ(ended, (std::vector<int>{0, 1, 65535, 2, 65534, 3, 65531, 4}));
 }
@@ -149,7 +149,7 @@ TEST(Walls, AreNotMadeInAPeriodicArena) {
     config_file::Warnings const warnings;
     Scenario scenario = square_scene({arena_wall(), robot_at({100, 100}), robot_at({300, 100})});
     scenario.boundary = BoundaryCondition::periodic;
-    Simulation simulation(std::move(scenario), {});
+    Simulation simulation(testing::test_program(), std::move(scenario), {});
     EXPECT_EQ(warnings.text(), "objects.walls: a periodic arena has no walls, so no pogowall is created\n");
     ASSERT_FALSE(simulation.start());
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
@@ -181,6 +181,7 @@ TEST(Walls, DefaultControllerSaysWallToRobotsNearby) {
     };
     // Only the front of robot 0 is within 80 mm of the wall.
     Simulation simulation(
+        testing::test_program(),
         square_scene({robot_at({910, 500}), arena_wall(), robot_at({500, 500}, testing::article_robot(), "far")}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 40.0));
@@ -215,7 +216,7 @@ TEST(Walls, OneTransmissionGivesOneCopyForEachFaceInRange) {
                 },
                 "walls");
         };
-        Simulation simulation(square_scene({robot_at({960, 500}), arena_wall()}), {});
+        Simulation simulation(testing::test_program(), square_scene({robot_at({960, 500}), arena_wall()}), {});
         ASSERT_FALSE(simulation.start());
         ASSERT_FALSE(testing::run_for(simulation, 0.2));
         ASSERT_EQ(heard.size(), 4U);
@@ -246,7 +247,8 @@ TEST(Walls, ReceiveAtIndexZeroWhatRobotsSayNearby) {
             nullptr, "walls");
     };
     // Robot 0 in the lower right corner: its front and right emitters see the wall; robot 1 is far from it.
-    Simulation simulation(square_scene({robot_at({910, 910}), robot_at({500, 500}), arena_wall()}), {});
+    Simulation simulation(testing::test_program(),
+                          square_scene({robot_at({910, 910}), robot_at({500, 500}), arena_wall()}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 0.2));
     EXPECT_EQ(at_wall, (std::vector<std::array<int, 3>>{{0, ir_front, 0}, {0, ir_right, 0}}));
@@ -273,7 +275,7 @@ std::vector<int> hearers(std::vector<ObjectConfig> objects, int power = 3) {
             },
             category);
     };
-    Simulation simulation(square_scene(std::move(objects), 2000.0), {});
+    Simulation simulation(testing::test_program(), square_scene(std::move(objects), 2000.0), {});
     EXPECT_FALSE(simulation.start());
     EXPECT_FALSE(testing::run_for(simulation, 0.2));
     return {ids.begin(), ids.end()};
@@ -326,7 +328,8 @@ void all_ahead() {
 
 TEST(Motors, OfAllButRobotsAreInert) {
     all_ahead();
-    Simulation simulation(square_scene({at(pogobject(), {500, 200}), at(active_object(kBar), {500, 500}),
+    Simulation simulation(testing::test_program(),
+                          square_scene({at(pogobject(), {500, 200}), at(active_object(kBar), {500, 500}),
                                         at(membrane(), {500, 1000}), arena_wall(), robot_at({100, 1800})},
                                        2000.0),
                           {});
@@ -349,7 +352,7 @@ TEST(Pushing, RobotTakesWhatStandsInItsWayAlongAtItsSpeed) {
         heavy.spec.body->restitution = 0.0F;
         ObjectSpec robot = testing::article_robot();
         robot.body->restitution = 0.0F;
-        Simulation simulation(square_scene({robot_at({200, 1000}, robot), heavy}, 2000.0), {});
+        Simulation simulation(testing::test_program(), square_scene({robot_at({200, 1000}, robot), heavy}, 2000.0), {});
         ASSERT_FALSE(simulation.start());
         ASSERT_FALSE(testing::run_for(simulation, 5.0));
         Bodies const& bodies = simulation.world().bodies;
@@ -379,7 +382,7 @@ TEST(Motion, StrongDampingSlowsARobotBetweenItsTicks) {
         nullptr);
     ObjectSpec spec = testing::article_robot();
     spec.body->linear_damping = 20.0F;
-    Simulation simulation(square_scene({robot_at({500, 500}, spec)}, 2000.0), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500}, spec)}, 2000.0), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 5.0));
     float const factor = 1.0F / (1.0F + 20.0F * 0.005F);
@@ -401,7 +404,7 @@ TEST(Walls, GetARandomSeedInEveryRun) {
     for (std::uint32_t seed = 0; seed < 20; ++seed) {
         Scenario scenario = square_scene({arena_wall()});
         scenario.seed = seed;
-        Simulation simulation(std::move(scenario), {});
+        Simulation simulation(testing::test_program(), std::move(scenario), {});
         ASSERT_FALSE(simulation.start());
     }
     EXPECT_GT(seeds.size(), 15U);

@@ -91,7 +91,7 @@ TEST(Photosensors, ShowTheCellsUnderTheirPlacesOnTheRim) {
             pogobot_start(circle, read_photosensors, category);
         }
     };
-    Simulation simulation(testing::square_scene(objects), {});
+    Simulation simulation(testing::test_program(), testing::square_scene(objects), {});
     ASSERT_FALSE(simulation.start());
     readings.clear();
     int compared = 0;
@@ -128,7 +128,7 @@ std::array<int, 4> readings_at(Vec2 position_mm, BoundaryCondition boundary) {
     testing::use_program(read_photosensors, nullptr);
     Scenario scenario = testing::square_scene(objects);
     scenario.boundary = boundary;
-    Simulation simulation(std::move(scenario), {});
+    Simulation simulation(testing::test_program(), std::move(scenario), {});
     readings.clear();
     EXPECT_FALSE(simulation.start());
     return readings.at(0);
@@ -153,7 +153,8 @@ TEST(Photosensors, BiasIsDrawnOncePerSensorEvenlyFromItsDomain) {
     ObjectSpec spec = testing::article_robot();
     spec.robot->photosensor_bias = {-30, 50};
     testing::use_program(circle, read_photosensors);
-    Simulation simulation(testing::square_scene({testing::robots(400, spec), testing::lamp(even_lamp(1000))}, 4000.0),
+    Simulation simulation(testing::test_program(),
+                          testing::square_scene({testing::robots(400, spec), testing::lamp(even_lamp(1000))}, 4000.0),
                           {});
     ASSERT_FALSE(simulation.start());
     readings.clear();
@@ -197,7 +198,8 @@ TEST(Photosensors, NoiseIsNormalAndFreshAtEachReading) {
         triples.push_back(
             {pogobot_photosensors_read(p_B), pogobot_photosensors_read(p_B), pogobot_photosensors_read(p_FR)});
     });
-    Simulation simulation(testing::square_scene({testing::robots(20, spec), testing::lamp(even_lamp(1000))}), {});
+    Simulation simulation(testing::test_program(),
+                          testing::square_scene({testing::robots(20, spec), testing::lamp(even_lamp(1000))}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 5.0));
 
@@ -228,7 +230,8 @@ TEST(Photosensors, EndAtTheLargestNumberOf16Bits) {
     ObjectSpec spec = testing::article_robot();
     spec.robot->photosensor_bias = {1000, 1000};
     testing::use_program(read_photosensors, nullptr);
-    Simulation bright(testing::square_scene({testing::robots(1, spec), testing::lamp(even_lamp(32000))}), {});
+    Simulation bright(testing::test_program(),
+                      testing::square_scene({testing::robots(1, spec), testing::lamp(even_lamp(32000))}), {});
     ASSERT_FALSE(bright.start());
     EXPECT_EQ(readings[0], (std::array{32767, 32767, 32767, -1}));
 }

@@ -1,7 +1,13 @@
-// The watch over user code, and its timers.
+// The watch over user code, and what a process looks like to its other users while a run goes on, and after it.
 #include <gtest/gtest.h>
-#include <sys/time.h>
 
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "robot/user_guard.hpp"
@@ -9,29 +15,83 @@
 namespace pogosim {
 namespace {
 
-bool is_timer_running() {
-    itimerval timer = {};
-    getitimer(ITIMER_REAL, &timer);
-    return timer.it_interval.tv_usec != 0;
+using Handler = void (*)(int);
+
+Handler handler_of(int signal) {
+    struct sigaction now = {};
+    sigaction(signal, nullptr, &now);
+    return now.sa_handler;
 }
 
-TEST(UserWatch, LooksAtTheClockFromARequestToStopUntilTheEndOfTheRun) {
-    install_user_guard(0.0);
-    EXPECT_FALSE(is_timer_running());
-    hurry_user_code("the test");
-    EXPECT_TRUE(is_timer_running());
-    remove_user_guard();
-    EXPECT_FALSE(is_timer_running());
+void other_handler(int /*signal*/) {}
+
+TEST(UserWatch, GivesBackTheSignalsOfTheProcess) {
+    constexpr std::array kSignals{SIGSEGV, SIGFPE, SIGABRT, SIGPROF, SIGALRM};
+    for (int const signal : kSignals) {
+        std::signal(signal, other_handler);
+    }
+    UserGuard guard(nullptr, 3.0);
+    {
+        GuardedThread const thread(guard);
+        GuardedThread const again(guard);
+        for (int const signal : kSignals) {
+            EXPECT_NE(handler_of(signal), other_handler);
+        }
+    }
+    for (int const signal : kSignals) {
+        EXPECT_EQ(handler_of(signal), other_handler);
+        std::signal(signal, SIG_DFL);
+    }
 }
 
-/// A timer that nobody stops would end the program that takes the place of this one.
-TEST(UserWatch, StartsNoTimerForARequestThatComesAfterTheRun) {
-    install_user_guard(0.0);
-    remove_user_guard();
-    hurry_user_code("the test");
-    EXPECT_FALSE(is_timer_running());
-    std::thread([] { hurry_user_code_from_thread("the test"); }).join();
-    EXPECT_FALSE(is_timer_running());
+/// Nobody may be there to take it.
+TEST(UserWatch, SendsNoSignalForARequestThatComesAfterTheRun) {
+    std::signal(SIGALRM, [](int) { std::abort(); });
+    UserGuard guard(nullptr, 0.0);
+    { GuardedThread const thread(guard); }
+    guard.hurry("the test");
+    std::thread([&] { guard.hurry("the test"); }).join();
+    std::signal(SIGALRM, SIG_DFL);
+}
+
+TEST(UserWatch, EndsWhatDoesNotReturnAndNothingElse) {
+    UserGuard guard(nullptr, 0.05);
+    GuardedThread const thread(guard);
+    EXPECT_FALSE(call_user_code([] {}));
+    auto const failure = call_user_code([] {
+        for (std::atomic<bool> ever = true; ever;) {
+        }
+    });
+    ASSERT_TRUE(failure);
+    EXPECT_TRUE(failure->too_long);
+    EXPECT_TRUE(guard.was_left_by_force());
+}
+
+/// Each run has a thread, and each thread a run: a failure is that of the run in which it happens.
+TEST(UserWatch, FailuresInTwoThreadsAreThoseOfTheirRuns) {
+    auto const spin = [](std::optional<UserFailure>& failure) {
+        UserGuard guard(nullptr, 0.1);
+        GuardedThread const thread(guard);
+        failure = call_user_code([] {
+            for (std::atomic<bool> ever = true; ever;) {
+            }
+        });
+    };
+    auto const crash = [](std::optional<UserFailure>& failure) {
+        UserGuard guard(nullptr, 10.0);
+        GuardedThread const thread(guard);
+        failure = call_user_code([] { std::raise(SIGSEGV); });
+    };
+    std::optional<UserFailure> slow;
+    std::optional<UserFailure> crashed;
+    std::thread one(spin, std::ref(slow));
+    std::thread other(crash, std::ref(crashed));
+    one.join();
+    other.join();
+    ASSERT_TRUE(slow && crashed);
+    EXPECT_TRUE(slow->too_long);
+    EXPECT_FALSE(crashed->too_long);
+    EXPECT_NE(crashed->what.find("segmentation fault"), std::string::npos);
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST_P(EveryArena, KeepsItsRobotsInsideAndApart) {
     scenario.arena_file = POGOSIM_SOURCE_DIR "/arenas/" + GetParam() + ".csv";
     scenario.arena_surface_mm2 = 3.0e6;
     scenario.formation.name = "power_lloyd";
-    Simulation simulation(std::move(scenario), {});
+    Simulation simulation(testing::test_program(), std::move(scenario), {});
     ASSERT_FALSE(simulation.start());
     float deepest_in_wall_mm = 0.0F;
     float deepest_overlap = 0.0F;

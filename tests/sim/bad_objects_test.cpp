@@ -8,6 +8,7 @@
 #include "config/config_file.hpp"
 #include "sim/build_world.hpp"
 #include "sim/simulation.hpp"
+#include "support/test_program.hpp"
 
 namespace pogosim {
 namespace {
@@ -183,7 +184,7 @@ TEST(BadArenas, TooSmallForWalls) {
     Folder::write(
         "x.yaml",
         "arena_file: square.csv\narena_surface: 0.5\nobjects:\n  lamp: {type: static_light, geometry: global}\n");
-    EXPECT_EQ(error_of([] { Simulation const simulation(load_scenario("x.yaml", {}), {}); }),
+    EXPECT_EQ(error_of([] { Simulation const simulation(testing::test_program(), load_scenario("x.yaml", {}), {}); }),
               "x.yaml:2: arena_surface: the arena is too small to build walls: its corners lie less than 1 mm apart; "
               "enlarge it");
 }

@@ -51,7 +51,7 @@ TEST(Inspector, ShowsPoseSpeedAndMotors) {
         pogobot_motor_set(motorR, 511);
         pogobot_led_setColors(1, 2, 3, 4);
     });
-    Simulation simulation(square_scene({robot_at({500, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500})}), {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 0.5));
     Inspection const robot = simulation.inspector().inspect(0);
@@ -83,7 +83,7 @@ TEST(Inspector, ShowsLightWithoutBiasAndNoise) {
     spec.robot->photosensor_bias = {100, 200};
     spec.robot->photosensor_noise_stddev = 50.0F;
     use_program(idle, idle);
-    Simulation simulation(square_scene({robot_at({500, 500}, spec), lamp(left_to_right)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500}, spec), lamp(left_to_right)}), {});
     start(simulation);
     auto const light = simulation.inspector().inspect(0).light;
     EXPECT_NEAR(light[0], 500 - 26.5, 6);
@@ -94,7 +94,7 @@ TEST(Inspector, ShowsLightWithoutBiasAndNoise) {
 
 TEST(Inspector, ShowsAccelerationAlongTheRobotsAxes) {
     use_program(idle, full_ahead_later);
-    Simulation simulation(square_scene({robot_at({500, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500})}), {});
     start(simulation);
     while (simulation.programs().ticks(0) < 6) {  // the fifth tick starts the motors, the sixth measures
         ASSERT_FALSE(simulation.step());
@@ -107,6 +107,7 @@ TEST(Inspector, ShowsAccelerationAlongTheRobotsAxes) {
 TEST(Inspector, ListsTheRobotsThatHearIt) {
     use_program(idle, idle);
     Simulation simulation(
+        testing::test_program(),
         square_scene({robot_at({500, 500}), robot_at({600, 500}), robot_at({500, 420}), robot_at({900, 900})}), {});
     start(simulation);
     auto const neighbours = simulation.inspector().inspect(0).neighbours;
@@ -126,7 +127,7 @@ TEST(Inspector, WallHearsAndIsHeardAtTheDistanceOfItsOutline) {
         pogobot_start(idle, idle, "robots");
         pogobot_start(idle, idle, "walls");
     };
-    Simulation simulation(square_scene({robot_at({940, 500}), arena_wall()}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({940, 500}), arena_wall()}), {});
     start(simulation);
     auto const of_robot = simulation.inspector().inspect(0);
     auto const of_wall = simulation.inspector().inspect(1);
@@ -144,7 +145,7 @@ TEST(Inspector, MembraneIsWhereItsMiddleIs) {
         pogobot_init();
         pogobot_start(idle, idle, "membranes");
     };
-    Simulation simulation(square_scene({at(membrane(), {480, 520})}), {});
+    Simulation simulation(testing::test_program(), square_scene({at(membrane(), {480, 520})}), {});
     start(simulation);
     Inspection const membrane = simulation.inspector().inspect(0);
     EXPECT_TRUE(membrane.has_body);
@@ -161,7 +162,7 @@ TEST(Inspector, CountsMessages) {
                         pogobot_infrared_sendShortMessage_uni(ir_front, &byte, 1);
                     }
                 });
-    Simulation simulation(square_scene({robot_at({500, 500}), robot_at({600, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500}), robot_at({600, 500})}), {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 1.0));
     Inspection const sender = simulation.inspector().inspect(0);
@@ -180,7 +181,7 @@ TEST(Inspector, KeepsTheLastTwentyLinesOfARobot) {
             pogosim_printf(" and its end\n");
         }
     });
-    Simulation simulation(square_scene({robot_at({300, 500}), robot_at({600, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({300, 500}), robot_at({600, 500})}), {});
     Inspector& inspector = simulation.inspector();
     start(simulation);
     EXPECT_TRUE(inspector.inspect(1).lines.empty());
@@ -248,7 +249,7 @@ Scenario recorded_scene(TemporaryFolder const& folder, std::string const& name =
 TEST(Inspector, ShowsTheLastRowOfTheDataFile) {
     TemporaryFolder const folder;
     use_exporting_program();
-    Simulation simulation(recorded_scene(folder), {});
+    Simulation simulation(testing::test_program(), recorded_scene(folder), {});
     Inspector& inspector = simulation.inspector();
     EXPECT_TRUE(inspector.inspect(0).columns.empty());
     start(simulation);
@@ -266,7 +267,7 @@ TEST(Inspector, ShowsTheLastRowOfTheDataFile) {
 TEST(RecordedRows, HandOutTheNumbersOfEachRecordedTimeOnce) {
     TemporaryFolder const folder;
     use_exporting_program();
-    Simulation simulation(recorded_scene(folder), {});
+    Simulation simulation(testing::test_program(), recorded_scene(folder), {});
     RecordedRows& rows = simulation.inspector().rows();
     start(simulation);
     EXPECT_EQ(rows.columns(), (std::vector<std::string>{"pogobot_ticks", "x", "y", "angle", "age", "share", "happy"}));
@@ -293,7 +294,7 @@ TEST(RecordedRows, HaveTheColumnsOfTheFileAlone) {
     use_exporting_program();
     Scenario scenario = recorded_scene(folder);
     scenario.output.fields = {"x", "share", "name"};
-    Simulation simulation(scenario, {});
+    Simulation simulation(testing::test_program(), scenario, {});
     start(simulation);
     RecordedRows& rows = simulation.inspector().rows();  // asked for when the file is open already
     EXPECT_EQ(rows.columns(), (std::vector<std::string>{"x", "share"}));
@@ -310,7 +311,7 @@ TEST(Inspector, ChangesNoByteOfTheDataFile) {
         use_exporting_program();
         Scenario scenario = recorded_scene(folder, name);
         scenario.objects[0].spec.robot->photosensor_noise_stddev = 10.0F;
-        Simulation simulation(scenario, {});
+        Simulation simulation(testing::test_program(), scenario, {});
         if (inspected) {
             simulation.inspector();
         }

@@ -81,7 +81,7 @@ Polygon line_of(World const& world, Ring const& ring) {
 /// Watches a simulation: who is inside of which ring, areas, finite numbers.
 class Watch {
 public:
-    explicit Watch(Scenario scenario) : simulation_(std::move(scenario), {}) {
+    explicit Watch(Scenario scenario) : simulation_(testing::test_program(), std::move(scenario), {}) {
         EXPECT_FALSE(simulation_.start());
         for (Ring const& ring : world().rings) {
             first_areas_.push_back(signed_area(line_of(world(), ring)));

@@ -31,7 +31,7 @@ void start(Simulation& simulation) {
 
 TEST(Snapshot, HasThePosesAndLedsOfTheWorld) {
     use_program(idle, red_and_full_ahead);
-    Simulation simulation(square_scene({robot_at({300, 300})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({300, 300})}), {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 1.0));
     Snapshot const snapshot = simulation.snapshots().take({});
@@ -50,7 +50,7 @@ TEST(Snapshot, HasThePosesAndLedsOfTheWorld) {
 
 TEST(Snapshot, StaysAsItIsWhileTheRunGoesOn) {
     use_program(idle, red_and_full_ahead);
-    Simulation simulation(square_scene({robot_at({300, 300})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({300, 300})}), {});
     start(simulation);
     Snapshot const before = simulation.snapshots().take(kAll);
     ASSERT_FALSE(run_for(simulation, 1.0));
@@ -62,7 +62,7 @@ TEST(Snapshot, ShowsBodiesOfAPeriodicArenaInsideIt) {
     use_program(idle, red_and_full_ahead);
     Scenario scenario = square_scene({robot_at({900, 500})});
     scenario.boundary = BoundaryCondition::periodic;
-    Simulation simulation(scenario, {});
+    Simulation simulation(testing::test_program(), scenario, {});
     start(simulation);
     for (int i = 0; i < 30; ++i) {
         ASSERT_FALSE(run_for(simulation, 0.2));
@@ -79,7 +79,7 @@ TEST(Snapshot, LightMapIsSharedUntilItChanges) {
     lamp.photo_start_at_s = 0.1F;
     lamp.photo_start_duration_s = 0.1F;
     lamp.photo_start_value = 1000;
-    Simulation simulation(square_scene({robot_at({500, 500}), testing::lamp(lamp)}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500}), testing::lamp(lamp)}), {});
     start(simulation);
     SnapshotTaker& snapshots = simulation.snapshots();
     auto const dark = snapshots.take(kAll).light;
@@ -96,7 +96,8 @@ TEST(Snapshot, LinksCountThePresentEmitterPower) {
     ObjectSpec spec = article_robot();
     spec.robot->ir.range_by_power_mm = {20.0F, 50.0F, 100.0F};
     use_program(idle, [] { pogobot_infrared_set_power(static_cast<uint8_t>(pogobot_ticks / 4)); });
-    Simulation simulation(square_scene({robot_at({400, 500}, spec), robot_at({500, 500}, spec)}), {});
+    Simulation simulation(testing::test_program(),
+                          square_scene({robot_at({400, 500}, spec), robot_at({500, 500}, spec)}), {});
     start(simulation);
     EXPECT_TRUE(simulation.snapshots().take(kAll).links.empty());  // power 1: 20 mm, and 47 mm lie between them
     bool linked = false;
@@ -118,6 +119,7 @@ TEST(Snapshot, LinksIncludeWallsAndMembranes) {
         pogobot_start(idle, idle, "membranes");
     };
     Simulation simulation(
+        testing::test_program(),
         square_scene({robot_at({60, 500}), robot_at({950, 500}), arena_wall(), at(membrane(), {700, 500})}), {});
     start(simulation);
     World const& world = simulation.world();
@@ -132,7 +134,7 @@ TEST(Snapshot, LinksIncludeWallsAndMembranes) {
 
 TEST(Snapshot, TrailsShowWhereRobotsHaveBeenSinceTheyAreFollowed) {
     use_program(idle, red_and_full_ahead);
-    Simulation simulation(square_scene({robot_at({200, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({200, 500})}), {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 1.0));
     SnapshotTaker& snapshots = simulation.snapshots();
@@ -160,12 +162,12 @@ TEST(Snapshot, TakingItChangesNothingInTheRun) {
     ObjectSpec spec = article_robot();
     spec.robot->linear_noise_stddev = 0.1F;
     spec.robot->ir.reception.rate = 0.5;
-    Simulation plain(square_scene({robots(20, spec)}), {});
+    Simulation plain(test_program(), square_scene({robots(20, spec)}), {});
     start(plain);
     ASSERT_FALSE(run_for(plain, 5.0));
     std::vector<Vec2> const expected = plain.world().bodies.position_mm;
     std::uint64_t const receptions = plain.channel().receptions();
-    Simulation watched(square_scene({robots(20, spec)}), {});
+    Simulation watched(test_program(), square_scene({robots(20, spec)}), {});
     start(watched);
     while (watched.world().step < plain.world().step) {
         ASSERT_FALSE(watched.step());

@@ -52,7 +52,8 @@ void expect_at(Vec2 place, Vec2 expected, float tolerance_mm = 0.05F) {
 TEST(MoveByHand, RobotGoesOnDrivingFromTheNewPlace) {
     TemporaryFolder const folder;
     use_program(idle, full_ahead);
-    Simulation simulation(recorded(square_scene({robot_at({200, 200})}), folder / "a.feather"), {});
+    Simulation simulation(testing::test_program(), recorded(square_scene({robot_at({200, 200})}), folder / "a.feather"),
+                          {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 0.5));
     EXPECT_TRUE(simulation.move_object(0, {300, 700}));
@@ -72,7 +73,7 @@ TEST(MoveByHand, RobotGoesOnDrivingFromTheNewPlace) {
 
 TEST(MoveByHand, RobotPushedAgainstAWallStaysInside) {
     use_program(idle, full_ahead);
-    Simulation simulation(square_scene({robot_at({500, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500})}), {});
     start(simulation);
     for (int i = 0; i < 100; ++i) {
         simulation.move_object(0, {1200, 500.0F + static_cast<float>(i)});
@@ -86,7 +87,7 @@ TEST(MoveByHand, RobotPushedAgainstAWallStaysInside) {
 
 TEST(MoveByHand, RobotDroppedOnAnotherSeparatesFromIt) {
     use_program(idle, idle);
-    Simulation simulation(square_scene({robot_at({200, 200}), robot_at({500, 500})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({200, 200}), robot_at({500, 500})}), {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 1.0));
     EXPECT_TRUE(simulation.move_object(0, {500, 500}));
@@ -102,6 +103,7 @@ TEST(MoveByHand, MembraneMovesAsItIsAndRobotsStayWhereTheyAre) {
         pogobot_start(idle, idle, "membranes");
     };
     Simulation simulation(
+        testing::test_program(),
         square_scene({robot_at({400, 400}), at(membrane(), {400, 400}), robot_at({1500, 1500})}, 2000.0), {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 1.0));
@@ -131,7 +133,7 @@ TEST(MoveByHand, ObjectInAPeriodicArenaComesOutOnTheOtherSide) {
     use_program(idle, idle);
     Scenario scenario = square_scene({robot_at({200, 200})});
     scenario.boundary = BoundaryCondition::periodic;
-    Simulation simulation(scenario, {});
+    Simulation simulation(testing::test_program(), scenario, {});
     start(simulation);
     EXPECT_TRUE(simulation.move_object(0, {1100, -50}));
     ASSERT_FALSE(simulation.step());
@@ -145,7 +147,7 @@ TEST(MoveByHand, FixedObjectCanBeMovedAndAWallCannot) {
     };
     ObjectConfig block = at(passive_object({.radius_mm = 40.0F}), {300, 300});
     block.spec.body->fixed = true;
-    Simulation simulation(square_scene({block, arena_wall()}), {});
+    Simulation simulation(testing::test_program(), square_scene({block, arena_wall()}), {});
     start(simulation);
     EXPECT_TRUE(simulation.move_object(0, {600, 600}));
     ASSERT_FALSE(run_for(simulation, 0.1));
@@ -166,7 +168,8 @@ TEST(Click, CallsTheCallbackInTheRobotsContext) {
             pogobot_led_setColors(0, 255, 0, 0);
         };
     };
-    Simulation simulation(recorded(square_scene({robot_at({200, 200}), robot_at({200, 500})}), folder / "a.feather"),
+    Simulation simulation(testing::test_program(),
+                          recorded(square_scene({robot_at({200, 200}), robot_at({200, 500})}), folder / "a.feather"),
                           {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 0.5));
@@ -188,7 +191,7 @@ TEST(Click, FailureOfTheCallbackEndsTheRunLikeOthers) {
         pogobot_start(idle, idle, "robots");
         callback_robot_click = [] { std::abort(); };
     };
-    Simulation simulation(square_scene({robot_at({200, 200})}), {});
+    Simulation simulation(testing::test_program(), square_scene({robot_at({200, 200})}), {});
     start(simulation);
     auto const failure = simulation.click(0);
     ASSERT_TRUE(failure);
@@ -199,7 +202,8 @@ TEST(Touch, UntouchedRunHasTheSameBytesAndNoEntry) {
     TemporaryFolder const folder;
     use_program(idle, full_ahead);
     auto const run = [&folder](std::string const& name, bool clicked) {
-        Simulation simulation(recorded(square_scene({robot_at({200, 200})}), folder / name), {});
+        Simulation simulation(testing::test_program(), recorded(square_scene({robot_at({200, 200})}), folder / name),
+                              {});
         EXPECT_FALSE(simulation.start());
         EXPECT_FALSE(run_for(simulation, 0.5));
         if (clicked) {
@@ -219,7 +223,7 @@ TEST(Touch, EntryIsThereInAFileOfManyBatches) {
     use_program(idle, full_ahead);
     Scenario scenario = recorded(square_scene({robot_at({200, 200}), robot_at({200, 500})}), folder / "a.feather");
     scenario.output.flush_row_count = 3;
-    Simulation simulation(scenario, {});
+    Simulation simulation(testing::test_program(), scenario, {});
     start(simulation);
     ASSERT_FALSE(run_for(simulation, 1.0));
     EXPECT_TRUE(simulation.move_object(1, {300, 700}));

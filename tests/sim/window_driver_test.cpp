@@ -107,7 +107,7 @@ protected:
             }
         };
         options.window = true;
-        simulation_ = std::make_unique<Simulation>(scenario_, std::move(options));
+        simulation_ = std::make_unique<Simulation>(test_program(), scenario_, std::move(options));
         return simulation_->run();
     }
 

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "interface/pogobase_inside.hpp"
+#include "robot/program_image.hpp"
 
 /// User data of the test program.
 struct TestData {
@@ -16,6 +17,11 @@ DECLARE_USERDATA(TestData)
 }
 
 namespace pogosim::testing {
+
+/// The program below, as the simulator sees it.
+inline ProgramImage test_program() {
+    return linked_program(pogosim_this_program, "test");
+}
 
 /// What robot_main() does, for each robot. Set it at the start of a test.
 extern std::function<void()> program_main;

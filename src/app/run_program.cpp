@@ -1,4 +1,4 @@
-// The program's real main(). The user's main(), renamed robot_main, is called once for each robot.
+// What main() of an executable does: one run of its program, as the command line says.
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -20,8 +20,12 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/scenario.hpp"
+#include "pogosim/program.h"
 #include "robot/forked_child.hpp"
 #include "robot/last_words.hpp"
+#include "robot/process.hpp"
+#include "robot/program_image.hpp"
+#include "robot/user_guard.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/simulation.hpp"
 #include "sim/used_files.hpp"
@@ -35,7 +39,17 @@ using namespace pogosim;
 struct Ended {
     ExitCode code = ExitCode::usage;
     std::optional<Restart> restart{};
+    bool user_code_was_aborted = false;
 };
+
+/// By which the program was started.
+char const* process_name() {
+#ifdef __APPLE__
+    return getprogname();
+#else
+    return program_invocation_name;
+#endif
+}
 
 /// Why the program cannot be started again as it was in `folder`; empty if it can.
 std::string restart_problem(CommandLine const& options, std::filesystem::path const& folder) {
@@ -54,7 +68,7 @@ std::string restart_problem(CommandLine const& options, std::filesystem::path co
     }
 }
 
-Ended simulate(CommandLine const& options, std::filesystem::path const& folder,
+Ended simulate(pogosim_program const& program, CommandLine const& options, std::filesystem::path const& folder,
                std::optional<Restart> const& restarted) {
     ignore_broken_outputs();
     // Until the configuration is read, the console follows the command line.
@@ -82,16 +96,18 @@ Ended simulate(CommandLine const& options, std::filesystem::path const& folder,
         log().info("restarted with seed {}", restarted->seed);
     }
     bool const window = scenario.view.gui && !options.no_gui;
-    Simulation simulation(std::move(scenario), {.progress_bar = options.progress_bar,
-                                                .measure_stages = false,
-                                                .strict = options.strict,
-                                                .film = options.video,
-                                                .window = window,
-                                                .program_name = options.program_name,
-                                                .restarted = restarted,
-                                                .restart_problem = [&] { return restart_problem(options, folder); }});
+    Simulation simulation(linked_program(program, process_name()), std::move(scenario),
+                          {.progress_bar = options.progress_bar,
+                           .measure_stages = false,
+                           .strict = options.strict,
+                           .film = options.video,
+                           .window = window,
+                           .program_name = options.program_name,
+                           .restarted = restarted,
+                           .restart_problem = [&] { return restart_problem(options, folder); }});
+    ProcessRun const scope(simulation.guard());
     ExitCode const code = simulation.run();
-    return {code, simulation.restart()};
+    return {code, simulation.restart(), simulation.guard().was_left_by_force()};
 }
 
 /// Prints an error. Returns the exit code of a run that would otherwise have ended with `code`.
@@ -110,12 +126,12 @@ ExitCode report(char const* error, ExitCode code) {
 
 }  // namespace
 
-/// Before the constructors of the program, which may take for ever, or set handlers of their own.
-__attribute__((constructor)) static void catch_interrupts_from_the_start() {
+void pogosim_guard_process() {
+    take_process();
     catch_interrupts();
 }
 
-extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv) {
+int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
     if (is_forked_child()) {
         end_forked_child(0);  // forked by a constructor; the run belongs to the parent
     }
@@ -129,7 +145,7 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
     Ended ended;
     ExitCode& code = ended.code;
     try {
-        ended = simulate(parsed.options, folder, take_restart());
+        ended = simulate(*program, parsed.options, folder, take_restart());
         check_logs();
     } catch (OutOfMemory const& error) {
         end_short_of_memory(error.what());
@@ -147,7 +163,7 @@ extern "C" __attribute__((visibility("default"))) int main(int argc, char** argv
         std::fprintf(stderr, "Error: cannot start %s again: %s\n", argv[0], std::strerror(errno));
         return static_cast<int>(ExitCode::usage);
     }
-    if (code == ExitCode::user_program || window_was_left_behind() || was_left_by_force()) {
+    if (code == ExitCode::user_program || window_was_left_behind() || ended.user_code_was_aborted) {
         // The user's program may have corrupted memory, so skip the destructors.
         std::fflush(nullptr);
         std::_Exit(static_cast<int>(code));

@@ -1,0 +1,41 @@
+/// @file
+/// What the simulator knows of a program. Every program contains one such structure, from libpogosim_program;
+/// executables pass theirs to the simulator, and a shared object is looked at for it when it is loaded.
+#ifndef POGOSIM_PROGRAM_H
+#define POGOSIM_PROGRAM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+#pragma GCC visibility push(default)
+
+struct pogosim_program {
+    uint32_t interface_version;           ///< POGOSIM_VERSION_COMPILED of what it is linked with
+    int (*main)(void);                    ///< the program's main(), which the headers rename
+    size_t const* user_data_bytes;        ///< size of USERDATA; 0 without REGISTER_USERDATA
+    void (**construct_user_data)(void*);  ///< constructs USERDATA in C++ programs; NULL in others
+};
+
+/// That of the program which contains it.
+extern struct pogosim_program const pogosim_this_program;
+
+/// Runs a program as its command line says: what main() of an executable does. Returns the exit code.
+int pogosim_run_program(struct pogosim_program const* program, int argc, char** argv);
+
+/// Lets the simulator report crashes and interrupts from now on, also those before main(): for executables alone.
+void pogosim_guard_process(void);
+
+// What a program's calls of rand(), srand() and exit() become.
+int pogosim_rand(void);
+void pogosim_srand(unsigned seed);
+void pogosim_exit(int status) __attribute__((noreturn));
+
+#pragma GCC visibility pop
+#ifdef __cplusplus
+}
+#endif
+
+#endif

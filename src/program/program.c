@@ -1,0 +1,35 @@
+// The part of the simulator that is linked into every program, executable or shared object.
+#include "pogosim/program.h"
+
+#include <stdlib.h>
+
+#include "pogosim/version.h"
+
+int robot_main(void);
+
+// Of a program without REGISTER_USERDATA.
+__attribute__((weak)) size_t UserdataSize = 0;
+__attribute__((weak)) void (*UserdataConstruct)(void*) = NULL;
+
+struct pogosim_program const pogosim_this_program = {
+    .interface_version = POGOSIM_VERSION_COMPILED,
+    .main = robot_main,
+    .user_data_bytes = &UserdataSize,
+    .construct_user_data = &UserdataConstruct,
+};
+
+// Functions of the C library that are the robot's own. Defined within the program, and seen only there, they are the
+// ones that its code calls, whatever process it is loaded into.
+#define POGO_WITHIN_PROGRAM __attribute__((visibility("hidden")))
+
+POGO_WITHIN_PROGRAM int rand(void) {
+    return pogosim_rand();
+}
+
+POGO_WITHIN_PROGRAM void srand(unsigned seed) {
+    pogosim_srand(seed);
+}
+
+POGO_WITHIN_PROGRAM void exit(int status) {
+    pogosim_exit(status);
+}

@@ -1,0 +1,38 @@
+#include "robot/process.hpp"
+
+#include <pthread.h>
+
+#include <atomic>
+
+#include "robot/forked_child.hpp"
+#include "robot/guard_state.hpp"
+#include "robot/last_words.hpp"
+#include "robot/other_threads.hpp"
+
+namespace pogosim {
+
+namespace {
+
+std::atomic<bool> is_ours = false;
+pthread_t main_thread{};
+
+}  // namespace
+
+void take_process() {
+    main_thread = pthread_self();
+    is_ours = true;
+    enter_stage(RunStage::before_main);
+    prepare_main_thread_for_crashes();
+    catch_crashes_of_process();
+    watch_for_forks();
+}
+
+bool process_is_ours() {
+    return is_ours;
+}
+
+bool on_main_thread() {
+    return is_ours && pthread_equal(pthread_self(), main_thread) != 0;
+}
+
+}  // namespace pogosim

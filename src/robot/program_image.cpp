@@ -1,0 +1,224 @@
+#include "robot/program_image.hpp"
+
+#include <dlfcn.h>
+#include <elf.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <link.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/escaped.hpp"
+#include "pogosim/version.h"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::uint32_t kVersionsPerMinor = 1000;  // POGOSIM_VERSION_ENCODE: patches do not change the interface
+
+std::string version_text(std::uint32_t encoded) {
+    return fmt::format("{}.{}.{}", encoded / 1000000, encoded / 1000 % 1000, encoded % 1000);
+}
+
+[[noreturn]] void fail(std::filesystem::path const& file, std::string const& problem) {
+    throw ConfigError(fmt::format("the program '{}' {}", escaped(file.string()), problem));
+}
+
+std::vector<char> content_of(std::filesystem::path const& file) {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) {
+        fail(file, "is a folder: name the shared object in it, such as hanabi.so");
+    }
+    std::ifstream input(file, std::ios::binary);
+    if (!input) {
+        fail(file, fmt::format("cannot be read: {}", std::strerror(errno)));
+    }
+    return {std::istreambuf_iterator<char>(input), {}};
+}
+
+template <class T>
+T* at(std::vector<char>& bytes, std::size_t offset, std::size_t count = 1) {
+    bool const inside = offset <= bytes.size() && count <= (bytes.size() - offset) / sizeof(T);
+    return inside ? reinterpret_cast<T*>(bytes.data() + offset) : nullptr;
+}
+
+/// What keeps a file from being loaded; empty: nothing.
+std::string problem_of(std::vector<char>& bytes) {
+    auto const* const header = at<Elf64_Ehdr>(bytes, 0);
+    if (header == nullptr || std::memcmp(header->e_ident, ELFMAG, SELFMAG) != 0) {
+        return "is no shared object: make one with 'make sim', or with 'cc -shared -fPIC'";
+    }
+    auto const* const segments = at<Elf64_Phdr>(bytes, header->e_phoff, header->e_phnum);
+    bool const has_interpreter =
+        segments != nullptr && std::any_of(segments, segments + header->e_phnum,
+                                           [](Elf64_Phdr const& segment) { return segment.p_type == PT_INTERP; });
+    if (header->e_type != ET_DYN || has_interpreter) {
+        return "is an executable: name the shared object that 'make sim' makes beside it, NAME.so";
+    }
+    return "";
+}
+
+/// Variables of inline functions and templates in C++ are unique in a process, whatever copy of the program they are in
+/// (STB_GNU_UNIQUE). Here, each copy has its own.
+void let_each_copy_have_its_variables(std::vector<char>& bytes) {
+    auto const* const header = at<Elf64_Ehdr>(bytes, 0);
+    auto const* const sections = at<Elf64_Shdr>(bytes, header->e_shoff, header->e_shnum);
+    for (int i = 0; sections != nullptr && i < header->e_shnum; ++i) {
+        if (sections[i].sh_type != SHT_DYNSYM) {
+            continue;
+        }
+        std::size_t const count = sections[i].sh_size / sizeof(Elf64_Sym);
+        auto* const symbols = at<Elf64_Sym>(bytes, sections[i].sh_offset, count);
+        for (std::size_t k = 0; symbols != nullptr && k < count; ++k) {
+            unsigned char& info = symbols[k].st_info;
+            if (ELF64_ST_BIND(info) == STB_GNU_UNIQUE) {
+                info = ELF64_ST_INFO(STB_GLOBAL, ELF64_ST_TYPE(info));
+            }
+        }
+    }
+}
+
+/// A file in memory, which the dynamic linker takes for a new one.
+class MemoryFile {
+public:
+    MemoryFile(std::string const& name, std::vector<char> const& bytes)
+        : descriptor_(memfd_create(name.c_str(), MFD_CLOEXEC)) {
+        for (std::size_t written = 0; descriptor_ >= 0 && written < bytes.size();) {
+            ssize_t const count = write(descriptor_, bytes.data() + written, bytes.size() - written);
+            if (count < 0 && errno != EINTR) {
+                throw std::system_error(errno, std::generic_category());
+            }
+            written += count > 0 ? static_cast<std::size_t>(count) : 0;
+        }
+        if (descriptor_ < 0) {
+            throw std::system_error(errno, std::generic_category());
+        }
+    }
+    ~MemoryFile() {
+        if (descriptor_ >= 0) {
+            close(descriptor_);
+        }
+    }
+    MemoryFile(MemoryFile const&) = delete;
+    MemoryFile& operator=(MemoryFile const&) = delete;
+
+    /// Debuggers, which are other processes, find it there, too. The dynamic linker takes a name that it knows for the
+    /// file that it knows, so each file has another one, by its number: "./" stands for 0 in it, and ".//" for 1.
+    std::string path() const {
+        static std::atomic<unsigned> files = 0;
+        std::string number;
+        for (unsigned rest = files++; rest > 0; rest /= 2) {
+            number += rest % 2 == 1 ? ".//" : "./";
+        }
+        return fmt::format("/proc/{}/fd/{}{}", getpid(), number, descriptor_);
+    }
+
+private:
+    int descriptor_;
+};
+
+#ifdef __linux__
+
+/// What looks for the object that a place in memory belongs to.
+struct Search {
+    std::uintptr_t place;
+    std::vector<std::span<std::byte>> writable{};
+};
+
+int look_at_object(dl_phdr_info* object, std::size_t /*bytes*/, void* of_search) {
+    auto& search = *static_cast<Search*>(of_search);
+    std::span const segments(object->dlpi_phdr, object->dlpi_phnum);
+    bool const contains_place = std::ranges::any_of(segments, [&](auto const& segment) {
+        std::uintptr_t const begin = object->dlpi_addr + segment.p_vaddr;
+        return segment.p_type == PT_LOAD && search.place >= begin && search.place - begin < segment.p_memsz;
+    });
+    if (!contains_place) {
+        return 0;
+    }
+    for (auto const& segment : segments) {
+        if (segment.p_type == PT_LOAD && (segment.p_flags & PF_W) != 0) {
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+            auto* const begin = reinterpret_cast<std::byte*>(object->dlpi_addr + segment.p_vaddr);
+            search.writable.emplace_back(begin, segment.p_memsz);
+        }
+    }
+    return 1;
+}
+
+std::vector<std::span<std::byte>> variables_around(void const* place) {
+    Search search{.place = reinterpret_cast<std::uintptr_t>(place)};
+    dl_iterate_phdr(look_at_object, &search);
+    return search.writable;
+}
+
+#else
+
+std::vector<std::span<std::byte>> variables_around(void const* /*place*/) {
+    return {};
+}
+
+#endif
+
+std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
+    std::vector<char> bytes = content_of(file);
+    if (std::string const problem = problem_of(bytes); !problem.empty()) {
+        fail(file, problem);
+    }
+    let_each_copy_have_its_variables(bytes);
+    MemoryFile const copy(file.filename().string(), bytes);
+    std::string const path = copy.path();
+    void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (handle == nullptr) {
+        std::string problem = dlerror();
+        if (problem.starts_with(path + ": ")) {
+            problem.erase(0, path.size() + 2);
+        }
+        fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
+    }
+    return {handle, [](void* library) { dlclose(library); }};
+}
+
+}  // namespace
+
+ProgramImage linked_program(pogosim_program const& program, std::string name) {
+    return {.name = std::move(name),
+            .variables = variables_around(&program),
+            .main = program.main,
+            .user_data_bytes = *program.user_data_bytes,
+            .construct_user_data = *program.construct_user_data};
+}
+
+ProgramImage load_program(std::filesystem::path const& file) {
+    std::shared_ptr<void> library = load_copy(file);
+    auto const* const program = static_cast<pogosim_program const*>(dlsym(library.get(), "pogosim_this_program"));
+    if (program == nullptr) {
+        fail(file, "is no program for Pogosim: link it as 'pkg-config --libs pogosim' says");
+    }
+    if (dlsym(library.get(), "pogosim_rand") != reinterpret_cast<void*>(&pogosim_rand)) {
+        fail(file, "was built with another Pogosim than the one that is in use: build it again with this one");
+    }
+    std::uint32_t const version = program->interface_version;
+    if (version / kVersionsPerMinor != POGOSIM_VERSION_COMPILED / kVersionsPerMinor) {
+        fail(file, fmt::format("was built with Pogosim {}, and this is {}: build it again", version_text(version),
+                               version_text(POGOSIM_VERSION_COMPILED)));
+    }
+    ProgramImage image = linked_program(*program, file.string());
+    image.loaded = std::move(library);
+    return image;
+}
+
+}  // namespace pogosim

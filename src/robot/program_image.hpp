@@ -1,0 +1,32 @@
+// A user's program in memory: linked into the executable that runs, or loaded from a shared object.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pogosim/program.h"
+
+namespace pogosim {
+
+struct ProgramImage {
+    std::string name;                               // that its main() is told
+    std::vector<std::span<std::byte>> variables{};  // memory that it can write: its .data and .bss
+    int (*main)() = nullptr;
+    std::size_t user_data_bytes = 0;
+    void (*construct_user_data)(void*) = nullptr;  // null in C
+    std::shared_ptr<void> loaded{};                // keeps a loaded program in memory; null: it is linked in
+};
+
+/// A program that is a part of this executable.
+ProgramImage linked_program(pogosim_program const& program, std::string name);
+
+/// Loads a program from a shared object, such as `make sim` makes beside an executable. Each call loads a copy with
+/// variables of its own, as the file is now: the file may be built again in the meantime. Throws ConfigError if the
+/// file is missing, is no shared object, no program for Pogosim, or one for another version of it.
+ProgramImage load_program(std::filesystem::path const& file);
+
+}  // namespace pogosim

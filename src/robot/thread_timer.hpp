@@ -1,0 +1,45 @@
+// A timer that sends signals to one thread.
+#pragma once
+
+#include <ctime>
+
+namespace pogosim {
+
+enum class TimerClock {
+    processor,  // time for which the thread uses a processor
+    wall,
+};
+
+/// Belongs to the thread that calls arm() first. Neither children of fork() nor what takes the place of this program by
+/// exec() have it. On systems without such timers, each process has one of each kind.
+class ThreadTimer {
+public:
+    /// The handler of `signal` finds `owner` in siginfo_t::si_value.
+    ThreadTimer(TimerClock clock, int signal, void* owner) : clock_(clock), signal_(signal), owner_(owner) {}
+    ~ThreadTimer() { remove(); }
+    ThreadTimer(ThreadTimer const&) = delete;
+    ThreadTimer& operator=(ThreadTimer const&) = delete;
+
+    /// From now on a signal each `period_s`. For signal handlers, too, once it was armed or prepared.
+    void arm(double period_s);
+
+    /// Does what arm() must not do in a signal handler, without starting it.
+    void prepare();
+
+    /// No signal comes after this.
+    void remove();
+
+    bool is_armed() const { return is_armed_; }
+
+private:
+    TimerClock clock_;
+    int signal_;
+    void* owner_;
+    bool exists_ = false;
+    bool is_armed_ = false;
+#ifdef __linux__
+    timer_t timer_{};
+#endif
+};
+
+}  // namespace pogosim
