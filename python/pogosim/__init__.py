@@ -1,3 +1,26 @@
-"""Tools for the Pogosim simulator of Pogobot swarms."""
+"""Tools for the Pogosim simulator of Pogobot swarms, and the simulator itself: `pogosim.Simulation`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pogosim.simulation import (
+        ConfigurationError,
+        ProgramFailedError,
+        Simulation,
+        SimulationError,
+        VectorSimulation,
+    )
 
 __version__ = "0.11.0"
+__all__ = ["ConfigurationError", "ProgramFailedError", "Simulation", "SimulationError", "VectorSimulation"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load the simulator when it is used for the first time: commands need not wait for it."""
+    if name not in __all__:
+        raise AttributeError(f"module 'pogosim' has no attribute '{name}'")
+    import pogosim.simulation
+
+    return getattr(pogosim.simulation, name)

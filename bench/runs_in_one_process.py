@@ -1,0 +1,63 @@
+"""Short runs in one process, against one process for each.
+
+    .venv/bin/python bench/runs_in_one_process.py [number of runs, 1000 without it]
+
+Each run has 20 robots of run_and_tumble and 5 s, and writes its rows. Both ways use all processors.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from os import cpu_count
+from pathlib import Path
+
+import pogosim
+
+ROOT = Path(__file__).resolve().parents[1]
+PROGRAM = ROOT / "examples" / "run_and_tumble" / "run_and_tumble"
+CONFIGURATION = ROOT / "conf" / "simple.yaml"
+SETTINGS = {"objects.robots.nb": 20, "simulation_time": 5, "arena_surface": 2e5}
+
+
+def run_process(seed: int, folder: Path) -> int:
+    """Make one run in a process of its own. Returns the number of rows."""
+    file = folder / f"{seed}.feather"
+    outputs = {"data_filename": file, "enable_console_logging": "false", "save_video_period": -1}
+    settings = [word for key, value in (SETTINGS | outputs).items() for word in ("--set", f"{key}={value}")]
+    command = [str(PROGRAM), "-c", str(CONFIGURATION), "-g", "-q", "-nr", "-s", str(seed), *settings]
+    subprocess.run(command, check=True, capture_output=True)
+    return file.stat().st_size
+
+
+def run_inside(seed: int, folder: Path) -> int:
+    """Make one run in this process."""
+    file = folder / f"{seed}.feather"
+    with pogosim.Simulation(f"{PROGRAM}.so", CONFIGURATION, seed=seed, set=SETTINGS, data_file=file) as simulation:
+        simulation.run()
+    return file.stat().st_size
+
+
+def seconds(function: Callable[[int, Path], int], runs: int) -> float:
+    """Return how long so many runs take."""
+    with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(cpu_count()) as threads:
+        begin = time.perf_counter()
+        list(threads.map(lambda seed: function(seed, Path(name)), range(runs)))
+        return time.perf_counter() - begin
+
+
+def main() -> None:
+    """Measure both ways."""
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    for name, function in (("one process each", run_process), ("one process", run_inside)):
+        seconds(function, 10)  # programs and libraries are in memory then
+        duration_s = seconds(function, runs)
+        print(f"{name:18s}{duration_s:8.2f} s, {duration_s / runs * 1e3:7.2f} ms per run")
+
+
+if __name__ == "__main__":
+    main()

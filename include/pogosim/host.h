@@ -1,0 +1,101 @@
+/// @file
+/// Runs inside another process, such as Python: a run is a value, which the host steps as it likes. Any number of runs
+/// may exist, of the same program or others; each is used by one thread at a time. The package `pogosim` of Python is
+/// made with this (`pogosim.Simulation`); it is meant for other languages, too.
+///
+/// Functions that can fail return a status; pogosim_host_error() then says what, in one line.
+#ifndef POGOSIM_HOST_H
+#define POGOSIM_HOST_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+#pragma GCC visibility push(default)
+
+/// A run.
+typedef struct pogosim_run pogosim_run;
+
+/// As exit codes of a program. After anything but POGOSIM_OK and POGOSIM_OVER of a step, the run is over and its files
+/// are complete.
+enum pogosim_status {
+    POGOSIM_OK = 0,
+    POGOSIM_OVER = 1,            ///< of a step: the simulated time is over, or the program has ended the run
+    POGOSIM_USAGE = 2,           ///< wrong arguments or configuration, a file that cannot be written, no memory
+    POGOSIM_PROGRAM_FAILED = 3,  ///< the user's program crashed, or did not return
+};
+
+struct pogosim_run_options {
+    char const* program;          ///< shared object, as `make sim` makes beside the executable
+    char const* configuration;    ///< YAML file
+    char const* const* settings;  ///< "key.path=value", as of --set
+    size_t setting_count;
+    int64_t seed;  ///< 0 to 2^32 - 1; negative: that of the configuration
+    int strict;    ///< not 0: unknown keys are errors
+};
+
+/// An array of the simulator, where it is: it changes with each step, and lives as long as the run. Do not write to it.
+struct pogosim_array {
+    void const* data;
+    char type[8];    ///< as of NumPy's array interface: "<f4", "|u1", "|V24" (user data)
+    int dimensions;  ///< 1 to 3
+    int64_t shape[3];
+    int64_t stride_bytes[3];
+};
+
+/// What went wrong in the last call of this thread that failed. Valid until the next one.
+char const* pogosim_host_error(void);
+
+/// POGOSIM_VERSION_STRING of the simulator.
+char const* pogosim_host_version(void);
+
+/// Builds the world and runs the program up to time 0: main(), callbacks, user_init. `run` is NULL on failure.
+int pogosim_run_open(struct pogosim_run_options const* options, pogosim_run** run);
+
+/// Up to `steps` steps, but no further step after `budget_s` seconds of wall-clock time. `done`: how many were made.
+int pogosim_run_step(pogosim_run* run, int64_t steps, double budget_s, int64_t* done);
+
+/// Ends the run: last callbacks, complete files. Does nothing the second time.
+int pogosim_run_end(pogosim_run* run);
+
+/// Ends the run, if it has not ended, and frees it. NULL does nothing.
+void pogosim_run_close(pogosim_run* run);
+
+/// A number: "time" (s), "step", "step_count" (steps of the whole run), "time_step" (s), "seed", "object_count",
+/// "robot_count", "user_data_bytes".
+int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
+
+/// An array. Of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
+/// "bodies.velocity" (n, 2) mm/s, "bodies.angular_velocity" (n) rad/s, "bodies.radius" (n) mm. Of robots (rows: objects
+/// that run the program): "robots.id", "robots.category" (index into pogosim_run_categories), "robots.body" (index of
+/// its body; 2^32 - 1: none), "robots.led" (n, 5, 3), "robots.ticks", "robots.clock" (us), "robots.messages_sent",
+/// "robots.messages_received", "robots.user_data". Of the floor: "light" (rows, columns) sensor counts.
+int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_array* array);
+
+/// Names of the categories, a line each. Valid as long as the run.
+char const* pogosim_run_categories(pogosim_run const* run);
+
+/// Messages since the last call, a line each, the first character says of what kind: 'D' debug, 'I' information, 'W'
+/// warning, 'E' error, 'P' printed by the program. Valid until the next call for this run.
+char const* pogosim_run_messages(pogosim_run* run);
+
+/// Puts the body of a robot elsewhere, at rest. mm and rad.
+int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad);
+
+/// Gives the global variable that the program has set from `parameters.NAME` another value, written in YAML.
+int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* value);
+
+/// Level of light at a robot, sensor counts; mean of its three sensors, without noise. -1 for one without a body.
+double pogosim_run_light_at(pogosim_run const* run, size_t robot);
+
+/// Brings the data file up to date.
+int pogosim_run_save(pogosim_run* run);
+
+#pragma GCC visibility pop
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,13 @@
+"""What can go wrong with a run. The messages are those of the command line."""
+
+
+class SimulationError(Exception):
+    """A run cannot be made, or has failed."""
+
+
+class ConfigurationError(SimulationError, ValueError):
+    """Wrong arguments or configuration, or a file that cannot be read or written."""
+
+
+class ProgramFailedError(SimulationError):
+    """The robots' program crashed, or did not return. The run is over; its rows up to then can be read."""

@@ -1,0 +1,124 @@
+"""The simulator's library, by its interface for hosts (include/pogosim/host.h).
+
+ctypes releases the global interpreter lock during each call, so runs in several threads go on at the same time. One
+package serves every version of Python, which a compiled module would not.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import sys
+from ctypes import POINTER, byref, c_char, c_char_p, c_double, c_int, c_int64, c_size_t, c_void_p
+from pathlib import Path
+from typing import Any
+
+from pogosim import __version__
+from pogosim.installation import InstallationError, find_installation
+from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
+
+OK, OVER, USAGE, PROGRAM_FAILED = range(4)
+
+
+class RunOptions(ctypes.Structure):
+    """`struct pogosim_run_options`."""
+
+    _fields_ = (
+        ("program", c_char_p),
+        ("configuration", c_char_p),
+        ("settings", POINTER(c_char_p)),
+        ("setting_count", c_size_t),
+        ("seed", c_int64),
+        ("strict", c_int),
+    )
+
+
+class ArrayPlace(ctypes.Structure):
+    """`struct pogosim_array`."""
+
+    _fields_ = (
+        ("data", c_void_p),
+        ("type", c_char * 8),
+        ("dimensions", c_int),
+        ("shape", c_int64 * 3),
+        ("stride_bytes", c_int64 * 3),
+    )
+
+
+PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
+    "pogosim_host_error": (c_char_p, ()),
+    "pogosim_host_version": (c_char_p, ()),
+    "pogosim_run_open": (c_int, (POINTER(RunOptions), POINTER(c_void_p))),
+    "pogosim_run_step": (c_int, (c_void_p, c_int64, c_double, POINTER(c_int64))),
+    "pogosim_run_end": (c_int, (c_void_p,)),
+    "pogosim_run_close": (None, (c_void_p,)),
+    "pogosim_run_number": (c_int, (c_void_p, c_char_p, POINTER(c_double))),
+    "pogosim_run_array": (c_int, (c_void_p, c_char_p, POINTER(ArrayPlace))),
+    "pogosim_run_categories": (c_char_p, (c_void_p,)),
+    "pogosim_run_messages": (c_char_p, (c_void_p,)),
+    "pogosim_run_set_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),
+    "pogosim_run_set_parameter": (c_int, (c_void_p, c_char_p, c_char_p)),
+    "pogosim_run_light_at": (c_double, (c_void_p, c_size_t)),
+    "pogosim_run_save": (c_int, (c_void_p,)),
+}
+
+
+@functools.cache
+def library() -> ctypes.CDLL:
+    """Load the library of the simulator that `pogosim path` names.
+
+    Raises:
+        SimulationError: There is none, or it is of another version than this package.
+    """
+    try:
+        folder = find_installation().library
+    except InstallationError as error:
+        raise SimulationError(str(error)) from None
+    path = folder / ("libpogosim.dylib" if sys.platform == "darwin" else "libpogosim.so")
+    try:
+        loaded = ctypes.CDLL(str(path))
+        for name, (result, arguments) in PROTOTYPES.items():
+            function = getattr(loaded, name)
+            function.restype = result
+            function.argtypes = arguments
+    except (OSError, AttributeError) as error:
+        raise SimulationError(f"the simulator's library {path} cannot be used: {error}") from None
+    version = loaded.pogosim_host_version().decode().removeprefix("v")
+    if version != __version__:
+        raise SimulationError(f"{path} is of Pogosim {version}, and this package of {__version__}: build it again")
+    return loaded
+
+
+def check(status: int) -> int:
+    """Return the status of a call that did not fail.
+
+    Raises:
+        ConfigurationError: Of wrong arguments or configurations, or of files.
+        ProgramFailedError: Of the robots' program.
+    """
+    if status in (OK, OVER):
+        return status
+    message = library().pogosim_host_error().decode("utf-8", "replace")
+    raise (ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError)(message)
+
+
+class OpenRun:
+    """A run of the simulator, which is freed with this object: arrays of it keep it."""
+
+    def __init__(self, pointer: c_void_p) -> None:
+        self.pointer = pointer
+        self._close = library().pogosim_run_close
+
+    def __del__(self) -> None:
+        self._close(self.pointer)
+
+
+def open_run(program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool) -> OpenRun:
+    """Build a run and start its program."""
+    texts = (c_char_p * len(settings))(*(text.encode() for text in settings))
+    options = RunOptions(
+        str(program).encode(), str(configuration).encode(), texts, len(settings), -1 if seed is None else seed, strict
+    )
+    handle = c_void_p()
+    check(library().pogosim_run_open(byref(options), byref(handle)))
+    return OpenRun(handle)

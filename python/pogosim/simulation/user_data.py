@@ -1,0 +1,111 @@
+"""The type of a program's USERDATA, from its debug information (DWARF), as a NumPy type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from elftools.common.exceptions import ELFError
+from elftools.dwarf.die import DIE
+from elftools.elf.elffile import ELFFile
+
+from pogosim.simulation.errors import SimulationError
+
+# DWARF, version 5, 7.8: encodings of base types.
+BOOLEAN, FLOAT, SIGNED, SIGNED_CHAR, UNSIGNED, UNSIGNED_CHAR = 0x02, 0x04, 0x05, 0x06, 0x07, 0x08
+KINDS = {BOOLEAN: "b", FLOAT: "f", SIGNED: "i", SIGNED_CHAR: "i", UNSIGNED: "u", UNSIGNED_CHAR: "u"}
+WRAPPERS = ("DW_TAG_typedef", "DW_TAG_const_type", "DW_TAG_volatile_type", "DW_TAG_atomic_type")
+STRUCTURES = ("DW_TAG_structure_type", "DW_TAG_class_type")
+
+
+def attribute(entry: DIE, name: str) -> Any:
+    """Return the value of an attribute; None if there is none."""
+    found = entry.attributes.get(f"DW_AT_{name}")
+    return found.value if found else None
+
+
+def type_behind(entry: DIE) -> DIE:
+    """Return the type that an entry refers to, without typedefs and qualifiers."""
+    behind = entry.get_DIE_from_attribute("DW_AT_type")
+    while behind.tag in WRAPPERS:
+        behind = behind.get_DIE_from_attribute("DW_AT_type")
+    return behind
+
+
+def array_type(entry: DIE) -> np.dtype[Any]:
+    """Return the type of a C array, of one dimension or more."""
+    shape = []
+    for child in entry.iter_children():
+        if child.tag == "DW_TAG_subrange_type":
+            count, bound = attribute(child, "count"), attribute(child, "upper_bound")
+            shape.append(count if count is not None else (bound + 1 if isinstance(bound, int) else 0))
+    return np.dtype((numpy_type(type_behind(entry)), tuple(shape)))
+
+
+def structure_type(entry: DIE) -> np.dtype[Any]:
+    """Return the type of a struct. Bit fields, and members of types unknown to NumPy, are left out."""
+    names, formats, offsets = [], [], []
+    for child in entry.iter_children():
+        offset = attribute(child, "data_member_location")
+        is_member = child.tag == "DW_TAG_member" and attribute(child, "bit_size") is None
+        if is_member and isinstance(offset, int) and (name := attribute(child, "name")):
+            names.append(name.decode())
+            formats.append(numpy_type(type_behind(child)))
+            offsets.append(offset)
+    size = attribute(entry, "byte_size")
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
+
+
+def numpy_type(entry: DIE) -> np.dtype[Any]:
+    """Return the NumPy type of a C type. Pointers are unsigned integers; what has no NumPy type is raw bytes."""
+    size = attribute(entry, "byte_size")
+    if entry.tag in STRUCTURES:
+        return structure_type(entry)
+    if entry.tag == "DW_TAG_array_type":
+        return array_type(entry)
+    if entry.tag == "DW_TAG_enumeration_type":
+        return np.dtype(f"u{size}" if "DW_AT_type" not in entry.attributes else numpy_type(type_behind(entry)))
+    if entry.tag in ("DW_TAG_pointer_type", "DW_TAG_reference_type"):
+        return np.dtype(f"u{size or 8}")
+    kind = KINDS.get(attribute(entry, "encoding"))
+    if entry.tag == "DW_TAG_base_type" and kind is not None and size <= 8:
+        return np.dtype(bool if kind == "b" and size == 1 else f"{kind}{size}")
+    return np.dtype(f"V{size or 0}")
+
+
+def pointed_at_by_mydata(file: ELFFile) -> DIE | None:
+    """Return the type to which a program's `mydata` points; None if no unit of it says so."""
+    for unit in file.get_dwarf_info().iter_CUs():
+        for entry in unit.get_top_DIE().iter_children():
+            if entry.tag == "DW_TAG_variable" and attribute(entry, "name") == b"mydata":
+                pointer = type_behind(entry)
+                if "DW_AT_type" in pointer.attributes:
+                    return type_behind(pointer)
+    return None
+
+
+def user_data_type(program: Path, size_bytes: int) -> np.dtype[Any]:
+    """Return the type of one robot's USERDATA.
+
+    Args:
+        program: Shared object with debug information (compiled with `-g`, as `make sim` does).
+        size_bytes: What the simulator says of its size.
+
+    Raises:
+        SimulationError: The program has no user data, or no debug information about them.
+    """
+    if size_bytes == 0:
+        raise SimulationError(f"{program} has no user data (REGISTER_USERDATA)")
+    try:
+        with program.open("rb") as stream:
+            file = ELFFile(stream)
+            entry = pointed_at_by_mydata(file) if file.has_dwarf_info() else None
+            found = numpy_type(entry) if entry is not None else None
+    except (OSError, ELFError) as error:
+        raise SimulationError(f"{program} cannot be read: {error}") from None
+    if found is None:
+        raise SimulationError(f"{program} has no debug information about USERDATA: compile it with -g")
+    if found.itemsize != size_bytes:
+        raise SimulationError(f"{program} has been built again since this run began: reset it")
+    return found

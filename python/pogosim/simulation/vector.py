@@ -1,0 +1,101 @@
+"""Many runs at once, on threads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from types import TracebackType
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from pogosim.outputs import PathLike
+from pogosim.simulation.run import Simulation
+
+T = TypeVar("T")
+
+
+class VectorSimulation:
+    """Runs of one program with different seeds, stepped together on several threads.
+
+        with pogosim.VectorSimulation("examples/hanabi/hanabi.so", "conf/simple.yaml", seeds=range(8)) as runs:
+            runs.step(100)
+            print(runs.positions.shape)  # (8, robots, 2)
+
+    What each run gives does not depend on the others, nor on the number of threads. `runs[3]` is one of them.
+    """
+
+    def __init__(
+        self,
+        program: PathLike,
+        configuration: PathLike,
+        seeds: Sequence[int] | range,
+        *,
+        threads: int | None = None,
+        **options: Any,
+    ) -> None:
+        """Begin one run for each seed.
+
+        Args:
+            program: As of `Simulation`.
+            configuration: As of `Simulation`.
+            seeds: One for each run.
+            threads: How many runs go on at a time; None: one for each processor.
+            **options: As of `Simulation`, the same for all.
+        """
+        self._threads = ThreadPoolExecutor(threads or os.cpu_count() or 1, thread_name_prefix="pogosim")
+        try:
+            self.simulations = list(
+                self._threads.map(lambda seed: Simulation(program, configuration, seed=seed, **options), seeds)
+            )
+        except BaseException:
+            self._threads.shutdown()
+            raise
+
+    def each(self, function: Callable[[Simulation], T]) -> list[T]:
+        """Call a function with each run, on the threads. Returns what it returned, in order."""
+        return list(self._threads.map(function, self.simulations))
+
+    def step(self, steps: int = 1) -> list[int]:
+        """Go on with all of them, see `Simulation.step`. Returns how many steps each has made."""
+        return self.each(lambda simulation: simulation.step(steps))
+
+    def reset(self, seeds: Sequence[int] | range | None = None) -> None:
+        """Begin all of them again, with these seeds or their own."""
+        chosen = list(seeds) if seeds is not None else [simulation.seed for simulation in self.simulations]
+        list(self._threads.map(lambda pair: pair[0].reset(pair[1]), zip(self.simulations, chosen, strict=True)))
+
+    @property
+    def positions(self) -> npt.NDArray[Any]:
+        """Positions of all robots, mm. Shape (runs, robots, 2); a copy. All runs must have as many robots."""
+        return np.stack([simulation.positions for simulation in self.simulations])
+
+    @property
+    def is_over(self) -> npt.NDArray[np.bool_]:
+        """Which runs are over. Shape (runs,)."""
+        return np.array([simulation.is_over for simulation in self.simulations])
+
+    def close(self) -> None:
+        """End all runs."""
+        for simulation in self.simulations:
+            simulation.close()
+        self._threads.shutdown()
+
+    def __len__(self) -> int:
+        return len(self.simulations)
+
+    def __iter__(self) -> Iterator[Simulation]:
+        return iter(self.simulations)
+
+    def __getitem__(self, index: int) -> Simulation:
+        return self.simulations[index]
+
+    def __enter__(self) -> VectorSimulation:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

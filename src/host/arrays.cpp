@@ -1,0 +1,117 @@
+// The world as arrays, where it is.
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "host/hosted_run.hpp"
+
+namespace pogosim {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "array types are named for little-endian machines");
+
+template <class T>
+std::string type_of() {
+    char const kind = std::is_floating_point_v<T> ? 'f' : std::is_signed_v<T> ? 'i' : 'u';
+    return fmt::format("{}{}{}", sizeof(T) == 1 ? '|' : '<', kind, sizeof(T));
+}
+
+pogosim_array described(void const* data, std::string const& type, std::vector<std::int64_t> const& shape,
+                        std::vector<std::int64_t> const& strides) {
+    pogosim_array array = {};
+    array.data = data;
+    std::strncpy(array.type, type.c_str(), sizeof(array.type) - 1);
+    array.dimensions = static_cast<int>(shape.size());
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+        array.shape[i] = shape[i];
+        array.stride_bytes[i] = strides[i];
+    }
+    return array;
+}
+
+template <class T>
+pogosim_array numbers(std::vector<T> const& values) {
+    return described(values.data(), type_of<T>(), {static_cast<std::int64_t>(values.size())}, {sizeof(T)});
+}
+
+pogosim_array vectors(std::vector<Vec2> const& values) {
+    static_assert(sizeof(Vec2) == 2 * sizeof(float));
+    return described(values.data(), "<f4", {static_cast<std::int64_t>(values.size()), 2},
+                     {sizeof(Vec2), sizeof(float)});
+}
+
+pogosim_array leds(std::vector<Leds> const& values) {
+    static_assert(sizeof(Rgb) == 3 && sizeof(Leds) == kLedCount * sizeof(Rgb));
+    return described(values.data(), "|u1", {static_cast<std::int64_t>(values.size()), kLedCount, 3},
+                     {sizeof(Leds), sizeof(Rgb), 1});
+}
+
+/// A member of each robot's computer.
+template <class T>
+pogosim_array members(Simulation const& simulation, T const& of_first) {
+    auto const computers = simulation.programs().computers();
+    return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(computers.size())}, {sizeof(Computer)});
+}
+
+pogosim_array user_data(Simulation const& simulation) {
+    Programs const& programs = simulation.programs();
+    auto const computers = programs.computers();
+    return described(computers.empty() ? nullptr : computers.front().user_data,
+                     fmt::format("|V{}", programs.user_data_bytes()), {static_cast<std::int64_t>(computers.size())},
+                     {static_cast<std::int64_t>(programs.user_data_stride())});
+}
+
+pogosim_array light(LightMap const& map) {
+    return described(map.level.data(), "<i2", {map.rows, map.columns},
+                     {static_cast<std::int64_t>(sizeof(std::int16_t)) * map.columns, sizeof(std::int16_t)});
+}
+
+/// Stands in for the first of no robots.
+Computer const& first_computer(Simulation const& simulation) {
+    static Computer const none;
+    auto const computers = simulation.programs().computers();
+    return computers.empty() ? none : computers.front();
+}
+
+struct NamedArray {
+    std::string_view name;
+    pogosim_array (*describe)(Simulation const& simulation);
+};
+constexpr std::array kArrays{
+    NamedArray{"bodies.position", [](Simulation const& s) { return vectors(s.world().bodies.position_mm); }},
+    NamedArray{"bodies.heading", [](Simulation const& s) { return numbers(s.world().bodies.heading_rad); }},
+    NamedArray{"bodies.velocity", [](Simulation const& s) { return vectors(s.world().bodies.velocity_mm_s); }},
+    NamedArray{"bodies.angular_velocity",
+               [](Simulation const& s) { return numbers(s.world().bodies.angular_velocity_rad_s); }},
+    NamedArray{"bodies.radius", [](Simulation const& s) { return numbers(s.world().bodies.radius_mm); }},
+    NamedArray{"robots.id", [](Simulation const& s) { return numbers(s.world().robots.id); }},
+    NamedArray{"robots.category", [](Simulation const& s) { return numbers(s.world().robots.category); }},
+    NamedArray{"robots.body", [](Simulation const& s) { return numbers(s.world().robots.body); }},
+    NamedArray{"robots.led", [](Simulation const& s) { return leds(s.world().robots.led); }},
+    NamedArray{"robots.ticks", [](Simulation const& s) { return members(s, first_computer(s).loop.ticks); }},
+    NamedArray{"robots.clock", [](Simulation const& s) { return members(s, first_computer(s).clock_us); }},
+    NamedArray{"robots.messages_sent", [](Simulation const& s) { return members(s, first_computer(s).messages_sent); }},
+    NamedArray{"robots.messages_received",
+               [](Simulation const& s) { return members(s, first_computer(s).messages_received); }},
+    NamedArray{"robots.user_data", user_data},
+    NamedArray{"light", [](Simulation const& s) { return light(s.world().light); }},
+};
+
+}  // namespace
+
+std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_view name) {
+    for (NamedArray const& array : kArrays) {
+        if (array.name == name) {
+            return array.describe(simulation);
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,179 @@
+// pogosim/host.h. No exception crosses into the host.
+#include "pogosim/host.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "base/memory.hpp"
+#include "host/hosted_run.hpp"
+#include "pogosim/version.h"
+#include "robot/sensing.hpp"
+
+using namespace pogosim;
+
+namespace {
+
+std::string& error_text() {
+    static thread_local std::string text;
+    return text;
+}
+
+int failed(std::string const& what, int status = POGOSIM_USAGE) {
+    error_text() = what;
+    return status;
+}
+
+/// Runs what may throw, and returns its status.
+template <class Body>
+int with_status(Body const& body) {
+    try {
+        return body();
+    } catch (RunFailure const& failure) {
+        return failed(failure.what(), failure.code == ExitCode::user_program ? POGOSIM_PROGRAM_FAILED : POGOSIM_USAGE);
+    } catch (std::bad_alloc const&) {
+        return failed(kOutOfMemory);
+    } catch (std::exception const& error) {
+        return failed(error.what());
+    } catch (...) {
+        return failed("unknown error");
+    }
+}
+
+struct NamedNumber {
+    std::string_view name;
+    double (*value)(Simulation const& simulation);
+};
+constexpr std::array kNumbers{
+    NamedNumber{"time", [](Simulation const& s) { return s.world().time_s(); }},
+    NamedNumber{"step", [](Simulation const& s) { return static_cast<double>(s.world().step); }},
+    NamedNumber{"step_count", [](Simulation const& s) { return static_cast<double>(s.step_count()); }},
+    NamedNumber{"time_step", [](Simulation const& s) { return s.world().time_step_s; }},
+    NamedNumber{"seed", [](Simulation const& s) { return static_cast<double>(s.seed()); }},
+    NamedNumber{"object_count", [](Simulation const& s) { return static_cast<double>(s.world().objects.size()); }},
+    NamedNumber{"robot_count", [](Simulation const& s) { return static_cast<double>(s.world().robots.size()); }},
+    NamedNumber{"user_data_bytes",
+                [](Simulation const& s) { return static_cast<double>(s.programs().user_data_bytes()); }},
+};
+
+}  // namespace
+
+char const* pogosim_host_error() {
+    return error_text().c_str();
+}
+
+char const* pogosim_host_version() {
+    return POGOSIM_VERSION_STRING;
+}
+
+int pogosim_run_open(pogosim_run_options const* options, pogosim_run** run) {
+    *run = nullptr;
+    return with_status([&] {
+        if (options->seed > std::numeric_limits<std::uint32_t>::max()) {
+            throw ConfigError(fmt::format("seed: expected an integer from 0 to {}, found {}",
+                                          std::numeric_limits<std::uint32_t>::max(), options->seed));
+        }
+        *run = std::make_unique<pogosim_run>(*options).release();
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_run_step(pogosim_run* run, int64_t steps, double budget_s, int64_t* done) {
+    *done = 0;
+    return with_status([&] {
+        *done = run->step(steps, budget_s);
+        return run->is_over() ? POGOSIM_OVER : POGOSIM_OK;
+    });
+}
+
+int pogosim_run_end(pogosim_run* run) {
+    return with_status([&] {
+        run->end();
+        return POGOSIM_OK;
+    });
+}
+
+void pogosim_run_close(pogosim_run* run) {
+    delete run;
+}
+
+int pogosim_run_number(pogosim_run const* run, char const* name, double* value) {
+    for (NamedNumber const& number : kNumbers) {
+        if (number.name == name) {
+            *value = number.value(run->simulation());
+            return POGOSIM_OK;
+        }
+    }
+    return failed(fmt::format("a run has no number '{}'", name));
+}
+
+int pogosim_run_array(pogosim_run const* run, char const* name, pogosim_array* array) {
+    if (auto const found = array_of(run->simulation(), name)) {
+        *array = *found;
+        return POGOSIM_OK;
+    }
+    return failed(fmt::format("a run has no array '{}'", name));
+}
+
+char const* pogosim_run_categories(pogosim_run const* run) {
+    return run->categories().c_str();
+}
+
+char const* pogosim_run_messages(pogosim_run* run) {
+    return run->take_messages().c_str();
+}
+
+int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad) {
+    return with_status([&] {
+        World const& world = run->simulation().world();
+        if (robot >= world.robots.size()) {
+            throw ConfigError(fmt::format("there is no robot {}: the run has {}", robot, world.robots.size()));
+        }
+        auto const object = std::ranges::find(world.objects, static_cast<std::uint32_t>(robot), &Object::robot);
+        auto const index = static_cast<std::uint32_t>(object - world.objects.begin());
+        Vec2 const place_mm{static_cast<float>(x_mm), static_cast<float>(y_mm)};
+        if (!run->simulation().set_pose(index, place_mm, static_cast<float>(heading_rad))) {
+            throw ConfigError(fmt::format("robot {} has no body that could be moved", robot));
+        }
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* value) {
+    return with_status([&] {
+        if (!run->simulation().set_parameter(name, value)) {
+            throw ConfigError(fmt::format(
+                "parameters.{}: the program has not read it into a global variable or USERDATA, so it can only be set "
+                "for a new run",
+                name));
+        }
+        return POGOSIM_OK;
+    });
+}
+
+double pogosim_run_light_at(pogosim_run const* run, size_t robot) {
+    World const& world = run->simulation().world();
+    if (robot >= world.robots.size() || world.robots.body[robot] == kNone) {
+        return -1.0;
+    }
+    double sum = 0.0;
+    for (std::size_t sensor = 0; sensor < kPhotosensorCount; ++sensor) {
+        sum += light_at_sensor(world, world.robots.body[robot], sensor);
+    }
+    return sum / kPhotosensorCount;
+}
+
+int pogosim_run_save(pogosim_run* run) {
+    return with_status([&] {
+        run->simulation().save_now();
+        return POGOSIM_OK;
+    });
+}

@@ -1,0 +1,110 @@
+#include "host/hosted_run.hpp"
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "base/error.hpp"
+#include "config/scenario.hpp"
+#include "robot/program_image.hpp"
+
+using namespace pogosim;
+
+namespace {
+
+Scenario scenario_of(pogosim_run_options const& options) {
+    std::vector<std::string> const settings(options.settings, options.settings + options.setting_count);
+    Scenario scenario = load_scenario(options.configuration, {.overrides = settings, .strict = options.strict != 0});
+    if (options.seed >= 0) {
+        scenario.seed = static_cast<std::uint32_t>(options.seed);
+    }
+    return scenario;
+}
+
+char letter_of(LogLine const& line) {
+    constexpr std::string_view letters = "TDIWEC";
+    return line.is_of_robot ? 'P' : letters.at(static_cast<std::size_t>(line.level));
+}
+
+}  // namespace
+
+pogosim_run::pogosim_run(pogosim_run_options const& options) {
+    LogOptions logging;
+    logging.on_line = [this](LogLine const& line) { lines_.push_back(line); };
+    log_ = std::make_shared<Log>(logging);
+    LogScope const scope(log_.get());
+    ProgramImage program = load_program(options.program);
+    RunOptions run_options;
+    run_options.log = log_;
+    simulation_ = std::make_unique<Simulation>(std::move(program), scenario_of(options), run_options);
+    for (Category const& category : simulation_->world().categories) {
+        categories_ += (categories_.empty() ? "" : "\n") + category.name;
+    }
+    must_succeed(simulation_->attempt([this] { return simulation_->start(); }));
+}
+
+pogosim_run::~pogosim_run() {
+    try {
+        end();
+    } catch (std::exception const&) {
+        // Whoever wants to know calls end().
+    }
+}
+
+void pogosim_run::must_succeed(Outcome const& outcome) {
+    if (!outcome.failed()) {
+        return;
+    }
+    has_ended_ = true;
+    std::size_t const before = lines_.size();
+    ExitCode const code = simulation_->conclude(outcome);
+    simulation_->release_files();
+    // What the log says of it is the message of the error.
+    std::string message = outcome.failure ? outcome.failure->what : *outcome.shortage;
+    for (std::size_t i = before; i < lines_.size(); ++i) {
+        if (!lines_[i].is_of_robot && lines_[i].level >= spdlog::level::warn) {
+            message = lines_[i].text;
+            lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(i));
+            break;
+        }
+    }
+    throw RunFailure(message, code);
+}
+
+std::int64_t pogosim_run::step(std::int64_t steps, double budget_s) {
+    using Clock = std::chrono::steady_clock;
+    if (has_ended_) {
+        throw ConfigError("the run has ended: reset it, or make another one");
+    }
+    auto const deadline = Clock::now() + std::chrono::duration<double>(budget_s);
+    std::int64_t done = 0;
+    must_succeed(simulation_->attempt([&]() -> std::optional<UserFailure> {
+        while (done < steps && !simulation_->is_over() && (done == 0 || Clock::now() < deadline)) {
+            if (auto failure = simulation_->step()) {
+                return failure;
+            }
+            ++done;
+        }
+        return std::nullopt;
+    }));
+    return done;
+}
+
+void pogosim_run::end() {
+    if (has_ended_ || !simulation_) {
+        return;
+    }
+    Outcome const outcome = simulation_->attempt([this] { return simulation_->end_programs(); });
+    must_succeed(outcome);
+    has_ended_ = true;
+    simulation_->conclude(outcome);
+    simulation_->release_files();
+}
+
+std::string const& pogosim_run::take_messages() {
+    messages_.clear();
+    for (LogLine const& line : std::exchange(lines_, {})) {
+        messages_ += (messages_.empty() ? "" : "\n") + (letter_of(line) + line.text);
+    }
+    return messages_;
+}

@@ -1,0 +1,56 @@
+// A run inside another process: the C++ behind pogosim/host.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/log.hpp"
+#include "pogosim/host.h"
+#include "sim/simulation.hpp"
+
+/// As declared in pogosim/host.h. Functions throw what the functions there turn into a status.
+struct pogosim_run {
+public:
+    explicit pogosim_run(pogosim_run_options const& options);
+    ~pogosim_run();
+    pogosim_run(pogosim_run const&) = delete;
+    pogosim_run& operator=(pogosim_run const&) = delete;
+
+    /// Returns the steps made. Throws RunFailure.
+    std::int64_t step(std::int64_t steps, double budget_s);
+    void end();
+    bool is_over() const { return has_ended_ || simulation_->is_over(); }
+
+    pogosim::Simulation& simulation() { return *simulation_; }
+    pogosim::Simulation const& simulation() const { return *simulation_; }
+
+    std::string const& categories() const { return categories_; }
+    std::string const& take_messages();
+
+private:
+    void must_succeed(pogosim::Outcome const& outcome);
+
+    std::vector<pogosim::LogLine> lines_;
+    std::string messages_;
+    std::shared_ptr<pogosim::Log> log_;
+    std::unique_ptr<pogosim::Simulation> simulation_;
+    std::string categories_;
+    bool has_ended_ = false;
+};
+
+namespace pogosim {
+
+/// The user's program has failed: the message, and what an executable would exit with.
+struct RunFailure : std::runtime_error {
+    RunFailure(std::string const& message, ExitCode exit_code) : std::runtime_error(message), code(exit_code) {}
+    ExitCode code;
+};
+
+/// The array of this name; nothing if there is none.
+std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_view name);
+
+}  // namespace pogosim

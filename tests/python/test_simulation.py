@@ -1,0 +1,416 @@
+"""Runs inside of this process: pogosim.Simulation and pogosim.VectorSimulation."""
+
+from __future__ import annotations
+
+import gc
+import logging
+import math
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pogosim
+import pytest
+from pogosim.utils import load_dataframe
+from running import PROGRAMS, ROOT, compile_program, example, run, write_scene
+
+HANABI = ROOT / "examples" / "hanabi" / "hanabi.so"
+TUMBLE = ROOT / "examples" / "run_and_tumble" / "run_and_tumble.so"
+SIMPLE = ROOT / "conf" / "simple.yaml"
+SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
+
+
+@pytest.fixture(autouse=True)
+def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The shared object of tests/programs/hosted.c."""
+    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    """A configuration of three robots and 2 s."""
+    return write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv"), "save_data_period": 0.5})
+
+
+@pytest.fixture
+def sim(program: Path, scene: Path) -> Iterator[pogosim.Simulation]:
+    """A run of that program in it."""
+    with pogosim.Simulation(program, scene) as simulation:
+        yield simulation
+
+
+def state(simulation: pogosim.Simulation) -> tuple[bytes, ...]:
+    """All that a run looks like."""
+    arrays = (simulation.positions, simulation.headings, simulation.velocities, simulation.leds, simulation.ticks)
+    return tuple(np.ascontiguousarray(array).tobytes() for array in arrays)
+
+
+def alone(program: Path, seed: int, steps: int) -> tuple[bytes, ...]:
+    with pogosim.Simulation(program, SIMPLE, seed=seed) as simulation:
+        simulation.step(steps)
+        return state(simulation)
+
+
+def test_rows_are_those_of_the_command_line(program: Path, scene: Path, tmp_path: Path) -> None:
+    executable = compile_program(tmp_path / "hosted", PROGRAMS / "hosted.c", flags=("-g",))
+    on_command_line = run(executable, tmp_path, {"save_data_period": 0.5}).frame()
+    with pogosim.Simulation(program, scene) as simulation:
+        assert simulation.run() == 200
+        assert simulation.is_over
+        assert simulation.to_dataframe().equals(on_command_line)
+
+
+def test_interleaved_runs_of_two_programs_are_what_each_is_alone() -> None:
+    expected = [alone(HANABI, 1, 300), alone(TUMBLE, 2, 300), alone(TUMBLE, 3, 300)]
+    runs = [pogosim.Simulation(*of) for of in ((HANABI, SIMPLE), (TUMBLE, SIMPLE), (TUMBLE, SIMPLE))]
+    for simulation, seed in zip(runs, (1, 2, 3), strict=True):
+        simulation.reset(seed)
+    for steps in (1, 2, 3) * 50:
+        for simulation in runs:
+            simulation.step(steps)
+    assert [state(simulation) for simulation in runs] == expected
+    for simulation in runs:
+        simulation.close()
+
+
+def test_runs_on_threads_are_what_each_is_alone() -> None:
+    seeds = range(6)
+    with pogosim.VectorSimulation(TUMBLE, SIMPLE, seeds, threads=3) as runs:
+        for _ in range(20):
+            assert runs.step(10) == [10] * len(seeds)
+        assert [state(simulation) for simulation in runs] == [alone(TUMBLE, seed, 200) for seed in seeds]
+        assert runs.positions.shape == (6, 100, 2)
+        assert not runs.is_over.any()
+        runs.reset()
+        assert [simulation.seed for simulation in runs] == list(seeds)
+        assert {simulation.time for simulation in runs} == {0.0}
+
+
+def test_each_run_has_variables_of_its_own(program: Path, scene: Path) -> None:
+    runs = [pogosim.Simulation(program, scene) for _ in range(2)]
+    runs[0].step(100)
+    runs[1].step(50)
+    last = [simulation.to_dataframe()["steps_of_all"].iloc[-1] for simulation in runs]
+    assert last[0] > 1.5 * last[1] > 0
+    runs[0].reset()
+    assert runs[0].to_dataframe()["steps_of_all"].tolist() == [0, 0, 0]
+    for simulation in runs:
+        simulation.close()
+
+
+def test_c_library_of_the_robots_is_their_own(sim: pogosim.Simulation) -> None:
+    """Whatever process they run in: srand(7) has given all of them the same numbers, which are not those of libc."""
+    sim.step(20)
+    numbers = sim.user_data["numbers"]
+    assert len(set(numbers[:, 0])) == 1
+    assert len(set(numbers[:, 1])) == 1
+    libc = subprocess.run(
+        [sys.executable, "-c", "import ctypes; c = ctypes.CDLL(None); c.srand(7); print(c.rand())"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert int(libc.stdout) != numbers[0, 0]
+
+
+def test_arrays_are_views_that_go_with_the_run(sim: pogosim.Simulation) -> None:
+    positions, leds = sim.positions, sim.leds
+    before = positions.copy()
+    sim.step(50)
+    assert not np.array_equal(positions, before)
+    assert leds[:, 0, 0].tolist() == sim.user_data["age"].tolist() == [31, 31, 31]
+    assert leds.shape == (3, 5, 3)
+    assert (sim.ticks == 31).all()
+    for array in (positions, leds, sim.headings, sim.velocities, sim.angular_velocities, sim.light_map, sim.radii):
+        assert not array.flags.writeable
+        assert not array.flags.owndata
+    with pytest.raises(ValueError, match="read-only"):
+        positions[0] = 0
+    speeds = np.hypot(*sim.velocities.T)
+    assert (speeds > 0).all()
+    assert sim.robot_ids.tolist() == [0, 1, 2]
+    assert sim.categories == ["robots"]
+    assert sim.radii.tolist() == [26.5] * 3
+
+
+def test_arrays_outlive_the_run(program: Path, scene: Path) -> None:
+    simulation = pogosim.Simulation(program, scene)
+    simulation.step(10)
+    positions, data = simulation.positions, simulation.user_data
+    copy = positions.copy()
+    simulation.reset()
+    simulation.step(30)
+    simulation.close()
+    del simulation
+    gc.collect()
+    assert np.array_equal(positions, copy)
+    assert data["state"].tolist() == [7, 7, 7]
+
+
+def test_user_data_have_the_types_of_the_program(sim: pogosim.Simulation) -> None:
+    sim.step(10)
+    data = sim.user_data
+    names = ("gain", "age", "levels", "estimate", "state", "numbers", "name", "self")
+    assert data.dtype.names == names
+    assert data["levels"].tolist() == [[0, -3, 0]] * 3
+    assert data["estimate"]["mean"].tolist() == [0.5] * 3
+    assert data["estimate"]["known"].all()
+    assert bytes(data["name"][0]).startswith(b"abc\0")
+    assert len(set(data["self"].tolist())) == 3
+    data["age"][1] = 100
+    sim.step(20)
+    assert sim.leds[1, 0, 0] > 100 > sim.leds[0, 0, 0]
+
+
+def test_parameters_set_in_the_run_take_effect_at_once_and_in_later_ones(sim: pogosim.Simulation) -> None:
+    sim.step(10)
+    assert sim.user_data["gain"].tolist() == [1.0] * 3
+    sim.parameters["gain"] = 2.5
+    sim.parameters["table"] = [3.0, np.float64(4.0)]
+    sim.step(50)
+    assert sim.user_data["gain"].tolist() == [2.5] * 3
+    assert sim.to_dataframe()["table_1"].iloc[-1] == 4.0
+    sim.reset()
+    sim.step(10)
+    assert sim.user_data["gain"].tolist() == [2.5] * 3
+    assert dict(sim.parameters) == {"gain": 2.5, "table": [3.0, 4.0]}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("gain", "fast", r"--set: parameters.gain: expected a number.*, found 'fast'"),
+        ("table", [1.0], r"--set: parameters.table: expected a list of at least 2 numbers, found 1"),
+        ("gian", 1.0, r"parameters.gian: the program has not read it into a global variable or USERDATA"),
+        ("local", 1.0, r"parameters.local: the program has not read it into a global variable or USERDATA"),
+    ],
+)
+def test_wrong_parameters_are_refused_and_change_nothing(
+    name: str, value: Any, message: str, sim: pogosim.Simulation
+) -> None:
+    with pytest.raises(pogosim.ConfigurationError, match=message):
+        sim.parameters[name] = value
+    assert dict(sim.parameters) == {}
+    sim.step(10)
+    assert sim.user_data["gain"].tolist() == [1.0] * 3
+
+
+@pytest.mark.parametrize(
+    ("failure", "kind", "message"),
+    [
+        ("crash", pogosim.ProgramFailedError, "failed in user_step of robot #1 .*segmentation fault at address 0x8"),
+        ("loop", pogosim.ProgramFailedError, "did not return within 0.2 s of processor time"),
+        ("exit", pogosim.ConfigurationError, r"called exit\(5\)"),
+        ("refuse", pogosim.ConfigurationError, "parameters.failure: expected something else"),
+    ],
+)
+def test_failure_ends_one_run_and_no_other(
+    failure: str, kind: type[Exception], message: str, program: Path, scene: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "rows.feather"
+    settings = {"parameters.fail_at_tick": 60, "parameters.failure": failure, "user_code_timeout": 0.2}
+    other = pogosim.Simulation(program, scene, seed=5)
+    other.step(30)
+    handlers = [signal.getsignal(number) for number in signal.valid_signals()]
+    failing = pogosim.Simulation(program, scene, set=settings, data_file=file)
+    with pytest.raises(kind, match=message):
+        failing.run()
+    assert failing.is_over
+    with pytest.raises(pogosim.SimulationError, match="the run has failed: reset it"):
+        failing.step()
+    rows, metadata = load_dataframe(file)  # complete
+    assert rows["time"].unique().tolist() == [0.0, 0.5]
+    assert metadata["resolved_configuration"]["parameters"]["failure"] == failure
+    assert [signal.getsignal(number) for number in signal.valid_signals()] == handlers
+    other.step(70)
+    with pogosim.Simulation(program, scene, seed=5) as undisturbed:
+        undisturbed.step(100)
+        assert state(other) == state(undisturbed)
+    failing.reset()
+    assert failing.step(10) == 10
+    failing.close()
+    other.close()
+
+
+def test_crashes_on_threads_are_those_of_their_runs(program: Path, scene: Path) -> None:
+    settings = {"parameters.failure": "crash", "save_data_period": -1}
+    runs = [
+        pogosim.Simulation(program, scene, set={**settings, "parameters.fail_at_tick": 5 + 7 * i if i % 2 else -1})
+        for i in range(8)
+    ]
+    errors: dict[int, str] = {}
+
+    def go(index: int) -> None:
+        try:
+            runs[index].run()
+        except pogosim.ProgramFailedError as error:
+            errors[index] = str(error)
+
+    threads = [threading.Thread(target=go, args=(index,)) for index in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(errors) == [1, 3, 5, 7]
+    for index, message in errors.items():
+        assert f"tick {5 + 7 * index}" in message
+    for simulation in runs:
+        simulation.close()
+
+
+def test_poses_can_be_set(sim: pogosim.Simulation) -> None:
+    sim.step(10)
+    sim.set_pose(1, 500.0, 520.0, math.pi)
+    assert sim.positions[1].tolist() == [500.0, 520.0]
+    assert sim.headings[1] == pytest.approx(math.pi)
+    assert sim.velocities[1].tolist() == [0.0, 0.0]
+    sim.step(2)
+    assert np.hypot(*(sim.positions[1] - (500.0, 520.0))) < 5
+    sim.set_pose(1, 480.0, 520.0)
+    for robot, x, y, message in (
+        (1, 0.0, 0.0, "no place for an object"),
+        (1, math.nan, 0.0, "no place for an object"),
+        (3, 500.0, 500.0, "there is no robot 3: the run has 3"),
+    ):
+        with pytest.raises(pogosim.ConfigurationError, match=message):
+            sim.set_pose(robot, x, y, 0.0)
+
+
+def test_messages_and_lines_of_robots_go_to_the_loggers(
+    program: Path, scene: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.INFO)
+    with pogosim.Simulation(program, scene, set={"parameters.gian": 3, "simulation_tme": 1}) as simulation:
+        assert ("pogosim.robots", logging.INFO, "[ROBOT #2] [PRINTF] hello from 2") in caplog.record_tuples
+        warnings = [message for name, level, message in caplog.record_tuples if (name, level) == ("pogosim", 30)]
+        assert "unknown key 'simulation_tme'" in warnings[0]
+        simulation.end()
+    assert "parameters never read by the program: gian" in caplog.text
+
+
+def test_what_cannot_be_run_is_one_clear_message(program: Path, scene: Path, tmp_path: Path) -> None:
+    text = tmp_path / "text.so"
+    text.write_text("text")
+    other = tmp_path / "other.so"
+    source = tmp_path / "other.c"
+    source.write_text("int one = 1;\n")
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", other, source], check=True)
+    cases = [
+        (tmp_path / "absent.so", scene, "the program '.*absent.so' cannot be read: No such file"),
+        (tmp_path, scene, "is a folder"),
+        (text, scene, "is no shared object"),
+        (other, scene, "is no program for Pogosim"),
+        (Path("/bin/true"), scene, "is an executable: name the shared object"),
+        (program, tmp_path / "absent.yaml", "absent.yaml"),
+    ]
+    for of_program, configuration, message in cases:
+        with pytest.raises(pogosim.ConfigurationError, match=message):
+            pogosim.Simulation(of_program, configuration)
+    with pytest.raises(pogosim.ConfigurationError, match=r"objects\.robots\.nb: expected an integer"):
+        pogosim.Simulation(program, scene, set={"objects.robots.nb": "many"})
+    with pytest.raises(pogosim.ConfigurationError, match="seed: expected an integer from 0 to 4294967295"):
+        pogosim.Simulation(program, scene, seed=2**32)
+    with pytest.raises(pogosim.ConfigurationError, match="unknown key"):
+        pogosim.Simulation(program, scene, set={"simulation_tme": 1}, strict=True)
+
+
+def test_executable_stands_for_the_shared_object_beside_it() -> None:
+    with pogosim.Simulation(example("hanabi"), SIMPLE, seed=1) as simulation:
+        assert simulation.program == HANABI
+
+
+def test_program_that_was_built_again_is_loaded_by_the_next_run(program: Path, scene: Path, tmp_path: Path) -> None:
+    source = (PROGRAMS / "hosted.c").read_text()
+    copy = tmp_path / "changing.so"
+    copy.write_bytes(program.read_bytes())
+    simulation = pogosim.Simulation(copy, scene)
+    simulation.step(10)
+    changed = tmp_path / "changed.c"
+    changed.write_text(source.replace('strcpy(mydata->name, "abc")', 'strcpy(mydata->name, "xyz")'))
+    compile_program(copy, changed, flags=SHARED)
+    simulation.step(10)
+    assert bytes(simulation.user_data["name"][0]).startswith(b"abc")
+    simulation.reset()
+    assert bytes(simulation.user_data["name"][0]).startswith(b"xyz")
+    simulation.close()
+
+
+def test_program_without_debug_information_has_no_user_data_type(scene: Path, tmp_path: Path) -> None:
+    plain = compile_program(tmp_path / "plain.so", PROGRAMS / "hosted.c", flags=("-shared", "-fPIC"))
+    with (
+        pogosim.Simulation(plain, scene) as simulation,
+        pytest.raises(pogosim.SimulationError, match="no debug information about USERDATA: compile it with -g"),
+    ):
+        simulation.user_data  # noqa: B018
+
+
+def test_closed_simulations_say_so(program: Path, scene: Path) -> None:
+    simulation = pogosim.Simulation(program, scene)
+    folder = simulation.data_file.parent
+    assert folder.is_dir()
+    simulation.close()
+    simulation.close()
+    assert not folder.exists()
+    assert "closed" in repr(simulation)
+    with pytest.raises(pogosim.SimulationError, match="the simulation is closed"):
+        simulation.step()
+
+
+def test_second_thread_in_one_simulation_is_an_error(program: Path, scene: Path) -> None:
+    with pogosim.Simulation(program, scene, set={"simulation_time": 1e6, "save_data_period": -1}) as simulation:
+        stop = threading.Event()
+
+        def step_on() -> None:
+            while not stop.is_set():
+                simulation.step(2000)
+
+        thread = threading.Thread(target=step_on)
+        thread.start()
+        try:
+            with pytest.raises(pogosim.SimulationError, match="in use by another thread"):
+                for _ in range(100000):
+                    simulation.step()
+        finally:
+            stop.set()
+            thread.join()
+
+
+def test_ctrl_c_interrupts_python_and_leaves_the_run_usable(program: Path, scene: Path) -> None:
+    code = (
+        "import os, signal, threading, pogosim\n"
+        "settings = {'simulation_time': 1e7, 'save_data_period': -1}\n"
+        f"s = pogosim.Simulation({str(program)!r}, {str(scene)!r}, set=settings)\n"
+        "threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+        "try:\n    s.run()\nexcept KeyboardInterrupt:\n    t = s.time\n    s.step(5)\n    print('ok', s.time > t > 0)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout) == (0, "ok True\n"), done.stderr
+
+
+def test_many_runs_one_after_the_other_leave_nothing_behind(program: Path, scene: Path) -> None:
+    def open_files() -> int:
+        return len(list(Path("/proc/self/fd").iterdir()))
+
+    def mapped() -> int:
+        return Path("/proc/self/maps").read_text().count("memfd:hosted.so")
+
+    for _ in range(3):
+        pogosim.Simulation(program, scene).close()
+    gc.collect()
+    files, programs = open_files(), mapped()
+    for seed in range(30):
+        with pogosim.Simulation(program, scene, seed=seed) as simulation:
+            simulation.step(5)
+    gc.collect()
+    assert (open_files(), mapped()) == (files, programs)
