@@ -1,11 +1,5 @@
-// The data file: Apache Feather V2 (Arrow IPC, zstd), one row per object and save time. The only room that includes
-// Arrow.
-//
-//     append() ──► columns ──► batches that are not yet ... ──► saved      unfinished_file.hpp, every few seconds
-//                                                           └─► complete   complete_file.hpp, flush_row_count rows each
-//
-// Until the end, the path refers to the unfinished file, which can be read whenever the run is killed. The contents of
-// the complete one depend on the rows alone, not on the clock.
+// The data file: Apache Feather V2 (Arrow IPC, zstd), one row per object and save time; how it is written:
+// table_file.hpp. The only room that includes Arrow.
 #pragma once
 
 #include <cstdint>

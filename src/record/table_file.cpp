@@ -1,0 +1,433 @@
+#include "record/table_file.hpp"
+
+#include <arrow/api.h>
+#include <arrow/array/concatenate.h>
+#include <arrow/util/key_value_metadata.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/save_progress.hpp"
+#include "base/utf8.hpp"
+#include "record/complete_file.hpp"
+#include "record/unfinished_file.hpp"
+
+namespace pogosim {
+
+using arrow::Status;
+
+namespace {
+
+/// Throws OutputError with the path and the reason.
+[[noreturn]] void fail(TableKind const& kind, std::string const& path, std::string const& reason) {
+    throw OutputError(fmt::format("cannot write the {} '{}' ({}): {}", kind.name, path, kind.key, reason));
+}
+
+/// A failure of the system, in our own words, or of the library.
+std::string reason_of(Status const& status) {
+    if (status.IsOutOfMemory()) {
+        return "there is not enough memory for its rows";
+    }
+    return status.IsIOError() ? status.message() : "the rows cannot be stored: " + status.message();
+}
+
+std::string not_a_file(TableKind const& kind) {
+    return fmt::format("it is a device, a pipe or a socket, not a file; to run without a {}: {}", kind.name,
+                       kind.how_to_do_without);
+}
+
+void make_parent_folder(TableKind const& kind, std::string const& path) {
+    auto const parent = std::filesystem::path(path).parent_path();
+    std::error_code error;
+    if (!parent.empty() && !std::filesystem::create_directories(parent, error) && error) {
+        fail(kind, path, "cannot make the folder '" + parent.string() + "': " + error.message());
+    }
+}
+
+std::filesystem::file_type type_of(std::string const& path) {
+    std::error_code error;
+    return std::filesystem::status(path, error).type();
+}
+
+/// Throws OutputError for paths that are not files, such as block devices. Opening a pipe would wait for its reader.
+void check_type_of_file(TableKind const& kind, std::string const& path) {
+    using std::filesystem::file_type;
+    auto const type = type_of(path);
+    if (type == file_type::fifo || type == file_type::socket || type == file_type::block) {
+        fail(kind, path, not_a_file(kind));
+    }
+}
+
+std::shared_ptr<arrow::KeyValueMetadata> make_metadata(TableFileOptions const& options) {
+    auto metadata = std::make_shared<arrow::KeyValueMetadata>();
+    for (auto const& [key, value] : options.metadata) {
+        metadata->Append(key, replace_malformed(value));
+    }
+    return metadata;
+}
+
+/// Rows in several pieces.
+struct Pieces {
+    arrow::RecordBatchVector batches;
+    std::int64_t row_count = 0;
+
+    void add(std::shared_ptr<arrow::RecordBatch> const& batch) {
+        batches.push_back(batch);
+        row_count += batch->num_rows();
+    }
+
+    /// All rows in one batch.
+    arrow::Result<std::shared_ptr<arrow::RecordBatch>> joined() const {
+        if (batches.size() == 1) {
+            return batches.front();
+        }
+        auto const& schema = batches.front()->schema();
+        arrow::ArrayVector columns;
+        for (int i = 0; i < schema->num_fields(); ++i) {
+            arrow::ArrayVector parts;
+            for (auto const& batch : batches) {
+                parts.push_back(batch->column(i));
+            }
+            ARROW_ASSIGN_OR_RAISE(columns.emplace_back(), arrow::Concatenate(parts));
+        }
+        return arrow::RecordBatch::Make(schema, row_count, std::move(columns));
+    }
+};
+
+/// The rows of one time.
+struct Moment {
+    float time_s;
+    std::int64_t row_end;  // rows of the whole run up to and with these
+};
+
+/// When the unfinished file is due again.
+class SaveClock {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    bool is_due() const { return Clock::now() >= next_; }
+
+    /// Rows are synced against power failures once the run is old enough for it to matter.
+    bool run_is_long() const { return Clock::now() - start_ >= kLongRun; }
+
+    /// Saving began at `begin` and is over now. While a run is young, rows are saved whenever its age has doubled.
+    void saved(Clock::time_point begin) {
+        auto const now = Clock::now();
+        Clock::duration const usual = std::min<Clock::duration>(now - start_, kUsualPeriod);
+        next_ = now + std::min<Clock::duration>(std::max(usual, kLeastRatio * (now - begin)), kLongestPeriod);
+    }
+
+private:
+    static constexpr std::chrono::milliseconds kFirst{10};
+    static constexpr std::chrono::seconds kLongRun{1};
+    static constexpr std::chrono::seconds kUsualPeriod{2};
+    static constexpr std::chrono::seconds kLongestPeriod{4};  // on a slow disk
+    static constexpr int kLeastRatio = 100;                   // of the time between to the time it takes
+
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point next_ = start_ + kFirst;
+};
+
+constexpr std::uint64_t kBytesPerCell = 8;
+constexpr std::int64_t kMostUnsavedRows = 1 << 20;  // a bound on memory
+
+}  // namespace
+
+struct TableFile::Impl {
+    TableKind kind;
+    std::string path;  // as the user wrote it
+    LockedFile file;
+    pid_t owner = getpid();
+    std::int64_t flush_row_count;
+    TakeCells take_cells;
+    std::shared_ptr<arrow::Schema> schema;
+    std::shared_ptr<arrow::Schema> final_schema;  // of the complete file: with metadata added during the run
+    std::vector<std::string> added_keys;
+    std::unique_ptr<UnfinishedFile> unfinished;
+    std::unique_ptr<CompleteFile> complete;  // from the first full batch on
+    Pieces unsaved;                          // not yet in the unfinished file
+    Pieces uncompleted;                      // not yet in the complete file
+    std::vector<Moment> unsaved_moments;     // those of the unsaved rows and of the buffered ones
+    SaveClock clock;
+    std::int64_t row_count = 0;
+    std::int64_t buffered_rows = 0;
+    std::int64_t saved_rows = 0;
+    float saved_time_s = 0.0F;
+    bool open = false;  // also false after the first failure
+
+    Impl(TableFileOptions const& options, LockedFile locked, arrow::FieldVector const& fields, TakeCells take)
+        : kind(options.kind),
+          path(options.path),
+          file(std::move(locked)),
+          flush_row_count(options.flush_row_count),
+          take_cells(std::move(take)) {
+        assert(flush_row_count > 0);
+        schema = arrow::schema(fields, make_metadata(options));
+        final_schema = schema;
+        auto started = UnfinishedFile::start(file.descriptor(), schema);
+        if (!started.ok()) {
+            fail(kind, path, reason_of(started.status()));
+        }
+        // A device such as /dev/null accepts everything and stores nothing.
+        if (type_of(path) == std::filesystem::file_type::character) {
+            fail(kind, path, not_a_file(kind));
+        }
+        file.keep();
+        unfinished = std::move(started).ValueUnsafe();
+        open = true;
+    }
+
+    bool is_writable() const { return open && getpid() == owner; }
+
+    /// About, and not compressed.
+    std::uint64_t byte_count() const {
+        return static_cast<std::uint64_t>(row_count) * static_cast<std::uint64_t>(schema->num_fields()) * kBytesPerCell;
+    }
+
+    void count_row(float time_s) {
+        ++buffered_rows;
+        ++row_count;
+        if (unsaved_moments.empty() || unsaved_moments.back().time_s != time_s) {
+            unsaved_moments.push_back({time_s, row_count});
+        }
+        unsaved_moments.back().row_end = row_count;
+    }
+
+    /// The rows in the builders become a piece.
+    Status cut() {
+        if (buffered_rows == 0) {
+            return Status::OK();
+        }
+        auto const rows = std::exchange(buffered_rows, 0);
+        ARROW_ASSIGN_OR_RAISE(auto arrays, take_cells());
+        for (auto& array : arrays) {
+            array = array->Slice(0, rows);  // a row that found no memory has only some of its cells
+        }
+        auto const batch = arrow::RecordBatch::Make(schema, rows, std::move(arrays));
+        unsaved.add(batch);
+        uncompleted.add(batch);
+        return Status::OK();
+    }
+
+    Status save() {
+        ARROW_RETURN_NOT_OK(cut());
+        if (unsaved.row_count == 0) {
+            return Status::OK();
+        }
+        auto const begin = SaveClock::Clock::now();
+        ARROW_ASSIGN_OR_RAISE(auto const batch, unsaved.joined());
+        ARROW_RETURN_NOT_OK(unfinished->append(*batch));
+        unsaved = {};
+        note_saved(unsaved_moments.back());
+        unsaved_moments.clear();
+        if (clock.run_is_long()) {
+            unfinished->sync();
+        }
+        clock.saved(begin);
+        return Status::OK();
+    }
+
+    void note_saved(Moment const& last) {
+        saved_rows = last.row_end;
+        saved_time_s = last.time_s;
+    }
+
+    /// Where not all rows fit, on the disk or in memory together, those of the first moments do.
+    Status save_what_fits() {
+        ARROW_RETURN_NOT_OK(cut());
+        std::int64_t first_row = saved_rows;  // of the piece
+        for (auto const& piece : unsaved.batches) {
+            if (!save_what_fits(*piece, first_row)) {
+                break;
+            }
+            first_row += piece->num_rows();
+        }
+        return Status::OK();
+    }
+
+    /// The same for the rows from `first_row` of the run on. True when all of them fitted.
+    bool save_what_fits(arrow::RecordBatch const& piece, std::int64_t first_row) {
+        std::int64_t const row_end = first_row + piece.num_rows();
+        std::int64_t written_end = first_row;
+        std::span<Moment const> left(unsaved_moments);
+        while (!left.empty() && left.front().row_end <= first_row) {
+            left = left.subspan(1);
+        }
+        for (auto count = left.size(); count > 0;) {
+            Moment const& last = left[count - 1];
+            auto const end = std::min(last.row_end, row_end);
+            auto const rows = piece.Slice(written_end - first_row, end - written_end);
+            if (status_of([&] { return unfinished->append(*rows); }).ok()) {
+                written_end = end;
+                note_saved({end == last.row_end ? last.time_s : saved_time_s, end});
+                left = left.subspan(count);
+                count = end < row_end ? std::min(count, left.size()) : 0;
+            } else {
+                count /= 2;
+            }
+        }
+        return written_end == row_end;
+    }
+
+    /// Moves rows to the complete file.
+    Status add_to_complete(std::shared_ptr<arrow::Schema> const& complete_schema) {
+        if (!complete) {
+            ARROW_ASSIGN_OR_RAISE(complete, CompleteFile::start(file, complete_schema));
+        }
+        if (uncompleted.row_count == 0) {
+            return Status::OK();
+        }
+        ARROW_ASSIGN_OR_RAISE(auto const batch, uncompleted.joined());
+        ARROW_RETURN_NOT_OK(complete->append(*batch));
+        uncompleted = {};
+        return Status::OK();
+    }
+
+    Status finish() {
+        ARROW_RETURN_NOT_OK(cut());
+        bool const lacks_metadata = complete && !added_keys.empty();
+        ARROW_RETURN_NOT_OK(add_to_complete(final_schema));
+        ARROW_RETURN_NOT_OK(complete->finish(clock.run_is_long()));
+        if (lacks_metadata) {
+            replace_schema_of_complete();
+        }
+        return Status::OK();
+    }
+
+    /// What was begun without the metadata is copied. Where that is impossible, all rows are there nevertheless.
+    void replace_schema_of_complete() {
+        auto copy = complete->copy_with(final_schema, file, clock.run_is_long());
+        if (copy.ok()) {
+            complete = std::move(copy).ValueUnsafe();
+        } else {
+            log().warn("the metadata of the {} '{}' lack the entry '{}': {}", kind.name, path,
+                       fmt::join(added_keys, ", "), reason_of(copy.status()));
+        }
+    }
+
+    /// After a failure, only the unfinished file remains.
+    template <typename Action>
+    void check(Action const& action) {
+        auto const status = status_of(action);
+        if (status.ok()) {
+            return;
+        }
+        open = false;
+        complete.reset();  // makes room on a full disk
+        std::string const reason = reason_of(status);
+        [[maybe_unused]] auto const last_try = status_of([this] { return save_what_fits(); });
+        if (saved_rows == 0) {
+            fail(kind, path, reason);
+        }
+        fail(kind, path,
+             fmt::format("{}. It contains the rows up to t = {:.4f} s; to complete it, free some disk space and run: "
+                         "pogosim-recover '{}'",
+                         reason, saved_time_s, path));
+    }
+
+    /// The complete file stays beside the place that it cannot take, under a name of its own.
+    [[noreturn]] void fail_beside(std::string const& reason) {
+        auto const kept = complete->keep_beside(file);
+        complete.reset();
+        if (!kept.ok()) {
+            fail(kind, path,
+                 fmt::format("{}. The rows of this run are lost: they cannot be written next to it: {}", reason,
+                             reason_of(kept.status())));
+        }
+        fail(kind, path, fmt::format("{}. The rows of this run are in '{}'", reason, kept->string()));
+    }
+};
+
+LockedFile TableFile::reserve(TableKind const& kind, std::string const& path) {
+    make_parent_folder(kind, path);
+    check_type_of_file(kind, path);
+    try {
+        return LockedFile(path);
+    } catch (FileError const& error) {
+        fail(kind, path, error.what());
+    }
+}
+
+TableFile::TableFile(TableFileOptions const& options, LockedFile file, arrow::FieldVector const& fields, TakeCells take)
+    : impl_(std::make_unique<Impl>(options, std::move(file), fields, std::move(take))) {}
+
+TableFile::~TableFile() {
+    try {
+        close();
+    } catch (std::exception const& error) {
+        log().error("{}", error.what());
+    }
+}
+
+void TableFile::count_row(float time_s, Status const& added) {
+    assert(impl_->open);
+    impl_->check([&] { return added; });
+    impl_->count_row(time_s);
+    if (impl_->buffered_rows + impl_->uncompleted.row_count == impl_->flush_row_count && impl_->is_writable()) {
+        impl_->check([&] { return impl_->cut(); });
+        impl_->check([&] { return impl_->add_to_complete(impl_->schema); });
+        if (impl_->unsaved.row_count >= kMostUnsavedRows) {
+            impl_->check([&] { return impl_->save(); });
+        }
+    }
+}
+
+void TableFile::save_if_due() {
+    bool const has_new_rows = impl_->buffered_rows + impl_->unsaved.row_count > 0;
+    if (has_new_rows && impl_->clock.is_due()) {
+        save();
+    }
+}
+
+void TableFile::save() {
+    if (impl_->is_writable()) {
+        impl_->check([&] { return impl_->save(); });
+    }
+}
+
+void TableFile::add_metadata(std::string const& key, std::string const& value) {
+    auto const metadata = impl_->final_schema->metadata()->Copy();
+    metadata->Append(key, replace_malformed(value));
+    impl_->final_schema = impl_->schema->WithMetadata(metadata);
+    impl_->added_keys.push_back(key);
+}
+
+void TableFile::close() {
+    if (!impl_->is_writable()) {
+        return;
+    }
+    save_progress().bytes = impl_->byte_count();
+    bool const is_ours = !impl_->unfinished->somebody_changed_it();
+    if (is_ours) {
+        impl_->check([&] { return impl_->save(); });
+    }
+    impl_->check([&] { return impl_->finish(); });
+    impl_->open = false;
+    if (!is_ours) {
+        impl_->fail_beside("its size is not what was written; did another program change it?");
+    }
+    if (std::error_code error; !std::filesystem::exists(impl_->file.path(), error)) {
+        log().warn("another program removed the {} '{}' during the run; it is written again", impl_->kind.name,
+                   impl_->path);
+    }
+    if (auto const status = impl_->complete->take_the_place_of(impl_->file); !status.ok()) {
+        impl_->fail_beside(reason_of(status));
+    }
+}
+
+std::int64_t TableFile::row_count() const {
+    return impl_->row_count;
+}
+
+}  // namespace pogosim
