@@ -18,6 +18,7 @@ Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
 NO_PARAMETERS = (
     "seed",
     "data_filename",
+    "message_log",
     "console_filename",
     "frames_name",
     "result_filename_format",

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "comms/delivery_log.hpp"
 #include "comms/visibility.hpp"
 #include "world/world.hpp"
 
@@ -12,15 +13,19 @@ class IrChannel {
 public:
     /// Delivers every transmission on the air, in the order in which they were made, and clears the air. Each robot in
     /// reach gets the message with the sender's reception probability, drawn from the sender's stream: one copy for
-    /// each of its faces that sees the emitter.
-    void deliver(World& world);
+    /// each of its faces that sees the emitter. `log`, if there is one, gets what became of each, in place of what it
+    /// had.
+    void deliver(World& world, DeliveryLog* log = nullptr);
 
     /// (Message, receiver) pairs in reach, and those of them that were received, since the start.
     std::uint64_t attempts() const { return attempts_; }
     std::uint64_t receptions() const { return receptions_; }
 
 private:
-    void deliver(World& world, Transmission const& transmission);
+    template <class Observer>
+    void deliver_all(World& world, Observer& observer);
+    template <class Observer>
+    void deliver_one(World& world, std::uint32_t transmission, Observer& observer);
 
     Visibility visibility_;
     std::uint64_t attempts_ = 0;

@@ -65,7 +65,7 @@ struct ViewConfig {
     bool delete_old_files = false;
 };
 
-/// Data file and console file.
+/// Data file, message log and console file.
 struct OutputConfig {
     bool enable_data_logging = true;
     std::string data_filename = "data.feather";
@@ -74,6 +74,7 @@ struct OutputConfig {
     std::optional<std::vector<std::string>> categories;  // data_logger_category; absent: all categories
     std::int64_t flush_row_count = 1048576;              // rows per record batch
     bool led_column = false;                             // data_logger_led: adds led_rgb, the head LED as 0xRRGGBB
+    std::string message_log;                             // file; empty: none
     bool enable_console_logging = false;
     std::string console_filename = "console.txt";
     LogFormat log_format = LogFormat::dated;

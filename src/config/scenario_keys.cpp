@@ -141,6 +141,9 @@ std::span<Key<OutputConfig> const> output_keys() {
             .only_if(has_data),
         K{"data_logger_led", &OutputConfig::led_column, any(), "",
           "Add the column led_rgb, the colour of the head LED."},
+        K{"message_log", &OutputConfig::message_log, any(), "",
+          "Message log (Feather), a row for each message and robot in reach; missing folders are created. Empty: none."}
+            .only_if([](OutputConfig const& output) { return !output.message_log.empty(); }),
         K{"enable_console_logging", &OutputConfig::enable_console_logging, any(), "", "Write the console file."},
         K{"console_filename", &OutputConfig::console_filename, any(), "", "Console file; missing folders are created."},
         K{"log_format",

@@ -73,9 +73,13 @@ Recorder::Recorder(Scenario const& scenario, World const& world, Programs& progr
     if (output().enable_data_logging) {
         reserved_ = DataFile::reserve(output().data_filename);
     }
+    if (!output().message_log.empty()) {
+        messages_ = std::make_unique<MessageRecorder>(output().message_log, world);
+    }
 }
 
 std::optional<UserFailure> Recorder::open() {
+    open_message_log();
     if (!output().enable_data_logging) {
         return std::nullopt;
     }
@@ -99,6 +103,18 @@ void Recorder::open_without_rows() {
     if (!data_file_ && output().enable_data_logging) {
         make_data_file();
     }
+    open_message_log();
+}
+
+void Recorder::open_message_log() {
+    if (messages_ && !messages_->is_open()) {
+        messages_->open({.path = output().message_log, .metadata = metadata()});
+    }
+}
+
+std::vector<std::pair<std::string, std::string>> Recorder::metadata() const {
+    return run_metadata(scenario_, world_.arena,
+                        {.seed = seed_, .time_step_s = world_.time_step_s, .is_periodic = world_.periodic});
 }
 
 void Recorder::make_data_file() {
@@ -109,14 +125,16 @@ void Recorder::make_data_file() {
     options.subpart_column = has_subparts(world_);
     options.led_column = output().led_column;
     options.flush_row_count = output().flush_row_count;
-    options.metadata = run_metadata(scenario_, world_.arena,
-                                    {.seed = seed_, .time_step_s = world_.time_step_s, .is_periodic = world_.periodic});
+    options.metadata = metadata();
     data_file_ = std::make_unique<DataFile>(options, std::move(reserved_));
     note_data_file(options.path, DataFileState::open);
     empty_row_.values.assign(options.user_columns.size(), CellValue());
 }
 
 std::optional<UserFailure> Recorder::record_if_due() {
+    if (messages_) {
+        messages_->record();
+    }
     return data_file_ && row_times_.reached(world_.time_s()) > 0 ? record_rows() : std::nullopt;
 }
 
@@ -170,6 +188,9 @@ void Recorder::save_if_due() {
     if (data_file_) {
         data_file_->save_if_due();
     }
+    if (messages_ && messages_->is_open()) {
+        messages_->save_if_due();
+    }
 }
 
 void Recorder::save_now() {
@@ -182,6 +203,9 @@ void Recorder::add_metadata(std::string const& key, std::string const& value) {
     if (data_file_) {
         data_file_->add_metadata(key, value);
     }
+    if (messages_ && messages_->is_open()) {
+        messages_->add_metadata(key, value);
+    }
 }
 
 void Recorder::close() {
@@ -190,11 +214,19 @@ void Recorder::close() {
         is_complete_ = true;
         note_data_file(output().data_filename, DataFileState::complete);
     }
+    if (messages_ && messages_->is_open()) {
+        messages_->close();
+    }
 }
 
 std::string Recorder::note() const {
-    return is_opened_ && is_complete_
-               ? fmt::format(". The data file '{}' contains all rows up to that point", output().data_filename)
+    bool const has_messages = messages_ && messages_->is_complete();
+    if (is_opened_ && is_complete_) {
+        return fmt::format(". The data file '{}' contains all rows up to that point", output().data_filename) +
+               (has_messages ? fmt::format(", the message log '{}' all messages", output().message_log) : "");
+    }
+    return has_messages
+               ? fmt::format(". The message log '{}' contains all messages up to that point", output().message_log)
                : "";
 }
 

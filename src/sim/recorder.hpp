@@ -1,16 +1,18 @@
-// When rows of the data file are due, and their contents.
+// When rows of the data file and of the message log are due, and their contents.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/scenario.hpp"
 #include "record/data_file.hpp"
 #include "robot/programs.hpp"
 #include "robot/user_guard.hpp"
+#include "sim/message_recorder.hpp"
 #include "sim/multiples.hpp"
 #include "sim/recorded_rows.hpp"
 #include "world/world.hpp"
@@ -19,18 +21,22 @@ namespace pogosim {
 
 class Recorder {
 public:
-    /// Locks the data file, so that no other run writes it. All references outlive this. `data` is what user code
+    /// Locks the files, so that no other run writes them. All references outlive this. `data` is what user code
     /// declares and exports. Throws OutputError.
     Recorder(Scenario const& scenario, World const& world, Programs& programs, DataExport const& data,
              std::uint32_t seed);
 
-    /// Lets the program declare its columns and opens the data file, if enabled. Throws OutputError.
+    /// Lets the program declare its columns and opens the files that are wanted. Throws OutputError.
     std::optional<UserFailure> open();
 
-    /// For a program that failed before open(): an empty file. Does nothing when the file is open.
+    /// For a program that failed before open(): empty files. Does nothing when they are open.
     void open_without_rows();
 
-    /// Writes the current rows if a multiple of the save period has been reached. Throws OutputError.
+    /// What the messages of the next step fill; null: nobody wants to know.
+    DeliveryLog* deliveries() { return messages_ ? &messages_->deliveries() : nullptr; }
+
+    /// Writes what became of the last step's messages, and the current rows if a multiple of the save period has been
+    /// reached. Throws OutputError.
     std::optional<UserFailure> record_if_due();
 
     /// Saves rows to disk when that is due, so that they outlive the process. Call it at every step. Throws
@@ -43,10 +49,10 @@ public:
     /// From now on, `rows` gets what is recorded of robots; null: nobody does. `rows` outlives this.
     void show(RecordedRows* rows);
 
-    /// One more entry in the metadata of the complete file.
+    /// One more entry in the metadata of the complete files.
     void add_metadata(std::string const& key, std::string const& value);
 
-    /// Completes the file. Throws OutputError.
+    /// Completes the files, the data file first. Throws OutputError.
     void close();
 
     /// Lets go of the complete file, so that another run may write it.
@@ -57,7 +63,9 @@ public:
 
 private:
     OutputConfig const& output() const { return scenario_.output; }
+    std::vector<std::pair<std::string, std::string>> metadata() const;
     void make_data_file();
+    void open_message_log();
     std::optional<UserFailure> record_rows();
     void record_subparts(Object const& object);
 
@@ -69,7 +77,8 @@ private:
     std::vector<bool> category_is_recorded_;
     LockedFile reserved_;  // until there is a data file
     std::unique_ptr<DataFile> data_file_;
-    bool is_opened_ = false;  // by open(): rows come into it
+    std::unique_ptr<MessageRecorder> messages_;  // null: there is no message log
+    bool is_opened_ = false;                     // by open(): rows come into it
     bool is_complete_ = false;
     RecordedRows* shown_ = nullptr;  // null: nobody looks
     DataRow empty_row_;              // user columns of what runs no user code

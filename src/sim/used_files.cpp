@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/locked_file.hpp"
 #include "record/data_file.hpp"
+#include "record/message_log.hpp"
 #include "render/film_file.hpp"
 #include "render/frame_names.hpp"
 #include "sim/find_file.hpp"
@@ -22,7 +23,7 @@ struct UsedFile {
     std::string key;             // empty: the configuration; kVideo: the film
     std::filesystem::path path;  // as the run opens it
     bool is_output = false;
-    bool is_beside = false;  // the data file, or the film, is put together there
+    bool is_beside = false;  // the data file, the message log or the film is put together there
 };
 
 constexpr auto kVideo = "--video";
@@ -45,10 +46,15 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     add_input("formation_filename", scenario.formation.filename, scenario.formation.name == kImportedFormation);
     add_output("data_filename", output.data_filename, output.enable_data_logging);
     add_output("console_filename", output.console_filename, output.enable_console_logging);
+    add_output("message_log", output.message_log, true);
     add_output(kVideo, film, true);
     if (output.enable_data_logging && !output.data_filename.empty()) {
         files.push_back(
             {"data_filename", DataFile::path_beside(output.data_filename), /*is_output=*/true, /*is_beside=*/true});
+    }
+    if (!output.message_log.empty()) {
+        files.push_back(
+            {"message_log", MessageLog::path_beside(output.message_log), /*is_output=*/true, /*is_beside=*/true});
     }
     if (!film.empty()) {
         files.push_back({kVideo, FilmFile::path_beside(film), /*is_output=*/true, /*is_beside=*/true});
@@ -87,6 +93,9 @@ char const* fate(UsedFile const& file) {
 char const* purpose_of_file_beside(UsedFile const& file) {
     if (!file.is_beside) {
         return "";
+    }
+    if (file.key == "message_log") {
+        return " (used to assemble the message log)";
     }
     return file.key == kVideo ? " (used to assemble the film)" : " (used to assemble the data file)";
 }

@@ -87,6 +87,7 @@ TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(o.flush_row_count, 1048576);
     EXPECT_FALSE(o.led_column || o.enable_console_logging);
     EXPECT_EQ(o.console_filename, "console.txt");
+    EXPECT_EQ(o.message_log, "");
     EXPECT_EQ(o.log_format, LogFormat::dated);
 }
 

@@ -104,6 +104,8 @@ TEST(UnusedKey, FilesThatNothingReadsOrWritesNeedNoName) {
     EXPECT_EQ(load_error(kRobots + "enable_data_logging: false\ndata_filename: ''\n"), "no error");
     EXPECT_EQ(load_error(kRobots + "enable_console_logging: false\nconsole_filename: ''\n"), "no error");
     EXPECT_EQ(load_error(kRobots + "formation_filename: ''\n"), "no error");
+    EXPECT_EQ(load_error(kRobots + "message_log: ''\n"), "no error");
+    EXPECT_EQ(load_error(kRobots + "message_log:\n"), "no error");
     EXPECT_EQ(load_error(kRobots + "save_video_period: -1\nframes_name: same.png\n"), "no error");
 }
 

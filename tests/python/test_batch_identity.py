@@ -110,3 +110,6 @@ def test_names_of_outputs_make_no_other_run(tasks: Tasks) -> None:
     assert (plain.key, plain.text) == (named.key, named.text)
     outputs = {"data_filename": "b.feather", "console_filename": "console.txt", "frames_name": "x{:010.4f}.png"}
     assert dict(named.outputs) == outputs
+    (logged, _) = tasks({"a": 1, **names, "message_log": "a/m.feather"})
+    assert (logged.key, logged.text) == (plain.key, plain.text)
+    assert dict(logged.outputs) == outputs | {"message_log": "m.feather"}

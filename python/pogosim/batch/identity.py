@@ -17,7 +17,10 @@ from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.yaml_1_2 import dump_yaml
 
 # Keys that say where results go, not what they are.
-NOT_IN_THE_WORLD = ("data_filename", "console_filename", "frames_name", FORMAT, COLUMNS, "optimization", CHOICES)
+NOT_IN_THE_WORLD = (
+    *("data_filename", "message_log", "console_filename", "frames_name"),
+    *(FORMAT, COLUMNS, "optimization", CHOICES),
+)
 LIBRARY = re.compile(r"^\s*(?:\S+ => )?(/\S*libpogosim[^/\s]*)", re.MULTILINE)
 
 # Every program of the simulator mentions its library, or contains it.

@@ -28,7 +28,7 @@ RESOLVED = "resolved_configuration"
 POLYGONS = "arena_polygons"
 
 # What differs between the runs of one configuration.
-OF_ONE_RUN = ("seed", "data_filename", "console_filename", "frames_name")
+OF_ONE_RUN = ("seed", "data_filename", "message_log", "console_filename", "frames_name")
 
 
 @dataclass(frozen=True)

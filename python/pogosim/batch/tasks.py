@@ -14,6 +14,7 @@ from pogosim.batch.run import Task
 from pogosim.batch.temporary import TemporaryFolder
 
 OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
+MESSAGE_LOG = "message_log"  # an output only of runs that ask for it
 FILES_BESIDE = ("arena_file", "formation_filename")
 
 
@@ -52,11 +53,13 @@ def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> No
 
 def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings) -> list[Task]:
     """Return the runs of a configuration, one per seed."""
-    world = {key: value for key, value in entries.items() if key not in OUTPUTS}
+    world = {key: value for key, value in entries.items() if key not in OUTPUTS and key != MESSAGE_LOG}
     for key in FILES_BESIDE:
         if key in world:
             world[key] = found_beside(world[key], settings.configuration_folder)
     outputs = {key: basename(entries.get(key), default) for key, default in OUTPUTS.items()}
+    if entries.get(MESSAGE_LOG):
+        outputs[MESSAGE_LOG] = basename(entries[MESSAGE_LOG], "messages.feather")
     text = dump_configuration(world) if world else ""
     digest = world_digest(world, (Path.cwd(), settings.configuration_folder), settings.digests)
     return [

@@ -19,7 +19,10 @@ from pogosim.scene import number
 
 TIME_STEP_S = 0.01  # default of the configuration
 PLACEMENT = ("nb", "x", "y", "angle", "poses", "area", "initial_formation")
-OUTPUTS = ("data_logger_fields", "data_logger_category", "frames_name", "console_filename", "delete_old_files")
+OUTPUTS = (
+    *("data_logger_fields", "data_logger_category", "message_log"),
+    *("frames_name", "console_filename", "delete_old_files"),
+)
 
 Values = Mapping[str, float]
 Bias = tuple[int, int]

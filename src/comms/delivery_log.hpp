@@ -1,0 +1,32 @@
+// What became of the messages of a step, for whoever records it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// A transmission and one robot in its reach, or a transmission that reaches nobody.
+struct Delivery {
+    std::uint32_t transmission = 0;  // index into DeliveryLog::air
+    std::uint32_t receiver = kNone;  // index of the robot; kNone: nobody is in reach, the rest means nothing
+    std::uint32_t cluster_size = 1;  // the sender and the robots in reach
+    float probability = 0.0F;        // of reception
+    float distance_mm = std::numeric_limits<float>::quiet_NaN();  // from the nearest emitter that reaches the receiver
+                                                                  // to its border; NaN to or from an outline
+    std::uint8_t emitters = 0;                                    // bit d: emitter d of the sender reaches it
+    std::uint8_t faces = 0;                                       // bit d: face d of the receiver sees the emitter
+    bool is_received = false;                                     // by the law of reception
+    std::uint8_t queued = 0;  // copies, one per face, that found room in the receiver's queue
+};
+
+struct DeliveryLog {
+    std::int64_t step = 0;             // in which they were sent
+    Air air;                           // the transmissions
+    std::vector<Delivery> deliveries;  // transmission by transmission, receivers in the order of their indices
+};
+
+}  // namespace pogosim

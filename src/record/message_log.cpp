@@ -1,0 +1,189 @@
+#include "record/message_log.hpp"
+
+#include <arrow/api.h>
+
+#include <array>
+
+#include "record/complete_file.hpp"
+#include "record/table_file.hpp"
+
+namespace pogosim {
+
+using arrow::Status;
+
+namespace {
+
+constexpr TableKind kKind{.name = "message log", .key = "message_log", .how_to_do_without = "leave message_log out"};
+
+constexpr std::array<std::string_view, 3> kOutcomes{"heard", "lost", "queue_full"};
+constexpr std::string_view kNobodyInReach = "nobody_in_reach";
+
+/// The cells of a robot, or nulls.
+struct RobotCells {
+    arrow::Int32Builder index;
+    arrow::Int32Builder id;
+    arrow::StringBuilder category;
+
+    Status append(LoggedRobot const& robot) {
+        ARROW_RETURN_NOT_OK(index.Append(robot.index));
+        ARROW_RETURN_NOT_OK(id.Append(robot.id));
+        return category.Append(robot.category);
+    }
+
+    Status append_null() {
+        ARROW_RETURN_NOT_OK(index.AppendNull());
+        ARROW_RETURN_NOT_OK(id.AppendNull());
+        return category.AppendNull();
+    }
+};
+
+struct Cells {
+    arrow::FloatBuilder time;
+    arrow::Int64Builder step;
+    arrow::Int64Builder message;
+    RobotCells sender;
+    arrow::Int8Builder sender_faces;
+    arrow::StringBuilder kind;
+    arrow::BinaryBuilder payload;
+    arrow::Int32Builder message_bytes;
+    arrow::FloatBuilder send_probability;
+    arrow::Int32Builder cluster_size;
+    RobotCells receiver;
+    arrow::FloatBuilder distance;
+    arrow::Int8Builder emitters;
+    arrow::Int8Builder receiver_faces;
+    arrow::FloatBuilder probability;
+    arrow::StringBuilder outcome;
+    arrow::Int8Builder copies;
+
+    struct Column {
+        char const* name;
+        arrow::ArrayBuilder* cells;
+    };
+
+    /// In the order of the file.
+    std::array<Column, 21> columns() {
+        return {{{"time", &time},
+                 {"step", &step},
+                 {"message", &message},
+                 {"sender", &sender.index},
+                 {"sender_id", &sender.id},
+                 {"sender_category", &sender.category},
+                 {"sender_faces", &sender_faces},
+                 {"kind", &kind},
+                 {"payload", &payload},
+                 {"message_bytes", &message_bytes},
+                 {"send_probability", &send_probability},
+                 {"cluster_size", &cluster_size},
+                 {"receiver", &receiver.index},
+                 {"receiver_id", &receiver.id},
+                 {"receiver_category", &receiver.category},
+                 {"distance", &distance},
+                 {"reaching_faces", &emitters},
+                 {"receiver_faces", &receiver_faces},
+                 {"probability", &probability},
+                 {"outcome", &outcome},
+                 {"copies", &copies}}};
+    }
+
+    arrow::FieldVector fields() {
+        arrow::FieldVector fields;
+        for (auto const& [name, cells] : columns()) {
+            fields.push_back(arrow::field(name, cells->type()));
+        }
+        return fields;
+    }
+
+    arrow::Result<arrow::ArrayVector> take() {
+        arrow::ArrayVector arrays;
+        for (auto const& [name, cells] : columns()) {
+            ARROW_RETURN_NOT_OK(cells->Finish(&arrays.emplace_back()));
+        }
+        return arrays;
+    }
+
+    Status append(MessageRow const& row) {
+        ARROW_RETURN_NOT_OK(time.Append(row.time_s));
+        ARROW_RETURN_NOT_OK(step.Append(row.step));
+        ARROW_RETURN_NOT_OK(message.Append(row.message));
+        ARROW_RETURN_NOT_OK(sender.append(row.sender));
+        ARROW_RETURN_NOT_OK(sender_faces.Append(static_cast<std::int8_t>(row.faces)));
+        ARROW_RETURN_NOT_OK(kind.Append(row.is_short ? "short" : "long"));
+        ARROW_RETURN_NOT_OK(payload.Append(reinterpret_cast<std::uint8_t const*>(row.payload.data()),
+                                           static_cast<std::int32_t>(row.payload.size())));
+        ARROW_RETURN_NOT_OK(message_bytes.Append(row.message_bytes));
+        ARROW_RETURN_NOT_OK(send_probability.Append(row.send_probability));
+        return row.reception ? append(*row.reception) : append_nobody();
+    }
+
+    Status append(LoggedReception const& reception) {
+        ARROW_RETURN_NOT_OK(cluster_size.Append(reception.cluster_size));
+        ARROW_RETURN_NOT_OK(receiver.append(reception.receiver));
+        ARROW_RETURN_NOT_OK(reception.distance_mm ? distance.Append(*reception.distance_mm) : distance.AppendNull());
+        ARROW_RETURN_NOT_OK(emitters.Append(static_cast<std::int8_t>(reception.emitters)));
+        ARROW_RETURN_NOT_OK(receiver_faces.Append(static_cast<std::int8_t>(reception.faces)));
+        ARROW_RETURN_NOT_OK(probability.Append(reception.probability));
+        ARROW_RETURN_NOT_OK(outcome.Append(kOutcomes[static_cast<std::size_t>(reception.outcome)]));
+        return copies.Append(reception.copies);
+    }
+
+    Status append_nobody() {
+        ARROW_RETURN_NOT_OK(cluster_size.Append(1));
+        ARROW_RETURN_NOT_OK(receiver.append_null());
+        ARROW_RETURN_NOT_OK(distance.AppendNull());
+        ARROW_RETURN_NOT_OK(emitters.AppendNull());
+        ARROW_RETURN_NOT_OK(receiver_faces.AppendNull());
+        ARROW_RETURN_NOT_OK(probability.AppendNull());
+        ARROW_RETURN_NOT_OK(outcome.Append(kNobodyInReach));
+        return copies.Append(0);
+    }
+};
+
+}  // namespace
+
+struct MessageLog::Impl {
+    Cells cells;
+    TableFile table;
+
+    Impl(MessageLogOptions const& options, LockedFile file)
+        : table({.kind = kKind,
+                 .path = options.path,
+                 .flush_row_count = options.flush_row_count,
+                 .metadata = options.metadata},
+                std::move(file), cells.fields(), [this] { return cells.take(); }) {}
+};
+
+LockedFile MessageLog::reserve(std::string const& path) {
+    return TableFile::reserve(kKind, path);
+}
+
+std::filesystem::path MessageLog::path_beside(std::string const& path) {
+    return CompleteFile::path_beside(path);
+}
+
+MessageLog::MessageLog(MessageLogOptions const& options, LockedFile file)
+    : impl_(std::make_unique<Impl>(options, std::move(file))) {}
+
+MessageLog::~MessageLog() = default;
+
+void MessageLog::append(MessageRow const& row) {
+    impl_->table.count_row(row.time_s, status_of([&] { return impl_->cells.append(row); }));
+}
+
+void MessageLog::save_if_due() {
+    impl_->table.save_if_due();
+}
+
+void MessageLog::save() {
+    impl_->table.save();
+}
+
+void MessageLog::add_metadata(std::string const& key, std::string const& value) {
+    impl_->table.add_metadata(key, value);
+}
+
+void MessageLog::close() {
+    impl_->table.close();
+}
+
+}  // namespace pogosim

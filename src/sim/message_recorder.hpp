@@ -1,0 +1,46 @@
+// What became of every message, on its way to the message log.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "comms/delivery_log.hpp"
+#include "record/message_log.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+class MessageRecorder {
+public:
+    /// Locks the file, so that no other run writes it. `world` outlives this. Throws OutputError.
+    MessageRecorder(std::string const& path, World const& world);
+
+    /// Empties the file. Throws OutputError.
+    void open(MessageLogOptions const& options);
+
+    bool is_open() const { return log_ != nullptr; }
+    bool is_complete() const { return is_complete_; }
+
+    /// What the next step fills; empty before.
+    DeliveryLog& deliveries() { return deliveries_; }
+
+    /// Writes a row for each delivery, and forgets them. Throws OutputError.
+    void record();
+
+    void save_if_due();
+    void add_metadata(std::string const& key, std::string const& value);
+
+    /// Completes the file. Throws OutputError.
+    void close();
+
+private:
+    World const& world_;
+    LockedFile reserved_;  // until there is a log
+    std::unique_ptr<MessageLog> log_;
+    DeliveryLog deliveries_;
+    std::int64_t messages_ = 0;  // recorded so far
+    bool is_complete_ = false;
+};
+
+}  // namespace pogosim
