@@ -22,6 +22,7 @@ import first_program
 import formations
 import gallery
 import lamps
+import messages
 import parameter_study
 import reception
 import replay
@@ -38,6 +39,7 @@ SCRIPTS: dict[str, ModuleType] = {
         formations,
         gallery,
         lamps,
+        messages,
         parameter_study,
         reception,
         replay,

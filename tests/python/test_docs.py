@@ -36,6 +36,7 @@ PAGES_WITH_COMMANDS = [
             "data_file",
             "examples",
             "installing",
+            "message_log",
             "optimization",
             "pictures",
             "window",

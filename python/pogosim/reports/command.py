@@ -25,6 +25,7 @@ ANALYSES: dict[str, Analysis] = {
     "network": Analysis("pogosim.reports.network", "components and Laplacian spectra of the proximity graph"),
     "coverage": Analysis("pogosim.reports.coverage", "Voronoi cells and the share of the arena within reach"),
     "collective": Analysis("pogosim.reports.collective", "order, pair correlations, structure factor, flow, milling"),
+    "messages": Analysis("pogosim.reports.messages", "what became of messages; reception by distance and cluster size"),
     "arena": Analysis("pogosim.reports.arena", "size, area and room of the arenas, and how much of them was visited"),
 }
 
