@@ -3,11 +3,11 @@
 #include <cmath>
 #include <utility>
 
+#include "interface/pogobase_inside.hpp"
+
 namespace pogosim {
 
 namespace {
-
-constexpr std::uint8_t kShortPacket = 3;  // ir_t_short
 
 LoggedRobot named(World const& world, std::uint32_t robot) {
     return {.index = static_cast<std::int32_t>(robot),
@@ -51,7 +51,7 @@ void MessageRecorder::record() {
                        .message = messages_ + delivery.transmission,
                        .sender = named(world_, transmission.robot),
                        .faces = transmission.emitters,
-                       .is_short = transmission.header.packet_type == kShortPacket,
+                       .is_short = transmission.header.packet_type == ir_t_short,
                        .payload = air.payload_of(transmission),
                        .message_bytes = transmission.message_bytes,
                        .send_probability = transmission.send_probability};

@@ -260,6 +260,20 @@ def test_killed_run_leaves_its_first_messages(counts: Path, busy: Run, tmp_path:
     assert read_table(path).schema.field("payload").type == pa.binary()
 
 
+def test_full_disk_ends_the_run_with_the_first_messages_and_all_rows(counts: Path, tmp_path: Path) -> None:
+    limited = tmp_path / "limited"
+    limited.write_text(f"#!/bin/sh\nulimit -f 120\nexec '{counts}' \"$@\"\n")  # 512 or 1024 bytes each
+    limited.chmod(0o755)
+    result = run(limited, tmp_path, {**LOGGED, "objects.robots.nb": 60, "arena_surface": 3.0e5})
+    assert result.code == 2
+    (line,) = result.errors.splitlines()
+    assert "cannot write the message log 'm.feather' (message_log): File too large. It contains the rows up to" in line
+    assert "pogosim-recover 'm.feather'" in line
+    assert len(recover.read_unfinished(tmp_path / "m.feather").table) > 0
+    assert recover.is_complete(tmp_path / "data.feather")
+    assert len(result.frame()) > 0
+
+
 # ---- bad values ----
 
 
