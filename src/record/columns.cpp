@@ -196,7 +196,7 @@ Columns::Columns(DataFileOptions const& options) : user_column_count_(options.us
     }
 }
 
-Status Columns::append(ObjectRow const& row, std::vector<CellValue> const& user) {
+Status Columns::append(ObjectRow const& row, std::span<CellValue const> user) {
     assert(user.size() == user_column_count_);
     for (auto& [column, cells] : built_ins_) {
         ARROW_RETURN_NOT_OK(column->append(*cells, row));

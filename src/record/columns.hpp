@@ -7,6 +7,7 @@
 #include <arrow/type.h>
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "record/data_file.hpp"
@@ -26,7 +27,7 @@ public:
     arrow::FieldVector const& fields() const { return fields_; }
 
     /// Adds one cell to each column; `user` as in DataFile::append.
-    arrow::Status append(ObjectRow const& row, std::vector<CellValue> const& user);
+    arrow::Status append(ObjectRow const& row, std::span<CellValue const> user);
 
     /// The cells added since the last call, one array per column.
     arrow::Result<arrow::ArrayVector> take();

@@ -41,7 +41,7 @@ DataFile::DataFile(DataFileOptions const& options, LockedFile file)
 
 DataFile::~DataFile() = default;
 
-void DataFile::append(ObjectRow const& row, std::vector<CellValue> const& user) {
+void DataFile::append(ObjectRow const& row, std::span<CellValue const> user) {
     impl_->table.count_row(row.time_s, status_of([&] { return impl_->columns.append(row, user); }));
 }
 

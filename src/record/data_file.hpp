@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -65,7 +67,10 @@ public:
     DataFile& operator=(DataFile const&) = delete;
 
     /// Adds a row. `user` holds one value per user column, in their order (monostate: null).
-    void append(ObjectRow const& row, std::vector<CellValue> const& user);
+    void append(ObjectRow const& row, std::span<CellValue const> user);
+    void append(ObjectRow const& row, std::initializer_list<CellValue> user) {
+        append(row, std::span(user.begin(), user.size()));
+    }
 
     /// Writes new rows to the unfinished file when that is due: a few seconds of wall-clock time after the last time,
     /// so that at most 1 % of the run is spent on it unless the disk is slow. Call it often.

@@ -85,8 +85,8 @@ void RecordedRows::begin(double time_s) {
     present_ = {.time_s = time_s, .robot = {}, .values = std::vector<std::vector<float>>(columns_.size())};
 }
 
-void RecordedRows::add(std::uint32_t robot, ObjectRow const& row, std::vector<CellValue> const& user) {
-    last_[robot] = {.exists = true, .built_in = row, .user = user};
+void RecordedRows::add(std::uint32_t robot, ObjectRow const& row, std::span<CellValue const> user) {
+    last_[robot] = {.exists = true, .built_in = row, .user = {user.begin(), user.end()}};
     present_.robot.push_back(robot);
     std::size_t column = 0;
     for (std::size_t const i : built_in_kept_) {

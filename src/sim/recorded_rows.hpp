@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +24,7 @@ public:
 
     // For each recorded time: begin, one call per row, end. Rows of a robot's subparts do not count.
     void begin(double time_s);
-    void add(std::uint32_t robot, ObjectRow const& row, std::vector<CellValue> const& user);
+    void add(std::uint32_t robot, ObjectRow const& row, std::span<CellValue const> user);
     void end();
 
     /// Names of the columns that hold numbers, as in RecordedValues: pogobot_ticks, x, y, angle and the user's, in the

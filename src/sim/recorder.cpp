@@ -128,7 +128,7 @@ void Recorder::make_data_file() {
     options.metadata = metadata();
     data_file_ = std::make_unique<DataFile>(options, std::move(reserved_));
     note_data_file(options.path, DataFileState::open);
-    empty_row_.values.assign(options.user_columns.size(), CellValue());
+    empty_cells_.assign(options.user_columns.size(), CellValue());
 }
 
 std::optional<UserFailure> Recorder::record_if_due() {
@@ -139,34 +139,55 @@ std::optional<UserFailure> Recorder::record_if_due() {
 }
 
 std::optional<UserFailure> Recorder::record_rows() {
-    DataRow const& row = export_.row;
+    std::optional<UserFailure> failure = fill_table();
     if (shown_ != nullptr) {
         shown_->begin(world_.time_s());
     }
-    for (Object const& object : world_.objects) {
+    for (std::size_t row = 0; row < table_.object.size(); ++row) {
+        write_row(world_.objects[table_.object[row]], table_.cells_of(row));
+    }
+    if (shown_ != nullptr && !failure) {
+        shown_->end();
+    }
+    return failure;
+}
+
+std::optional<UserFailure> Recorder::fill_table() {
+    table_.clear();
+    for (std::uint32_t i = 0; i < world_.objects.size(); ++i) {
+        Object const& object = world_.objects[i];
         if (!category_is_recorded_[object.category]) {
             continue;
         }
-        if (object.robot == kNone) {
-            data_file_->append(row_of(world_, object, std::nullopt), empty_row_.values);
-            continue;
+        bool has_row = true;
+        if (object.robot != kNone) {
+            if (auto failure = call_user_code([this, &object] { programs_.export_row(object.robot); })) {
+                return failure;
+            }
+            has_row = export_.row.exported;
         }
-        if (auto failure = call_user_code([this, &object] { programs_.export_row(object.robot); })) {
-            return failure;
-        }
-        if (row.exported) {
-            ObjectRow const built_in = row_of(world_, object, programs_.ticks(object.robot));
-            data_file_->append(built_in, row.values);
-            record_subparts(object);
-            if (shown_ != nullptr) {
-                shown_->add(object.robot, built_in, row.values);
+        if (has_row) {
+            table_.object.push_back(i);
+            table_.cells.resize(table_.object.size() * export_.columns.size());
+            if (object.robot != kNone) {
+                std::ranges::copy(export_.row.values, table_.cells.end() - std::ssize(export_.row.values));
             }
         }
     }
-    if (shown_ != nullptr) {
-        shown_->end();
-    }
     return std::nullopt;
+}
+
+void Recorder::write_row(Object const& object, std::span<CellValue const> user) {
+    if (object.robot == kNone) {
+        data_file_->append(row_of(world_, object, std::nullopt), user);
+        return;
+    }
+    ObjectRow const built_in = row_of(world_, object, programs_.ticks(object.robot));
+    data_file_->append(built_in, user);
+    record_subparts(object);
+    if (shown_ != nullptr) {
+        shown_->add(object.robot, built_in, user);
+    }
 }
 
 void Recorder::record_subparts(Object const& object) {
@@ -180,7 +201,7 @@ void Recorder::record_subparts(Object const& object) {
         row.x_mm = position_mm.x;
         row.y_mm = position_mm.y;
         row.subpart = static_cast<std::int16_t>(part);
-        data_file_->append(row, empty_row_.values);
+        data_file_->append(row, empty_cells_);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,7 +57,10 @@ public:
     void close();
 
     /// Lets go of the complete file, so that another run may write it.
-    void release() { data_file_.reset(); }
+    void release() {
+        data_file_.reset();
+        messages_.reset();
+    }
 
     /// Behind a message about a run that ended early: where its data is. Empty before close() has completed the file.
     std::string note() const;
@@ -66,7 +70,11 @@ private:
     std::vector<std::pair<std::string, std::string>> metadata() const;
     void make_data_file();
     void open_message_log();
+    /// The rows of all objects, also of those before the one whose code fails.
     std::optional<UserFailure> record_rows();
+    /// All user code of a save. After a failure the table has the rows until then.
+    std::optional<UserFailure> fill_table();
+    void write_row(Object const& object, std::span<CellValue const> user);
     void record_subparts(Object const& object);
 
     Scenario const& scenario_;
@@ -80,8 +88,9 @@ private:
     std::unique_ptr<MessageRecorder> messages_;  // null: there is no message log
     bool is_opened_ = false;                     // by open(): rows come into it
     bool is_complete_ = false;
-    RecordedRows* shown_ = nullptr;  // null: nobody looks
-    DataRow empty_row_;              // user columns of what runs no user code
+    RecordedRows* shown_ = nullptr;       // null: nobody looks
+    DataTable table_;                     // of the present save
+    std::vector<CellValue> empty_cells_;  // user columns of subparts
     Multiples row_times_;
 };
 

@@ -2,7 +2,9 @@
 // format, so that the room that calls user code and the room that writes files share nothing but this.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,7 +21,22 @@ struct ColumnSpec {
 /// One value; monostate is null. Integers of all widths travel as int64, float16 and float32 as double.
 using CellValue = std::variant<std::monostate, std::int64_t, double, bool, std::string>;
 
-/// User part of one row, in the order of the columns.
+/// User part of the rows of one save, which user code fills before anything is written.
+struct DataTable {
+    std::vector<std::uint32_t> object;  // by row: index into World::objects
+    std::vector<CellValue> cells;       // of a row in the order of the columns, row after row
+
+    std::span<CellValue const> cells_of(std::size_t row) const {
+        std::size_t const columns = cells.size() / object.size();
+        return std::span(cells).subspan(row * columns, columns);
+    }
+    void clear() {
+        object.clear();
+        cells.clear();
+    }
+};
+
+/// User part of the row that is being filled, in the order of the columns.
 struct DataRow {
     std::vector<CellValue> values;
     bool exported = true;  // false: the user program disabled the export of this row
