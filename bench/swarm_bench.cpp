@@ -134,8 +134,8 @@ int main(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
         sizes.push_back(std::atoi(argv[i]));
     }
-    if (std::any_of(sizes.begin(), sizes.end(), [](int n) { return n < 1 || n > 65535; })) {
-        fmt::print(stderr, "Usage: {} [number of robots, 1 to 65535 ...]\n", argv[0]);
+    if (std::any_of(sizes.begin(), sizes.end(), [](int n) { return n < 1 || n > 10'000'000; })) {
+        fmt::print(stderr, "Usage: {} [number of robots, 1 to 10000000 ...]\n", argv[0]);
         return 2;
     }
     if (sizes.empty()) {

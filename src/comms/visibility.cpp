@@ -31,9 +31,9 @@ float pseudo_angle(Vec2 direction) {
     return direction.y >= 0.0F ? 2.0F - side : -2.0F - side;
 }
 
-/// Index of the robot's outline.
+/// Index of the robot's outline. They are in the order of the robots.
 std::uint32_t outline_of(World const& world, std::uint32_t robot) {
-    auto const found = std::ranges::find(world.outlines, robot, &Outline::robot);
+    auto const found = std::ranges::lower_bound(world.outlines, robot, {}, &Outline::robot);
     return static_cast<std::uint32_t>(found - world.outlines.begin());
 }
 

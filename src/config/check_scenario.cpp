@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <regex>
 #include <string>
@@ -19,6 +20,9 @@
 namespace pogosim {
 
 namespace {
+
+// Indices have 32 bits, some of them with a sign.
+constexpr std::int64_t kMaxBodies = std::numeric_limits<std::int32_t>::max();
 
 /// The node of a top-level key, or the whole tree when the file leaves the key out.
 Place place_of(Scenario const& scenario, std::string const& key) {
@@ -49,13 +53,19 @@ void check_counts(Scenario const& scenario) {
 void check_object_count(Scenario const& scenario) {
     std::int64_t robots = 0;
     std::int64_t all = 0;
+    std::int64_t bodies = 0;
     for (ObjectConfig const& object : scenario.objects) {
         robots += object.spec.robot ? object.nb : 0;
         all += object.spec.robot || object.spec.body ? object.nb : 0;
+        bodies += std::int64_t{object.nb} * (object.spec.ring ? object.spec.ring->body_count : 1);
     }
     if (all > kMaxObjects) {
         fail_at(place_of(scenario, "objects"),
                 fmt::format("expected at most {} objects in all categories, found {}", kMaxObjects, all));
+    }
+    if (bodies > kMaxBodies) {
+        fail_at(place_of(scenario, "objects"),
+                fmt::format("expected at most {} dots of membranes and other objects, found {}", kMaxBodies, bodies));
     }
     if (robots == 0) {
         log().warn("{}: objects: there are no robots in this configuration; nothing will move",

@@ -17,8 +17,8 @@ namespace pogosim {
 enum class BoundaryCondition { solid, periodic };
 enum class LogFormat { dated, minimal };
 
-/// Robots are numbered from 0 in 16 bits.
-inline constexpr int kMaxObjects = 65535;
+/// More than fit into the memory of most machines.
+inline constexpr int kMaxObjects = 10'000'000;
 
 /// How the objects of an entry are placed apart from those of the others.
 struct OwnFormation {
@@ -91,8 +91,8 @@ struct Scenario {
     double arena_temperature_c = 42.0;
     double simulation_time_s = 100.0;
     double time_step_s = 0.01;
-    std::optional<std::uint32_t> seed;  // absent: drawn from the system
-    double user_code_timeout_s = 10.0;  // processor time one call of user code may take; 0: no limit
+    std::optional<std::uint32_t> seed;    // absent: drawn from the system
+    double user_code_timeout_s = 10.0;    // processor time one call of user code may take; 0: no limit
     int light_map_columns = 100;
     int light_map_rows = 100;
     FormationSpec formation;

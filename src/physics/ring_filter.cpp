@@ -22,7 +22,7 @@ std::uint32_t touching_neighbours(Bodies const& bodies, Ring const& ring) {
 
 }  // namespace
 
-RingFilter::RingFilter(World const& world) : places_(world.bodies.size()) {
+RingFilter::RingFilter(World const& world) : places_(world.rings.empty() ? 0 : world.bodies.size()) {
     for (std::uint32_t r = 0; r < world.rings.size(); ++r) {
         Ring const& ring = world.rings[r];
         std::uint32_t const neighbours = touching_neighbours(world.bodies, ring);
@@ -42,7 +42,7 @@ bool RingFilter::ShouldCollide(b2Fixture* a, b2Fixture* b) {
     std::uintptr_t const body_a = a->GetUserData().pointer;
     std::uintptr_t const body_b = b->GetUserData().pointer;
     if (body_a >= places_.size() || body_b >= places_.size()) {
-        return true;  // a wall
+        return true;  // a wall, or there are no rings
     }
     PlaceInRing const& one = places_[body_a];
     PlaceInRing const& other = places_[body_b];

@@ -27,7 +27,7 @@ private:
         Vec2 at_rest_mm;
         float radius_mm = 0.0F;
     };
-    std::vector<PlaceInRing> places_;  // of each body
+    std::vector<PlaceInRing> places_;  // of each body; empty without rings
 };
 
 }  // namespace pogosim

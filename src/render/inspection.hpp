@@ -13,7 +13,7 @@ namespace pogosim {
 
 /// A robot that can hear the inspected one now.
 struct Neighbour {
-    std::uint16_t id = 0;
+    std::uint32_t id = 0;
     std::string category;
     float distance_mm = 0.0F;   // from the nearest emitter to its centre; of a wall or membrane, to its outline
     std::uint8_t emitters = 0;  // bit d: emitter d of the inspected robot reaches it
@@ -21,7 +21,7 @@ struct Neighbour {
 
 struct Inspection {
     std::uint32_t robot = 0;  // index
-    std::uint16_t id = 0;
+    std::uint32_t id = 0;
     std::string category;
     bool has_body = false;     // else the pose and velocities are 0
     Vec2 position_mm;          // of a membrane: its middle; in a periodic arena inside its bounds

@@ -22,8 +22,8 @@ struct Scenery {
     std::vector<float> body_radius_mm;
     std::vector<Shape> body_shape;
     std::vector<std::uint32_t> robot_body;      // kNone: it has none
-    std::vector<std::uint16_t> robot_category;  // index into `categories`
-    std::vector<std::uint16_t> robot_id;
+    std::vector<std::uint32_t> robot_category;  // index into `categories`
+    std::vector<std::uint32_t> robot_id;
     std::vector<Outline> outlines;  // walls and membranes that run a program
 };
 

@@ -78,7 +78,7 @@ void pogobot_init() {
 
 uint16_t pogobot_helper_getid() {
     require_robot(__func__);
-    return context.has_robot() ? context.world->robots.id[context.robot] : uint16_t{0};
+    return context.has_robot() ? pogosim::id_on_air(context.world->robots.id[context.robot]) : uint16_t{0};
 }
 
 int16_t pogobot_helper_getRandSeed() {

@@ -53,7 +53,7 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
                                  .send_probability = std::min<float>(percent_msgs_sent_per_ticks, 100.0F) / 100.0F,
                                  .range_mm = context.spec().ir.range_at_mm(power),
                                  .header = header,
-                                 .payload_offset = static_cast<std::uint32_t>(air.payloads.size())});
+                                 .payload_offset = air.payloads.size()});
     auto const bytes = std::as_bytes(std::span(payload, header.payload_length));
     air.payloads.insert(air.payloads.end(), bytes.begin(), bytes.end());
     return kSent;

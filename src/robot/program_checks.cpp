@@ -24,7 +24,7 @@ std::vector<bool> categories_where_all(World const& world, std::span<Computer co
     std::vector<std::size_t> robots(world.categories.size());
     std::vector<std::size_t> matching(world.categories.size());
     for (std::size_t i = 0; i < computers.size(); ++i) {
-        std::uint16_t const category = world.robots.category[i];
+        std::uint32_t const category = world.robots.category[i];
         ++robots[category];
         matching[category] += is_so(computers[i]) ? 1 : 0;
     }
@@ -53,7 +53,7 @@ void warn_of_large_user_data(std::size_t bytes) {
     }
 }
 
-void warn_of_user_data_in_setup(std::uint16_t id) {
+void warn_of_user_data_in_setup(std::uint32_t id) {
     log().warn("callback_global_setup changed USERDATA (mydata) of robot #{} only: initialise it in user_init", id);
 }
 
@@ -67,7 +67,7 @@ void warn_of_idle_categories(World const& world, std::span<Computer const> compu
     std::string const calls = started.empty() ? "" : fmt::format(" (only for {})", fmt::join(started, ", "));
     std::vector<bool> warned(world.categories.size());
     for (std::size_t i = 0; i < computers.size(); ++i) {
-        std::uint16_t const category = world.robots.category[i];
+        std::uint32_t const category = world.robots.category[i];
         if (!computers[i].program.registered && !warned[category]) {
             warned[category] = true;
             std::string const& name = world.categories[category].name;
@@ -163,7 +163,7 @@ void warn_of_send_percent(World const& world, std::span<Computer const> computer
     constexpr int most_percent = 100;
     std::vector<bool> warned(world.categories.size());
     for (std::size_t i = 0; i < computers.size(); ++i) {
-        std::uint16_t const category = world.robots.category[i];
+        std::uint32_t const category = world.robots.category[i];
         int const percent = computers[i].loop.send_percent;
         if (percent > most_percent && !warned[category]) {
             warned[category] = true;

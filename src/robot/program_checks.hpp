@@ -21,7 +21,7 @@ namespace pogosim {
 void warn_of_large_user_data(std::size_t bytes);
 
 /// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
-void warn_of_user_data_in_setup(std::uint16_t id);
+void warn_of_user_data_in_setup(std::uint32_t id);
 
 /// Categories without a pogobot_start(). `started`: those that the program's calls do name.
 void warn_of_idle_categories(World const& world, std::span<Computer const> computers,

@@ -81,7 +81,7 @@ LoopGlobals stored_globals() {
             .loop_timer = timer_main_loop};
 }
 
-/// A bijection of 16 bits, so that every robot's first seed is different.
+/// A bijection of 16 bits, so that the first seeds of up to 65536 robots differ.
 std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
     auto const odd_factor = static_cast<std::uint16_t>(key | 1U);
     auto const offset = static_cast<std::uint16_t>(key >> 16U);
@@ -176,7 +176,7 @@ void Programs::draw_individual_differences(std::uint64_t seed) {
         RandomStream& stream = world_.robots.stream[i];
         self.random = RandomStream(seed, kRandStreams + i);
         self.seeds = RandomStream(seed, kSeedStreams + i);
-        self.first_seed = scatter_id(world_.robots.id[i], key);
+        self.first_seed = scatter_id(id_on_air(world_.robots.id[i]), key);
         self.motors.bias = static_cast<float>(draw_between(spec.motor_bias, stream));
         for (std::int32_t& bias : self.photosensor_bias) {
             bias = draw_between(spec.photosensor_bias, stream);

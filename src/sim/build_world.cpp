@@ -129,12 +129,13 @@ Outline outline_of(World const& world, Object const& object, ObjectSpec const& s
 }
 
 /// Creates objects one by one and numbers them: those with a rigid body and a program from 0 up, all others from 65535
-/// down.
+/// down; of more than 65536 objects from the number of the last one down, so that no two have the same id.
 class ObjectMaker {
 public:
-    ObjectMaker(World& world, std::uint32_t seed) : world_(world), seed_(seed) {}
+    ObjectMaker(World& world, std::uint32_t object_count, std::uint32_t seed)
+        : world_(world), seed_(seed), next_down_(std::max(object_count, kIdsOnAir) - 1) {}
 
-    void add(std::uint16_t category, Placement const& placement) {
+    void add(std::uint32_t category, Placement const& placement) {
         ObjectSpec const& spec = world_.categories[category].spec;
         bool const is_robot_like = spec.robot && spec.body && !spec.ring;
         Object object{.id = is_robot_like ? next_up_++ : next_down_--, .category = category};
@@ -157,8 +158,8 @@ public:
 private:
     World& world_;
     std::uint32_t seed_;
-    std::uint16_t next_up_ = 0;
-    std::uint16_t next_down_ = std::numeric_limits<std::uint16_t>::max();
+    std::uint32_t next_up_ = 0;
+    std::uint32_t next_down_;
 };
 
 /// There are no arena walls in a periodic world.
@@ -173,17 +174,31 @@ bool is_created(World const& world, ObjectConfig const& object) {
 
 void add_objects(Scenario const& scenario, World& world, std::uint32_t seed) {
     std::vector<std::vector<Placement>> const poses = place_objects(scenario, world, seed);
-    ObjectMaker maker(world, seed);
+    std::vector<std::size_t> created;  // indices into scenario.objects
+    std::size_t object_count = 0;
     for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
-        ObjectConfig const& object = scenario.objects[i];
-        if (!is_created(world, object)) {
-            continue;
+        if (is_created(world, scenario.objects[i])) {
+            created.push_back(i);
+            object_count += poses[i].size();
         }
-        auto const category = static_cast<std::uint16_t>(world.categories.size());
+    }
+    ObjectMaker maker(world, static_cast<std::uint32_t>(object_count), seed);
+    for (std::size_t const i : created) {
+        ObjectConfig const& object = scenario.objects[i];
+        auto const category = static_cast<std::uint32_t>(world.categories.size());
         world.categories.push_back({.name = object.category, .spec = object.spec});
         for (Placement const& placement : poses[i]) {
             maker.add(category, placement);
         }
+    }
+}
+
+void warn_of_repeated_ids(World const& world) {
+    if (world.robots.size() > kIdsOnAir) {
+        log().warn(
+            "{} objects run the program, but pogobot_helper_getid() and messages have only {} ids, as on the robot: "
+            "ids repeat (robot_id in the data file does not)",
+            world.robots.size(), kIdsOnAir);
     }
 }
 
@@ -242,6 +257,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     build_arena(scenario, world);
     warn_of_gaps(scenario);
     allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });
+    warn_of_repeated_ids(world);
     make_mailboxes(world);
     world.light = make_light_map(world.arena, scenario.light_map_columns, scenario.light_map_rows);
     return world;

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
+#include <vector>
 
+#include "base/grid.hpp"
 #include "base/log.hpp"
 #include "sim/make_ring.hpp"
 
@@ -18,6 +21,7 @@ constexpr float kDeepShare = 0.1F;
 struct FixedEntry {
     ObjectConfig const* object;
     Vec2 position_mm;
+    float radius_mm;  // of the disk around it
     Obstacle obstacle;
 };
 
@@ -52,8 +56,9 @@ std::vector<FixedEntry> fixed_entries(Scenario const& scenario) {
         }
         if (object.spec.body) {
             std::vector<Obstacle> const obstacles = obstacles_of(object, poses);
+            float const radius_mm = outer_radius_mm(object.spec);
             for (std::size_t i = 0; i < poses.size(); ++i) {
-                entries.push_back({&object, poses[i].position_mm, obstacles[i]});
+                entries.push_back({&object, poses[i].position_mm, radius_mm, obstacles[i]});
             }
         }
     }
@@ -85,9 +90,36 @@ private:
     std::vector<Finding> all_;
 };
 
-bool may_touch(FixedEntry const& a, FixedEntry const& b) {
-    return length(a.position_mm - b.position_mm) <= outer_radius_mm(a.object->spec) + outer_radius_mm(b.object->spec);
-}
+/// Finds those that an entry may touch among the ones before it.
+class EarlierNeighbours {
+public:
+    EarlierNeighbours(std::vector<FixedEntry> const& entries, Box bounds_mm) : entries_(entries) {
+        std::vector<Vec2> positions_mm;
+        for (FixedEntry const& entry : entries) {
+            positions_mm.push_back(entry.position_mm);
+            largest_mm_ = std::max(largest_mm_, entry.radius_mm);
+        }
+        grid_.build(positions_mm, bounds_mm, std::max(2.0F * largest_mm_, 1.0F), /*periodic=*/false);
+    }
+
+    /// In the order of the entries.
+    std::vector<FixedEntry const*> of(std::size_t entry) const {
+        FixedEntry const& own = entries_[entry];
+        std::vector<FixedEntry const*> found;
+        grid_.for_each_near(own.position_mm, own.radius_mm + largest_mm_, [&](std::uint32_t other, Vec2 place_mm) {
+            if (other < entry && length(own.position_mm - place_mm) <= own.radius_mm + entries_[other].radius_mm) {
+                found.push_back(&entries_[other]);
+            }
+        });
+        std::ranges::sort(found);
+        return found;
+    }
+
+private:
+    std::vector<FixedEntry> const& entries_;
+    float largest_mm_ = 0.0F;
+    UniformGrid grid_;
+};
 
 }  // namespace
 
@@ -110,14 +142,16 @@ std::vector<Obstacle> obstacles_of(ObjectConfig const& object, std::vector<Place
 void warn_of_overlaps(Scenario const& scenario, World const& world) {
     std::vector<FixedEntry> const entries = fixed_entries(scenario);
     Findings findings;
-    for (auto entry = entries.begin(); entry != entries.end(); ++entry) {
+    EarlierNeighbours const neighbours(entries, world.arena.bounds);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        FixedEntry const* const entry = &entries[i];
         ObjectConfig const& object = *entry->object;
         float const own_mm = half_thickness_mm(object.spec);
         if (object.position_mm && object.nb > 1) {
             findings.add(*entry, &object, fmt::format("has all {} objects on top of each other", object.nb));
         }
-        for (auto other = entries.begin(); other != entry; ++other) {
-            float const depth_mm = may_touch(*entry, *other) ? overlap_mm(entry->obstacle, other->obstacle) : 0.0F;
+        for (FixedEntry const* const other : neighbours.of(i)) {
+            float const depth_mm = overlap_mm(entry->obstacle, other->obstacle);
             if (depth_mm > kDeepShare * std::min(own_mm, half_thickness_mm(other->object->spec))) {
                 findings.add(*entry, other->object,
                              fmt::format("overlaps {} by {:.1f} mm",

@@ -32,7 +32,7 @@ constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
     ObjectRow row{.time_s = static_cast<float>(world.time_s()),
                   .category = world.categories[object.category].name,
-                  .id = object.id,
+                  .id = static_cast<std::int32_t>(object.id),
                   .ticks = ticks,
                   .x_mm = kNoValue,
                   .y_mm = kNoValue,

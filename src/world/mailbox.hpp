@@ -31,7 +31,7 @@ struct Transmission {
     float send_probability = 0.0F;    // of the sender, per tick
     float range_mm = 0.0F;            // from an emitter to the receiver's border
     FrameHeader header;
-    std::uint32_t payload_offset = 0;  // into Air::payloads
+    std::size_t payload_offset = 0;  // into Air::payloads
 };
 
 /// All transmissions of the current step, in the order in which the robots made them.
@@ -57,6 +57,8 @@ public:
 
     /// `queue_sizes[i]` messages of up to `max_payload_bytes` for robot i; all queues empty.
     Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes);
+
+    std::size_t robot_count() const { return queues_.size(); }
 
     /// Appends a message, or counts it as dropped and returns false when the queue is full.
     bool push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);

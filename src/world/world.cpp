@@ -12,6 +12,26 @@ std::int16_t LightMap::at(Vec2 point_mm) const {
     return level[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
 }
 
+void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad) {
+    bodies.position_mm[body] = position_mm;
+    bodies.heading_rad[body] = heading_rad;
+    bodies.axis[body] = direction(heading_rad);
+    bodies.velocity_mm_s[body] = {};
+    bodies.angular_velocity_rad_s[body] = 0.0F;
+}
+
+void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) {
+    Bodies& bodies = world.bodies;
+    if (object.body_count == 1) {
+        set_pose(bodies, object.body, centre_mm, heading_rad);
+        return;
+    }
+    Vec2 const motion_mm = centre_mm - pogosim::centre_mm(world, object);
+    for (std::uint32_t i = object.body; i < object.body + object.body_count; ++i) {
+        set_pose(bodies, i, bodies.position_mm[i] + motion_mm, bodies.heading_rad[i]);
+    }
+}
+
 Vec2 centre_mm(World const& world, Object const& object) {
     if (object.body == kNone) {
         return object.fixed_mm;

@@ -1,11 +1,25 @@
 // The state of everything, as plain data in structures of arrays. Each stage of a step reads the world and writes only
 // its own part:
 //
-//   light     writes  light
-//   robot     writes  robots.led, robots.drive, air; takes messages out of mailboxes
-//   comms     writes  mailboxes, clears air
-//   physics   writes  bodies, robots.drive.fresh
-//   record    reads
+//   sim       writes  step; before the first one all that the configuration says, time_step_s last
+//   light     writes  light.level: first of all cells, then of those under moving lamps, and of all again when a lamp
+//                     that stands still goes on or off
+//   robot     writes  robots.led, robots.drive, air; takes messages out of mailboxes; draws from robots.stream
+//   comms     writes  mailboxes; clears air; draws from robots.stream
+//   physics   writes  position_mm, heading_rad, axis, velocity_mm_s and angular_velocity_rad_s of bodies that are not
+//                     fixed; clears robots.drive[i].fresh
+//   record, render and view only read
+//
+// No stage keeps its own version of this. What others write between two steps is true from then on:
+//
+//   a pose                   bodies go on from there, fixed ones too; write it with set_pose(), free of walls
+//   a velocity               bodies go on with it, unless their motors ask for another one; fixed ones keep 0
+//   robots.led               is shown and recorded until the program sets it again
+//   robots.drive[i], fresh   is the velocity of this body in the next step, unless its motors ask for another one
+//   light.level[i]           is sensed and shown until a lamp writes this cell, see above
+//   a message in a mailbox   is received
+//
+// A pose or velocity that is not finite is taken back. All else stays as it is when the run starts.
 #pragma once
 
 #include <array>
@@ -40,7 +54,7 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 struct Bodies {
     std::vector<Vec2> position_mm;
     std::vector<float> heading_rad;  // not wrapped
-    std::vector<Vec2> axis;          // unit vector along the heading
+    std::vector<Vec2> axis;          // unit vector along the heading, which decides
     std::vector<Vec2> velocity_mm_s;
     std::vector<float> angular_velocity_rad_s;  // clockwise on the screen
     std::vector<float> radius_mm;               // bounding disk
@@ -77,8 +91,8 @@ struct Drive {
 
 /// Objects that run user code. Shape: one entry per robot, in order of creation.
 struct Robots {
-    std::vector<std::uint16_t> id;        // what pogobot_helper_getid() answers and the data file shows
-    std::vector<std::uint16_t> category;  // index into World::categories
+    std::vector<std::uint32_t> id;        // what the data file shows; on the air: id_on_air()
+    std::vector<std::uint32_t> category;  // index into World::categories
     std::vector<std::uint32_t> body;      // index into World::bodies, the first one of a ring; kNone: it has none
     std::vector<Leds> led;
     std::vector<Drive> drive;
@@ -94,8 +108,8 @@ struct Category {
 
 /// One thing that the data file has a row for: it has a body, runs user code, or both.
 struct Object {
-    std::uint16_t id = 0;
-    std::uint16_t category = 0;    // index into World::categories
+    std::uint32_t id = 0;
+    std::uint32_t category = 0;    // index into World::categories
     std::uint32_t robot = kNone;   // index into World::robots
     std::uint32_t body = kNone;    // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;  // more than one: a ring, in this order
@@ -154,6 +168,20 @@ struct World {
 
     RobotSpec const& spec_of(std::size_t robot) const { return *categories[robots.category[robot]].spec.robot; }
 };
+
+/// What pogobot_helper_getid() and message headers say: robots have ids of 16 bits, so those of robots further apart
+/// than 65536 repeat.
+inline constexpr std::uint32_t kIdsOnAir = 65536;
+constexpr std::uint16_t id_on_air(std::uint32_t id) {
+    return static_cast<std::uint16_t>(id);
+}
+
+/// Puts a body elsewhere, at rest.
+void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad);
+
+/// Puts an object that has a body elsewhere, at rest, whether it is fixed or not: a rigid body with its centre at
+/// `centre_mm` and with this heading, a ring as it is with its middle there.
+void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad);
 
 /// Middle of an object: of its bodies, or where it stands when it has none. Not wrapped.
 Vec2 centre_mm(World const& world, Object const& object);

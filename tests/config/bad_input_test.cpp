@@ -147,10 +147,10 @@ TEST(BadInput, MoreStepsThanCanBeCountedAreRefused) {
 TEST(BadInput, WrongRobots) {
     expect_refused(
         kRobots,
-        {{"    nb: many", "objects.robots.nb: expected an integer from 0 to 65535, found 'many'"},
-         {"    nb: -1", "objects.robots.nb: expected an integer from 0 to 65535, found -1"},
+        {{"    nb: many", "objects.robots.nb: expected an integer from 0 to 10000000, found 'many'"},
+         {"    nb: -1", "objects.robots.nb: expected an integer from 0 to 10000000, found -1"},
          {"    nb: {batch_options: [1], default_option: arenas/disk.csv}",
-          "objects.robots.nb: expected an integer from 0 to 65535, found 'arenas/disk.csv'"},
+          "objects.robots.nb: expected an integer from 0 to 10000000, found 'arenas/disk.csv'"},
          {"    body_density: 0",
           "objects.robots.body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found 0"},
          {"    body_restitution: 1.8", "objects.robots.body_restitution: expected a number from 0 to 1, found 1.8"},
@@ -256,11 +256,18 @@ TEST(BadInput, ObjectsNeedTypeAndGeometry) {
     EXPECT_EQ(load_error("objects:\n  a: 5\n"), "x.yaml:2: objects.a: expected a map of keys, found 5");
 }
 
-TEST(BadInput, MoreRobotsThanIdsAreRefused) {
-    std::string const half = ": {type: pogobot, geometry: disk, nb: 32768}\n";
-    EXPECT_EQ(load_error("objects:\n  a" + half + "  b" + half),
-              "x.yaml:1: objects: expected at most 65535 objects in all categories, found 65536");
-    EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: disk, nb: 65535}\n"), "no error");
+TEST(BadInput, MoreThanTenMillionObjectsAreRefused) {
+    std::string const most = "objects:\n  a: {type: pogobot, geometry: disk, nb: 9999999}\n";
+    EXPECT_EQ(load_error(most + "  b: {type: pogobot, geometry: disk, nb: 2}\n"),
+              "x.yaml:1: objects: expected at most 10000000 objects in all categories, found 10000001");
+    EXPECT_EQ(load_error(most + "  b: {type: pogobot, geometry: disk}\n"), "no error");
+}
+
+TEST(BadInput, MoreDotsThanIndicesAreRefused) {
+    std::string const membranes = "objects:\n  a: {type: membrane, geometry: disk, radius: 50, num_dots: 10000, nb: ";
+    EXPECT_EQ(load_error(membranes + "214749}\n"),
+              "x.yaml:1: objects: expected at most 2147483647 dots of membranes and other objects, found 2147490000");
+    EXPECT_EQ(load_error(membranes + "214748}\n"), "no error");
 }
 
 TEST(BadInput, TheWholeFileCannotBeAnOption) {
@@ -271,7 +278,7 @@ TEST(BadInput, TheWholeFileCannotBeAnOption) {
 
 TEST(BadInput, SetIsCheckedLikeTheFile) {
     EXPECT_EQ(load_error(kRobots, {.overrides = {"objects.robots.nb=many"}}),
-              "--set: objects.robots.nb: expected an integer from 0 to 65535, found 'many'");
+              "--set: objects.robots.nb: expected an integer from 0 to 10000000, found 'many'");
     EXPECT_EQ(load_error(kRobots, {.overrides = {"nonsense"}}), "--set 'nonsense': expected key.path=value");
 }
 

@@ -738,7 +738,7 @@ TEST(Scenario, EachEntryOfACategoryIsCheckedAndCanBeSet) {
               "--set 'objects.robots.nb=5': 'nb' is not an index of the list of length 3 at x.yaml:2; the first one is "
               "0");
     EXPECT_EQ(load_error(text + "  robots: {type: pogobot, nb: many}\n"),
-              "x.yaml:5: objects.robots.3.nb: expected an integer from 0 to 65535, found 'many'");
+              "x.yaml:5: objects.robots.3.nb: expected an integer from 0 to 10000000, found 'many'");
 }
 
 TEST(Scenario, CategoriesOfAnAlternativeMayStandSeveralTimesToo) {

@@ -34,7 +34,7 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
         world.categories.push_back({"robots", spec});
     }
     auto const index = static_cast<std::uint32_t>(world.robots.size());
-    world.robots.id.push_back(static_cast<std::uint16_t>(index));
+    world.robots.id.push_back(index);
     world.robots.category.push_back(0);
     world.robots.body.push_back(index);
     world.robots.led.push_back({});
@@ -48,7 +48,7 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
     world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
     world.bodies.shape.push_back(spec.shape);
     world.bodies.spec.push_back(*spec.body);
-    world.objects.push_back({.id = static_cast<std::uint16_t>(index), .robot = index, .body = index, .body_count = 1});
+    world.objects.push_back({.id = index, .robot = index, .body = index, .body_count = 1});
     std::vector<int> const sizes(world.robots.size(), spec.robot->ir.queue_size);
     world.mailboxes = Mailboxes(sizes, 382);
     return index;
@@ -60,8 +60,8 @@ inline std::uint32_t add_outline(World& world, Outline outline, float range_mm) 
     spec.robot->emitters = Emitters::outline;
     spec.robot->ir.range_mm = range_mm;
     auto const robot = static_cast<std::uint32_t>(world.robots.size());
-    world.robots.id.push_back(static_cast<std::uint16_t>(65535));
-    world.robots.category.push_back(static_cast<std::uint16_t>(world.categories.size()));
+    world.robots.id.push_back(65535);
+    world.robots.category.push_back(static_cast<std::uint32_t>(world.categories.size()));
     world.robots.body.push_back(outline.body);
     world.robots.led.push_back({});
     world.robots.drive.push_back({});
@@ -69,6 +69,7 @@ inline std::uint32_t add_outline(World& world, Outline outline, float range_mm) 
     world.categories.push_back({"outlines", spec});
     outline.robot = robot;
     world.outlines.push_back(std::move(outline));
+    world.mailboxes = Mailboxes(std::vector<int>(world.robots.size(), spec.robot->ir.queue_size), 382);
     return robot;
 }
 

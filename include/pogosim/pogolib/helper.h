@@ -12,7 +12,7 @@ POGO_BEGIN_API
 void pogobot_init(void);
 
 /// Identifier of this robot: 0, 1, 2, ... in the order of the configuration; 65535, 65534, ... for walls and membranes;
-/// 0 in callback_global_step. A real robot has the number in its memory.
+/// 0 in callback_global_step. Among more than 65536 of them, ids repeat. A real robot has the number in its memory.
 uint16_t pogobot_helper_getid(void);
 
 /// A seed for srand(), any int16_t. The first one that a robot requests differs for every robot of a run and depends

@@ -14,7 +14,9 @@ namespace {
 
 constexpr float kPitchTolerance = 0.08F;  // by which the spread grid may differ from the pitch asked for
 constexpr int kPitchSteps = 16;           // tried on either side
-constexpr double kMostNodes = 1.0e6;      // of a spread grid
+// Of a grid, so that a hopeless request ends soon: so many, or so many for each object.
+constexpr double kMostNodes = 1.0e6;
+constexpr double kMostNodesPerObject = 4.0;
 
 std::string remedy(PlacementTask const& task) {
     return fmt::format("reduce nb, lower chessboard_distance_between_neighbors, or {}", task.remedy);
@@ -109,9 +111,10 @@ void check_pitch(PlacementTask const& task, float radius_mm) {
     }
     Vec2 const size = task.domain.bounds.size();
     double const pitch_mm = task.spec.chessboard_pitch_mm;
-    if (static_cast<double>(size.x) * size.y / (pitch_mm * pitch_mm) > kMostNodes) {
-        refuse(task, fmt::format("chessboard_distance_between_neighbors of {:g} mm makes more than a million places",
-                                 task.spec.chessboard_pitch_mm));
+    double const most = std::max(kMostNodes, kMostNodesPerObject * static_cast<double>(task.radii_mm.size()));
+    if (static_cast<double>(size.x) * size.y / (pitch_mm * pitch_mm) > most) {
+        refuse(task, fmt::format("chessboard_distance_between_neighbors of {:g} mm makes more than {:.0f} places",
+                                 task.spec.chessboard_pitch_mm, most));
     }
 }
 

@@ -13,7 +13,9 @@ namespace pogosim {
 
 namespace {
 
-constexpr std::int64_t kMostNodes = 10'000'000;  // looked at in all, so that a hopeless request ends soon
+// Looked at in all, so that a hopeless request ends soon: so many, or so many for each object.
+constexpr std::int64_t kMostNodes = 10'000'000;
+constexpr std::int64_t kMostNodesPerObject = 20;
 
 /// Distance from the centre to the farthest corner of the bounding box.
 float farthest_corner_mm(Box box, Vec2 centre) {
@@ -30,7 +32,8 @@ public:
           remedy_(remedy),
           extent_mm_(farthest_corner_mm(task.domain.bounds, centre)),
           field_(task.domain.bounds, task.radii_mm),
-          placements_(task.radii_mm.size()) {}
+          placements_(task.radii_mm.size()),
+          most_nodes_(std::max(kMostNodes, kMostNodesPerObject * std::ssize(task.radii_mm))) {}
 
     std::vector<Placement> run() {
         std::vector<std::uint32_t> const order = largest_first(task_.radii_mm);
@@ -49,7 +52,7 @@ private:
         auto object = objects.begin();
         for (int ring = 0; static_cast<float>(ring) * pattern.step_mm <= extent_mm_; ++ring) {
             for (Vec2 const node : pattern.nodes(ring)) {
-                if (++nodes_seen_ > kMostNodes) {
+                if (++nodes_seen_ > most_nodes_) {
                     refuse();
                 }
                 if (task_.space.holds(node, radius_mm) && field_.is_free(node, radius_mm)) {
@@ -78,6 +81,7 @@ private:
     DiskField field_;
     std::vector<Placement> placements_;
     std::size_t placed_ = 0;
+    std::int64_t most_nodes_;
     std::int64_t nodes_seen_ = 0;
 };
 
