@@ -91,6 +91,7 @@ struct Scenario {
     double arena_temperature_c = 42.0;
     double simulation_time_s = 100.0;
     double time_step_s = 0.01;
+    std::string physics_engine = "auto";  // one of physics_engine_names()
     std::optional<std::uint32_t> seed;    // absent: drawn from the system
     double user_code_timeout_s = 10.0;    // processor time one call of user code may take; 0: no limit
     int light_map_columns = 100;

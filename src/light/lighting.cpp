@@ -63,7 +63,6 @@ void Lighting::update(World& world) {
     if (!any_changed) {
         return;
     }
-    ++change_count_;
 
     // Take the moving lamps off the map.
     LightMap& map = world.light;

@@ -25,9 +25,6 @@ public:
     /// Where the lamps stand, and their beams, at the last update.
     std::vector<LampMark> marks() const;
 
-    /// How often the map has changed: two equal numbers mean the same levels.
-    std::int64_t change_count() const { return change_count_; }
-
 private:
     /// A lamp, and what of it is on the map.
     struct Entry {
@@ -40,7 +37,6 @@ private:
     std::vector<Entry> lamps_;            // in the order in which they are put on the map
     std::vector<std::int16_t> base_;      // levels of the lamps that stand still alone
     std::vector<std::uint32_t> painted_;  // cells where the map may differ from that
-    std::int64_t change_count_ = 0;
     bool is_first_update_ = true;
 };
 

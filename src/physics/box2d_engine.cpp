@@ -3,13 +3,17 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <vector>
 
+#include "base/random.hpp"
 #include "geometry/shape.hpp"
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
+#include "physics/coinciding_centres.hpp"
 #include "physics/containment.hpp"
+#include "physics/known_motion.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/ring_area.hpp"
 #include "physics/ring_filter.hpp"
@@ -39,6 +43,8 @@ constexpr float kMostTurnRad = 0.99F * b2_maxRotation;
 // thickness per sub-step (found by trial with robots of 5 to 40 mm), or as far as in the sub-steps of slow robots.
 constexpr float kRingShare = 0.2F;
 constexpr float kLeastRingMotionMm = 0.5F * kApproachMm;
+// Bodies that get their shapes in the order of the bodies, at most: see order_of_shapes().
+constexpr std::size_t kMostInOrder = 65536;
 // Box2D calls slower collisions inelastic; its own limit of 1 unit/s is the full speed of a robot.
 constexpr float kRestitutionThreshold = 0.05F;  // units/s
 // A spring that swings more often than this per step cannot be followed and would shake; it is taken for one that
@@ -50,8 +56,17 @@ constexpr float kMostMassRatio = 30.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
 
-// The engine does not know where to push disks with the same centre; those that are so far apart separate.
-constexpr float kApartMm = 0.01F;
+/// In which order bodies get their shapes. Box2D's tree of shapes becomes lopsided when neighbours are put into it one
+/// after the other, as formations place them: looking for pairs among 70000 robots on a grid then takes minutes. In a
+/// scattered order it does not; smaller swarms keep the order of the bodies, which decides about the last bits.
+std::vector<std::uint32_t> order_of_shapes(std::size_t count) {
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0U);
+    if (count > kMostInOrder) {
+        std::ranges::sort(order, {}, [](std::uint32_t body) { return mix64(body); });
+    }
+    return order;
+}
 
 /// What a body may move in a sub-step: see kMostMotionMm and kRingShare.
 float most_motion_mm(World const& world) {
@@ -63,21 +78,37 @@ float most_motion_mm(World const& world) {
     return most_mm;
 }
 
-/// Sub-steps of one step: see kApproachMm and most_motion_mm(). Counts what the motors ask for; collisions make few
-/// bodies a little faster.
-int substeps_for(World const& world, float most_motion_mm) {
-    float fastest_mm2_s2 = 0.0F;
-    float fastest_rad_s = 0.0F;
-    for (Drive const& drive : world.robots.drive) {
-        fastest_mm2_s2 = std::max(fastest_mm2_s2, squared_length(drive.velocity_mm_s));
-        fastest_rad_s = std::max(fastest_rad_s, std::abs(drive.angular_velocity_rad_s));
+struct Fastest {
+    float mm2_s2 = 0.0F;
+    float rad_s = 0.0F;
+
+    void count(Vec2 velocity_mm_s, float angular_velocity_rad_s) {
+        mm2_s2 = std::max(mm2_s2, squared_length(velocity_mm_s));
+        rad_s = std::max(rad_s, std::abs(angular_velocity_rad_s));
     }
-    auto const step_s = static_cast<float>(world.time_step_s);
-    float const motion_mm = std::sqrt(fastest_mm2_s2) * step_s;
+};
+
+/// What the motors ask for; collisions make few bodies a little faster. Also the velocities in the world, if others
+/// than the motors have set some.
+Fastest fastest_of(World const& world, bool others_set_velocities) {
+    Fastest fastest;
+    for (Drive const& drive : world.robots.drive) {
+        fastest.count(drive.velocity_mm_s, drive.angular_velocity_rad_s);
+    }
+    for (std::size_t i = 0; others_set_velocities && i < world.bodies.size(); ++i) {
+        fastest.count(world.bodies.velocity_mm_s[i], world.bodies.angular_velocity_rad_s[i]);
+    }
+    return fastest;
+}
+
+/// Sub-steps of one step: see kApproachMm and most_motion_mm().
+int substeps_for(Fastest const& fastest, float most_motion_mm, double time_step_s) {
+    auto const step_s = static_cast<float>(time_step_s);
+    float const motion_mm = std::sqrt(fastest.mm2_s2) * step_s;
     // Speeds are round numbers, give or take a rounding.
     constexpr float tolerance = 1e-3F;
     float const fine = std::ceil(2.0F * motion_mm / kApproachMm - tolerance);
-    float const needed = std::ceil(std::max(motion_mm / most_motion_mm, fastest_rad_s * step_s / kMostTurnRad));
+    float const needed = std::ceil(std::max(motion_mm / most_motion_mm, fastest.rad_s * step_s / kMostTurnRad));
     float const substeps = std::max(std::clamp(fine, 1.0F, static_cast<float>(kMaxSubsteps)), needed);
     return static_cast<int>(std::min(substeps, static_cast<float>(kMostSubsteps)));
 }
@@ -96,6 +127,9 @@ public:
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
             bodies_.push_back(add_body(world.bodies, i));
         }
+        for (std::uint32_t const i : order_of_shapes(world.bodies.size())) {
+            add_shape_of(world.bodies, i);
+        }
         add_mass_to_rings(world);
         for (Joint const& joint : world.joints) {
             add_joint(joint, kMostSwingsPerStep / static_cast<float>(world.time_step_s));
@@ -106,14 +140,17 @@ public:
         if (!world.rings.empty()) {
             sides_.emplace(world, bodies_);
         }
+        known_.copy(world.bodies);
     }
 
     void advance(World& world) override {
+        take_over(world);
         impose_drives(world);
         if (!any_awake_) {
             return;  // nothing moves, as in a swarm that only talks
         }
-        int const substeps = substeps_for(world, most_motion_mm_);
+        int const substeps =
+            substeps_for(fastest_of(world, others_set_velocities_), most_motion_mm_, world.time_step_s);
         Iterations const iterations = world.joints.empty() ? kForContacts : kForJoints;
         auto const dt_s = static_cast<float>(world.time_step_s / substeps);
         for (int i = 0; i < substeps; ++i) {
@@ -140,20 +177,48 @@ public:
                 read_back(world.bodies, object.body + k);
             }
         }
+        known_.copy(world.bodies);
     }
 
-    void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) override {
-        Vec2 motion = centre_mm - pogosim::centre_mm(world, object);
-        if (meets_a_centre(world.bodies, object, motion)) {
-            motion.x += kApartMm;
+    MotionLimits motion_limits() const override {
+        return {.motion_mm = kMostSubsteps * most_motion_mm_,
+                .turn_rad = kMostSubsteps * kMostTurnRad,
+                .is_of_rings = most_motion_mm_ < kMostMotionMm};
+    }
+
+private:
+    /// Poses and velocities of others than this engine are compared with what it has read or written last.
+    void take_over(World& world) {
+        Bodies& bodies = world.bodies;
+        if (known_.is_of(bodies)) {
+            return;
         }
-        for (std::uint32_t i = object.body; i < object.body + object.body_count; ++i) {
+        std::vector<std::uint32_t> moved;
+        for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+            if (!is_finite(bodies, i)) {
+                known_.restore(bodies, i);
+                continue;
+            }
+            if (known_.has_other_pose(bodies, i)) {
+                moved.push_back(i);
+            }
+            if (known_.has_other_velocity(bodies, i)) {
+                take_over_velocity(world, i);
+            }
+        }
+        if (!moved.empty()) {
+            take_over_poses(bodies, moved);
+        }
+        known_.copy(bodies);
+    }
+
+    void take_over_poses(Bodies& bodies, std::vector<std::uint32_t> const& moved) {
+        part_coinciding_centres(bodies.position_mm, moved);
+        for (std::uint32_t const i : moved) {
             b2Body& body = *bodies_[i];
-            float const angle_rad = object.body_count == 1 ? heading_rad : body.GetAngle();
-            body.SetTransform(to_box2d(world.bodies.position_mm[i] + motion), angle_rad);
-            body.SetLinearVelocity(b2Vec2_zero);
-            body.SetAngularVelocity(0.0F);
-            write_pose(world.bodies, i);
+            body.SetTransform(to_box2d(bodies.position_mm[i]), bodies.heading_rad[i]);
+            b2Rot const& rotation = body.GetTransform().q;
+            bodies.axis[i] = {rotation.c, rotation.s};
         }
         // A fixed body would not wake those it lands on.
         for (b2Body* const body : bodies_) {
@@ -168,20 +233,20 @@ public:
         }
     }
 
-private:
-    /// Whether a body of the object, moved so, has the same centre as one of another object.
-    static bool meets_a_centre(Bodies const& bodies, Object const& object, Vec2 motion_mm) {
-        std::uint32_t const end = object.body + object.body_count;
-        for (std::uint32_t i = object.body; i < end; ++i) {
-            Vec2 const place = bodies.position_mm[i] + motion_mm;
-            for (std::uint32_t k = 0; k < bodies.size(); ++k) {
-                bool const is_other = k < object.body || k >= end;
-                if (is_other && squared_length(bodies.position_mm[k] - place) < kApartMm * kApartMm) {
-                    return true;
-                }
-            }
+    void take_over_velocity(World& world, std::uint32_t i) {
+        Bodies& bodies = world.bodies;
+        if (bodies.spec[i].fixed) {
+            bodies.velocity_mm_s[i] = {};
+            bodies.angular_velocity_rad_s[i] = 0.0F;
+            return;
         }
-        return false;
+        b2Body& body = *bodies_[i];
+        body.SetLinearVelocity(to_box2d(bodies.velocity_mm_s[i]));
+        body.SetAngularVelocity(bodies.angular_velocity_rad_s[i]);
+        bool const moves = bodies.velocity_mm_s[i] != Vec2{} || bodies.angular_velocity_rad_s[i] != 0.0F;
+        others_set_velocities_ = others_set_velocities_ || moves;
+        any_awake_ = any_awake_ || body.IsAwake();
+        sweep_if_fast(body, bodies.velocity_mm_s[i], bodies.radius_mm[i], world.time_step_s);
     }
 
     void add_walls(Arena const& arena, WallSpec const& walls) {
@@ -206,15 +271,17 @@ private:
         definition.angularVelocity = bodies.angular_velocity_rad_s[i];
         definition.linearDamping = bodies.spec[i].linear_damping;
         definition.angularDamping = bodies.spec[i].angular_damping;
-        b2Body* const body = engine_.CreateBody(&definition);
+        return engine_.CreateBody(&definition);
+    }
+
+    void add_shape_of(Bodies const& bodies, std::uint32_t i) {
         b2FixtureDef fixture;
         fixture.userData.pointer = i;
         fixture.density = bodies.spec[i].density;
         fixture.friction = bodies.spec[i].friction;
         fixture.restitution = bodies.spec[i].restitution;
         fixture.restitutionThreshold = kRestitutionThreshold;
-        add_shape(*body, bodies.shape[i], fixture);
-        return body;
+        add_shape(*bodies_[i], bodies.shape[i], fixture);
     }
 
     /// Mass scaling: see kMostMassRatio.
@@ -248,13 +315,13 @@ private:
             body.SetLinearVelocity(to_box2d(drive.velocity_mm_s));
             body.SetAngularVelocity(drive.angular_velocity_rad_s);
             any_awake_ = any_awake_ || body.IsAwake();
-            sweep_if_fast(body, drive, world.bodies.radius_mm[robots.body[i]], world.time_step_s);
+            sweep_if_fast(body, drive.velocity_mm_s, world.bodies.radius_mm[robots.body[i]], world.time_step_s);
         }
     }
 
     /// Continuous collision detection costs, so only those use it who need it.
-    void sweep_if_fast(b2Body& body, Drive const& drive, float radius_mm, double time_step_s) {
-        double const step_mm = length(drive.velocity_mm_s) * time_step_s;
+    void sweep_if_fast(b2Body& body, Vec2 velocity_mm_s, float radius_mm, double time_step_s) {
+        double const step_mm = length(velocity_mm_s) * time_step_s;
         if (step_mm > kSweptShare * radius_mm) {
             engine_.SetContinuousPhysics(true);
             body.SetBullet(true);
@@ -293,11 +360,6 @@ private:
             return;
         }
         any_awake_ = true;
-        write_pose(bodies, i);
-    }
-
-    void write_pose(Bodies& bodies, std::size_t i) const {
-        b2Body const& body = *bodies_[i];
         b2Transform const& pose = body.GetTransform();
         bodies.position_mm[i] = from_box2d(pose.p);
         bodies.axis[i] = {pose.q.c, pose.q.s};
@@ -311,19 +373,14 @@ private:
     float most_motion_mm_;                    // in a sub-step
     std::optional<Containment> containment_;  // nobody leaves a periodic world
     std::optional<RingSides> sides_;          // when there are rings
+    KnownMotion known_;
     bool any_awake_ = true;
+    bool others_set_velocities_ = false;  // so far, not only the motors
     std::vector<RingArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
 };
 
 }  // namespace
-
-MotionLimits box2d_motion_limits(World const& world) {
-    float const most_mm = most_motion_mm(world);
-    return {.motion_mm = kMostSubsteps * most_mm,
-            .turn_rad = kMostSubsteps * kMostTurnRad,
-            .is_of_rings = most_mm < kMostMotionMm};
-}
 
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls) {
     return std::make_unique<Box2dEngine>(world, walls);

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "physics/physics_engine.hpp"
 
 namespace pogosim {
 
@@ -49,8 +48,7 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
 
 }  // namespace
 
-void check_motion(Scenario const& scenario, World const& world) {
-    MotionLimits const limits = box2d_motion_limits(world);
+void check_motion(Scenario const& scenario, MotionLimits const& limits, double time_step_s) {
     char const* const can_simulate = "can be simulated";
     char const* const can_move = limits.is_of_rings ? "a membrane can hold back" : can_simulate;
     for (ObjectConfig const& object : scenario.objects) {
@@ -60,12 +58,12 @@ void check_motion(Scenario const& scenario, World const& world) {
         RobotSpec const& robot = *object.spec.robot;
         check(scenario, object,
               {"max_linear_speed", "move", robot.max_linear_speed_mm_s, 1.0, limits.motion_mm, "mm", can_move, "mm/s"},
-              world.time_step_s);
+              time_step_s);
         // Motors at full power against each other turn at four times max_angular_speed.
         check(scenario, object,
               {"max_angular_speed", "turn", robot.max_angular_speed_rad_s, 4.0, limits.turn_rad, "rad", can_simulate,
                "rad/s"},
-              world.time_step_s);
+              time_step_s);
     }
 }
 

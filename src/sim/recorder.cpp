@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "physics/physics_engine.hpp"
 #include "robot/last_words.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/run_metadata.hpp"
@@ -114,7 +115,10 @@ void Recorder::open_message_log() {
 
 std::vector<std::pair<std::string, std::string>> Recorder::metadata() const {
     return run_metadata(scenario_, world_.arena,
-                        {.seed = seed_, .time_step_s = world_.time_step_s, .is_periodic = world_.periodic});
+                        {.seed = seed_,
+                         .time_step_s = world_.time_step_s,
+                         .is_periodic = world_.periodic,
+                         .physics_engine = physics_engine_behind(scenario_.physics_engine)});
 }
 
 void Recorder::make_data_file() {

@@ -62,6 +62,7 @@ std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& sc
         set(*configuration, "mm_to_pixels", fmt::format("{}", fitted_mm_to_pixels(scenario.view, arena)));
     }
     set(resolved, "time_step", fmt::format("{}", run.time_step_s));
+    set(resolved, "physics_engine", run.physics_engine);
     if (run.is_periodic) {
         set(resolved, "boundary_condition", "periodic");
         std::erase_if(resolved.entries, [](auto const& entry) { return entry.key.starts_with("wall_"); });

@@ -14,8 +14,9 @@ namespace pogosim {
 /// What a run has come to, whatever its configuration says.
 struct RunValues {
     std::uint32_t seed = 0;
-    double time_step_s = 0.01;  // lowered where robots tick more often
-    bool is_periodic = false;   // also where only the arena file says so
+    double time_step_s = 0.01;     // lowered where robots tick more often
+    bool is_periodic = false;      // also where only the arena file says so
+    std::string physics_engine{};  // what `auto` stands for
 };
 
 /// Schema metadata: program_version, configuration (YAML text of what is written, with the seed in use),

@@ -31,7 +31,8 @@ std::uint32_t seed_of(Scenario const& scenario) {
 std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world) {
     auto const purpose = [&] { return fmt::format("the physics of {} bodies", world.bodies.size()); };
     try {
-        return allocate_for(purpose, std::nullopt, [&] { return make_box2d_engine(world, scenario.walls); });
+        return allocate_for(purpose, std::nullopt,
+                            [&] { return make_physics_engine(scenario.physics_engine, world, scenario.walls); });
     } catch (ConfigError const& error) {
         throw ConfigError(fmt::format("{}: arena_surface: {}", where_at_top(scenario, "arena_surface"), error.what()));
     }
@@ -231,14 +232,15 @@ void Simulation::save_while_waiting() {
 
 std::optional<UserFailure> Simulation::start() {
     Thread const thread(*this);
-    log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s", seed_, world_.robots.size(),
-                programs_.user_data_bytes(), step_count(), world_.time_step_s);
+    log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s, physics engine {}", seed_,
+                world_.robots.size(), programs_.user_data_bytes(), step_count(), world_.time_step_s,
+                physics_engine_behind(scenario_.physics_engine));
     lighting_.update(world_);
     if (auto failure = call_user_code([this] { programs_.start(); })) {
         return failure;
     }
     fit_time_step();
-    check_motion(scenario_, world_);
+    check_motion(scenario_, physics_->motion_limits(), world_.time_step_s);
     if (auto failure = recorder_.open()) {
         return failure;
     }
@@ -296,7 +298,7 @@ bool Simulation::move_object(std::uint32_t object, Vec2 centre_mm) {
     if (place_mm == pogosim::centre_mm(world_, moved)) {
         return false;
     }
-    physics_->set_pose(world_, moved, place_mm, world_.bodies.heading_rad[moved.body]);
+    pogosim::set_pose(world_, moved, place_mm, world_.bodies.heading_rad[moved.body]);
     touches_.add_move(object, world_.time_s());
     return true;
 }
@@ -312,7 +314,7 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
             fmt::format("({:g}, {:g}) mm is no place for an object: it is in a wall or outside of the arena",
                         centre_mm.x, centre_mm.y));
     }
-    physics_->set_pose(world_, moved, centre_mm, heading_rad);
+    pogosim::set_pose(world_, moved, centre_mm, heading_rad);
     touches_.add_move(object, world_.time_s());
     return true;
 }

@@ -129,6 +129,8 @@ public:
     UserGuard& guard() { return guard_; }
 
     World const& world() const { return world_; }
+    /// To be written between two steps; see world.hpp for what that does. The data file does not say so.
+    World& world() { return world_; }
     IrChannel const& channel() const { return channel_; }
     Programs const& programs() const { return programs_; }
     StageClock const& stages() const { return stages_; }

@@ -37,9 +37,8 @@ Snapshot SnapshotTaker::take(SnapshotParts parts) {
 }
 
 std::shared_ptr<LightMap const> SnapshotTaker::light() {
-    if (!light_ || light_change_ != lighting_.change_count()) {
+    if (!light_ || light_->level != world_.light.level) {
         light_ = std::make_shared<LightMap const>(world_.light);
-        light_change_ = lighting_.change_count();
     }
     return light_;
 }

@@ -36,7 +36,6 @@ private:
     Lighting const& lighting_;
     std::shared_ptr<Scenery const> scenery_;
     std::shared_ptr<LightMap const> light_;  // the last one handed out
-    std::int64_t light_change_ = 0;          // Lighting::change_count() of it
     Trails trails_;
     LinkFinder link_finder_;
     std::vector<float> range_mm_;  // of robots, at their present power

@@ -270,6 +270,15 @@ TEST(BadInput, MoreDotsThanIndicesAreRefused) {
     EXPECT_EQ(load_error(membranes + "214748}\n"), "no error");
 }
 
+TEST(BadInput, UnknownPhysicsEngineIsRefusedWithTheNearestName) {
+    EXPECT_EQ(load_error("physics_engine: box3d\n"),
+              "x.yaml:1: physics_engine: expected auto or box2d, found 'box3d'; did you mean 'box2d'?");
+    EXPECT_EQ(load_error("physics_engine: [box2d]\n"),
+              "x.yaml:1: physics_engine: expected auto or box2d, found a list");
+    EXPECT_EQ(load_error("physics_engine: box2d\n"), "no error");
+    EXPECT_EQ(load_error("physics_engine: auto\n"), "no error");
+}
+
 TEST(BadInput, TheWholeFileCannotBeAnOption) {
     Warnings const warnings;
     EXPECT_EQ(load_error("default_option: 5\n"), "x.yaml:1: the top level: expected a map of keys, found 5");

@@ -1,13 +1,15 @@
-// Objects that are put elsewhere by hand.
+// What others write to the bodies of the world, as a hand in the window does, is true from then on.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "base/random.hpp"
+#include "physics/coinciding_centres.hpp"
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
 #include "support/small_world.hpp"
@@ -45,7 +47,7 @@ TEST(SetPose, BodyIsAtRestAtTheNewPlaceAndStaysThere) {
     world.bodies.angular_velocity_rad_s[0] = 3.0F;
     auto const engine = make_box2d_engine(world, {});
     run(*engine, world, 20);
-    engine->set_pose(world, world.objects[0], {700, 600}, 1.5F);
+    set_pose(world, world.objects[0], {700, 600}, 1.5F);
     for (int steps : {0, 1, 100}) {
         run(*engine, world, steps);
         expect_at(world.bodies.position_mm[0], {700, 600});
@@ -61,7 +63,7 @@ TEST(SetPose, BodyCanBePutBeyondAWall) {
     add_robot(world, {200, 500});
     auto const engine = make_box2d_engine(world, {});
     run(*engine, world, 5);
-    engine->set_pose(world, world.objects[0], {800, 500}, 0.0F);
+    set_pose(world, world.objects[0], {800, 500}, 0.0F);
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {800, 500});
 }
@@ -73,7 +75,7 @@ TEST(SetPose, BodiesThatOverlapSeparateWithinASecond) {
         add_robot(world, {500, 500});
         auto const engine = make_box2d_engine(world, {});
         run(*engine, world, 200);  // everything sleeps
-        engine->set_pose(world, world.objects[0], place, 0.0F);
+        set_pose(world, world.objects[0], place, 0.0F);
         run(*engine, world, 100);
         EXPECT_GT(length(world.bodies.position_mm[1] - world.bodies.position_mm[0]), 2.0F * kRadius - 1.0F);
     }
@@ -87,11 +89,125 @@ TEST(SetPose, FixedBodyIsMovedAndPushesOthersAway) {
     add_robot(world, {500, 500});
     auto const engine = make_box2d_engine(world, {});
     run(*engine, world, 200);
-    engine->set_pose(world, world.objects[0], {480, 500}, 0.0F);
+    set_pose(world, world.objects[0], {480, 500}, 0.0F);
     expect_at(world.bodies.position_mm[0], {480, 500});
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {480, 500});
     EXPECT_GT(world.bodies.position_mm[1].x, 480.0F + 2.0F * kRadius - 1.0F);
+}
+
+TEST(WrittenBodies, PoseAloneTakesEffectAndKeepsTheVelocity) {
+    World world = square_world();
+    add_robot(world, {200, 200});
+    world.bodies.velocity_mm_s[0] = {50, 0};
+    auto const engine = make_box2d_engine(world, {});
+    run(*engine, world, 10);
+    world.bodies.position_mm[0] = {500, 700};
+    world.bodies.heading_rad[0] = 1.5F;
+    run(*engine, world, 100);
+    expect_at(world.bodies.position_mm[0], {550, 700}, 0.1F);
+    EXPECT_NEAR(world.bodies.axis[0].y, std::sin(1.5F), 1e-5F);
+}
+
+TEST(WrittenBodies, VelocityTakesEffectAlsoOnABodyAsleep) {
+    World world = square_world();
+    add_robot(world, {200, 200});
+    add_robot(world, {600, 600});
+    auto const engine = make_box2d_engine(world, {});
+    run(*engine, world, 200);
+    world.bodies.velocity_mm_s[0] = {100, 50};
+    world.bodies.angular_velocity_rad_s[0] = 0.5F;
+    run(*engine, world, 100);
+    expect_at(world.bodies.position_mm[0], {300, 250}, 0.1F);
+    EXPECT_NEAR(world.bodies.heading_rad[0], 0.5F, 1e-3F);
+    expect_at(world.bodies.position_mm[1], {600, 600});
+    world.bodies.velocity_mm_s[0] = {};
+    run(*engine, world, 100);
+    expect_at(world.bodies.position_mm[0], {300, 250}, 0.1F);
+}
+
+TEST(WrittenBodies, FastBodyIsStoppedByWallsAndBodiesAlike) {
+    World world = world_with_hole();
+    add_robot(world, {100, 500});
+    add_robot(world, {300, 500});
+    auto const engine = make_box2d_engine(world, {});
+    run(*engine, world, 5);
+    world.bodies.velocity_mm_s[0] = {15000, 0};
+    for (int i = 0; i < 100; ++i) {
+        engine->advance(world);
+        ASSERT_LT(world.bodies.position_mm[0].x, world.bodies.position_mm[1].x);
+        ASSERT_LT(world.bodies.position_mm[1].x, 400.0F);
+    }
+}
+
+TEST(WrittenBodies, FixedBodyKeepsItsVelocityOfZero) {
+    World world = square_world();
+    ObjectSpec spec = testing::pogobot_spec();
+    spec.body->fixed = true;
+    add_robot(world, {200, 200}, 0.0F, spec);
+    auto const engine = make_box2d_engine(world, {});
+    world.bodies.velocity_mm_s[0] = {100, 0};
+    run(*engine, world, 10);
+    EXPECT_EQ(world.bodies.velocity_mm_s[0], Vec2{});
+    expect_at(world.bodies.position_mm[0], {200, 200});
+}
+
+TEST(WrittenBodies, WhatIsNotFiniteIsTakenBack) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    World world = square_world();
+    add_robot(world, {200, 200}, 1.0F);
+    auto const engine = make_box2d_engine(world, {});
+    run(*engine, world, 5);
+    auto const expect_unmoved = [&] {
+        run(*engine, world, 3);
+        expect_at(world.bodies.position_mm[0], {200, 200});
+        EXPECT_NEAR(world.bodies.heading_rad[0], 1.0F, 1e-5F);
+        EXPECT_NEAR(length(world.bodies.axis[0]), 1.0F, 1e-5F);
+        EXPECT_EQ(world.bodies.velocity_mm_s[0], Vec2{});
+    };
+    world.bodies.position_mm[0] = {nan, 300};
+    expect_unmoved();
+    world.bodies.heading_rad[0] = infinity;
+    expect_unmoved();
+    world.bodies.velocity_mm_s[0] = {0, -infinity};
+    expect_unmoved();
+    world.bodies.angular_velocity_rad_s[0] = nan;
+    expect_unmoved();
+}
+
+TEST(WrittenBodies, DriveOfAnotherThanTheProgramMovesARobot) {
+    World world = square_world();
+    add_robot(world, {200, 200});
+    auto const engine = make_box2d_engine(world, {});
+    run(*engine, world, 200);
+    world.robots.drive[0] = {.velocity_mm_s = {0, 100}, .fresh = true};
+    run(*engine, world, 100);
+    expect_at(world.bodies.position_mm[0], {200, 300}, 0.1F);
+}
+
+TEST(WrittenBodies, CrowdOnOneSpotSeparates) {
+    World world = square_world();
+    for (int i = 0; i < 12; ++i) {
+        add_robot(world, {100.0F + 60.0F * static_cast<float>(i), 200});
+    }
+    auto const engine = make_box2d_engine(world, {});
+    run(*engine, world, 5);
+    for (Vec2& place : world.bodies.position_mm) {
+        place = {500, 500};
+    }
+    run(*engine, world, 1000);
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+            EXPECT_GT(length(world.bodies.position_mm[i] - world.bodies.position_mm[k]), 2.0F * kRadius - 1.0F);
+        }
+    }
+}
+
+TEST(CoincidingCentres, OfMovedBodiesGoApartAndOthersStay) {
+    std::vector<Vec2> places{{5, 5}, {5, 5}, {9, 5}, {5, 5}, {5, 6}};
+    part_coinciding_centres(places, std::vector<std::uint32_t>{1, 3, 4});
+    EXPECT_EQ(places, (std::vector<Vec2>{{5, 5}, {5 + kApartMm, 5}, {9, 5}, {5 + 2 * kApartMm, 5}, {5, 6}}));
 }
 
 TEST(SetPose, HundredsOfRandomMovesLeaveEverythingInsideTheArena) {
@@ -108,7 +224,7 @@ TEST(SetPose, HundredsOfRandomMovesLeaveEverythingInsideTheArena) {
         Vec2 const target{random.uniform(-300.0F, 1300.0F), random.uniform(-300.0F, 1300.0F)};
         Vec2 const place = free.nearest(object, target);
         ASSERT_TRUE(free.is_free(object, place) || place == centre_mm(world, object)) << i;
-        engine->set_pose(world, object, place, 0.0F);
+        set_pose(world, object, place, 0.0F);
         run(*engine, world, static_cast<int>(random.below(20)));
         for (Vec2 const position : world.bodies.position_mm) {
             ASSERT_TRUE(world.arena.contains(position)) << i;

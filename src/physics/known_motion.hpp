@@ -1,0 +1,33 @@
+// Poses and velocities of the bodies as an engine has read or written them last, to find what others write.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+class KnownMotion {
+public:
+    void copy(Bodies const& bodies);
+
+    /// True when nobody has written anything since copy().
+    bool is_of(Bodies const& bodies) const;
+
+    bool has_other_pose(Bodies const& bodies, std::uint32_t body) const;
+    bool has_other_velocity(Bodies const& bodies, std::uint32_t body) const;
+
+    /// Takes back what was written to a body.
+    void restore(Bodies& bodies, std::uint32_t body) const;
+
+private:
+    std::vector<Vec2> position_mm_;
+    std::vector<float> heading_rad_;
+    std::vector<Vec2> velocity_mm_s_;
+    std::vector<float> angular_velocity_rad_s_;
+};
+
+bool is_finite(Bodies const& bodies, std::uint32_t body);
+
+}  // namespace pogosim
