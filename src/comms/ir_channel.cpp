@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "comms/assert_air.hpp"
 #include "comms/reception.hpp"
 
 namespace pogosim {
@@ -86,6 +87,7 @@ void IrChannel::deliver_all(World& world, Observer& observer) {
     if (world.air.transmissions.empty()) {
         return;
     }
+    assert_air(world);
     visibility_.update(world);
     for (std::uint32_t i = 0; i < world.air.transmissions.size(); ++i) {
         deliver_one(world, i, observer);

@@ -9,6 +9,7 @@
 
 #include "base/random.hpp"
 #include "geometry/shape.hpp"
+#include "physics/assert_motion.hpp"
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
 #include "physics/coinciding_centres.hpp"
@@ -178,6 +179,7 @@ public:
             }
         }
         known_.copy(world.bodies);
+        assert_motion(world.bodies);
     }
 
     MotionLimits motion_limits() const override {

@@ -19,6 +19,7 @@
 #include "sim/find_file.hpp"
 #include "sim/make_ring.hpp"
 #include "sim/place_objects.hpp"
+#include "world/assert_world.hpp"
 
 namespace pogosim {
 
@@ -260,6 +261,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     warn_of_repeated_ids(world);
     make_mailboxes(world);
     world.light = make_light_map(world.arena, scenario.light_map_columns, scenario.light_map_rows);
+    assert_structure(world);
     return world;
 }
 

@@ -1,5 +1,6 @@
 #include "world/mailbox.hpp"
 
+#include <cassert>
 #include <cstring>
 
 namespace pogosim {
@@ -19,6 +20,7 @@ void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader c
         tail -= head;
         head = 0;
     }
+    assert(tail + needed <= capacity);
     std::memcpy(block + tail, &header, kHeaderBytes);
     if (!payload.empty()) {
         std::memcpy(block + tail + kHeaderBytes, payload.data(), payload.size());
@@ -28,6 +30,7 @@ void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader c
 }
 
 void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::byte* payload) {
+    assert(count > 0 && head + kHeaderBytes <= tail);
     std::memcpy(&header, block + head, kHeaderBytes);
     std::memcpy(payload, block + head + kHeaderBytes, header.payload_length);
     head += static_cast<std::uint32_t>(kHeaderBytes + header.payload_length);
@@ -49,6 +52,7 @@ Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_b
 }
 
 bool Mailboxes::push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
+    assert(robot < queues_.size() && payload.size() == header.payload_length);
     Queue& queue = queues_[robot];
     if (queue.near.count + queue.far.count == queue.max_count) {
         ++queue.dropped;

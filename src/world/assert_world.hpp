@@ -1,0 +1,15 @@
+// What holds in every world, checked in Debug builds only.
+#pragma once
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+#ifdef NDEBUG
+inline void assert_structure(World const& /*world*/) {}
+#else
+/// Arrays of the same things have the same sizes, and indices refer to what exists. Does not look at poses.
+void assert_structure(World const& world);
+#endif
+
+}  // namespace pogosim
