@@ -47,7 +47,8 @@ Scenario scenario_of(std::string const& robots, std::string const& formation) {
 bool measure(std::string const& robots, std::string const& formation) {
     double const bytes_before = resident_bytes();
     double const begin_s = now_s();
-    Simulation simulation(scenario_of(robots, formation), {.measure_stages = true});
+    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(robots, formation),
+                          {.measure_stages = true});
     double const built_s = now_s();
     if (auto const failure = simulation.start()) {
         fmt::print(stderr, "{}\n", failure->what);

@@ -96,7 +96,7 @@ TEST(LargeSwarm, SeventyThousandRobotsDriveTalkAndAreRecorded) {
     scenario.output.enable_data_logging = true;
     scenario.output.data_filename = folder / "large.feather";
     scenario.output.save_data_period_s = 0.1;
-    Simulation simulation(scenario, {});
+    Simulation simulation(test_program(), scenario, {});
     World const& world = simulation.world();
     ASSERT_EQ(world.robots.size(), kCrowd + 3U);
     std::vector<Vec2> const before = world.bodies.position_mm;

@@ -100,7 +100,7 @@ TEST(Recorder, CrashWhileExportingLeavesTheRowsOfTheRobotsBefore) {
 TEST(Recorder, ColourThatARobotSetsWhileExportingIsInItsRow) {
     TemporaryFolder const folder;
     use_exporting_program([] { pogobot_led_setColor(0, 0, static_cast<uint8_t>(1 + pogobot_helper_getid())); });
-    Simulation simulation(recorded_scene(folder / "a.feather"), {});
+    Simulation simulation(test_program(), recorded_scene(folder / "a.feather"), {});
     ASSERT_FALSE(simulation.start());
     // A colour of another than the program is recorded, too, until the program sets one.
     simulation.world().robots.led[0][0] = {.r = 1};
@@ -120,7 +120,7 @@ TEST(WrittenWorld, LightsAndColoursOfOthersAreSensedShownAndRecorded) {
         pogobot_start([] {}, [] { sensed = pogobot_photosensors_read(0); });
     };
     Scenario scenario = recorded_scene(folder / "a.feather");
-    Simulation simulation(scenario, {});
+    Simulation simulation(test_program(), scenario, {});
     ASSERT_FALSE(simulation.start());
     World& world = simulation.world();
     EXPECT_EQ(simulation.snapshots().take({.light = true}).light->level[0], 0);
