@@ -71,7 +71,7 @@ suite() {
     count $counts "$what"
 }
 
-# build_tree FOLDER TYPE [options of cmake]
+# build_tree FOLDER PRESET [options of cmake]
 build_tree() {
     configure "$@" && cmake --build "$1" --parallel "$(processors)"
 }
@@ -86,7 +86,7 @@ run_ctest() {  # run_ctest FOLDER REPORT
 }
 
 build_release() {
-    build_tree build/release Release -DPOGOSIM_BUILD_EXAMPLES=ON -DPOGOSIM_BUILD_TESTS=ON -DPOGOSIM_BUILD_BENCH=ON
+    build_tree build/release release
 }
 
 # without_warnings COMMAND...: -Werror without a flag of its own, which would build everything anew after ./build.sh.
@@ -117,10 +117,10 @@ sanitizes() {
 leak_sanitizer_works() { ASAN_OPTIONS=detect_leaks=1 "$reports/leak" 2>/dev/null; }
 
 sanitized_tests() {
-    local leaks=1 c=clang cpp=clang++
+    local leaks=1 folder=build/asan c=clang cpp=clang++
     if ! sanitizes clang++; then
         echo "Not tested with clang: it is not installed with its sanitizers. The system's compiler is taken instead."
-        c=cc cpp=c++
+        folder=build/asan-cc c=cc cpp=c++
         sanitizes c++ || true
     fi
     if ! leak_sanitizer_works; then
@@ -129,12 +129,10 @@ sanitized_tests() {
     fi
     # The build also runs the test programs, to list their tests.
     export ASAN_OPTIONS=detect_leaks=$leaks UBSAN_OPTIONS=print_stacktrace=1
-    # The second compiler: Release is built with the system's, gcc on Linux. -g1: reports name lines, not variables.
-    check "Debug build with sanitizers ($cpp)" build_tree "build/sanitized-$c" Debug \
-        -DCMAKE_C_COMPILER=$c -DCMAKE_CXX_COMPILER=$cpp -DCMAKE_CXX_FLAGS_DEBUG=-g1 \
-        -DPOGOSIM_SANITIZE=ON -DPOGOSIM_WERROR=ON \
-        -DPOGOSIM_BUILD_EXAMPLES=OFF -DPOGOSIM_BUILD_TESTS=ON -DPOGOSIM_BUILD_BENCH=OFF || return 0
-    suite "C++ tests (sanitizers, $cpp)" "$reports/sanitized.xml" run_ctest "build/sanitized-$c" "$reports/sanitized.xml"
+    # The second compiler: Release is built with the system's, gcc on Linux.
+    check "Debug build with sanitizers ($cpp)" build_tree "$folder" asan \
+        -DCMAKE_C_COMPILER=$c -DCMAKE_CXX_COMPILER=$cpp || return 0
+    suite "C++ tests (sanitizers, $cpp)" "$reports/sanitized.xml" run_ctest "$folder" "$reports/sanitized.xml"
 }
 
 # cpp_files: all files formatted by clang-format, separated by zero bytes.

@@ -162,18 +162,23 @@ bootstrap() {
     esac
 }
 
-# configure FOLDER TYPE [options of cmake]: recreates the folder if the project has been moved.
+# configure FOLDER PRESET [options of cmake]: by a preset of CMakePresets.json (Release is release). Recreates the folder if
+# the project has been moved.
 configure() {
-    local folder=$1 type=$2 generator=""
+    local folder=$1 preset generator=""
+    preset=$(printf %s "$2" | tr '[:upper:]' '[:lower:]')
     shift 2
     mkdir -p "$folder"
     if [ -f "$folder/CMakeCache.txt" ]; then
         grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$(pwd -P)" "$folder/CMakeCache.txt" || rm -rf "$folder"
     fi
-    if command -v ninja >/dev/null && [ ! -f "$folder/CMakeCache.txt" ]; then
-        generator=-GNinja
+    # The presets say Ninja. A folder keeps the generator that it was made with.
+    if [ -f "$folder/CMakeCache.txt" ]; then
+        generator=$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' "$folder/CMakeCache.txt")
+    elif ! command -v ninja >/dev/null; then
+        generator="Unix Makefiles"
     fi
-    cmake -S "$(pwd -P)" -B "$folder" ${generator:+"$generator"} -DCMAKE_BUILD_TYPE="$type" "$@" >"$folder.log" 2>&1 || {
+    cmake -S "$(pwd -P)" --preset "$preset" -B "$folder" ${generator:+-G "$generator"} "$@" >"$folder.log" 2>&1 || {
         cat "$folder.log" >&2
         return 1
     }

@@ -139,7 +139,7 @@ def build_folder() -> Path:
         return Path(chosen).resolve()
     libraries = sorted((ROOT / "build").glob(f"*/src/{LIBRARY}"), key=lambda path: path.stat().st_mtime)
     folders = [library.parents[1] for library in libraries]
-    others = re.compile(r"^(POGOSIM_SANITIZE:BOOL=ON|SKBUILD:.*)$", re.MULTILINE)
+    others = re.compile(r"^(POGOSIM_SANITIZE:\w+=(?!OFF).+|SKBUILD:.*)$", re.MULTILINE)
     usable = [folder for folder in folders if not others.search((folder / "CMakeCache.txt").read_text())]
     assert usable, f"no {LIBRARY} in {ROOT / 'build'}/*/src: run ./build.sh"
     return usable[-1]

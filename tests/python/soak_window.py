@@ -1,6 +1,6 @@
 """Press random keys and move the mouse at random in the window of a running program, for as long as you like.
 
-    .venv/bin/python tests/python/soak_window.py --minutes 30 --build build/sanitized-clang --compiler clang
+    .venv/bin/python tests/python/soak_window.py --minutes 30 --build build/asan --compiler clang
 
 The program is compiled for the library in the build folder; the sanitizers of that library are used for it, too. A run
 that the keys end or restart is started again. The first run that fails ends the soak, with exit code 1.
@@ -95,11 +95,11 @@ def main() -> int:
     options = parser.parse_args()
     os.environ["POGOSIM_BUILD_DIR"] = options.build
     cache = (Path(options.build) / "CMakeCache.txt").read_text()
-    flags = (
-        ["-fsanitize=address,undefined", "-fsanitize-link-c++-runtime", "-lstdc++"]
-        if "POGOSIM_SANITIZE:BOOL=ON" in cache
-        else []
-    )
+    sanitizer = re.search(r"^POGOSIM_SANITIZE:\w+=(address|thread)$", cache, re.MULTILINE)
+    flags = []
+    if sanitizer:
+        names = {"address": "address,undefined", "thread": "thread"}[sanitizer[1]]
+        flags = [f"-fsanitize={names}", "-fsanitize-link-c++-runtime", "-lstdc++"]
     os.environ.setdefault("ASAN_OPTIONS", "detect_leaks=0")
     chance = random.Random(options.seed)
     end = time.monotonic() + 60.0 * options.minutes

@@ -21,6 +21,7 @@ README = ROOT / "README.md"
 PAGES = [
     README,
     ROOT / "CHANGELOG.md",
+    ROOT / "CONTRIBUTING.md",
     ROOT / "bench" / "README.md",
     ROOT / "template_prj" / "README.md",
     *sorted((ROOT / "docs").glob("*.md")),
