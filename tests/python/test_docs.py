@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+from debugger import debug, needs_gdb
 from first_program import NAMES, pictures_in
 from pictures import difference
 from pogosim.utils import load_dataframe
@@ -137,13 +139,6 @@ def test_commands_and_python_of_the_page_work(page: Path, tree: Run) -> None:
 DEBUGGING = ROOT / "docs" / "debugging.md"
 
 
-def works(*command: str) -> bool:
-    """Tell whether a tool is installed and may look at other processes, which some containers forbid."""
-    if not shutil.which(command[0]):
-        return False
-    return "exited normally" in subprocess.run(command, capture_output=True, text=True, check=False).stdout
-
-
 def commands_of(page: Path) -> list[str]:
     """Return the shell commands of a page, each with the lines that continue it."""
     return re.findall(r"(?:.*\\\n)*.+", "\n".join(blocks(page, "sh")))
@@ -188,18 +183,67 @@ def test_sanitizers_of_the_page_on_debugging_name_the_line(fault: str, debugged:
     assert f"main.c:{line}" in result.text
 
 
-@pytest.mark.parametrize("name", [name for name in ("gdb",) if works(name, "-batch", "-ex", "run", "/bin/true")])
-def test_gdb_stops_as_the_page_on_debugging_says(name: str, debugged: Run) -> None:
-    (start,) = [command for command in commands_of(DEBUGGING) if command.startswith(name)]
-    first, condition = blocks(DEBUGGING, "gdb")
-    (debugged.folder / "first.gdb").write_text(f"{first}\ndelete\n{condition}\ncontinue\nprint mydata->heard\nkill\n")
-    result = shell(start.replace(name, f"{name} -q -batch -x first.gdb", 1), debugged.folder)
-    assert "hit Breakpoint 1, stop_here ()" in result.output
-    assert re.search(r"\$1 = \{heard = \d+, turn_until_ms = \d+\}\n\$2 = 100\nturns = ", result.output)
-    assert "in user_step () at first/main.c" in result.output
-    heard = re.search(r"\$3 = (\d+)", result.output)
+def gdb_says(debugged: Run, commands: str) -> str:
+    """Run gdb as the page says, with some of its commands."""
+    (start,) = [command for command in commands_of(DEBUGGING) if command.startswith("gdb")]
+    arguments = shlex.split(start)
+    return debug(arguments[arguments.index("--args") + 1 :], commands.splitlines(), debugged.folder)
+
+
+@needs_gdb
+def test_gdb_answers_as_the_page_on_debugging_shows(debugged: Run) -> None:
+    commands = blocks(DEBUGGING, "gdb")[0]
+    (answer,) = [block for block in blocks(DEBUGGING, "text") if "Breakpoint 1" in block]
+    output = gdb_says(debugged, commands)
+    place = 0
+    for line in answer.splitlines():  # in this order; numbers and addresses may differ
+        pattern = re.sub(
+            r"(?<![$#\w])(0x[\da-f]+|\d+(\\\.\d+)?)", lambda _: r"(0x[\da-f]+|\d+(\.\d+)?)", re.escape(line)
+        )
+        found = re.compile("^" + pattern, re.MULTILINE).search(output, place)
+        assert found, f"{line}\n{output}"
+        place = found.end()
+
+
+@needs_gdb
+def test_gdb_stops_at_conditions_and_functions_of_the_page_on_debugging(debugged: Run) -> None:
+    _, condition, function, _ = blocks(DEBUGGING, "gdb")
+    heard = re.search(r"\$1 = (\d+)", gdb_says(debugged, condition))
     assert heard is not None
     assert int(heard[1]) > 25
+    output = gdb_says(debugged, function)
+    assert "hit Breakpoint 1, stop_here ()" in output
+    assert re.search(r"\$1 = \{heard = \d+, turn_until_ms = \d+\}\n\$2 = 100\nturns = ", output)
+
+
+@needs_gdb
+@pytest.mark.parametrize(
+    ("fault", "signal"),
+    [
+        ("*(int volatile*)0 = (int)pogobot_ticks;", "SIGSEGV"),
+        ("abort();", "SIGABRT"),
+        # Ctrl-C
+        ("for (int volatile on = 1; on != 0;) {}", "SIGINT"),
+    ],
+)
+def test_gdb_stops_at_the_line_that_crashes_or_does_not_return(fault: str, signal: str, debugged: Run) -> None:
+    source = debugged.folder / "first" / "main.c"
+    sound = source.read_text()
+    source.write_text(with_step(sound, f"{fault}\n"))
+    line = 1 + source.read_text().splitlines().index(fault)
+    (compile_it,) = [command for command in commands_of(DEBUGGING) if "-O0" in command]
+    made = shell(compile_it.replace("-Wall ", ""), debugged.folder)
+    commands = blocks(DEBUGGING, "gdb")[3]
+    if signal == "SIGINT":
+        press = "threading.Timer(1.0, lambda: os.kill(gdb.selected_inferior().pid, signal.SIGINT)).start()"
+        commands = f"python import os, signal, threading\nbreak user_step\nrun\npython {press}\ncontinue\nbacktrace\n"
+    output = gdb_says(debugged, commands)
+    source.write_text(sound)
+    assert made.code == 0, made.text
+    assert f"received signal {signal}" in output
+    assert re.search(rf"in user_step \(\) at first/main.c:{line}|user_step \(\) at first/main.c:{line}", output), output
+    if signal != "SIGINT":
+        assert "the user program failed in user_step of robot #0" in output
 
 
 @pytest.mark.parametrize("name", [name for name in ("valgrind",) if shutil.which(name)])

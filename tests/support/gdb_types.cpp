@@ -1,0 +1,38 @@
+// Values of the types that tools/gdb/pogosim_gdb.py prints, for tests/python/test_gdb.py.
+#include "robot/computer.hpp"
+#include "world/world.hpp"
+
+namespace {
+
+void stop_here(pogosim::World const&, pogosim::Computer const&, pogosim::Leds const&) {}
+
+}  // namespace
+
+int main() {
+    pogosim::World world;
+    world.step = 250;
+    world.robots.id = {0, 1, 2};
+    world.robots.category = {0, 0, 0};
+    world.robots.body = {0, 1, 2};
+    world.robots.led.resize(3);
+    world.robots.drive.resize(3);
+    world.robots.stream.resize(3);
+    world.bodies.position_mm = {{12.5F, -3.0F}, {100.0F, 0.0F}};
+    world.objects.resize(4);
+    std::array<int, 3> const queue_sizes{20, 20, 1};
+    world.mailboxes = pogosim::Mailboxes(queue_sizes, 8);
+    world.mailboxes.push(0, {}, {});
+    for (int i = 0; i < 30; ++i) {
+        world.mailboxes.push(1, {.payload_length = 8}, std::array<std::byte, 8>{});
+    }
+    world.mailboxes.push(2, {}, {});
+    world.mailboxes.push(2, {}, {});
+
+    pogosim::Computer computer;
+    computer.clock_us = 2'500'000;
+    computer.loop.ticks = 156;
+    computer.motors.power = {512, 0, 7};
+    pogosim::Leds const leds{{{255, 128, 0}, {}, {}, {}, {0, 0, 25}}};
+    stop_here(world, computer, leds);
+    return 0;
+}
