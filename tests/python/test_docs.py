@@ -87,7 +87,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("tree")
     (folder / "build").mkdir()
     (folder / "build" / "release").symlink_to(build_folder())
-    for name in (".venv", "arenas", "bench", "conf", "docs", "examples"):
+    for name in (".venv", "arenas", "bench", "conf", "docs", "examples", "tools"):
         (folder / name).symlink_to(ROOT / name)
     for name in SCRIPTS:
         (folder / name).write_text("#!/bin/sh\n")
