@@ -18,7 +18,7 @@ esac
 . scripts/bootstrap.sh
 bootstrap test
 
-# Said at every start: what will replace MkDocs.
+# Said at every start: what will replace MkDocs. With --quiet, --strict would not see warnings.
 export NO_MKDOCS_2_WARNING=1
-.venv/bin/python -m mkdocs --quiet build --strict || fail "mkdocs build" "See its messages above"
+.venv/bin/python -m mkdocs build --strict || fail "mkdocs build" "See its messages above"
 echo "Built the site: open build/site/index.html"

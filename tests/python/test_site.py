@@ -46,7 +46,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The built site."""
     folder = tmp_path_factory.mktemp("site")
     made = build(folder)
-    assert (made.returncode, made.stdout + made.stderr) == (0, "")
+    assert made.returncode == 0, made.stdout + made.stderr
     return folder
 
 
