@@ -30,7 +30,6 @@ def build(folder: Path, configuration: Path = ROOT / "mkdocs.yml") -> subprocess
         sys.executable,
         "-m",
         "mkdocs",
-        "--quiet",
         "build",
         "--strict",
         "-f",
