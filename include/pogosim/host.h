@@ -90,6 +90,9 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
 /// Level of light at a robot, sensor counts; mean of its three sensors, without noise. -1 for one without a body.
 double pogosim_run_light_at(pogosim_run const* run, size_t robot);
 
+/// A hash of the whole state, but for user data: equal for runs in the same state.
+uint64_t pogosim_run_hash(pogosim_run const* run);
+
 /// Brings the data file up to date.
 int pogosim_run_save(pogosim_run* run);
 

@@ -51,6 +51,10 @@ void declare_options(CLI::App& app, CommandLine& options) {
                    "override a configuration entry, such as objects.robots.nb=50; may be repeated")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
+    app.add_option("--hash", options.hash_period_steps,
+                   "print a hash of the run's state after every N steps: equal runs have equal ones")
+        ->type_name("N")
+        ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()));
     app.add_flag("--strict", options.strict, "treat unknown configuration keys as errors");
     app.set_version_flag("-V,--version", "pogosim " POGOSIM_VERSION_STRING, "print the version and exit");
     app.set_help_flag("-h,--help", "print this help and exit");

@@ -19,6 +19,7 @@ struct CommandLine {
     bool strict = false;
     std::optional<std::uint32_t> seed;
     std::string video;                   // file of a film; empty: none
+    std::int64_t hash_period_steps = 0;  // 0: no hashes
     std::vector<std::string> overrides;  // --set, in order
 };
 

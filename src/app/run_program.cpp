@@ -100,6 +100,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                           {.progress_bar = options.progress_bar,
                            .measure_stages = false,
                            .strict = options.strict,
+                           .hash_period_steps = options.hash_period_steps,
                            .film = options.video,
                            .window = window,
                            .program_name = options.program_name,

@@ -171,6 +171,10 @@ double pogosim_run_light_at(pogosim_run const* run, size_t robot) {
     return sum / kPhotosensorCount;
 }
 
+uint64_t pogosim_run_hash(pogosim_run const* run) {
+    return run->simulation().hash();
+}
+
 int pogosim_run_save(pogosim_run* run) {
     return with_status([&] {
         run->simulation().save_now();

@@ -185,6 +185,9 @@ std::optional<UserFailure> Simulation::run_steps() {
             }
         }
         failure = step();
+        if (options_.hash_period_steps > 0 && world_.step % options_.hash_period_steps == 0) {
+            log().info("state after step {}: {:016x}", world_.step, hash());
+        }
         if (window_) {
             window_->note_step();
         }

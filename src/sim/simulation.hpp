@@ -22,6 +22,7 @@
 #include "sim/recorder.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "sim/stage_clock.hpp"
+#include "sim/state_hash.hpp"
 #include "sim/touches.hpp"
 #include "view/messages.hpp"
 #include "world/world.hpp"
@@ -32,10 +33,11 @@ class WindowDriver;
 
 struct RunOptions {
     bool progress_bar = false;
-    bool measure_stages = false;  // for benchmarks
-    bool strict = false;          // unread parameters are an error
-    std::shared_ptr<Log> log{};   // null: that of the process
-    std::string film{};           // file of a film of the run; empty: none
+    bool measure_stages = false;         // for benchmarks
+    bool strict = false;                 // unread parameters are an error
+    std::shared_ptr<Log> log{};          // null: that of the process
+    std::int64_t hash_period_steps = 0;  // a hash of the state in the log after so many steps each; 0: none
+    std::string film{};                  // file of a film of the run; empty: none
     bool window = false;
     std::string program_name{};          // for the window's title
     std::optional<Restart> restarted{};  // by the user, in the window of the run before
@@ -87,6 +89,9 @@ public:
     bool is_over() const;
 
     std::uint32_t seed() const { return seed_; }
+
+    /// See state_hash.hpp.
+    std::uint64_t hash() const { return state_hash(world_, programs_); }
 
     /// Puts an object (index into World::objects) elsewhere, at rest. False for one without a body. The data file says
     /// that the run was touched. Throws ConfigError for a place in a wall or outside of the arena.

@@ -54,7 +54,7 @@ Scenario recorded_scene(std::string const& path) {
 TEST(Recorder, EveryRowHasTheValuesOfItsOwnRobot) {
     TemporaryFolder const folder;
     use_exporting_program(export_own_id);
-    ASSERT_EQ(Simulation(recorded_scene(folder / "a.feather"), {}).run(), ExitCode::done);
+    ASSERT_EQ(Simulation(test_program(), recorded_scene(folder / "a.feather"), {}).run(), ExitCode::done);
     EXPECT_EQ(exported, (std::vector<int>{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3}));
     ReadBack const data = read_back(folder / "a.feather");
     ASSERT_EQ(data.table->num_rows(), 15);
@@ -74,7 +74,7 @@ TEST(Recorder, RobotThatDisablesItsRowLeavesThoseOfTheOthers) {
             disable_data_export();
         }
     });
-    ASSERT_EQ(Simulation(recorded_scene(folder / "a.feather"), {}).run(), ExitCode::done);
+    ASSERT_EQ(Simulation(test_program(), recorded_scene(folder / "a.feather"), {}).run(), ExitCode::done);
     ReadBack const data = read_back(folder / "a.feather");
     ASSERT_EQ(data.table->num_rows(), 9);
     EXPECT_EQ(data.text("own", 0), "0");
@@ -90,7 +90,7 @@ TEST(Recorder, CrashWhileExportingLeavesTheRowsOfTheRobotsBefore) {
             std::abort();
         }
     });
-    EXPECT_EQ(Simulation(recorded_scene(folder / "a.feather"), {}).run(), ExitCode::user_program);
+    EXPECT_EQ(Simulation(test_program(), recorded_scene(folder / "a.feather"), {}).run(), ExitCode::user_program);
     ReadBack const data = read_back(folder / "a.feather");
     ASSERT_EQ(data.table->num_rows(), 7);
     EXPECT_EQ(data.text("own", 5), "0");

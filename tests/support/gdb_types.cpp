@@ -8,6 +8,11 @@ void stop_here(pogosim::World const&, pogosim::Computer const&, pogosim::Leds co
 
 }  // namespace
 
+/// What is linked into every program asks for it.
+int robot_main() {
+    return 0;
+}
+
 int main() {
     pogosim::World world;
     world.step = 250;

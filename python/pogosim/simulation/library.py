@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import sys
-from ctypes import POINTER, byref, c_char, c_char_p, c_double, c_int, c_int64, c_size_t, c_void_p
+from ctypes import POINTER, byref, c_char, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint64, c_void_p
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +60,7 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_set_parameter": (c_int, (c_void_p, c_char_p, c_char_p)),
     "pogosim_run_light_at": (c_double, (c_void_p, c_size_t)),
     "pogosim_run_save": (c_int, (c_void_p,)),
+    "pogosim_run_hash": (c_uint64, (c_void_p,)),
 }
 
 

@@ -349,6 +349,12 @@ class Simulation:
         return np.array([library().pogosim_run_light_at(self._run, robot) for robot in range(count)])
 
     @property
+    def state_hash(self) -> int:
+        """Equal for runs in the same state: poses, LEDs, light, messages, clocks, random streams; not USERDATA."""
+        found: int = library().pogosim_run_hash(self._run)
+        return found
+
+    @property
     def user_data(self) -> npt.NDArray[Any]:
         """USERDATA of the robots, as a structured array: `sim.user_data["age"]`. Shape (robots,).
 

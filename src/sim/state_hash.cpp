@@ -1,0 +1,104 @@
+#include "sim/state_hash.hpp"
+
+#include <concepts>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace pogosim {
+
+namespace {
+
+class Hash {
+public:
+    void add(std::integral auto value) { add_word(static_cast<std::uint64_t>(value)); }
+    void add(float value) {
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &value, sizeof(bits));
+        add_word(bits);
+    }
+    void add(Vec2 value) {
+        add(value.x);
+        add(value.y);
+    }
+    void add(RandomStream stream) {
+        add(stream.bits());  // of a copy: the numbers that would come
+        add(stream.bits());
+    }
+    void add(std::span<std::byte const> bytes) {
+        add(bytes.size());
+        for (std::byte const byte : bytes) {
+            add(std::to_integer<std::uint8_t>(byte));
+        }
+    }
+    template <class T>
+    void add_all(std::vector<T> const& values) {
+        for (T const& value : values) {
+            add(value);
+        }
+    }
+
+    std::uint64_t value() const { return value_; }
+
+private:
+    void add_word(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001b3ULL; }
+
+    std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+void add_world(Hash& hash, World const& world) {
+    hash.add(world.step);
+    Bodies const& bodies = world.bodies;
+    hash.add_all(bodies.position_mm);
+    hash.add_all(bodies.heading_rad);
+    hash.add_all(bodies.velocity_mm_s);
+    hash.add_all(bodies.angular_velocity_rad_s);
+    for (Leds const& leds : world.robots.led) {
+        for (Rgb const colour : leds) {
+            hash.add((colour.r << 16) | (colour.g << 8) | colour.b);
+        }
+    }
+    hash.add_all(world.robots.stream);
+    hash.add_all(world.light.level);
+    hash.add(world.air.transmissions.size());
+    hash.add(std::span<std::byte const>(world.air.payloads));
+}
+
+void add_robot(Hash& hash, Computer const& computer, Mailboxes const& mailboxes, std::size_t robot) {
+    hash.add(computer.clock_us);
+    LoopGlobals const& loop = computer.loop;
+    hash.add(loop.ticks);
+    hash.add(loop.loop_hz);
+    hash.add(loop.max_messages_per_tick);
+    hash.add(loop.send_percent);
+    hash.add(loop.error_led);
+    hash.add(loop.sent);
+    hash.add(loop.received);
+    hash.add(loop.milliseconds);
+    for (std::size_t motor = 0; motor < kMotorCount; ++motor) {
+        hash.add(computer.motors.power[motor]);
+        hash.add(computer.motors.direction[motor]);
+    }
+    hash.add(computer.ir_power);
+    hash.add(computer.messages_sent);
+    hash.add(computer.messages_received);
+    hash.add(computer.random);
+    hash.add(computer.seeds);
+    hash.add(mailboxes.size(robot));
+    hash.add(mailboxes.dropped(robot));
+}
+
+}  // namespace
+
+std::uint64_t state_hash(World const& world, Programs const& programs) {
+    Hash hash;
+    add_world(hash, world);
+    auto const computers = programs.computers();
+    for (std::size_t robot = 0; robot < computers.size(); ++robot) {
+        add_robot(hash, computers[robot], world.mailboxes, robot);
+    }
+    return mix64(hash.value());
+}
+
+}  // namespace pogosim
