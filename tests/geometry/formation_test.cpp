@@ -452,7 +452,7 @@ TEST(ChessboardFormation, PitchBelowTheDiameterIsRefused) {
         spec.chessboard_pitch_mm = 50.0F;
         EXPECT_NE(error_of(spec, robots(4), shipped("square")).find("must be at least 53.53 mm"), std::string::npos);
         spec.chessboard_pitch_mm = 0.001F;
-        EXPECT_NE(error_of(spec, std::vector<float>(4, 0.0F), shipped("square")).find("more than a million"),
+        EXPECT_NE(error_of(spec, std::vector<float>(4, 0.0F), shipped("square")).find("more than 1000000 places"),
                   std::string::npos);
     }
 }
