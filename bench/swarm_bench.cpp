@@ -97,6 +97,7 @@ void load_code() {
 Result run_once(int robots) {
     double const bytes_before = resident_bytes();
     Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(robots), {.measure_stages = true});
+    GuardedThread const thread(simulation.guard());  // as of a whole run, not of each step
     warm_up(simulation);
     StageClock const warm = simulation.stages();
     Result result;

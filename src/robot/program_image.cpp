@@ -1,12 +1,13 @@
 #include "robot/program_image.hpp"
 
 #include <dlfcn.h>
-#include <elf.h>
-#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <elf.h>
 #include <link.h>
 #include <sys/mman.h>
-#include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <atomic>
@@ -37,6 +38,8 @@ std::string version_text(std::uint32_t encoded) {
 [[noreturn]] void fail(std::filesystem::path const& file, std::string const& problem) {
     throw ConfigError(fmt::format("the program '{}' {}", escaped(file.string()), problem));
 }
+
+#ifdef __linux__
 
 std::vector<char> content_of(std::filesystem::path const& file) {
     std::error_code error;
@@ -131,8 +134,6 @@ private:
     int descriptor_;
 };
 
-#ifdef __linux__
-
 /// What looks for the object that a place in memory belongs to.
 struct Search {
     std::uintptr_t place;
@@ -165,14 +166,6 @@ std::vector<std::span<std::byte>> variables_around(void const* place) {
     return search.writable;
 }
 
-#else
-
-std::vector<std::span<std::byte>> variables_around(void const* /*place*/) {
-    return {};
-}
-
-#endif
-
 std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
     std::vector<char> bytes = content_of(file);
     if (std::string const problem = problem_of(bytes); !problem.empty()) {
@@ -191,6 +184,31 @@ std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
     }
     return {handle, [](void* library) { dlclose(library); }};
 }
+
+#else
+
+std::vector<std::span<std::byte>> variables_around(void const* /*place*/) {
+    return {};  // parameters cannot be set during a run
+}
+
+std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
+    static std::atomic<unsigned> copies = 0;
+    std::error_code error;
+    std::filesystem::path const copy =
+        std::filesystem::temp_directory_path(error) / fmt::format("pogosim-{}-{}.so", getpid(), copies++);
+    if (error || !std::filesystem::copy_file(file, copy, error)) {
+        fail(file, fmt::format("cannot be read: {}", error.message()));
+    }
+    void* const handle = dlopen(copy.c_str(), RTLD_NOW | RTLD_LOCAL);
+    std::string const problem = handle == nullptr ? dlerror() : "";
+    std::filesystem::remove(copy, error);
+    if (handle == nullptr) {
+        fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
+    }
+    return {handle, [](void* library) { dlclose(library); }};
+}
+
+#endif
 
 }  // namespace
 

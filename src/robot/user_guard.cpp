@@ -62,7 +62,7 @@ CaughtSignals caught_signals;
 
 void on_crash(int signal, siginfo_t* info, void* signal_context) {
     RunGuard* const guard = active_guard;
-    if (guard == nullptr && process_run != nullptr) {
+    if (is_other_thread_of_run()) {
         CrashText const what = crash_name(signal, *info, signal_context);
         if (on_background_thread()) {
             end_run_from_background_thread(*process_run, what.c_str());
@@ -186,6 +186,7 @@ GuardedThread::~GuardedThread() {
 
 ProcessRun::ProcessRun(UserGuard& guard) {
     enter_stage(RunStage::running);
+    guard.state_->thread = pthread_self();
     process_run = guard.state_.get();
 }
 
@@ -319,7 +320,7 @@ void refuse_user_code(char const* what) {
 }
 
 bool is_other_thread_of_run() {
-    return active_guard == nullptr && process_run != nullptr;
+    return active_guard == nullptr && process_run != nullptr && !on_main_thread();
 }
 
 void end_run_from_thread(char const* what, ExitCode code) {
@@ -359,7 +360,7 @@ int note_interrupt(int signal, char const* name) {
     if (run == nullptr) {
         return 0;
     }
-    if (active_guard != run) {
+    if (pthread_equal(run->thread, pthread_self()) == 0) {
         pthread_kill(run->thread, signal);
         return 0;
     }

@@ -82,7 +82,7 @@ private:
 };
 
 /// As long as this lives, signals that ask this process to end are for that run, and so are crashes in threads that the
-/// program has started: an executable is for one run at a time.
+/// program has started: an executable is for one run at a time. Made in the thread that works for the run.
 class ProcessRun {
 public:
     explicit ProcessRun(UserGuard& guard);

@@ -282,6 +282,7 @@ def test_poses_can_be_set(sim: pogosim.Simulation) -> None:
         (1, 0.0, 0.0, "no place for an object"),
         (1, math.nan, 0.0, "no place for an object"),
         (3, 500.0, 500.0, "there is no robot 3: the run has 3"),
+        (-1, 500.0, 500.0, "there is no robot -1: the run has 3"),
     ):
         with pytest.raises(pogosim.ConfigurationError, match=message):
             sim.set_pose(robot, x, y, 0.0)
@@ -363,8 +364,9 @@ def test_closed_simulations_say_so(program: Path, scene: Path) -> None:
     simulation.close()
     assert not folder.exists()
     assert "closed" in repr(simulation)
-    with pytest.raises(pogosim.SimulationError, match="the simulation is closed"):
-        simulation.step()
+    for use in (simulation.step, simulation.reset, lambda: simulation.positions):
+        with pytest.raises(pogosim.SimulationError, match="the simulation is closed: make another one"):
+            use()
 
 
 def test_second_thread_in_one_simulation_is_an_error(program: Path, scene: Path) -> None:

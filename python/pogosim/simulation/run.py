@@ -28,6 +28,7 @@ from pogosim.utils import load_dataframe
 from pogosim.yaml_1_2 import dump_yaml
 
 NO_BODY = 2**32 - 1
+CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
 LEVELS = {"D": logging.DEBUG, "I": logging.INFO, "W": logging.WARNING, "E": logging.ERROR}
 logger = logging.getLogger("pogosim")
@@ -143,6 +144,7 @@ class Simulation:
         }
         self._strict = strict
         self._lock = threading.Lock()
+        self._is_closed = False
         self._open(seed)
 
     def _open(self, seed: int | None) -> None:
@@ -213,13 +215,18 @@ class Simulation:
         Args:
             seed: Of the new run; None: that of this one.
         """
+        if self._is_closed:
+            raise SimulationError(CLOSED)
         self._close_run()
         self._open(self._seed if seed is None else seed)
 
     def close(self) -> None:
         """End the run. Its memory is freed as soon as no array of it is left."""
-        self._close_run()
-        self._remove_folder()
+        self._is_closed = True
+        try:
+            self._close_run()
+        finally:
+            self._remove_folder()
 
     def _close_run(self) -> None:
         if self._handle is None:
@@ -384,11 +391,16 @@ class Simulation:
         Raises:
             ConfigurationError: There is no such robot, it has no body, or the place is in a wall.
         """
+        count = len(self.robot_ids)
+        if not 0 <= robot < count:
+            raise ConfigurationError(f"there is no robot {robot}: the run has {count}")
         angle = float(self.headings[robot]) if heading is None else heading
-        check(library().pogosim_run_set_pose(self._run, robot, x, y, angle))
+        with self._busy():
+            check(library().pogosim_run_set_pose(self._run, robot, x, y, angle))
 
     def _set_parameter(self, name: str, value: Any) -> None:
-        check(library().pogosim_run_set_parameter(self._run, name.encode(), yaml_text(value).encode()))
+        with self._busy():
+            check(library().pogosim_run_set_parameter(self._run, name.encode(), yaml_text(value).encode()))
         self._settings[f"parameters.{name}"] = plain(value)
         self._parameter_values[name] = plain(value)
 
@@ -415,7 +427,7 @@ class Simulation:
     @property
     def _run(self) -> c_void_p:
         if self._handle is None:
-            raise SimulationError("the simulation is closed: reset it, or make another one")
+            raise SimulationError(CLOSED)
         return self._handle.pointer
 
     def _busy(self) -> Busy:
