@@ -11,7 +11,7 @@ namespace {
 
 LoggedRobot named(World const& world, std::uint32_t robot) {
     return {.index = static_cast<std::int32_t>(robot),
-            .id = world.robots.id[robot],
+            .id = static_cast<std::int32_t>(world.robots.id[robot]),
             .category = world.categories[world.robots.category[robot]].name};
 }
 

@@ -32,6 +32,9 @@ HARMLESS = {
 }
 
 
+# What hosts and the program's part of the simulator call, not programs.
+NOT_FOR_PROGRAMS = {"host.h", "program.h"}
+
 # Behind macros and inline functions that name every argument.
 NOT_CALLED_BY_PROGRAMS = {"recover_next_message.message", "init_unsupported.variable", "init_unsupported.name"}
 
@@ -50,6 +53,8 @@ def pointer_arguments() -> list[str]:
     """Return "function.argument" for each pointer argument of each function that the headers declare."""
     found = set()
     for path in (ROOT / "include" / "pogosim").rglob("*.h"):
+        if path.name in NOT_FOR_PROGRAMS:
+            continue
         text = re.sub(r"//[^\n]*", "", path.read_text())
         # Macros and inline functions call those that are declared; on a real robot others are.
         text = re.sub(r"(?m)^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", "", text)
