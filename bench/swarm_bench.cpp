@@ -45,21 +45,6 @@ double resident_bytes() {
     return static_cast<double>(pages_resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// FNV-1a over poses and LEDs.
-std::uint64_t hash_of(World const& world) {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
-    auto const mix = [&](void const* data, std::size_t bytes) {
-        auto const* const byte = static_cast<unsigned char const*>(data);
-        for (std::size_t i = 0; i < bytes; ++i) {
-            hash = (hash ^ byte[i]) * 0x100000001b3ULL;
-        }
-    };
-    mix(world.bodies.position_mm.data(), world.bodies.size() * sizeof(Vec2));
-    mix(world.bodies.heading_rad.data(), world.bodies.size() * sizeof(float));
-    mix(world.robots.led.data(), world.robots.size() * sizeof(Leds));
-    return hash;
-}
-
 Scenario scenario_of(int robots) {
     std::string const source = POGOSIM_SOURCE_DIR;
     return load_scenario(
@@ -112,7 +97,7 @@ Result run_once(int robots) {
     }
     result.bytes_per_robot =
         (resident_bytes() - bytes_before) / robots - static_cast<double>(*pogosim_this_program.user_data_bytes);
-    result.hash = hash_of(simulation.world());
+    result.hash = simulation.hash();
     return result;
 }
 

@@ -55,10 +55,8 @@ void pogosim_run::must_succeed(Outcome const& outcome) {
     if (!outcome.failed()) {
         return;
     }
-    has_ended_ = true;
     std::size_t const before = lines_.size();
-    ExitCode const code = simulation_->conclude(outcome);
-    simulation_->release_files();
+    ExitCode const code = conclude(outcome);
     // What the log says of it is the message of the error.
     std::string message = outcome.failure ? outcome.failure->what : *outcome.shortage;
     for (std::size_t i = before; i < lines_.size(); ++i) {
@@ -96,9 +94,14 @@ void pogosim_run::end() {
     }
     Outcome const outcome = simulation_->attempt([this] { return simulation_->end_programs(); });
     must_succeed(outcome);
+    conclude(outcome);
+}
+
+ExitCode pogosim_run::conclude(Outcome const& outcome) {
     has_ended_ = true;
-    simulation_->conclude(outcome);
+    ExitCode const code = simulation_->conclude(outcome);
     simulation_->release_files();
+    return code;
 }
 
 std::string const& pogosim_run::take_messages() {

@@ -33,6 +33,7 @@ public:
 
 private:
     void must_succeed(pogosim::Outcome const& outcome);
+    pogosim::ExitCode conclude(pogosim::Outcome const& outcome);
 
     std::vector<pogosim::LogLine> lines_;
     std::string messages_;

@@ -62,23 +62,22 @@ CaughtSignals caught_signals;
 
 void on_crash(int signal, siginfo_t* info, void* signal_context) {
     RunGuard* const guard = active_guard;
-    if (is_other_thread_of_run()) {
-        CrashText const what = crash_name(signal, *info, signal_context);
+    bool const is_others = is_other_thread_of_run();
+    if (guard == nullptr && !is_others && !process_is_ours()) {
+        pass_on(signal, info, signal_context);
+        return;
+    }
+    CrashText const what = crash_name(signal, *info, signal_context);
+    if (is_others) {
         if (on_background_thread()) {
             end_run_from_background_thread(*process_run, what.c_str());
         }
         end_run_from_thread(what.c_str(), ExitCode::user_program);
     }
     if (guard == nullptr) {
-        if (!process_is_ours()) {
-            pass_on(signal, info, signal_context);
-            return;
-        }
-        CrashText const what = crash_name(signal, *info, signal_context);
         prepare_last_words(what.c_str(), !on_main_thread());
         end_with_last_words(static_cast<int>(ExitCode::user_program));
     }
-    CrashText const what = crash_name(signal, *info, signal_context);
     if (guard->crashed.exchange(true)) {
         give_up_rescue(*guard);
     }
