@@ -159,10 +159,6 @@ bool UserGuard::was_left_by_force() const {
     return state_->left_by_force;
 }
 
-bool UserGuard::interrupted() const {
-    return state_->interrupts > 0;
-}
-
 GuardedThread::GuardedThread(UserGuard& guard) : guard_(*guard.state_), before_(active_guard) {
     if (guard_.depth++ == 0) {
         caught_signals.need();

@@ -52,9 +52,6 @@ public:
     /// True if user code was aborted: no destructor or atexit() handler may rely on its memory and locks.
     bool was_left_by_force() const;
 
-    /// A signal has asked this run to end.
-    bool interrupted() const;
-
     /// The run is to end, says another thread of the simulator; `request_name` says by what. If user code does not
     /// return soon, prints what the run is waiting for, and aborts it after `user_code_timeout` of wall-clock time.
     void hurry(char const* request_name);
