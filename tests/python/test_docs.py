@@ -216,6 +216,12 @@ def test_gdb_stops_at_conditions_and_functions_of_the_page_on_debugging(debugged
     assert re.search(r"\$1 = \{heard = \d+, turn_until_ms = \d+\}\n\$2 = 100\nturns = ", output)
 
 
+def compilation() -> str:
+    """Return the page's command that compiles for debuggers; tests put faults in, so each compiles what it runs."""
+    (command,) = [command for command in commands_of(DEBUGGING) if "-O0" in command]
+    return command
+
+
 @needs_gdb
 @pytest.mark.parametrize(
     ("fault", "signal"),
@@ -231,8 +237,7 @@ def test_gdb_stops_at_the_line_that_crashes_or_does_not_return(fault: str, signa
     sound = source.read_text()
     source.write_text(with_step(sound, f"{fault}\n"))
     line = 1 + source.read_text().splitlines().index(fault)
-    (compile_it,) = [command for command in commands_of(DEBUGGING) if "-O0" in command]
-    made = shell(compile_it.replace("-Wall ", ""), debugged.folder)
+    made = shell(compilation().replace("-Wall ", ""), debugged.folder)
     commands = blocks(DEBUGGING, "gdb")[3]
     if signal == "SIGINT":
         press = "threading.Timer(1.0, lambda: os.kill(gdb.selected_inferior().pid, signal.SIGINT)).start()"
@@ -249,7 +254,7 @@ def test_gdb_stops_at_the_line_that_crashes_or_does_not_return(fault: str, signa
 @pytest.mark.parametrize("name", [name for name in ("valgrind",) if shutil.which(name)])
 def test_valgrind_finds_nothing_wrong_with_the_first_program(name: str, debugged: Run) -> None:
     (start,) = [command for command in commands_of(DEBUGGING) if f"{name} --" in command]
-    result = shell(start, debugged.folder)
+    result = shell(f"{compilation()}\n{start}", debugged.folder)
     assert result.code == 0, result.errors
     assert "ERROR SUMMARY: 0 errors" in result.errors
 
