@@ -15,6 +15,7 @@
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "config/source.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -26,8 +27,8 @@ constexpr std::int64_t kMaxBodies = std::numeric_limits<std::int32_t>::max();
 
 /// The node of a top-level key, or the whole tree when the file leaves the key out.
 Place place_of(Scenario const& scenario, std::string const& key) {
-    Node const* node = scenario.resolved.find(key);
-    return {node == nullptr ? scenario.resolved : *node, key};
+    Node const* node = source_of(scenario).tree.find(key);
+    return {node == nullptr ? source_of(scenario).tree : *node, key};
 }
 
 void check_counts(Scenario const& scenario) {
@@ -75,7 +76,7 @@ void check_object_count(Scenario const& scenario) {
 
 /// Throws when the file that key `needed_by` asks for has no name.
 void require_name(Scenario const& scenario, char const* key, std::string const& name, char const* needed_by) {
-    Node const* node = scenario.resolved.find(key);
+    Node const* node = source_of(scenario).tree.find(key);
     if (name.empty() || (node != nullptr && node->kind == Node::Kind::null)) {
         Node const& cause = node == nullptr ? place_of(scenario, needed_by).node : *node;
         fail_at({cause, key}, fmt::format("expected a file name, found nothing; '{}' needs it", needed_by));
@@ -83,7 +84,7 @@ void require_name(Scenario const& scenario, char const* key, std::string const& 
 }
 
 void check_file_names(Scenario const& scenario) {
-    if (scenario.resolved.find("arena_file") != nullptr) {
+    if (source_of(scenario).tree.find("arena_file") != nullptr) {
         require_name(scenario, "arena_file", scenario.arena_file, "arena_surface");
     }
     if (scenario.output.enable_data_logging) {

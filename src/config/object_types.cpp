@@ -12,10 +12,6 @@ namespace pogosim {
 
 namespace {
 
-#define POGOSIM_TYPE_ENTRY(name, doc) ObjectType{#name, doc, read_##name},
-constexpr std::array kTypes{POGOSIM_OBJECT_TYPES(POGOSIM_TYPE_ENTRY)};
-#undef POGOSIM_TYPE_ENTRY
-
 /// Other names that are understood, too.
 struct OtherName {
     std::string_view typed;
@@ -25,7 +21,7 @@ constexpr std::array kOtherNames{OtherName{"orbiting_light", "orbiting_static_li
 
 std::vector<std::string> type_names() {
     std::vector<std::string> names;
-    std::ranges::transform(kTypes, std::back_inserter(names),
+    std::ranges::transform(object_types(), std::back_inserter(names),
                            [](ObjectType const& type) { return std::string(type.name); });
     return names;
 }
@@ -34,8 +30,9 @@ ObjectType const& type_at(Place const& place) {
     std::string const typed = lower_case(place.node.scalar);
     auto const other = std::ranges::find(kOtherNames, typed, &OtherName::typed);
     std::string_view const name = other != kOtherNames.end() ? other->meant : typed;
-    auto const type = std::ranges::find(kTypes, name, &ObjectType::name);
-    if (type != kTypes.end()) {
+    auto const types = object_types();
+    auto const type = std::ranges::find(types, name, &ObjectType::name);
+    if (type != types.end()) {
         return *type;
     }
     std::vector<std::string> const names = type_names();
@@ -46,7 +43,14 @@ ObjectType const& type_at(Place const& place) {
 }  // namespace
 
 std::span<ObjectType const> object_types() {
-    return kTypes;
+    static std::vector<ObjectType> const types = [] {
+        auto const solid = solid_types();
+        auto const lamps = lamp_types();
+        std::vector<ObjectType> all(solid.begin(), solid.end());
+        all.insert(all.end(), lamps.begin(), lamps.end());
+        return all;
+    }();
+    return types;
 }
 
 std::span<Key<ObjectConfig> const> object_keys() {
@@ -59,11 +63,10 @@ std::span<Key<ObjectConfig> const> object_keys() {
     return keys;
 }
 
-ObjectConfig read_object(Place const& place, std::string const& category, bool strict) {
+Node read_object(Place const& place, std::string const& category, bool strict, ObjectConfig& object) {
     MapReader reader(place.node, place.path, strict);
-    ObjectConfig object;
     object.category = category;
-    object.where = place.node.where();
+    object.line = place.node.where();
     reader.read(object_keys(), object);
     if (Node const* type_node = reader.find("type")) {
         ObjectType const& type = type_at({*type_node, reader.path_of("type")});
@@ -73,8 +76,7 @@ ObjectConfig read_object(Place const& place, std::string const& category, bool s
     reader.finish();
     reader.set_value("type", plain_node(object.type));
     reader.set_value("nb", value_node(object.nb));
-    object.values = reader.values();
-    return object;
+    return reader.values();
 }
 
 }  // namespace pogosim

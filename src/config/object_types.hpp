@@ -1,5 +1,5 @@
-// The types an entry of `objects` can have. Each is a file in types/, with the function read_<name>() that fills an
-// object from its keys, and a line of the table here; docs/new_object_type.md adds one.
+// The types an entry of `objects` can have. Each is a function that fills an object from its keys, and a line in the
+// table of solid_types.cpp or lamp_types.cpp; docs/new_object_type.md adds one.
 #pragma once
 
 #include <span>
@@ -9,19 +9,6 @@
 #include "config/map_reader.hpp"
 #include "config/scenario.hpp"
 
-#define POGOSIM_OBJECT_TYPES(TYPE)                                                             \
-    TYPE(pogobot, "Robot with two motors and four infrared emitters.")                         \
-    TYPE(pogobject, "Head of a robot on a large body without motors.")                         \
-    TYPE(pogowall, "Wall that runs user code and sends along its whole length.")               \
-    TYPE(membrane, "Soft ring of disks that runs user code and sends along its whole length.") \
-    TYPE(rectmembrane, "Like membrane, but made of rectangular segments.")                     \
-    TYPE(active_object, "Pushable body with a program and infrared.")                          \
-    TYPE(passive_object, "Pushable body.")                                                     \
-    TYPE(static_light, "Stationary lamp.")                                                     \
-    TYPE(orbiting_static_light, "Lamp that moves along a circle.")                             \
-    TYPE(rotating_ray_of_light, "Lighthouse with one beam.")                                   \
-    TYPE(alternating_rays_of_light, "Two lighthouses in two corners, active in turn.")
-
 namespace pogosim {
 
 struct ObjectType {
@@ -30,14 +17,14 @@ struct ObjectType {
     void (*read)(MapReader& reader, ObjectConfig& object);  // fills spec and position from its keys
 };
 
+std::span<ObjectType const> solid_types();
+std::span<ObjectType const> lamp_types();
+/// Those and these.
 std::span<ObjectType const> object_types();
 
-#define POGOSIM_DECLARE_TYPE(name, doc) void read_##name(MapReader& reader, ObjectConfig& object);
-POGOSIM_OBJECT_TYPES(POGOSIM_DECLARE_TYPE)
-#undef POGOSIM_DECLARE_TYPE
-
-/// One entry of `objects`, read and checked. Throws ConfigError.
-ObjectConfig read_object(Place const& place, std::string const& category, bool strict);
+/// One entry of `objects`, read and checked, into a new `object`. Returns the values of the keys that mean something.
+/// Throws ConfigError.
+Node read_object(Place const& place, std::string const& category, bool strict, ObjectConfig& object);
 
 // Keys of every type, `type` and `nb`.
 std::span<Key<ObjectConfig> const> object_keys();

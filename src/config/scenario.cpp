@@ -8,6 +8,7 @@
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
 #include "config/scenario_keys.hpp"
+#include "config/source.hpp"
 
 namespace pogosim {
 
@@ -41,56 +42,41 @@ void require_category(Node const& objects, std::string const& category, Node con
                         nearest.empty() ? "." : nearest));
 }
 
-std::vector<ObjectConfig> read_objects(Node const* objects, bool strict) {
-    std::vector<ObjectConfig> read;
+/// Reads all entries. Returns the map `objects` with their values.
+Node read_objects(Node const* objects, bool strict, std::vector<ObjectConfig>& into) {
+    Node values;
+    values.kind = Node::Kind::map;
     if (objects == nullptr) {
-        return read;
+        return values;
     }
     if (objects->kind != Node::Kind::map) {
         fail_expected({*objects, "objects"}, "a map of categories");
     }
     for (auto const& [category, node] : objects->entries) {
         require_category(*objects, category, node);
+        std::string const path = "objects." + category;
         if (node.kind != Node::Kind::sequence) {
-            read.push_back(read_object({node, "objects." + category}, category, strict));
+            values.entries.emplace_back(category, read_object({node, path}, category, strict, into.emplace_back()));
             continue;
         }
+        Node list;
+        list.kind = Node::Kind::sequence;
         for (std::size_t i = 0; i < node.items.size(); ++i) {
-            Place const place{node.items[i], fmt::format("objects.{}.{}", category, i)};
-            read.push_back(read_object(place, category, strict));
-            read.back().item = i;
+            Place const place{node.items[i], fmt::format("{}.{}", path, i)};
+            list.items.push_back(read_object(place, category, strict, into.emplace_back()));
+            into.back().item = i;
+        }
+        if (!list.items.empty()) {
+            values.entries.emplace_back(category, std::move(list));
         }
     }
-    return read;
+    return values;
 }
 
-/// The map `objects` with the values of all entries.
-Node values_of(std::vector<ObjectConfig> const& objects) {
-    Node map;
-    map.kind = Node::Kind::map;
-    for (ObjectConfig const& object : objects) {
-        Node* category = map.find(object.category);
-        if (category == nullptr) {
-            category = &map.entries.emplace_back(object.category, Node{}).value;
-        }
-        if (!object.item) {
-            *category = object.values;
-        } else {
-            category->kind = Node::Kind::sequence;
-            category->items.push_back(object.values);
-        }
-    }
-    return map;
-}
-
-Node read_parameters(Node const* parameters) {
-    if (parameters == nullptr) {
-        return {};
-    }
-    if (parameters->kind != Node::Kind::map) {
+void require_map(Node const* parameters) {
+    if (parameters != nullptr && parameters->kind != Node::Kind::map) {
         fail_expected({*parameters, "parameters"}, "a map of keys");
     }
-    return *parameters;
 }
 
 }  // namespace
@@ -102,40 +88,32 @@ std::vector<Placement> given_poses(ObjectConfig const& object) {
     return object.poses;
 }
 
-std::string where_at_top(Scenario const& scenario, std::string const& key) {
-    Node const* const value = scenario.resolved.find(key);
-    return (value != nullptr ? *value : scenario.resolved).where();
+ConfigSource const& source_of(Scenario const& scenario) {
+    static ConfigSource const none;
+    return scenario.source ? *scenario.source : none;
 }
 
 Node const* node_of(Scenario const& scenario, ObjectConfig const& object) {
-    Node const* const objects = scenario.resolved.find("objects");
+    Node const* const objects = source_of(scenario).tree.find("objects");
     Node const* const entry = objects != nullptr ? objects->find(object.category) : nullptr;
     return entry != nullptr && object.item ? &entry->items[*object.item] : entry;
-}
-
-std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key) {
-    Node const* const entry = node_of(scenario, object);
-    Node const* const value = entry != nullptr ? entry->find(key) : nullptr;
-    std::string const where = value != nullptr ? value->where() : object.where;
-    return fmt::format("{}{}objects.{}{}.{}", where, where.empty() ? "" : ": ", object.category,
-                       object.item ? fmt::format(".{}", *object.item) : "", key);
 }
 
 Scenario load_scenario(std::string const& path, LoadOptions const& options) {
     Scenario scenario;
     scenario.file = path;
     Node const written = read_yaml_file(path);
-    scenario.resolved = resolved_tree(written, options.overrides);
-    if (scenario.resolved.kind != Node::Kind::map) {
-        fail_expected({scenario.resolved, "the top level"}, "a map of keys");
+    ConfigSource source{.tree = resolved_tree(written, options.overrides), .values = {}};
+    if (source.tree.kind != Node::Kind::map) {
+        fail_expected({source.tree, "the top level"}, "a map of keys");
     }
-    MapReader reader(scenario.resolved, "", options.strict);
+    MapReader reader(source.tree, "", options.strict);
     read_top_level(reader, scenario);
     reader.finish(batch_names(written));
-    scenario.objects = read_objects(reader.find("objects"), options.strict);
-    scenario.parameters = read_parameters(reader.find("parameters"));
-    reader.set_value("objects", values_of(scenario.objects));
-    scenario.values = reader.values();
+    reader.set_value("objects", read_objects(reader.find("objects"), options.strict, scenario.objects));
+    require_map(reader.find("parameters"));
+    source.values = reader.values();
+    scenario.source = std::make_shared<ConfigSource const>(std::move(source));
     check_scenario(scenario);
     return scenario;
 }

@@ -4,18 +4,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "config/tree.hpp"
 #include "geometry/formation.hpp"
 #include "world/specs.hpp"
 
 namespace pogosim {
 
+struct ConfigSource;
+
 enum class BoundaryCondition { solid, periodic };
 enum class LogFormat { dated, minimal };
+
+/// Largest length and coordinate, mm. A float still tells 0.06 mm apart there.
+inline constexpr double kMaxLength = 1.0e6;
 
 /// More than fit into the memory of most machines.
 inline constexpr int kMaxObjects = 10'000'000;
@@ -38,9 +43,8 @@ struct ObjectConfig {
     std::vector<Placement> poses;       // one for each object, instead of position_mm
     OwnFormation own_formation;         // without position_mm and poses a formation places those with a body: this one
     ObjectSpec spec;                    // what the type makes them of
-    std::string where;                  // file:line, for messages
+    std::string line;                   // where it is written, "conf/a.yaml:14", for messages
     std::optional<std::size_t> item{};  // the category is a list of entries, and this one has the place, from 0
-    Node values{};                      // of each key that means something, defaults included
 };
 
 /// Where the objects of the entry start, one pose for each; empty when the configuration does not say.
@@ -99,20 +103,9 @@ struct Scenario {
     FormationSpec formation;
     ViewConfig view;
     OutputConfig output;
-    std::vector<ObjectConfig> objects;  // in the order of the file
-    Node parameters;                    // the map `parameters`, for user code
-    Node resolved;                      // the whole resolved tree, unknown keys included
-    Node values;                        // of each key that means something, defaults included
+    std::vector<ObjectConfig> objects;           // in the order of the file
+    std::shared_ptr<ConfigSource const> source;  // what was written; null for one put together in code
 };
-
-/// "file:line" of a top-level key, for messages; of the whole map when the key is absent.
-std::string where_at_top(Scenario const& scenario, std::string const& key);
-
-/// The entry of `objects` as it is written; nullptr when the scenario was not read from a file.
-Node const* node_of(Scenario const& scenario, ObjectConfig const& object);
-
-/// "file:line: objects.category.key" of a key of an entry, for messages; the line of the entry when the key is absent.
-std::string where_in_object(Scenario const& scenario, ObjectConfig const& object, std::string const& key);
 
 struct LoadOptions {
     std::vector<std::string> overrides;  // --set, in order

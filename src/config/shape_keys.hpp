@@ -4,12 +4,10 @@
 #include <span>
 
 #include "config/key.hpp"
+#include "config/scenario.hpp"
 #include "geometry/shape.hpp"
 
 namespace pogosim {
-
-/// Largest length and coordinate, mm. A float still tells 0.06 mm apart there.
-inline constexpr double kMaxLength = 1.0e6;
 
 /// Sizes and coordinates. What is below 1 mm is probably in metres.
 inline constexpr Range kLength = above(0).up_to(kMaxLength).usually_from(1);

@@ -1,10 +1,14 @@
 #include "config/user_parameters.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/nearest_name.hpp"
+#include "config/source.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -13,7 +17,7 @@ namespace {
 
 constexpr Limits kAnyNumber{.range = any().or_infinity().or_nan()};
 
-std::string path_of(std::string_view name) {
+std::string path_of(std::string const& name) {
     return fmt::format("parameters.{}", name);
 }
 
@@ -26,72 +30,117 @@ double read_number(Place const& place, double largest) {
     return value;
 }
 
+}  // namespace
+
+UserParameters::UserParameters(Scenario const& scenario) {
+    if (Node const* const written = source_of(scenario).tree.find("parameters")) {
+        parameters_ = *written;
+    }
+}
+
+UserParameters UserParameters::with(std::string const& name, std::string const& yaml_value) const {
+    Node changed = parameters_;
+    apply_override(changed, fmt::format("{}={}", name, yaml_value));
+    return UserParameters(std::move(changed));
+}
+
+Node const* UserParameters::ask(std::string const& name) {
+    Node const* const node = find_path(parameters_, name);
+    if (node != nullptr) {
+        read_.insert(node);
+    } else if (std::ranges::find(missed_, name) == missed_.end()) {
+        missed_.push_back(name);
+    }
+    return node == nullptr || node->kind == Node::Kind::null ? nullptr : node;
+}
+
 template <class T>
-std::optional<T> read_parameter(Node const& parameters, std::string_view name, Limits const& limits) {
+std::optional<T> UserParameters::read(std::string const& name, Range const& range) {
     std::optional<T> value;
-    Node const* node = find_path(parameters, name);
-    if (node != nullptr && node->kind != Node::Kind::null) {
-        read_value({*node, path_of(name)}, limits, value);
+    if (Node const* const node = ask(name)) {
+        read_value({*node, path_of(name)}, {.range = range}, value);
     }
     return value;
 }
 
-}  // namespace
-
-std::optional<bool> bool_parameter(Node const& parameters, std::string_view name) {
-    return read_parameter<bool>(parameters, name, {});
+std::optional<bool> UserParameters::boolean(std::string const& name) {
+    return read<bool>(name, {});
 }
 
-std::optional<double> number_parameter(Node const& parameters, std::string_view name, double largest) {
-    Node const* node = find_path(parameters, name);
-    if (node == nullptr || node->kind == Node::Kind::null) {
+std::optional<double> UserParameters::number(std::string const& name, double largest) {
+    Node const* const node = ask(name);
+    return node == nullptr ? std::nullopt : std::optional(read_number({*node, path_of(name)}, largest));
+}
+
+std::optional<std::int64_t> UserParameters::integer(std::string const& name, std::int64_t min, std::int64_t max) {
+    std::size_t const read_before = read_.size();
+    auto const value = read<std::int64_t>(name, between(static_cast<double>(min), static_cast<double>(max)));
+    if (value && read_.size() > read_before) {
+        warn_of_slips({*find_path(parameters_, name), path_of(name)}, {}, /*is_integer=*/true);
+    }
+    return value;
+}
+
+std::optional<std::string> UserParameters::text(std::string const& name) {
+    return read<std::string>(name, {});
+}
+
+std::optional<std::vector<double>> UserParameters::numbers(std::string const& name, std::size_t size, double largest) {
+    Node const* const node = ask(name);
+    if (node == nullptr || (node->kind == Node::Kind::sequence && node->items.empty())) {
         return std::nullopt;
     }
-    return read_number({*node, path_of(name)}, largest);
-}
-
-std::optional<std::int64_t> integer_parameter(Node const& parameters, std::string_view name, std::int64_t min,
-                                              std::int64_t max) {
-    Limits const limits{.range = between(static_cast<double>(min), static_cast<double>(max))};
-    return read_parameter<std::int64_t>(parameters, name, limits);
-}
-
-std::optional<std::string> text_parameter(Node const& parameters, std::string_view name) {
-    return read_parameter<std::string>(parameters, name, {});
-}
-
-std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std::string_view name, std::size_t size,
-                                                     double largest) {
-    Node const* node = find_path(parameters, name);
-    if (node == nullptr || node->kind == Node::Kind::null ||
-        (node->kind == Node::Kind::sequence && node->items.empty())) {
-        return std::nullopt;
-    }
+    Place const place{*node, path_of(name)};
     if (node->kind != Node::Kind::sequence) {
-        fail_expected({*node, path_of(name)}, fmt::format("a list of at least {} numbers", size));
+        fail_expected(place, fmt::format("a list of at least {} numbers", size));
     }
     if (node->items.size() < size) {
-        fail_at({*node, path_of(name)},
-                fmt::format("expected a list of at least {} numbers, found {}", size, node->items.size()));
+        fail_at(place, fmt::format("expected a list of at least {} numbers, found {}", size, node->items.size()));
     }
     std::vector<double> numbers(size);
     for (std::size_t i = 0; i < size; ++i) {
-        numbers[i] = read_number({node->items[i], fmt::format("{}.{}", path_of(name), i)}, largest);
+        numbers[i] = read_number({node->items[i], fmt::format("{}.{}", place.path, i)}, largest);
     }
     return numbers;
 }
 
-void refuse_parameter(Node const& parameters, std::string_view name, std::string_view expected) {
-    Node const* const node = find_path(parameters, name);
+void UserParameters::refuse(std::string const& name, std::string const& expected) {
+    Node const* const node = find_path(parameters_, name);
     if (node == nullptr || node->kind == Node::Kind::null) {
         throw ConfigError(fmt::format("{}: expected {}, found the program's own default", path_of(name), expected));
     }
     fail_expected({*node, path_of(name)}, expected);
 }
 
-void check_parameter_range(Node const& parameters, std::string_view name, double value, Range const& range) {
+void UserParameters::check_range(std::string const& name, double value, double min, double max) {
+    Range const range = between(min, max);
     if (!range.contains(value)) {
-        refuse_parameter(parameters, name, "a number" + range.text());
+        refuse(name, "a number" + range.text());
+    }
+}
+
+std::string UserParameters::unread() const {
+    std::vector<std::string> unread;
+    collect_unread(parameters_, "", unread);
+    return fmt::format("{}", fmt::join(unread, ", "));
+}
+
+bool UserParameters::any_part_was_read(Node const& node) const {
+    auto const is_read = [this](Node const& part) { return any_part_was_read(part); };
+    return read_.contains(&node) || std::ranges::any_of(node.items, is_read) ||
+           std::ranges::any_of(node.entries, [&](auto const& entry) { return is_read(entry.value); });
+}
+
+void UserParameters::collect_unread(Node const& node, std::string const& path, std::vector<std::string>& unread) const {
+    bool const is_list = !node.items.empty();  // read as a whole
+    if (read_.contains(&node) || (is_list && any_part_was_read(node))) {
+        return;
+    }
+    for (auto const& [key, value] : node.entries) {
+        collect_unread(value, path.empty() ? key : fmt::format("{}.{}", path, key), unread);
+    }
+    if (node.entries.empty() && &node != &parameters_) {
+        unread.push_back(fmt::format("{} ({}{})", shown(path), node.where(), did_you_mean(shown(path), missed_)));
     }
 }
 

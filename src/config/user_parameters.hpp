@@ -1,43 +1,57 @@
-// The values under `parameters` for the global variables of a user's program. Names are dotted paths as in find_path.
-// Each function returns nothing for a value that is absent or null, and throws ConfigError ("file:line: parameters.x:
-// expected ..., found ...") for one of another type or out of range.
+// The values under `parameters` for the global variables of a user's program, and which of them it has asked for. Names
+// are dotted paths as in find_path. Each question has no answer for a value that is absent or null, and throws
+// ConfigError ("file:line: parameters.x: expected ..., found ...") for one of another type or out of range.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "config/range.hpp"
+#include "config/scenario.hpp"
 #include "config/tree.hpp"
+#include "world/parameter_source.hpp"
 
 namespace pogosim {
 
-std::optional<bool> bool_parameter(Node const& parameters, std::string_view name);
+class UserParameters final : public ParameterSource {
+public:
+    explicit UserParameters(Scenario const& scenario);
+    explicit UserParameters(Node parameters) : parameters_(std::move(parameters)) {}
+    UserParameters(UserParameters const&) = delete;
+    UserParameters& operator=(UserParameters const&) = delete;
 
-constexpr double kLargestNumber = std::numeric_limits<double>::max();
+    /// The same values but one, which is YAML; nothing has been asked.
+    UserParameters with(std::string const& name, std::string const& yaml_value) const;
 
-/// A number from -largest to largest, or .inf, -.inf or .nan.
-std::optional<double> number_parameter(Node const& parameters, std::string_view name, double largest = kLargestNumber);
+    std::optional<bool> boolean(std::string const& name) override;
+    std::optional<double> number(std::string const& name, double largest) override;
+    std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) override;
+    std::optional<std::string> text(std::string const& name) override;
+    std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size, double largest) override;
+    void refuse(std::string const& name, std::string const& expected) override;
+    void check_range(std::string const& name, double value, double min, double max) override;
 
-/// An integer from `min` to `max`; the fraction of a number is dropped. Exact up to 2^53.
-std::optional<std::int64_t> integer_parameter(Node const& parameters, std::string_view name, std::int64_t min,
-                                              std::int64_t max);
+    /// The values that nobody has asked for: "walk.sped (conf/a.yaml:14; did you mean 'walk.speed'?), ...". Empty when
+    /// there are none. Of a map, each value counts; a list, of which one item was read, counts as read.
+    std::string unread() const;
 
-std::optional<std::string> text_parameter(Node const& parameters, std::string_view name);
+private:
+    /// Notes that the program wants this value. Nullptr for one that is absent or null.
+    Node const* ask(std::string const& name);
+    template <class T>
+    std::optional<T> read(std::string const& name, Range const& range);
 
-/// The first `size` numbers of a list, each as in number_parameter; nothing for an empty list. A list with fewer is a
-/// ConfigError.
-std::optional<std::vector<double>> numbers_parameter(Node const& parameters, std::string_view name, std::size_t size,
-                                                     double largest = kLargestNumber);
+    bool any_part_was_read(Node const& node) const;
+    void collect_unread(Node const& node, std::string const& path, std::vector<std::string>& unread) const;
 
-/// Throws ConfigError, whatever the value is: the program expects another one.
-[[noreturn]] void refuse_parameter(Node const& parameters, std::string_view name, std::string_view expected);
-
-/// Throws ConfigError unless `value`, which the program has after reading this name, is in the range.
-void check_parameter_range(Node const& parameters, std::string_view name, double value, Range const& range);
+    Node parameters_;
+    std::unordered_set<Node const*> read_;
+    std::vector<std::string> missed_;  // asked for, but not there
+};
 
 }  // namespace pogosim

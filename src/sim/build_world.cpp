@@ -12,8 +12,8 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "config/places.hpp"
 #include "config/range.hpp"
-#include "config/shape_keys.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
 #include "sim/find_file.hpp"
@@ -48,9 +48,9 @@ void check_size(Scenario const& scenario, Arena const& arena) {
     Vec2 const size_mm = arena.bounds.size();
     if (!scenario.arena_surface_mm2 && std::max(size_mm.x, size_mm.y) > kMaxLength) {
         throw ConfigError(
-            fmt::format("{}: arena_surface: the arena '{}' measures {} mm; the largest supported size is {} mm. "
+            fmt::format("{}: the arena '{}' measures {} mm; the largest supported size is {} mm. "
                         "Specify its area in mm2 instead of 'file'",
-                        where_at_top(scenario, "arena_surface"), scenario.arena_file, size_text(arena.bounds),
+                        place_of(scenario, Setting::arena_surface), scenario.arena_file, size_text(arena.bounds),
                         number_text(kMaxLength)));
     }
 }
@@ -59,15 +59,15 @@ void build_arena(Scenario const& scenario, World& world) {
     if (scenario.arena_file.empty()) {
         throw ConfigError(
             fmt::format("{}: the key 'arena_file' is missing; specify an outline, such as arenas/disk.csv",
-                        where_at_top(scenario, "arena_file")));
+                        line_of(scenario, Setting::arena_file)));
     }
-    ArenaOutline const outline = read_arena_file(find_file(scenario, "arena_file", scenario.arena_file));
+    ArenaOutline const outline = read_arena_file(find_file(scenario, Setting::arena_file, scenario.arena_file));
     world.periodic = scenario.boundary == BoundaryCondition::periodic || outline.periodic;
-    Node const* const boundary = scenario.resolved.find("boundary_condition");
-    if (outline.periodic && scenario.boundary == BoundaryCondition::solid && boundary != nullptr) {
-        log().warn(
-            "{}: boundary_condition: ignored, because '{}' declares itself periodic; for walls, use another arena_file",
-            boundary->where(), scenario.arena_file);
+    bool const asks_for_walls =
+        scenario.boundary == BoundaryCondition::solid && is_written(scenario, Setting::boundary_condition);
+    if (outline.periodic && asks_for_walls) {
+        log().warn("{}: ignored, because '{}' declares itself periodic; for walls, use another arena_file",
+                   place_of(scenario, Setting::boundary_condition), scenario.arena_file);
     }
     world.arena = scale_arena(outline, {.surface_mm2 = scenario.arena_surface_mm2, .stretch = scenario.arena_stretch});
     check_size(scenario, world.arena);
@@ -224,7 +224,7 @@ void warn_of_gaps(Scenario const& scenario) {
                 log().warn(
                     "{}: the gaps between its dots can grow to {:.1f} mm, so '{}' may slip through; use more or larger "
                     "dots",
-                    where_in_object(scenario, membrane, "num_dots"), gap_mm, other.category);
+                    place_of(scenario, membrane, ObjectSetting::body_count), gap_mm, other.category);
             }
         }
     }

@@ -6,20 +6,21 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "config/places.hpp"
 
 namespace pogosim {
 
 namespace {
 
 struct Motion {
-    char const* key;
+    ObjectSetting setting;
     char const* verb;
-    double speed;            // as the key has it
-    double per_key;          // largest speed of the robot for each unit of the key
+    double speed;            // as it is set
+    double per_speed;        // largest speed of the robot for each unit of it
     double most;             // in one step
     char const* unit;        // of what is done in a step
     char const* reason;      // of `most`
-    char const* speed_unit;  // of the key
+    char const* speed_unit;  // of `speed`
 };
 
 /// Three digits, not more than the value.
@@ -33,17 +34,17 @@ std::string text(double value) {
 }
 
 void check(Scenario const& scenario, ObjectConfig const& object, Motion const& motion, double time_step_s) {
-    double const in_a_step = motion.per_key * motion.speed * time_step_s;
+    double const in_a_step = motion.per_speed * motion.speed * time_step_s;
     if (in_a_step <= motion.most) {
         return;
     }
     throw ConfigError(
         fmt::format("{}: at {} {}, robots {} up to {} {} in a time_step of {} s, more than the {} {} that {}. Use at "
                     "most {} {}, or a time_step of at most {} s",
-                    where_in_object(scenario, object, motion.key), text(motion.speed), motion.speed_unit, motion.verb,
+                    place_of(scenario, object, motion.setting), text(motion.speed), motion.speed_unit, motion.verb,
                     text(in_a_step), motion.unit, text(time_step_s), text(motion.most), motion.unit, motion.reason,
-                    text(rounded_down(motion.most / motion.per_key / time_step_s)), motion.speed_unit,
-                    text(rounded_down(motion.most / motion.per_key / motion.speed))));
+                    text(rounded_down(motion.most / motion.per_speed / time_step_s)), motion.speed_unit,
+                    text(rounded_down(motion.most / motion.per_speed / motion.speed))));
 }
 
 }  // namespace
@@ -57,12 +58,13 @@ void check_motion(Scenario const& scenario, MotionLimits const& limits, double t
         }
         RobotSpec const& robot = *object.spec.robot;
         check(scenario, object,
-              {"max_linear_speed", "move", robot.max_linear_speed_mm_s, 1.0, limits.motion_mm, "mm", can_move, "mm/s"},
+              {ObjectSetting::linear_speed, "move", robot.max_linear_speed_mm_s, 1.0, limits.motion_mm, "mm", can_move,
+               "mm/s"},
               time_step_s);
         // Motors at full power against each other turn at four times max_angular_speed.
         check(scenario, object,
-              {"max_angular_speed", "turn", robot.max_angular_speed_rad_s, 4.0, limits.turn_rad, "rad", can_simulate,
-               "rad/s"},
+              {ObjectSetting::angular_speed, "turn", robot.max_angular_speed_rad_s, 4.0, limits.turn_rad, "rad",
+               can_simulate, "rad/s"},
               time_step_s);
     }
 }

@@ -53,7 +53,7 @@ std::vector<std::string> folder_names(std::vector<std::filesystem::path> const& 
 
 }  // namespace
 
-std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name) {
+std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name) {
     std::filesystem::path const path(name);
     std::error_code ignored;
     if (path.empty() || (path.is_absolute() && std::filesystem::exists(path, ignored))) {
@@ -70,8 +70,8 @@ std::filesystem::path find_file(Scenario const& scenario, std::string const& key
         looked_for = fmt::format("; searched {}", fmt::join(folder_names(folders), ", then in "));
     }
     throw ConfigError(
-        fmt::format("{}: {}: there is no file '{}'{}{}", where_at_top(scenario, key), key, name, looked_for,
-                    key == "arena_file" ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
+        fmt::format("{}: there is no file '{}'{}{}", place_of(scenario, setting), name, looked_for,
+                    setting == Setting::arena_file ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
 }
 
 }  // namespace pogosim

@@ -4,13 +4,14 @@
 #include <filesystem>
 #include <string>
 
+#include "config/places.hpp"
 #include "config/scenario.hpp"
 
 namespace pogosim {
 
-/// The file that the configuration sets as `key`. A relative name is searched in the working folder, then next to the
+/// The file that the configuration sets. A relative name is searched in the working folder, then next to the
 /// configuration, then in the folders of files installed or bundled with Pogosim. Throws ConfigError, listing these
 /// folders, if there is none. An empty name stays empty.
-std::filesystem::path find_file(Scenario const& scenario, std::string const& key, std::string const& name);
+std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name);
 
 }  // namespace pogosim

@@ -9,6 +9,7 @@
 
 #include "base/grid.hpp"
 #include "base/log.hpp"
+#include "config/places.hpp"
 #include "sim/make_ring.hpp"
 
 namespace pogosim {
@@ -79,8 +80,7 @@ public:
 
     void warn(Scenario const& scenario) const {
         for (auto const& [entry, other, text, more] : all_) {
-            log().warn("{}: '{}' at ({:g}, {:g}) {}{}",
-                       where_in_object(scenario, *entry->object, entry->object->position_mm ? "x" : "poses"),
+            log().warn("{}: '{}' at ({:g}, {:g}) {}{}", place_of(scenario, *entry->object, ObjectSetting::x),
                        entry->object->category, entry->position_mm.x, entry->position_mm.y, text,
                        more > 0 ? fmt::format(", and {} more like this", more) : "");
         }

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "base/log.hpp"
+#include "config/places.hpp"
 #include "light/lit_area.hpp"
 
 namespace pogosim {
@@ -18,27 +19,23 @@ bool is_between(float low, float value, float high) {
     return value >= low - kMarginMm && value <= high + kMarginMm;
 }
 
-void warn_outside(Scenario const& scenario, ObjectConfig const& object, std::string const& axis, Vec2 centre_mm,
+void warn_outside(Scenario const& scenario, ObjectConfig const& object, ObjectSetting axis, Vec2 centre_mm,
                   Arena const& arena) {
-    // The key that sets the position: center_x of an orbit, otherwise x.
-    Node const* const entry = node_of(scenario, object);
-    bool const is_orbit = entry != nullptr && entry->find("center_" + axis) != nullptr;
     log().warn(
         "{}: the lamp's centre ({:g}, {:g}) is outside {}; coordinates of older configurations may need "
         "'arena_stretch: true'",
-        where_in_object(scenario, object, is_orbit ? "center_" + axis : axis), centre_mm.x, centre_mm.y,
-        arena_text(arena));
+        place_of(scenario, object, axis), centre_mm.x, centre_mm.y, arena_text(arena));
 }
 
 /// True when the centre of the spot is in the arena's bounding box; else it warns.
 bool is_in_arena(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot, Arena const& arena) {
     Box const& bounds = arena.bounds;
     if (!is_between(bounds.min.x, spot.centre_mm.x, bounds.max.x)) {
-        warn_outside(scenario, object, "x", spot.centre_mm, arena);
+        warn_outside(scenario, object, ObjectSetting::x, spot.centre_mm, arena);
         return false;
     }
     if (!is_between(bounds.min.y, spot.centre_mm.y, bounds.max.y)) {
-        warn_outside(scenario, object, "y", spot.centre_mm, arena);
+        warn_outside(scenario, object, ObjectSetting::y, spot.centre_mm, arena);
         return false;
     }
     return true;
@@ -72,18 +69,6 @@ std::vector<LampArea> areas_of(LampSpec const& lamp, Arena const& arena) {
     return areas;
 }
 
-/// The key that says how large a lamp is.
-std::string size_key(Shape const& shape) {
-    switch (shape.kind) {
-        case ShapeKind::rectangle:
-            return shape.width_mm < shape.height_mm ? "body_width" : "body_height";
-        case ShapeKind::triangle:
-            return "side_length";
-        default:
-            return "radius";
-    }
-}
-
 /// The centre of a cell decides what lights it, so a small lamp may stand between them.
 void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, World const& world) {
     LampSpec const& lamp = *object.spec.lamp;
@@ -100,8 +85,8 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
         log().warn(
             "{}: the lamp lights no cell of the light map{}: it covers no cell centre, and cells measure {:.1f} mm x "
             "{:.1f} mm; enlarge the lamp, or use more cells (light_map_nb_bin_x, light_map_nb_bin_y)",
-            where_in_object(scenario, object, size_key(shape)),
-            dark < std::ssize(areas) ? " on parts of its orbit" : "", map.cell_mm.x, map.cell_mm.y);
+            place_of(scenario, object, ObjectSetting::size), dark < std::ssize(areas) ? " on parts of its orbit" : "",
+            map.cell_mm.x, map.cell_mm.y);
     }
 }
 
@@ -109,7 +94,7 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
 void warn_of_copies(Scenario const& scenario, ObjectConfig const& object) {
     if (object.nb > 1) {
         bool const is_spot = std::holds_alternative<SpotSpec>(*object.spec.lamp);
-        log().warn("{}: {} lamps at the same place{}", where_in_object(scenario, object, "nb"), object.nb,
+        log().warn("{}: {} lamps at the same place{}", place_of(scenario, object, ObjectSetting::count), object.nb,
                    is_spot ? "; their levels add up" : ", which look like one");
     }
 }

@@ -18,6 +18,7 @@
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/log.hpp"
+#include "config/places.hpp"
 #include "render/film_file.hpp"
 #include "render/png_file.hpp"
 #include "sim/used_files.hpp"
@@ -41,7 +42,7 @@ bool makes_frames(Scenario const& scenario) {
 }
 
 [[noreturn]] void refuse_frames_name(Scenario const& scenario, std::string const& what) {
-    throw ConfigError(fmt::format("{}: frames_name: {}", where_at_top(scenario, "frames_name"), what));
+    throw ConfigError(fmt::format("{}: {}", place_of(scenario, Setting::frames_name), what));
 }
 
 /// Frames must not replace each other. Looks at the first ten thousand, which takes 10 ms, and the last two.
@@ -124,11 +125,11 @@ void check_film_speed(Scenario const& scenario) {
     double const least_speed_up = scenario.time_step_s * kFilmHz / kMostPicturesPerStep;
     double const speed_up = scenario.view.gui_speed_up;
     if (speed_up > 0.0 && speed_up < least_speed_up) {
-        throw ConfigError(fmt::format(
-            "{}: GUI_speed_up: at {:g}, the film would show each step of time_step {:g} s for more than {:g} "
-            "pictures; expected at least {:g}, or 0 for real time",
-            where_at_top(scenario, "GUI_speed_up"), speed_up, scenario.time_step_s, kMostPicturesPerStep,
-            least_speed_up));
+        throw ConfigError(
+            fmt::format("{}: at {:g}, the film would show each step of time_step {:g} s for more than {:g} "
+                        "pictures; expected at least {:g}, or 0 for real time",
+                        place_of(scenario, Setting::speed_up), speed_up, scenario.time_step_s, kMostPicturesPerStep,
+                        least_speed_up));
     }
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "config/places.hpp"
 #include "geometry/outline_survey.hpp"
 #include "sim/make_ring.hpp"
 
@@ -62,7 +63,7 @@ std::vector<Placement> place_apart(Scenario const& scenario, World const& world,
     OwnFormation const& own = object.own_formation;
     FormationSpec formation = scenario.formation;
     formation.name = own.name.value_or(formation.name);
-    std::string const where = where_in_object(scenario, object, own.area_mm ? "area" : "initial_formation");
+    std::string const where = place_of(scenario, object, ObjectSetting::formation);
     if (formation.name == kImportedFormation) {
         throw ConfigError(fmt::format(
             "{}: the formation 'imported' cannot fill an area; give the category its own initial_formation, or "

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "config/places.hpp"
 #include "record/imported_poses.hpp"
 #include "sim/find_file.hpp"
 #include "sim/fixed_objects.hpp"
@@ -31,17 +32,6 @@ bool is_placed_by_formation(ObjectConfig const& object) {
     return object.spec.body && !object.position_mm && object.poses.empty();
 }
 
-char const* size_key(Shape const& shape) {
-    switch (shape.kind) {
-        case ShapeKind::rectangle:
-            return shape.width_mm >= shape.height_mm ? "body_width" : "body_height";
-        case ShapeKind::triangle:
-            return "side_length";
-        default:
-            return "radius";
-    }
-}
-
 bool stands_inside(World const& world, Vec2 point_mm) {
     return world.arena.bounds.contains(point_mm) && (world.periodic || world.arena.contains(point_mm));
 }
@@ -49,8 +39,7 @@ bool stands_inside(World const& world, Vec2 point_mm) {
 [[noreturn]] void fail_too_large(Scenario const& scenario, World const& world, ObjectConfig const& object,
                                  float size_mm) {
     throw ConfigError(fmt::format("{}: the object is {:.1f} mm across, too large for {}",
-                                  where_in_object(scenario, object, size_key(object.spec.shape)), size_mm,
-                                  arena_text(world.arena)));
+                                  place_of(scenario, object, ObjectSetting::size), size_mm, arena_text(world.arena)));
 }
 
 /// A formation needs room for a disk around each object; report this at the object, not when the formation fails.
@@ -67,15 +56,14 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     RingSpec const& ring = *object.spec.ring;
     float const radius_mm = bounding_radius(object.spec.shape);
     if (half_thickness_mm(ring) > radius_mm) {
-        char const* const key = ring.segments && ring.thickness_mm ? "rect_thickness" : "dot_radius";
         throw ConfigError(fmt::format("{}: the ring is too thick for a shape of radius {:g} mm",
-                                      where_in_object(scenario, object, key), radius_mm));
+                                      place_of(scenario, object, ObjectSetting::ring_thickness), radius_mm));
     }
     Polygon const line = ring_line(object.spec, {});
     float const step_mm = length(line[1] - line[0]);
     if (step_mm < kSmallestStepMm) {
         throw ConfigError(fmt::format("{}: that many would be only {:.2g} mm apart; the minimum is {} mm",
-                                      where_in_object(scenario, object, "num_dots"), step_mm, kSmallestStepMm));
+                                      place_of(scenario, object, ObjectSetting::body_count), step_mm, kSmallestStepMm));
     }
 }
 
@@ -85,8 +73,8 @@ void check_ring(Scenario const& scenario, ObjectConfig const& object) {
     Box const& box = world.arena.bounds;
     bool const x_fits = x >= box.min.x && x <= box.max.x;
     bool const y_fits = y >= box.min.y && y <= box.max.y;
-    char const* const key = !object.position_mm ? "poses" : x_fits && !y_fits ? "y" : "x";
-    throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}", where_in_object(scenario, object, key), x, y,
+    ObjectSetting const setting = x_fits && !y_fits ? ObjectSetting::y : ObjectSetting::x;
+    throw ConfigError(fmt::format("{}: ({:g}, {:g}) is {} {}", place_of(scenario, object, setting), x, y,
                                   x_fits && y_fits ? "beyond the walls of" : "outside", arena_text(world.arena)));
 }
 
@@ -106,7 +94,7 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
         return;
     }
     auto const is_inside = [&](Vec2 point) { return stands_inside(world, point); };
-    std::string const where = where_in_object(scenario, object, size_key(object.spec.shape));
+    std::string const where = place_of(scenario, object, ObjectSetting::size);
     if (!std::ranges::all_of(moved(outline(object.spec.shape), centre_mm, pose.heading_rad), is_inside)) {
         throw ConfigError(fmt::format("{}: around ({:g}, {:g}) the object reaches beyond {}", where, centre_mm.x,
                                       centre_mm.y, arena_text(world.arena)));
@@ -124,11 +112,6 @@ std::size_t root_entry(Scenario const& scenario) {
     auto const found = std::ranges::find(scenario.objects, root, &ObjectConfig::category);
     bool const is_arena = root.empty() || root == "arena" || root == "null" || found == scenario.objects.end();
     return is_arena ? kNoEntry : static_cast<std::size_t>(found - scenario.objects.begin());
-}
-
-std::string where_root(Scenario const& scenario) {
-    std::string const key = "initial_formation_root_object";
-    return where_at_top(scenario, key) + ": " + key;
 }
 
 /// Appended to a message that gives only the number of objects: ". Radii: robots (40) 26.5 mm, ..."; empty if there is
@@ -150,8 +133,9 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     ObjectSpec const& spec = root.spec;
     bool const is_solid = spec.body && !spec.ring;
     if (root.nb == 0 || is_solid) {
-        throw ConfigError(fmt::format("{}: '{}' {}; use the arena, a wall, a membrane or a lamp", where_root(scenario),
-                                      root.category, is_solid ? "is solid, so nothing fits inside" : "has no objects"));
+        throw ConfigError(fmt::format("{}: '{}' {}; use the arena, a wall, a membrane or a lamp",
+                                      place_of(scenario, Setting::formation_root), root.category,
+                                      is_solid ? "is solid, so nothing fits inside" : "has no objects"));
     }
     if (spec.lamp) {
         auto const [shape, centre_mm] = area_at_start(*spec.lamp);
@@ -163,8 +147,8 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     Polygon space = outline(inset(spec.shape, spec.ring ? 2.0F * half_thickness_mm(*spec.ring) : 0.0F));
     if (signed_area(space) < 1.0) {
         throw ConfigError(fmt::format("{}: the ring of '{}' is so thick that it leaves no space inside; enlarge {}",
-                                      where_root(scenario), root.category,
-                                      where_in_object(scenario, root, size_key(spec.shape))));
+                                      place_of(scenario, Setting::formation_root), root.category,
+                                      place_of(scenario, root, ObjectSetting::size)));
     }
     Placement const& pose = poses.front();
     return make_arena({moved(space, pose.position_mm, pose.heading_rad)});
@@ -180,7 +164,7 @@ void check_inside(Scenario const& scenario, World const& world, ObjectConfig con
                 throw ConfigError(
                     fmt::format("{}: '{}' reaches beyond {}, and some of its contents would start there; "
                                 "move it or make it smaller",
-                                where_root(scenario), root.category, arena_text(world.arena)));
+                                place_of(scenario, Setting::formation_root), root.category, arena_text(world.arena)));
             }
         }
     }
@@ -207,7 +191,7 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, For
     try {
         placed = place(formation, radii, ground, random, read_imported_feather);
     } catch (FormationError const& error) {
-        throw ConfigError(fmt::format("{}: {}{}", where_at_top(scenario, error.key()), error.what(),
+        throw ConfigError(fmt::format("{}: {}{}", line_of(scenario, error), error.what(),
                                       error.key() == kFormationKey ? radii_text(scenario, entries) : ""));
     }
     auto next = placed.begin();
@@ -229,7 +213,7 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     RandomStream random(seed, kFormationStream);
     FormationSpec formation = scenario.formation;
     if (formation.name == kImportedFormation) {
-        formation.filename = find_file(scenario, "formation_filename", formation.filename).string();
+        formation.filename = find_file(scenario, Setting::formation_filename, formation.filename).string();
     }
 
     auto const add_obstacles = [&](std::size_t i) {
@@ -282,8 +266,8 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
         if (root == kNoEntry) {
             throw;
         }
-        throw ConfigError(
-            fmt::format("{} (inside '{}': {})", error.what(), scenario.objects[root].category, where_root(scenario)));
+        throw ConfigError(fmt::format("{} (inside '{}': {})", error.what(), scenario.objects[root].category,
+                                      place_of(scenario, Setting::formation_root)));
     }
     if (root != kNoEntry) {
         check_inside(scenario, world, scenario.objects[root], poses);

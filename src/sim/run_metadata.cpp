@@ -12,21 +12,6 @@ namespace {
 
 constexpr float kFitMargin = 0.95F;  // of the window that the arena fills
 
-Node scalar(std::string text) {
-    Node node;
-    node.kind = Node::Kind::scalar;
-    node.scalar = std::move(text);
-    return node;
-}
-
-void set(Node& map, std::string const& key, std::string text) {
-    if (Node* const found = map.find(key)) {
-        *found = scalar(std::move(text));
-    } else {
-        map.entries.emplace_back(key, scalar(std::move(text)));
-    }
-}
-
 /// Scale at which the arena fills the window, within what the window can zoom.
 float fitted_mm_to_pixels(ViewConfig const& view, Arena const& arena) {
     Vec2 const size = arena.bounds.size();
@@ -51,25 +36,12 @@ std::string polygons_as_yaml(Arena const& arena) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& scenario, Arena const& arena,
-                                                              RunValues const& run) {
-    // Nothing from the command line but the seed: with or without window or progress bar, the bytes are the same.
-    Node written = scenario.resolved;
-    Node resolved = scenario.values;
-    for (Node* const configuration : {&written, &resolved}) {
-        set(*configuration, "seed", std::to_string(run.seed));
-        set(*configuration, "GUI", scenario.view.gui ? "true" : "false");
-        set(*configuration, "progress_bar", "false");
-        set(*configuration, "mm_to_pixels", fmt::format("{}", fitted_mm_to_pixels(scenario.view, arena)));
-    }
-    set(resolved, "time_step", fmt::format("{}", run.time_step_s));
-    set(resolved, "physics_engine", run.physics_engine);
-    if (run.is_periodic) {
-        set(resolved, "boundary_condition", "periodic");
-        std::erase_if(resolved.entries, [](auto const& entry) { return entry.key.starts_with("wall_"); });
-    }
+                                                              RunValues run) {
+    run.mm_to_pixels = fitted_mm_to_pixels(scenario.view, arena);
+    ConfigurationText const text = configuration_text(scenario, run);
     return {{"program_version", POGOSIM_VERSION_STRING},
-            {"configuration", to_yaml(written)},
-            {"resolved_configuration", to_yaml(resolved)},
+            {"configuration", text.written},
+            {"resolved_configuration", text.resolved},
             {"arena_polygons", polygons_as_yaml(arena)}};
 }
 

@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "config/places.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
 #include "sim/lamps_of.hpp"
@@ -34,7 +35,7 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
         return allocate_for(purpose, std::nullopt,
                             [&] { return make_physics_engine(scenario.physics_engine, world, scenario.walls); });
     } catch (ConfigError const& error) {
-        throw ConfigError(fmt::format("{}: arena_surface: {}", where_at_top(scenario, "arena_surface"), error.what()));
+        throw ConfigError(fmt::format("{}: {}", place_of(scenario, Setting::arena_surface), error.what()));
     }
 }
 
@@ -45,7 +46,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       options_(std::move(options)),
       seed_(seed_of(scenario_)),
       world_(build_world(scenario_, seed_)),
-      parameters_(scenario_.parameters),
+      parameters_(scenario_),
       guard_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       programs_(std::move(program), world_, services_, seed_),
@@ -323,9 +324,7 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
 }
 
 bool Simulation::set_parameter(std::string const& name, std::string const& yaml_value) {
-    Node changed = scenario_.parameters;
-    apply_override(changed, fmt::format("{}={}", name, yaml_value));
-    UserParameters source(changed);
+    UserParameters source = parameters_.with(name, yaml_value);
     bool has_variable = false;
     for (BoundVariable const& bound : services_.bound_variables) {
         if (bound.name == name) {

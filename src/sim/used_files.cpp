@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/locked_file.hpp"
+#include "config/places.hpp"
 #include "record/data_file.hpp"
 #include "record/message_log.hpp"
 #include "render/film_file.hpp"
@@ -20,44 +22,43 @@ namespace pogosim {
 namespace {
 
 struct UsedFile {
-    std::string key;             // empty: the configuration; kVideo: the film
-    std::filesystem::path path;  // as the run opens it
-    bool is_output = false;
-    bool is_beside = false;  // the data file, the message log or the film is put together there
+    std::optional<Setting> setting;  // empty: the configuration, or the film
+    std::filesystem::path path;      // as the run opens it
+    bool is_output = false;          // without a setting: the film
+    bool is_beside = false;          // the data file, the message log or the film is put together there
 };
-
-constexpr auto kVideo = "--video";
 
 /// Files that this run does not use are omitted.
 std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& film) {
-    std::vector<UsedFile> files{{"", scenario.file}};
-    auto const add_input = [&](std::string const& key, std::string const& name, bool is_used) {
+    std::vector<UsedFile> files{{std::nullopt, scenario.file}};
+    auto const add_input = [&](Setting setting, std::string const& name, bool is_used) {
         if (is_used && !name.empty()) {
-            files.push_back({key, find_file(scenario, key, name)});
+            files.push_back({setting, find_file(scenario, setting, name)});
         }
     };
-    auto const add_output = [&](std::string const& key, std::string const& name, bool is_used) {
+    auto const add_output = [&](std::optional<Setting> setting, std::string const& name, bool is_used) {
         if (is_used && !name.empty()) {
-            files.push_back({key, name, /*is_output=*/true});
+            files.push_back({setting, name, /*is_output=*/true});
         }
+    };
+    auto const add_beside = [&](std::optional<Setting> setting, std::filesystem::path const& path) {
+        files.push_back({setting, path, /*is_output=*/true, /*is_beside=*/true});
     };
     OutputConfig const& output = scenario.output;
-    add_input("arena_file", scenario.arena_file, true);
-    add_input("formation_filename", scenario.formation.filename, scenario.formation.name == kImportedFormation);
-    add_output("data_filename", output.data_filename, output.enable_data_logging);
-    add_output("console_filename", output.console_filename, output.enable_console_logging);
-    add_output("message_log", output.message_log, true);
-    add_output(kVideo, film, true);
+    add_input(Setting::arena_file, scenario.arena_file, true);
+    add_input(Setting::formation_filename, scenario.formation.filename, scenario.formation.name == kImportedFormation);
+    add_output(Setting::data_filename, output.data_filename, output.enable_data_logging);
+    add_output(Setting::console_filename, output.console_filename, output.enable_console_logging);
+    add_output(Setting::message_log, output.message_log, true);
+    add_output(std::nullopt, film, true);
     if (output.enable_data_logging && !output.data_filename.empty()) {
-        files.push_back(
-            {"data_filename", DataFile::path_beside(output.data_filename), /*is_output=*/true, /*is_beside=*/true});
+        add_beside(Setting::data_filename, DataFile::path_beside(output.data_filename));
     }
     if (!output.message_log.empty()) {
-        files.push_back(
-            {"message_log", MessageLog::path_beside(output.message_log), /*is_output=*/true, /*is_beside=*/true});
+        add_beside(Setting::message_log, MessageLog::path_beside(output.message_log));
     }
     if (!film.empty()) {
-        files.push_back({kVideo, FilmFile::path_beside(film), /*is_output=*/true, /*is_beside=*/true});
+        add_beside(std::nullopt, FilmFile::path_beside(film));
     }
     return files;
 }
@@ -72,18 +73,18 @@ bool are_same(std::filesystem::path const& a, std::filesystem::path const& b) {
     return real_path(a) == real_path(b);
 }
 
-/// "file:line: key: " for messages.
-std::string where_it_is_named(Scenario const& scenario, std::string const& key) {
-    return key == kVideo ? fmt::format("{}: ", key) : fmt::format("{}: {}: ", where_at_top(scenario, key), key);
+/// "file:line: key", for messages.
+std::string where_it_is_named(Scenario const& scenario, UsedFile const& file) {
+    return file.setting ? place_of(scenario, *file.setting) : "--video";
 }
 
 std::string described(Scenario const& scenario, UsedFile const& file) {
-    if (file.key.empty()) {
-        return fmt::format("the configuration file '{}'", file.path.string());
+    std::string const name = file.path.string();
+    if (file.setting) {
+        return fmt::format("{} '{}' ({})", key_of(*file.setting), name, line_of(scenario, *file.setting));
     }
-    return file.key == kVideo
-               ? fmt::format("the film '{}' (--video)", file.path.string())
-               : fmt::format("{} '{}' ({})", file.key, file.path.string(), where_at_top(scenario, file.key));
+    return file.is_output ? fmt::format("the film '{}' (--video)", name)
+                          : fmt::format("the configuration file '{}'", name);
 }
 
 char const* fate(UsedFile const& file) {
@@ -94,10 +95,11 @@ char const* purpose_of_file_beside(UsedFile const& file) {
     if (!file.is_beside) {
         return "";
     }
-    if (file.key == "message_log") {
-        return " (used to assemble the message log)";
+    if (!file.setting) {
+        return " (used to assemble the film)";
     }
-    return file.key == kVideo ? " (used to assemble the film)" : " (used to assemble the data file)";
+    return file.setting == Setting::message_log ? " (used to assemble the message log)"
+                                                : " (used to assemble the data file)";
 }
 
 void check_frames_name(Scenario const& scenario, std::vector<UsedFile> const& files) {
@@ -107,8 +109,8 @@ void check_frames_name(Scenario const& scenario, std::vector<UsedFile> const& fi
     FrameNames const names(scenario.view.frames_name);
     auto const same = std::ranges::find_if(files, [&](UsedFile const& file) { return names.may_be(file.path); });
     if (same != files.end()) {
-        throw ConfigError(fmt::format("{}a frame may be the same file as {}, {}; choose another name",
-                                      where_it_is_named(scenario, "frames_name"), described(scenario, *same),
+        throw ConfigError(fmt::format("{}: a frame may be the same file as {}, {}; choose another name",
+                                      place_of(scenario, Setting::frames_name), described(scenario, *same),
                                       fate(*same)));
     }
 }
@@ -121,11 +123,10 @@ void check_used_files(Scenario const& scenario, std::string const& film) {
         for (std::size_t j = 0; j < i; ++j) {
             UsedFile const& written = files[i];
             UsedFile const& other = files[j];
-            if (written.is_output && written.key != other.key && are_same(written.path, other.path)) {
-                throw ConfigError(fmt::format("{}'{}'{} is the same file as {}, {}; choose another file",
-                                              where_it_is_named(scenario, written.key), written.path.string(),
-                                              purpose_of_file_beside(written), described(scenario, other),
-                                              fate(other)));
+            if (written.is_output && written.setting != other.setting && are_same(written.path, other.path)) {
+                throw ConfigError(fmt::format(
+                    "{}: '{}'{} is the same file as {}, {}; choose another file", where_it_is_named(scenario, written),
+                    written.path.string(), purpose_of_file_beside(written), described(scenario, other), fate(other)));
             }
         }
     }

@@ -11,6 +11,7 @@
 #include "config/object_types.hpp"
 #include "config/reference.hpp"
 #include "config/scenario.hpp"
+#include "config/source.hpp"
 #include "config_file.hpp"
 
 using namespace pogosim;
@@ -356,7 +357,7 @@ TEST(BadInput, MutilatedConfigurationsLoadOrAreRefusedAndNothingElse) {
         Folder::write("fuzz.yaml", text);
         try {
             Scenario const scenario = load_scenario("fuzz.yaml", {});
-            EXPECT_EQ(to_yaml(scenario.resolved).empty(), false);
+            EXPECT_EQ(to_yaml(scenario.source->tree).empty(), false);
             ++loaded;
         } catch (ConfigError const& error) {
             EXPECT_NE(std::string(error.what()).find("fuzz.yaml"), std::string::npos) << error.what();

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "config/places.hpp"
+#include "config/source.hpp"
 #include "config/yaml_text.hpp"
 #include "config_file.hpp"
 
@@ -52,7 +54,6 @@ TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(s.light_map_columns, 100);
     EXPECT_EQ(s.light_map_rows, 100);
     EXPECT_TRUE(s.objects.empty());
-    EXPECT_EQ(s.parameters.kind, Node::Kind::null);
 
     FormationSpec const& f = s.formation;
     EXPECT_EQ(f.name, "power_lloyd");
@@ -145,7 +146,7 @@ TEST(Scenario, TheArticlesExampleLoadsWithoutAWarning) {
     EXPECT_EQ(robot.ir.reception.law, ReceptionLaw::power);
     EXPECT_EQ(robot.ir.reception.alpha, 1.0e-6);
     EXPECT_EQ(robot.ir.reception.delta, 1.1897);
-    EXPECT_EQ(s.parameters.find("run_duration_max")->scalar, "5000");
+    EXPECT_EQ(s.source->tree.find("parameters")->find("run_duration_max")->scalar, "5000");
 }
 
 TEST(Scenario, EveryTopLevelKeyReachesItsMember) {
@@ -255,7 +256,7 @@ parameters: {any: thing}
     EXPECT_TRUE(s.output.led_column && s.output.enable_console_logging);
     EXPECT_EQ(s.output.console_filename, "c.txt");
     EXPECT_EQ(s.output.log_format, LogFormat::minimal);
-    EXPECT_EQ(s.parameters.find("any")->scalar, "thing");
+    EXPECT_EQ(find_path(s.source->tree, "parameters.any")->scalar, "thing");
 }
 
 TEST(Scenario, EveryRobotKeyReachesItsMember) {
@@ -294,7 +295,7 @@ objects:
     EXPECT_EQ(object.type, "pogobot");
     EXPECT_EQ(object.nb, 3);
     EXPECT_EQ(object.position_mm, (Vec2{10.0F, 20.5F}));
-    EXPECT_EQ(object.where, "x.yaml:3");
+    EXPECT_EQ(object.line, "x.yaml:3");
     ObjectSpec const& made = object.spec;
     RobotSpec const& spec = *made.robot;
     EXPECT_EQ(made.shape.radius_mm, 30.0F);
@@ -642,13 +643,13 @@ TEST(Scenario, SetWinsOverTheFileAndOverItsOptions) {
     EXPECT_EQ(s.objects.at(0).spec.robot->max_linear_speed_mm_s, 20.0F);
     EXPECT_EQ(s.seed, 4U);
     EXPECT_EQ(s.time_step_s, 0.5);
-    EXPECT_EQ(s.resolved.find("seed")->scalar, "4");
+    EXPECT_EQ(s.source->tree.find("seed")->scalar, "4");
 }
 
 TEST(Scenario, ResolvedTreeKeepsUnknownKeysAndReadsBackTheSame) {
     Warnings const warnings;
     Scenario const s = load(kRobots + "mystery: {deep: [1, '1']}\narena_surface: 1.0e6\n");
-    std::string const yaml = to_yaml(s.resolved);
+    std::string const yaml = to_yaml(s.source->tree);
     EXPECT_NE(yaml.find("mystery:\n  deep:\n    - 1\n    - \"1\"\n"), std::string::npos);
     EXPECT_NE(yaml.find("arena_surface: 1.0e6\n"), std::string::npos);
     EXPECT_EQ(to_yaml(parse_yaml(yaml, "again.yaml")), yaml);
@@ -715,11 +716,11 @@ TEST(Scenario, CategoryThatStandsSeveralTimesIsAsManyEntries) {
         }
     }
     EXPECT_EQ(places, (std::vector<float>{100.0F, 200.0F, 300.0F}));
-    EXPECT_EQ(where_in_object(s, s.objects.at(2), "x"), "x.yaml:4: objects.lamp.1.x");
+    EXPECT_EQ(place_of(s, s.objects.at(2), ObjectSetting::x), "x.yaml:4: objects.lamp.1.x");
 
     // What the metadata say of it is the same world, in YAML that every reader understands.
     Warnings const none;
-    Scenario const again = load(to_yaml(s.resolved));
+    Scenario const again = load(to_yaml(s.source->tree));
     EXPECT_EQ(none.text(), "");
     ASSERT_EQ(again.objects.size(), 5U);
     EXPECT_EQ(spot_of(again.objects.at(3)).centre_mm.x, 300.0F);
@@ -754,7 +755,7 @@ TEST(Scenario, KeyThatStandsTwiceElsewhereHasItsLastValue) {
     Warnings const warnings;
     Scenario const s = load(kRobots + "    nb: 2\n    nb: 3\nparameters: {objects: {a: 1, a: 2}}\n");
     EXPECT_EQ(s.objects.at(0).nb, 3);
-    EXPECT_EQ(find_path(s.parameters, "objects.a")->scalar, "2");
+    EXPECT_EQ(find_path(s.source->tree, "parameters.objects.a")->scalar, "2");
     EXPECT_EQ(warnings.lines().size(), 2U);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/object_types.hpp"
+#include "config/source.hpp"
 #include "config_file.hpp"
 
 using namespace pogosim;
@@ -27,16 +28,16 @@ bool has(Node const& map, std::string const& key) {
 }
 
 Node robots_of(std::string const& keys) {
-    return *find_path(load(kRobots + keys).values, "objects.robots");
+    return *find_path(load(kRobots + keys).source->values, "objects.robots");
 }
 
 /// A configuration that holds all its values gives the same values, without a warning.
 void expect_complete(Scenario const& scenario) {
     Warnings const warnings;
     Folder const folder;
-    std::string const text = to_yaml(scenario.values);
+    std::string const text = to_yaml(scenario.source->values);
     Folder::write("values.yaml", text);
-    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}).values), text);
+    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}).source->values), text);
     EXPECT_EQ(warnings.text(), "");
 }
 
@@ -44,19 +45,19 @@ void expect_complete(Scenario const& scenario) {
 
 TEST(ValuesInUse, HoldEveryDefault) {
     Scenario const scenario = load(kRobots);
-    EXPECT_EQ(scenario.values.find("simulation_time")->scalar, "100");
-    EXPECT_EQ(scenario.values.find("initial_formation")->scalar, "power_lloyd");
-    EXPECT_EQ(find_path(scenario.values, "objects.robots.type")->scalar, "pogobot");
-    EXPECT_EQ(find_path(scenario.values, "objects.robots.radius")->scalar, "26.5");
-    EXPECT_EQ(find_path(scenario.values, "objects.robots.msg_success_rate.alpha")->scalar, "1.03215183");
+    EXPECT_EQ(scenario.source->values.find("simulation_time")->scalar, "100");
+    EXPECT_EQ(scenario.source->values.find("initial_formation")->scalar, "power_lloyd");
+    EXPECT_EQ(find_path(scenario.source->values, "objects.robots.type")->scalar, "pogobot");
+    EXPECT_EQ(find_path(scenario.source->values, "objects.robots.radius")->scalar, "26.5");
+    EXPECT_EQ(find_path(scenario.source->values, "objects.robots.msg_success_rate.alpha")->scalar, "1.03215183");
 }
 
 TEST(ValuesInUse, LeaveOutWhatMeansNothingInTheChosenMode) {
     Node const disk = robots_of("    geometry: disk\n");
     EXPECT_TRUE(has(disk, "radius"));
     EXPECT_FALSE(has(disk, "body_width"));
-    EXPECT_TRUE(has(load("boundary_condition: solid\n").values, "wall_friction"));
-    EXPECT_FALSE(has(load("boundary_condition: periodic\nwall_friction: 0.5\n").values, "wall_friction"));
+    EXPECT_TRUE(has(load("boundary_condition: solid\n").source->values, "wall_friction"));
+    EXPECT_FALSE(has(load("boundary_condition: periodic\nwall_friction: 0.5\n").source->values, "wall_friction"));
 }
 
 TEST(ValuesInUse, HoldTheParametersOfTheReceptionLawThatIsChosen) {
@@ -95,8 +96,8 @@ TEST(ValuesInUse, HoldAKeyOfTwoNamesOnce) {
     Scenario const scenario = load("arena_file: a.csv\n" + kRobots +
                                    "    initial_formation: disk\n  lamp: {type: orbiting_static_light, "
                                    "geometry: disk, radius: 100, orbit_radius: 3, angular_speed: 2.5}\n");
-    EXPECT_EQ(find_path(scenario.values, "objects.lamp.orbit_angular_speed")->scalar, "2.5");
-    EXPECT_EQ(find_path(scenario.values, "objects.lamp.angular_speed"), nullptr);
+    EXPECT_EQ(find_path(scenario.source->values, "objects.lamp.orbit_angular_speed")->scalar, "2.5");
+    EXPECT_EQ(find_path(scenario.source->values, "objects.lamp.angular_speed"), nullptr);
     expect_complete(scenario);
 }
 
@@ -114,6 +115,7 @@ TEST(ValuesInUse, GiveTheSameValuesForWhatIsNotOneNumber) {
 }
 
 TEST(ValuesInUse, AreThoseThatSetHasSet) {
-    EXPECT_EQ(find_path(load(kRobots, {.overrides = {"objects.robots.nb=12"}}).values, "objects.robots.nb")->scalar,
-              "12");
+    EXPECT_EQ(
+        find_path(load(kRobots, {.overrides = {"objects.robots.nb=12"}}).source->values, "objects.robots.nb")->scalar,
+        "12");
 }

@@ -353,8 +353,11 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 def test_new_object_type_of_the_docs_compiles(tmp_path: Path) -> None:
-    page = ROOT / "docs" / "new_object_type.md"
-    (source := tmp_path / "beacon.cpp").write_text(blocks(page, "cpp")[0])
+    function, line = blocks(ROOT / "docs" / "new_object_type.md", "cpp")
+    before, table, after = (
+        (ROOT / "src" / "config" / "solid_types.cpp").read_text().partition("constexpr std::array kSolidTypes{\n")
+    )
+    (source := tmp_path / "solid_types.cpp").write_text(f"{before}{function}\n{table}{line}{after}")
     command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
     command += ["-I", str(ROOT / "src"), "-I", str(ROOT / "include"), str(source)]
     assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""

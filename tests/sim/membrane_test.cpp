@@ -32,9 +32,7 @@ std::vector<ObjectConfig> robots_around(Vec2 centre, int count, float distance_m
 
 Scenario scene(std::vector<ObjectConfig> const& membranes, std::vector<ObjectConfig> robots, double side_mm = 1000.0) {
     robots.insert(robots.begin(), membranes.begin(), membranes.end());
-    Scenario scenario = testing::square_scene(std::move(robots), side_mm);
-    scenario.parameters.kind = Node::Kind::map;
-    return scenario;
+    return testing::square_scene(std::move(robots), side_mm);
 }
 
 /// Robots that start to all sides and push on for ever, turning away now and then.

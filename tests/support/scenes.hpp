@@ -56,8 +56,6 @@ inline Scenario square_scene(std::vector<ObjectConfig> objects, double side_mm =
     scenario.formation.name = "random";
     scenario.output.enable_data_logging = false;
     scenario.objects = std::move(objects);
-    scenario.parameters.kind = Node::Kind::map;
-    scenario.resolved.kind = Node::Kind::map;
     return scenario;
 }
 

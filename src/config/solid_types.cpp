@@ -1,4 +1,4 @@
-// Objects of type `membrane` and `rectmembrane`: soft rings of disks or of segments that run user code.
+// Types of objects that are in the way, or in reach, of robots.
 #include <array>
 #include <span>
 
@@ -9,6 +9,40 @@
 namespace pogosim {
 
 namespace {
+
+void read_pogobot(MapReader& reader, ObjectConfig& object) {
+    object.spec.shape = kPogobotShape;
+    read_shape(reader, robot_geometry_keys(), object.spec.shape);
+    read_robot(reader, object);
+    read_body(reader, object);
+    read_placement(reader, object);
+}
+
+void read_pogobject(MapReader& reader, ObjectConfig& object) {
+    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    RobotSpec kind;
+    kind.emitters = Emitters::centre;
+    kind.has_wheels = false;
+    read_robot(reader, object, kind);
+    read_body(reader, object);
+    read_placement(reader, object);
+}
+
+void read_pogowall(MapReader& reader, ObjectConfig& object) {
+    read_shape(reader, outline_geometry_keys(), object.spec.shape);
+    RobotSpec kind;
+    kind.emitters = Emitters::outline;
+    kind.has_wheels = false;
+    read_robot(reader, object, kind);
+    if (object.spec.shape.kind == ShapeKind::arena) {
+        ignore_position(reader);
+        return;
+    }
+    read_position(reader, object);
+    if (!object.position_mm && reader.find("geometry") != nullptr) {
+        fail_at(reader.place(), "needs x and y: no formation places a wall of this geometry");
+    }
+}
 
 constexpr int kMostBodies = 10000;  // of one membrane
 
@@ -58,14 +92,45 @@ void read_ring_object(MapReader& reader, ObjectConfig& object, bool segments) {
     read_colormap(reader, object);
 }
 
-}  // namespace
-
 void read_membrane(MapReader& reader, ObjectConfig& object) {
     read_ring_object(reader, object, /*segments=*/false);
 }
 
 void read_rectmembrane(MapReader& reader, ObjectConfig& object) {
     read_ring_object(reader, object, /*segments=*/true);
+}
+
+void read_active_object(MapReader& reader, ObjectConfig& object) {
+    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    RobotSpec kind;
+    kind.has_wheels = false;
+    read_robot(reader, object, kind);
+    read_body(reader, object);
+    read_placement(reader, object);
+    read_colormap(reader, object);
+}
+
+void read_passive_object(MapReader& reader, ObjectConfig& object) {
+    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    read_body(reader, object);
+    read_placement(reader, object);
+    read_colormap(reader, object);
+}
+
+constexpr std::array kSolidTypes{
+    ObjectType{"pogobot", "Robot with two motors and four infrared emitters.", read_pogobot},
+    ObjectType{"pogobject", "Head of a robot on a large body without motors.", read_pogobject},
+    ObjectType{"pogowall", "Wall that runs user code and sends along its whole length.", read_pogowall},
+    ObjectType{"membrane", "Soft ring of disks that runs user code and sends along its whole length.", read_membrane},
+    ObjectType{"rectmembrane", "Like membrane, but made of rectangular segments.", read_rectmembrane},
+    ObjectType{"active_object", "Pushable body with a program and infrared.", read_active_object},
+    ObjectType{"passive_object", "Pushable body.", read_passive_object},
+};
+
+}  // namespace
+
+std::span<ObjectType const> solid_types() {
+    return kSolidTypes;
 }
 
 }  // namespace pogosim

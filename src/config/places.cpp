@@ -1,0 +1,124 @@
+#include "config/places.hpp"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+#include "config/source.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// The key that says how far a shape extends along its longer side, or its shorter one.
+std::string size_key(Shape const& shape, bool longer) {
+    switch (shape.kind) {
+        case ShapeKind::rectangle:
+            return (shape.width_mm >= shape.height_mm) == longer ? "body_width" : "body_height";
+        case ShapeKind::triangle:
+            return "side_length";
+        default:
+            return "radius";
+    }
+}
+
+std::string size_key(ObjectSpec const& spec) {
+    if (!spec.lamp) {
+        return size_key(spec.shape, /*longer=*/true);
+    }
+    return size_key(std::visit([](auto const& lamp) { return lamp.shape; }, *spec.lamp), /*longer=*/false);
+}
+
+std::string coordinate_key(Scenario const& scenario, ObjectConfig const& object, std::string const& axis) {
+    if (!object.spec.lamp) {
+        return object.position_mm ? axis : "poses";
+    }
+    Node const* const entry = node_of(scenario, object);
+    std::string const centre = "center_" + axis;  // of an orbit
+    return entry != nullptr && entry->find(centre) != nullptr ? centre : axis;
+}
+
+std::string key_of(Scenario const& scenario, ObjectConfig const& object, ObjectSetting setting) {
+    switch (setting) {
+        case ObjectSetting::angular_speed:
+            return "max_angular_speed";
+        case ObjectSetting::body_count:
+            return "num_dots";
+        case ObjectSetting::count:
+            return "nb";
+        case ObjectSetting::formation:
+            return object.own_formation.area_mm ? "area" : "initial_formation";
+        case ObjectSetting::linear_speed:
+            return "max_linear_speed";
+        case ObjectSetting::ring_thickness:
+            return object.spec.ring->segments && object.spec.ring->thickness_mm ? "rect_thickness" : "dot_radius";
+        case ObjectSetting::size:
+            return size_key(object.spec);
+        case ObjectSetting::x:
+            return coordinate_key(scenario, object, "x");
+        case ObjectSetting::y:
+            return coordinate_key(scenario, object, "y");
+    }
+    return "";
+}
+
+std::string line_of_key(Scenario const& scenario, std::string const& key) {
+    Node const& tree = source_of(scenario).tree;
+    Node const* const value = tree.find(key);
+    return (value != nullptr ? *value : tree).where();
+}
+
+}  // namespace
+
+std::string key_of(Setting setting) {
+    switch (setting) {
+        case Setting::arena_file:
+            return "arena_file";
+        case Setting::arena_surface:
+            return "arena_surface";
+        case Setting::boundary_condition:
+            return "boundary_condition";
+        case Setting::console_filename:
+            return "console_filename";
+        case Setting::data_filename:
+            return "data_filename";
+        case Setting::formation_filename:
+            return "formation_filename";
+        case Setting::formation_root:
+            return "initial_formation_root_object";
+        case Setting::frames_name:
+            return "frames_name";
+        case Setting::message_log:
+            return "message_log";
+        case Setting::speed_up:
+            return "GUI_speed_up";
+    }
+    return "";
+}
+
+std::string line_of(Scenario const& scenario, Setting setting) {
+    return line_of_key(scenario, key_of(setting));
+}
+
+std::string line_of(Scenario const& scenario, FormationError const& error) {
+    return line_of_key(scenario, error.key());
+}
+
+std::string place_of(Scenario const& scenario, Setting setting) {
+    return fmt::format("{}: {}", line_of(scenario, setting), key_of(setting));
+}
+
+std::string place_of(Scenario const& scenario, ObjectConfig const& object, ObjectSetting setting) {
+    std::string const key = key_of(scenario, object, setting);
+    Node const* const entry = node_of(scenario, object);
+    Node const* const value = entry != nullptr ? entry->find(key) : nullptr;
+    std::string const line = value != nullptr ? value->where() : object.line;
+    return fmt::format("{}{}objects.{}{}.{}", line, line.empty() ? "" : ": ", object.category,
+                       object.item ? fmt::format(".{}", *object.item) : "", key);
+}
+
+bool is_written(Scenario const& scenario, Setting setting) {
+    return source_of(scenario).tree.find(key_of(setting)) != nullptr;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,56 @@
+// Where values were written, for messages of those who find out later that one of them cannot work. What a key is
+// called is known here and in the tables, and nowhere else.
+#pragma once
+
+#include <string>
+
+#include "config/scenario.hpp"
+
+namespace pogosim {
+
+/// Values at the top level.
+enum class Setting {
+    arena_file,
+    arena_surface,
+    boundary_condition,
+    console_filename,
+    data_filename,
+    formation_filename,
+    formation_root,
+    frames_name,
+    message_log,
+    speed_up,
+};
+
+/// Values of an entry of `objects`.
+enum class ObjectSetting {
+    angular_speed,
+    body_count,  // of a ring
+    count,
+    formation,  // of the entry itself: its area, or its name
+    linear_speed,
+    ring_thickness,
+    size,  // what makes the shape too large, or a lamp too small
+    x,     // or the poses
+    y,
+};
+
+/// The key: "arena_surface".
+std::string key_of(Setting setting);
+
+/// "conf/a.yaml:14"; of a key that is absent the line of the map.
+std::string line_of(Scenario const& scenario, Setting setting);
+
+/// "conf/a.yaml:14: arena_surface".
+std::string place_of(Scenario const& scenario, Setting setting);
+
+/// "conf/a.yaml:14: objects.robots.radius".
+std::string place_of(Scenario const& scenario, ObjectConfig const& object, ObjectSetting setting);
+
+/// The line of the key that the error names: "conf/a.yaml:14".
+std::string line_of(Scenario const& scenario, FormationError const& error);
+
+/// Whether the file says something of it.
+bool is_written(Scenario const& scenario, Setting setting);
+
+}  // namespace pogosim
