@@ -12,7 +12,7 @@ int cell_count(float length_mm, float cell_mm, float most) {
 
 }  // namespace
 
-UniformGrid::Span UniformGrid::cells(float low, float high, int count, bool periodic) {
+GridCells::Span GridCells::cells(float low, float high, int count, bool periodic) {
     auto const whole = static_cast<float>(count);
     if (!periodic) {
         return {clamp_cell(low, count), clamp_cell(high, count)};
@@ -23,24 +23,27 @@ UniformGrid::Span UniformGrid::cells(float low, float high, int count, bool peri
     return {static_cast<int>(std::floor(low)), static_cast<int>(std::floor(high))};
 }
 
-void UniformGrid::build(std::span<Vec2 const> points, Box bounds, float cell_mm, bool periodic) {
+GridCells::GridCells(Box bounds, float smallest_cell_mm, std::size_t point_count, bool periodic)
+    : origin_(bounds.min), periodic_(periodic) {
     // Not many more cells than points, however small the cells asked for.
-    float const most = std::max(1.0F, 2.0F * std::sqrt(static_cast<float>(points.size())));
+    float const most = std::max(1.0F, 2.0F * std::sqrt(static_cast<float>(point_count)));
     Vec2 const size = bounds.size();
-    origin_ = bounds.min;
-    periodic_ = periodic;
-    columns_ = cell_count(size.x, cell_mm, most);
-    rows_ = cell_count(size.y, cell_mm, most);
+    columns_ = cell_count(size.x, smallest_cell_mm, most);
+    rows_ = cell_count(size.y, smallest_cell_mm, most);
     columns_per_mm_ = static_cast<float>(columns_) / size.x;
     rows_per_mm_ = static_cast<float>(rows_) / size.y;
+}
+
+void UniformGrid::build(std::span<Vec2 const> points, Box bounds, float cell_mm, bool periodic) {
+    cells_ = GridCells(bounds, cell_mm, points.size(), periodic);
 
     // Counting sort by cell.
-    auto const cells = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+    std::size_t const cells = cells_.size();
     start_.assign(cells + 1, 0);
     cell_.resize(points.size());
     items_.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        cell_[i] = static_cast<std::uint32_t>(row_of(points[i].y) * columns_ + column_of(points[i].x));
+        cell_[i] = static_cast<std::uint32_t>(cells_.cell_of(points[i]));
         ++start_[cell_[i] + 1];
     }
     std::partial_sum(start_.begin(), start_.end(), start_.begin());

@@ -1,9 +1,11 @@
-// Points sorted into square cells, rebuilt each time: finds neighbours in time proportional to their number.
+// Points sorted into the cells of a grid, to find neighbours in time proportional to their number: UniformGrid sorts all
+// of them at once, which makes the fastest searches, and GrowingGrid takes one after the other.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,24 +13,28 @@
 
 namespace pogosim {
 
-class UniformGrid {
+/// Equal cells over a box. Points beyond it are in the outermost cells, or, if `periodic`, wrapped into it.
+class GridCells {
 public:
-    /// Sorts the points (mm). `cell_mm` is about the radius of the queries to come; `periodic` wraps at `bounds`, else
-    /// points outside of them count as in the outermost cell.
-    void build(std::span<Vec2 const> points, Box bounds, float cell_mm, bool periodic);
+    GridCells() = default;
+    /// Cells are at least `smallest_cell_mm` wide where the box is not narrower, and not many more than `point_count`.
+    GridCells(Box bounds, float smallest_cell_mm, std::size_t point_count, bool periodic);
 
-    /// Calls visit(index, point) for every point of the cells that touch the square of half width `radius_mm` around
-    /// the centre: all points within the radius, and some others. Always in the same order.
-    template <class Visit>
-    void for_each_near(Vec2 centre, float radius_mm, Visit const& visit) const;
+    std::size_t size() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+
+    std::size_t cell_of(Vec2 point) const { return index(column_of(point.x), row_of(point.y)); }
+
+    /// Calls is_found(cell) for the cells that touch the square of half width `radius_mm` around the centre, row by
+    /// row, until it returns true. Returns whether it has.
+    template <class Found>
+    bool any_near(Vec2 centre, float radius_mm, Found const& is_found) const;
+
+    /// Calls visit(cell) in growing rings of cells around a point in the box, until done(gap_mm): no point nearer than
+    /// `gap_mm` is left. Not for periodic ones.
+    template <class Visit, class Done>
+    void search_outwards(Vec2 centre, Visit const& visit, Done const& done) const;
 
 private:
-    /// A copy of the point next to its index, so that queries read memory sequentially.
-    struct Item {
-        Vec2 point;
-        std::uint32_t index;
-    };
-
     struct Span {
         int first;
         int last;
@@ -42,6 +48,9 @@ private:
     }
     static int clamp_cell(float position, int count) {
         return static_cast<int>(std::clamp(position, 0.0F, static_cast<float>(count - 1)));
+    }
+    std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
 
     /// Of cells that may lie beyond the bounds on either side.
@@ -60,13 +69,93 @@ private:
     int columns_ = 1;
     int rows_ = 1;
     bool periodic_ = false;
+};
+
+class UniformGrid {
+public:
+    /// Sorts the points (mm). `cell_mm` is about the radius of the queries to come; `periodic` wraps at `bounds`, else
+    /// points outside of them count as in the outermost cell.
+    void build(std::span<Vec2 const> points, Box bounds, float cell_mm, bool periodic);
+
+    /// Calls visit(index, point) for every point of the cells that touch the square of half width `radius_mm` around
+    /// the centre: all points within the radius, and some others. Always in the same order.
+    template <class Visit>
+    void for_each_near(Vec2 centre, float radius_mm, Visit const& visit) const {
+        cells_.any_near(centre, radius_mm, [&](std::size_t cell) {
+            visit_cell(cell, visit);
+            return false;
+        });
+    }
+
+    /// See GridCells::search_outwards.
+    template <class Visit, class Done>
+    void search_outwards(Vec2 centre, Visit const& visit, Done const& done) const {
+        cells_.search_outwards(
+            centre, [&](std::size_t cell) { visit_cell(cell, visit); }, done);
+    }
+
+private:
+    /// A copy of the point next to its index, so that queries read memory sequentially.
+    struct Item {
+        Vec2 point;
+        std::uint32_t index;
+    };
+
+    template <class Visit>
+    void visit_cell(std::size_t cell, Visit const& visit) const {
+        for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) {
+            visit(items_[k].index, items_[k].point);
+        }
+    }
+
+    GridCells cells_;
     std::vector<std::uint32_t> start_;  // of each cell in items_, one more at the end
     std::vector<Item> items_;           // by cell
     std::vector<std::uint32_t> cell_;   // of each point
 };
 
-template <class Visit>
-void UniformGrid::for_each_near(Vec2 centre, float radius_mm, Visit const& visit) const {
+class GrowingGrid {
+public:
+    /// Empty, with room for `point_count` points.
+    GrowingGrid(Box bounds, float cell_mm, std::size_t point_count)
+        : cells_(bounds, cell_mm, point_count, /*periodic=*/false), points_(point_count), next_(point_count, kEnd) {
+        clear();
+    }
+
+    void clear() { heads_.assign(cells_.size(), kEnd); }
+
+    /// Adds the point under a number below the point count that is not in the grid yet.
+    void insert(std::uint32_t index, Vec2 point) {
+        std::uint32_t& head = heads_[cells_.cell_of(point)];
+        points_[index] = point;
+        next_[index] = head;
+        head = index;
+    }
+
+    /// True when match(index, point) holds for some point; asks for all those within the radius, and some more.
+    template <class Match>
+    bool any_near(Vec2 centre, float radius_mm, Match const& match) const {
+        return cells_.any_near(centre, radius_mm, [&](std::size_t cell) {
+            for (std::uint32_t i = heads_[cell]; i != kEnd; i = next_[i]) {
+                if (match(i, points_[i])) {
+                    return true;
+                }
+            }
+            return false;
+        });
+    }
+
+private:
+    static constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
+
+    GridCells cells_;
+    std::vector<Vec2> points_;
+    std::vector<std::uint32_t> heads_;  // first point of each cell
+    std::vector<std::uint32_t> next_;   // the next point of the same cell
+};
+
+template <class Found>
+bool GridCells::any_near(Vec2 centre, float radius_mm, Found const& is_found) const {
     Vec2 const low = centre - origin_ - Vec2{radius_mm, radius_mm};
     Vec2 const high = centre - origin_ + Vec2{radius_mm, radius_mm};
     Span const columns = cells(low.x * columns_per_mm_, high.x * columns_per_mm_, columns_, periodic_);
@@ -74,11 +163,35 @@ void UniformGrid::for_each_near(Vec2 centre, float radius_mm, Visit const& visit
     for (int r = rows.first; r <= rows.last; ++r) {
         int const row = remainder(r, rows_);
         for (int c = columns.first; c <= columns.last; ++c) {
-            int const column = remainder(c, columns_);
-            auto const cell =
-                static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-            for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) {
-                visit(items_[k].index, items_[k].point);
+            if (is_found(index(remainder(c, columns_), row))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+template <class Visit, class Done>
+void GridCells::search_outwards(Vec2 centre, Visit const& visit, Done const& done) const {
+    int const c = column_of(centre.x);
+    int const r = row_of(centre.y);
+    Vec2 const cell_mm{1.0F / columns_per_mm_, 1.0F / rows_per_mm_};
+    float const x = centre.x - origin_.x - cell_mm.x * static_cast<float>(c);
+    float const y = centre.y - origin_.y - cell_mm.y * static_cast<float>(r);
+    float const to_border = std::max(std::min({x, cell_mm.x - x, y, cell_mm.y - y}), 0.0F);
+    float const narrow_mm = std::min(cell_mm.x, cell_mm.y);
+    int const last = std::max({c, columns_ - 1 - c, r, rows_ - 1 - r});
+    for (int ring = 0; ring <= last; ++ring) {
+        if (ring > 0 && done(static_cast<float>(ring - 1) * narrow_mm + to_border)) {
+            return;
+        }
+        for (int i = std::max(r - ring, 0); i <= std::min(r + ring, rows_ - 1); ++i) {
+            // Whole rows at the top and bottom of the ring, its two sides in between.
+            int const stride = i == r - ring || i == r + ring || ring == 0 ? 1 : 2 * ring;
+            for (int j = c - ring; j <= c + ring; j += stride) {
+                if (j >= 0 && j < columns_) {
+                    visit(index(j, i));
+                }
             }
         }
     }

@@ -20,12 +20,18 @@ std::vector<SizeClass> size_classes(std::span<float const> sizes) {
     return classes;
 }
 
+float spacing_mm(Box bounds_mm, std::size_t count) {
+    Vec2 const size = bounds_mm.size();
+    return std::sqrt(size.x * size.y / static_cast<float>(count + 1));
+}
+
 DiskField::DiskField(Box bounds_mm, std::span<float const> radii_mm) : radii_(radii_mm), layer_of_(radii_mm.size()) {
     for (SizeClass const& own : size_classes(radii_mm)) {
         for (std::uint32_t const member : own.members) {
             layer_of_[member] = static_cast<std::uint32_t>(layers_.size());
         }
-        layers_.push_back({PointGrid(bounds_mm, 2.0F * own.largest, radii_mm.size()), own.largest});
+        float const cell_mm = std::max(2.0F * own.largest, spacing_mm(bounds_mm, radii_mm.size()));
+        layers_.push_back({GrowingGrid(bounds_mm, cell_mm, radii_mm.size()), own.largest});
     }
 }
 

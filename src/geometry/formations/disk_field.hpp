@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/formations/point_grid.hpp"
+#include "base/grid.hpp"
 
 namespace pogosim {
 
@@ -19,6 +19,9 @@ struct SizeClass {
 
 /// All objects by the binary exponent of their size, smallest class first.
 std::vector<SizeClass> size_classes(std::span<float const> sizes);
+
+/// Mean distance between so many points in a box.
+float spacing_mm(Box bounds_mm, std::size_t count);
 
 class DiskField {
 public:
@@ -44,7 +47,7 @@ public:
 
 private:
     struct Layer {
-        PointGrid grid;
+        GrowingGrid grid;
         float largest_mm;
     };
 

@@ -6,21 +6,22 @@
 
 namespace pogosim {
 
-PowerDiagram::PowerDiagram(Box bounds_mm, std::span<float const> radii_mm) {
+PowerDiagram::PowerDiagram(Box bounds_mm, std::span<float const> radii_mm) : bounds_mm_(bounds_mm) {
     for (float const radius : radii_mm) {
         weights_.push_back(radius * radius);
     }
     for (SizeClass& sizes : size_classes(radii_mm)) {
-        layers_.push_back({std::move(sizes), PointGrid(bounds_mm, 0.0F, radii_mm.size())});
+        layers_.push_back({std::move(sizes), UniformGrid()});
     }
 }
 
 void PowerDiagram::set_sites(std::span<Vec2 const> sites_mm) {
     for (Layer& layer : layers_) {
-        layer.grid.clear();
+        std::vector<Vec2> members_mm;
         for (std::uint32_t const site : layer.sizes.members) {
-            layer.grid.insert(site, sites_mm[site]);
+            members_mm.push_back(sites_mm[site]);
         }
+        layer.grid.build(members_mm, bounds_mm_, spacing_mm(bounds_mm_, members_mm.size()), /*periodic=*/false);
     }
 }
 
@@ -30,7 +31,8 @@ std::uint32_t PowerDiagram::cell_of(Vec2 point_mm) const {
         float const largest_weight = layer.sizes.largest * layer.sizes.largest;
         layer.grid.search_outwards(
             point_mm,
-            [&](std::uint32_t site, Vec2 place) {
+            [&](std::uint32_t member, Vec2 place) {
+                std::uint32_t const site = layer.sizes.members[member];
                 best = std::min(best, {squared_length(place - point_mm) - weights_[site], site});
             },
             [&](float gap_mm) { return gap_mm * gap_mm - largest_weight > best.first; });

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "base/grid.hpp"
 #include "geometry/formations/disk_field.hpp"
-#include "geometry/formations/point_grid.hpp"
 
 namespace pogosim {
 
@@ -25,9 +25,10 @@ public:
 private:
     struct Layer {
         SizeClass sizes;
-        PointGrid grid;
+        UniformGrid grid;  // of the members
     };
 
+    Box bounds_mm_;
     std::vector<Layer> layers_;
     std::vector<float> weights_;
 };
