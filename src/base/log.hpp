@@ -38,7 +38,6 @@ public:
     Log& operator=(Log const&) = delete;
 
 private:
-    friend class LogScope;
     friend struct CurrentLog;
     struct Loggers;
     std::unique_ptr<Loggers> loggers_;
