@@ -87,8 +87,9 @@ int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_m
 /// Gives the global variable that the program has set from `parameters.NAME` another value, written in YAML.
 int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* value);
 
-/// Level of light at a robot, sensor counts; mean of its three sensors, without noise. -1 for one without a body.
-double pogosim_run_light_at(pogosim_run const* run, size_t robot);
+/// Level of light at each robot, sensor counts; mean of its three sensors, without noise. -1 for one without a body.
+/// `levels` has a place for each.
+void pogosim_run_light_levels(pogosim_run const* run, double* levels);
 
 /// A hash of the whole state, but for user data: equal for runs in the same state.
 uint64_t pogosim_run_hash(pogosim_run const* run);

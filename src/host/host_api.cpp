@@ -65,6 +65,18 @@ constexpr std::array kNumbers{
 };
 
 }  // namespace
+/// Mean of the sensors of a body.
+double light_at_robot(World const& world, std::uint32_t body) {
+    if (body == kNone) {
+        return -1.0;
+    }
+    double sum = 0.0;
+    for (std::size_t sensor = 0; sensor < kPhotosensorCount; ++sensor) {
+        sum += light_at_sensor(world, body, sensor);
+    }
+    return sum / kPhotosensorCount;
+}
+
 
 char const* pogosim_host_error() {
     return error_text().c_str();
@@ -159,16 +171,11 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
     });
 }
 
-double pogosim_run_light_at(pogosim_run const* run, size_t robot) {
+void pogosim_run_light_levels(pogosim_run const* run, double* levels) {
     World const& world = run->simulation().world();
-    if (robot >= world.robots.size() || world.robots.body[robot] == kNone) {
-        return -1.0;
+    for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
+        levels[robot] = light_at_robot(world, world.robots.body[robot]);
     }
-    double sum = 0.0;
-    for (std::size_t sensor = 0; sensor < kPhotosensorCount; ++sensor) {
-        sum += light_at_sensor(world, world.robots.body[robot], sensor);
-    }
-    return sum / kPhotosensorCount;
 }
 
 uint64_t pogosim_run_hash(pogosim_run const* run) {

@@ -352,8 +352,9 @@ class Simulation:
     @property
     def light_levels(self) -> npt.NDArray[np.float64]:
         """Light at each robot, sensor counts, mean of its sensors, without noise. Shape (robots,); -1: no body."""
-        count = int(self._number("robot_count"))
-        return np.array([library().pogosim_run_light_at(self._run, robot) for robot in range(count)])
+        levels = np.empty(len(self.robot_ids))
+        library().pogosim_run_light_levels(self._run, levels.ctypes.data)
+        return levels
 
     @property
     def state_hash(self) -> int:
