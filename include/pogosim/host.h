@@ -64,18 +64,25 @@ int pogosim_run_end(pogosim_run* run);
 void pogosim_run_close(pogosim_run* run);
 
 /// A number: "time" (s), "step", "step_count" (steps of the whole run), "time_step" (s), "seed", "object_count",
-/// "robot_count", "user_data_bytes".
+/// "robot_count", "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 
 /// An array. Of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
 /// "bodies.velocity" (n, 2) mm/s, "bodies.angular_velocity" (n) rad/s, "bodies.radius" (n) mm. Of robots (rows: objects
 /// that run the program): "robots.id", "robots.category" (index into pogosim_run_categories), "robots.body" (index of
 /// its body; 2^32 - 1: none), "robots.led" (n, 5, 3), "robots.ticks", "robots.clock" (us), "robots.messages_sent",
-/// "robots.messages_received", "robots.user_data". Of the floor: "light" (rows, columns) sensor counts.
+/// "robots.messages_received", "robots.user_data". Of the floor: "light" (rows, columns) sensor counts. Of the columns
+/// that the program has added to the data file, by robot, what data_set_value_* gave at the last save: "columns.NAME",
+/// and "columns_absent.NAME", true for robots that gave no value or wrote no row; for them "columns.NAME" has NaN, 0 or
+/// false. A column of strings has the type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only
+/// until the next step.
 int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_array* array);
 
 /// Names of the categories, a line each. Valid as long as the run.
 char const* pogosim_run_categories(pogosim_run const* run);
+
+/// Names of the columns that the program has added to the data file, a line each. Valid as long as the run.
+char const* pogosim_run_columns(pogosim_run const* run);
 
 /// Messages since the last call, a line each, the first character says of what kind: 'D' debug, 'I' information, 'W'
 /// warning, 'E' error, 'P' printed by the program. Valid until the next call for this run.

@@ -111,7 +111,7 @@ std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_
             return array.describe(simulation);
         }
     }
-    return std::nullopt;
+    return column_array_of(simulation.saved_columns(), name);
 }
 
 }  // namespace pogosim

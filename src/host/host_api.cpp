@@ -57,6 +57,7 @@ constexpr std::array kNumbers{
     NamedNumber{"step", [](Simulation const& s) { return static_cast<double>(s.world().step); }},
     NamedNumber{"step_count", [](Simulation const& s) { return static_cast<double>(s.step_count()); }},
     NamedNumber{"time_step", [](Simulation const& s) { return s.world().time_step_s; }},
+    NamedNumber{"save_time", [](Simulation const& s) { return s.saved_columns().time_s(); }},
     NamedNumber{"seed", [](Simulation const& s) { return static_cast<double>(s.seed()); }},
     NamedNumber{"object_count", [](Simulation const& s) { return static_cast<double>(s.world().objects.size()); }},
     NamedNumber{"robot_count", [](Simulation const& s) { return static_cast<double>(s.world().robots.size()); }},
@@ -64,7 +65,6 @@ constexpr std::array kNumbers{
                 [](Simulation const& s) { return static_cast<double>(s.programs().user_data_bytes()); }},
 };
 
-}  // namespace
 /// Mean of the sensors of a body.
 double light_at_robot(World const& world, std::uint32_t body) {
     if (body == kNone) {
@@ -77,6 +77,7 @@ double light_at_robot(World const& world, std::uint32_t body) {
     return sum / kPhotosensorCount;
 }
 
+}  // namespace
 
 char const* pogosim_host_error() {
     return error_text().c_str();
@@ -137,6 +138,10 @@ int pogosim_run_array(pogosim_run const* run, char const* name, pogosim_array* a
 
 char const* pogosim_run_categories(pogosim_run const* run) {
     return run->categories().c_str();
+}
+
+char const* pogosim_run_columns(pogosim_run const* run) {
+    return run->columns().c_str();
 }
 
 char const* pogosim_run_messages(pogosim_run* run) {

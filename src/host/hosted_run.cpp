@@ -40,7 +40,11 @@ pogosim_run::pogosim_run(pogosim_run_options const& options) {
     for (Category const& category : simulation_->world().categories) {
         categories_ += (categories_.empty() ? "" : "\n") + category.name;
     }
+    simulation_->keep_columns();
     must_succeed(simulation_->attempt([this] { return simulation_->start(); }));
+    for (SavedColumn const& column : simulation_->saved_columns().columns()) {
+        columns_ += (columns_.empty() ? "" : "\n") + column.name;
+    }
 }
 
 pogosim_run::~pogosim_run() {

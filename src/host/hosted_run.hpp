@@ -29,6 +29,7 @@ public:
     pogosim::Simulation const& simulation() const { return *simulation_; }
 
     std::string const& categories() const { return categories_; }
+    std::string const& columns() const { return columns_; }
     std::string const& take_messages();
 
 private:
@@ -40,6 +41,7 @@ private:
     std::shared_ptr<pogosim::Log> log_;
     std::unique_ptr<pogosim::Simulation> simulation_;
     std::string categories_;
+    std::string columns_;
     bool has_ended_ = false;
 };
 
@@ -53,5 +55,8 @@ struct RunFailure : std::runtime_error {
 
 /// The array of this name; nothing if there is none.
 std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_view name);
+
+/// The same of the columns of the data file.
+std::optional<pogosim_array> column_array_of(SavedColumns const& saved, std::string_view name);
 
 }  // namespace pogosim

@@ -90,6 +90,9 @@ std::optional<UserFailure> Recorder::open() {
     make_data_file();
     is_opened_ = true;
     show(shown_);
+    if (kept_ != nullptr) {
+        kept_->open(export_.columns, world_.robots.size());
+    }
     return std::nullopt;
 }
 
@@ -144,6 +147,9 @@ std::optional<UserFailure> Recorder::record_if_due() {
 
 std::optional<UserFailure> Recorder::record_rows() {
     std::optional<UserFailure> failure = fill_table();
+    if (kept_ != nullptr) {
+        kept_->save(world_, table_);
+    }
     if (shown_ != nullptr) {
         shown_->begin(world_.time_s());
     }

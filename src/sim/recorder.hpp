@@ -16,6 +16,7 @@
 #include "sim/message_recorder.hpp"
 #include "sim/multiples.hpp"
 #include "sim/recorded_rows.hpp"
+#include "sim/saved_columns.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -49,6 +50,9 @@ public:
 
     /// From now on, `rows` gets what is recorded of robots; null: nobody does. `rows` outlives this.
     void show(RecordedRows* rows);
+
+    /// From open() on, `columns` gets what robots give at each save. `columns` outlives this.
+    void keep(SavedColumns* columns) { kept_ = columns; }
 
     /// One more entry in the metadata of the complete files.
     void add_metadata(std::string const& key, std::string const& value);
@@ -89,6 +93,7 @@ private:
     bool is_opened_ = false;                     // by open(): rows come into it
     bool is_complete_ = false;
     RecordedRows* shown_ = nullptr;       // null: nobody looks
+    SavedColumns* kept_ = nullptr;        // null: nobody wants them
     DataTable table_;                     // of the present save
     std::vector<CellValue> empty_cells_;  // user columns of subparts
     Multiples row_times_;

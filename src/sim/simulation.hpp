@@ -20,6 +20,7 @@
 #include "sim/inspector.hpp"
 #include "sim/pictures.hpp"
 #include "sim/recorder.hpp"
+#include "sim/saved_columns.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "sim/stage_clock.hpp"
 #include "sim/state_hash.hpp"
@@ -118,6 +119,10 @@ public:
     Inspector& inspector();
     void stop_inspecting();
 
+    /// What robots gave for the columns of the data file at its last save, if keep_columns() was called before start().
+    void keep_columns() { recorder_.keep(&saved_columns_); }
+    SavedColumns const& saved_columns() const { return saved_columns_; }
+
     // What a user does in the window, between two steps. The data file says that the run was touched.
 
     /// Calls callback_robot_click of a robot, if it has one.
@@ -169,6 +174,7 @@ private:
     Lighting lighting_;
     IrChannel channel_;
     std::unique_ptr<PhysicsEngine> physics_;
+    SavedColumns saved_columns_;
     Recorder recorder_;
     std::unique_ptr<Pictures> pictures_;  // null: none are wanted
     StageClock stages_;

@@ -1,7 +1,8 @@
 """Runs inside this process: `Simulation`, one run, and `VectorSimulation`, many at once."""
 
+from pogosim.simulation.columns import Columns
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
 from pogosim.simulation.run import Simulation
 from pogosim.simulation.vector import VectorSimulation
 
-__all__ = ["ConfigurationError", "ProgramFailedError", "Simulation", "SimulationError", "VectorSimulation"]
+__all__ = ["Columns", "ConfigurationError", "ProgramFailedError", "Simulation", "SimulationError", "VectorSimulation"]

@@ -58,6 +58,7 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_messages": (c_char_p, (c_void_p,)),
     "pogosim_run_set_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),
     "pogosim_run_set_parameter": (c_int, (c_void_p, c_char_p, c_char_p)),
+    "pogosim_run_columns": (c_char_p, (c_void_p,)),
     "pogosim_run_light_levels": (None, (c_void_p, c_void_p)),
     "pogosim_run_save": (c_int, (c_void_p,)),
     "pogosim_run_hash": (c_uint64, (c_void_p,)),

@@ -21,6 +21,7 @@ import pandas as pd
 
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import array_of
+from pogosim.simulation.columns import Columns
 from pogosim.simulation.errors import ConfigurationError, SimulationError
 from pogosim.simulation.library import OVER, OpenRun, check, library, open_run
 from pogosim.simulation.user_data import user_data_type
@@ -361,6 +362,15 @@ class Simulation:
         """Equal for runs in the same state: poses, LEDs, light, messages, clocks, random streams; not USERDATA."""
         found: int = library().pogosim_run_hash(self._run)
         return found
+
+    @property
+    def columns(self) -> Columns:
+        """Columns that the program has added to the data file, at its last save: `sim.columns["heard"]`.
+
+        A mapping by name, see `Columns`. What robots give with `data_set_value_*` is known when rows are saved
+        (`save_data_period`), and `sim.columns.time` is when that was.
+        """
+        return Columns(self._run, self._handle)
 
     @property
     def user_data(self) -> npt.NDArray[Any]:

@@ -72,6 +72,21 @@ class VectorSimulation:
         """Positions of all robots, mm. Shape (runs, robots, 2); a copy. All runs must have as many robots."""
         return np.stack([simulation.positions for simulation in self.simulations])
 
+    def column(self, name: str) -> Any:
+        """Return a column that the program has added to the data file, at the last save of each run.
+
+        Args:
+            name: As of `Simulation.columns`.
+
+        Returns:
+            A masked array of shape (runs, robots), a copy; of strings, a list for each run.
+
+        Raises:
+            KeyError: There is no such column.
+        """
+        found = [simulation.columns[name] for simulation in self.simulations]
+        return found if any(isinstance(values, list) for values in found) else np.ma.stack(found)
+
     @property
     def is_over(self) -> npt.NDArray[np.bool_]:
         """Which runs are over. Shape (runs,)."""
