@@ -347,6 +347,18 @@ def test_program_that_was_built_again_is_loaded_by_the_next_run(program: Path, s
     simulation.close()
 
 
+def test_type_of_user_data_is_that_of_the_program_that_runs(program: Path, scene: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "changing.so"
+    copy.write_bytes(program.read_bytes())
+    with pogosim.Simulation(copy, scene) as simulation:
+        assert simulation.user_data.dtype["gain"] == np.float32
+        changed = tmp_path / "changed.c"
+        changed.write_text((PROGRAMS / "hosted.c").read_text().replace("    float gain;", "    int32_t gain;"))
+        compile_program(copy, changed, flags=SHARED)
+        simulation.reset()
+        assert simulation.user_data.dtype["gain"] == np.int32
+
+
 def test_program_without_debug_information_has_no_user_data_type(scene: Path, tmp_path: Path) -> None:
     plain = compile_program(tmp_path / "plain.so", PROGRAMS / "hosted.c", flags=("-shared", "-fPIC"))
     with (

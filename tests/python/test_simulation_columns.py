@@ -34,7 +34,9 @@ def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The shared object of tests/programs/saved_columns.c."""
-    return compile_program(tmp_path_factory.mktemp("columns") / "columns.so", PROGRAMS / "saved_columns.c", flags=SHARED)
+    return compile_program(
+        tmp_path_factory.mktemp("columns") / "columns.so", PROGRAMS / "saved_columns.c", flags=SHARED
+    )
 
 
 @pytest.fixture

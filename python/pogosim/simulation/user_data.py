@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,18 @@ def pointed_at_by_mydata(file: ELFFile) -> DIE | None:
     return None
 
 
+@functools.lru_cache(maxsize=64)
+def type_in(program: Path, version: tuple[int, ...]) -> np.dtype[Any] | None:  # noqa: ARG001 -- for the cache
+    """Return the type of USERDATA as a file has it; None if it does not say.
+
+    Reading it takes ten times as long as beginning a run, so it is read once for each version of the file.
+    """
+    with program.open("rb") as stream:
+        file = ELFFile(stream)
+        entry = pointed_at_by_mydata(file) if file.has_dwarf_info() else None
+        return numpy_type(entry) if entry is not None else None
+
+
 def user_data_type(program: Path, size_bytes: int) -> np.dtype[Any]:
     """Return the type of one robot's USERDATA.
 
@@ -98,10 +111,8 @@ def user_data_type(program: Path, size_bytes: int) -> np.dtype[Any]:
     if size_bytes == 0:
         raise SimulationError(f"{program} has no user data (REGISTER_USERDATA)")
     try:
-        with program.open("rb") as stream:
-            file = ELFFile(stream)
-            entry = pointed_at_by_mydata(file) if file.has_dwarf_info() else None
-            found = numpy_type(entry) if entry is not None else None
+        status = program.stat()
+        found = type_in(program, (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns))
     except (OSError, ELFError) as error:
         raise SimulationError(f"{program} cannot be read: {error}") from None
     if found is None:
