@@ -13,11 +13,10 @@ from collections.abc import Callable, Iterator, Mapping, MutableMapping
 from ctypes import byref, c_double, c_int64, c_void_p
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import array_of
@@ -25,8 +24,10 @@ from pogosim.simulation.columns import Columns
 from pogosim.simulation.errors import ConfigurationError, SimulationError
 from pogosim.simulation.library import OVER, OpenRun, check, library, open_run
 from pogosim.simulation.user_data import user_data_type
-from pogosim.utils import load_dataframe
 from pogosim.yaml_1_2 import dump_yaml
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NO_BODY = 2**32 - 1
 CLOSED = "the simulation is closed: make another one"
@@ -419,6 +420,8 @@ class Simulation:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the rows recorded so far, as `pogosim.utils.load_dataframe` does."""
+        from pogosim.utils import load_dataframe  # pandas takes most of a second, which runs without rows need not wait
+
         with self._busy():
             check(library().pogosim_run_save(self._run))
         if not self.data_file.exists():
