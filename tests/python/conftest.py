@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs/figures")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs/figures", "examples/learning")]
 
 from display import Display, open_display  # noqa: E402
 from running import PROGRAMS, compile_program  # noqa: E402

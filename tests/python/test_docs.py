@@ -39,6 +39,7 @@ PAGES_WITH_COMMANDS = [
             "data_file",
             "examples",
             "installing",
+            "learning",
             "message_log",
             "optimization",
             "pictures",

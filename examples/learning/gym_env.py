@@ -1,0 +1,58 @@
+"""An environment of Gymnasium: one robot that looks for light."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from commanded_robots import ACTIONS, OBSERVATIONS, Array, CommandedRobots
+
+try:
+    import gymnasium
+    from gymnasium import spaces
+except ImportError as error:
+    message = "this environment needs the Python package 'gymnasium'; install it: pip install 'pogosim[learning]'"
+    raise ImportError(message) from error
+
+BRIGHTEST = 30000.0  # sensor counts, below the lamp
+
+
+class LightSeeker(gymnasium.Env[Array, Array]):
+    """One robot starts anywhere in the arena; the brighter it is where it is, the better.
+
+    - Observation, shape (7,), each from -1 to 1: see `OBSERVATIONS`. Nobody else is heard.
+    - Action, shape (2,), each from -1 to 1: the power of the left and of the right motor.
+    - Reward of each step of 0.2 s: the light at the robot, 0 to 1.
+
+    An episode is truncated after 100 steps, 20 s.
+    """
+
+    metadata = {"render_modes": []}  # noqa: RUF012 -- as Gymnasium has it
+
+    def __init__(self, episode_steps: int = 100) -> None:
+        """Describe observations and actions; the run begins with `reset`."""
+        self.observation_space = spaces.Box(-1.0, 1.0, (len(OBSERVATIONS),), np.float32)
+        self.action_space = spaces.Box(-1.0, 1.0, (len(ACTIONS),), np.float32)
+        self.episode_steps = episode_steps
+        self._robots = CommandedRobots(1, BRIGHTEST)
+        self._step = 0
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begin an episode. Equal seeds give equal episodes."""
+        super().reset(seed=seed, options=options)
+        self._step = 0
+        return self._robots.reset(int(self.np_random.integers(2**32)))[0], {}
+
+    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+        """Drive for 0.2 s."""
+        (observation,) = self._robots.act(action)
+        self._step += 1
+        return observation, self._light(), False, self._step >= self.episode_steps, {}
+
+    def _light(self) -> float:
+        assert self._robots.simulation is not None
+        return float(self._robots.simulation.light_levels[0]) / BRIGHTEST
+
+    def close(self) -> None:
+        """End the run."""
+        self._robots.close()

@@ -1,0 +1,264 @@
+"""Learn policies for the environments with CMA-ES, and draw how their returns grow.
+
+    .venv/bin/python examples/learning/train.py                  # both; about a minute on two processors
+    .venv/bin/python examples/learning/train.py gathering -g 60  # one, for 60 generations
+
+Writes learning.png, and prints the weights for the parameter `policy` of the program. A policy is linear: each motor
+gets a bias and a weighted sum of the observation, limited to -1 to 1. CMA-ES (N. Hansen and A. Ostermeier, "Completely
+derandomized self-adaptation in evolution strategies", Evolutionary Computation 9, 2001) searches the 16 weights that
+give the highest return. Equal seeds give equal results, whatever the number of threads.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import queue
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cma
+import numpy as np
+import numpy.typing as npt
+from commanded_robots import ACTIONS, OBSERVATIONS
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+try:
+    from gym_env import LightSeeker
+    from parallel_env import Gathering
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"train.py: {missing}", file=sys.stderr)
+    sys.exit(2)
+
+Array = npt.NDArray[Any]
+Policy = Callable[[Array], Array]  # observations, shape (robots, 7), to actions, shape (robots, 2)
+
+SHAPE = (len(ACTIONS), 1 + len(OBSERVATIONS))
+TEST_SEEDS = range(10_000, 10_010)  # episodes that no candidate is chosen by
+
+
+def linear(weights: Array) -> Policy:
+    """Return the policy with these weights, as the program has it."""
+    bias, slope = weights.reshape(SHAPE)[:, 0], weights.reshape(SHAPE)[:, 1:]
+    return lambda observations: np.clip(observations @ slope.T + bias, -1.0, 1.0)
+
+
+def random_policy(seed: int) -> Policy:
+    """Return the policy that does anything."""
+    random = np.random.default_rng(seed)
+    return lambda observations: random.uniform(-1.0, 1.0, (len(observations), len(ACTIONS)))
+
+
+def light_return(env: LightSeeker, policy: Policy, seed: int) -> float:
+    """Return the sum of rewards of an episode."""
+    observation, _ = env.reset(seed=seed)
+    total, is_over = 0.0, False
+    while not is_over:
+        observation, reward, _, is_over, _ = env.step(policy(observation[None])[0])
+        total += reward
+    return total
+
+
+def gathering_return(env: Gathering, policy: Policy, seed: int) -> float:
+    """Return the sum of rewards of an episode, mean over the robots, which all have this policy."""
+    observations, _ = env.reset(seed=seed)
+    total = 0.0
+    while env.agents:
+        actions = policy(np.stack([observations[agent] for agent in env.agents]))
+        observations, rewards, *_ = env.step(dict(zip(env.agents, actions, strict=True)))
+        total += float(np.mean(list(rewards.values())))
+    return total
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is learnt.
+
+    Attributes:
+        name: On the command line.
+        title: In the figure.
+        make_env: Makes an environment, with episodes of so many steps or its own number.
+        episode: Return of an episode, by environment, policy and seed.
+        by_hand: Weights that a person would choose.
+    """
+
+    name: str
+    title: str
+    make_env: Callable[..., Any]
+    episode: Callable[[Any, Policy, int], float]
+    by_hand: tuple[float, ...]
+
+
+TASKS = {
+    task.name: task
+    for task in (
+        # Turn to the brighter side, see examples/learning/main.c.
+        Task(
+            "light",
+            "one robot looks for light",
+            LightSeeker,
+            light_return,
+            (0.5, 0, 0, 1, 0, 0, 0, 0, 0.5, 0, 0, -1, 0, 0, 0, 0),
+        ),
+        # Turn to the side with more neighbours.
+        Task(
+            "gathering",
+            "eight robots gather",
+            Gathering,
+            gathering_return,
+            (0.5, 0, 0, 0, 0, 1, 0.5, -1, 0.5, 0, 0, 0, 0, -1, -0.5, 1),
+        ),
+    )
+}
+
+
+class Trainer:
+    """Environments of a task, one for each thread."""
+
+    def __init__(self, task: Task, threads: int | None = None, **options: Any) -> None:
+        """Make the environments, with the options of theirs."""
+        count = threads or os.cpu_count() or 1
+        self.task = task
+        self._threads = ThreadPoolExecutor(count)
+        self._envs: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        for _ in range(count):
+            self._envs.put(task.make_env(**options))
+
+    def returns(self, episodes: Iterable[tuple[Policy, int]]) -> Array:
+        """Return what each episode, of a policy and a seed, gives."""
+        return np.array(list(self._threads.map(self._return_of, episodes)))
+
+    def _return_of(self, episode: tuple[Policy, int]) -> float:
+        env = self._envs.get()
+        try:
+            return self.task.episode(env, *episode)
+        finally:
+            self._envs.put(env)
+
+    def close(self) -> None:
+        """End all runs."""
+        self._threads.shutdown()
+        while not self._envs.empty():
+            self._envs.get().close()
+
+    def __enter__(self) -> Trainer:
+        return self
+
+    def __exit__(self, *of_error: object) -> None:
+        self.close()
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """What came out.
+
+    Attributes:
+        weights: The policy after the last generation.
+        curve: Returns of the test episodes after each generation, and before the first. Shape (generations + 1, seeds).
+        by_hand: Returns of the hand-written policy. Shape (seeds,).
+        by_chance: Returns of the policy that does anything.
+    """
+
+    weights: Array
+    curve: Array
+    by_hand: Array
+    by_chance: Array
+
+
+def learn(trainer: Trainer, generations: int, seed: int = 1, candidates: int = 12, episodes: int = 2) -> Learnt:
+    """Search the weights.
+
+    Args:
+        trainer: Environments.
+        generations: How often candidates are judged.
+        seed: Of the search.
+        candidates: In each generation.
+        episodes: By whose mean return each is judged, the same for all of a generation.
+    """
+    size = SHAPE[0] * SHAPE[1]
+    search = cma.CMAEvolutionStrategy(np.zeros(size), 0.5, {"seed": seed, "popsize": candidates, "verbose": -9})
+
+    def tested(policy: Policy) -> Array:
+        return trainer.returns((policy, test_seed) for test_seed in TEST_SEEDS)
+
+    curve = [tested(linear(search.mean))]
+    for generation in range(generations):
+        found = search.ask()
+        seeds = [episodes * generation + episode for episode in range(episodes)]
+        policies = [linear(weights) for weights in found]
+        returns = trainer.returns((policy, each) for policy in policies for each in seeds)
+        search.tell(found, list(-returns.reshape(candidates, episodes).mean(axis=1)))
+        curve.append(tested(linear(search.mean)))
+    by_chance = trainer.returns((random_policy(test_seed), test_seed) for test_seed in TEST_SEEDS)
+    by_hand = tested(linear(np.array(trainer.task.by_hand)))
+    return Learnt(np.array(search.mean), np.array(curve), by_hand, by_chance)
+
+
+def draw(axes: Axes, title: str, found: Learnt) -> None:
+    """Draw returns by generation: mean and standard deviation over the test episodes."""
+    generations = np.arange(len(found.curve))
+    for label, colour, values in (
+        ("learnt", "tab:blue", found.curve),
+        ("written by hand", "tab:green", np.broadcast_to(found.by_hand, found.curve.shape)),
+        ("random actions", "tab:gray", np.broadcast_to(found.by_chance, found.curve.shape)),
+    ):
+        mean, spread = values.mean(axis=1), values.std(axis=1)
+        axes.plot(generations, mean, color=colour, label=label)
+        axes.fill_between(generations, mean - spread, mean + spread, color=colour, alpha=0.2, linewidth=0)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set(title=title, xlabel="generation", xlim=(0, generations[-1]), ylim=(0, None))
+
+
+def figure_of(results: dict[str, Learnt]) -> Figure:
+    """Draw the learning curves of tasks side by side."""
+    figure = Figure(figsize=(4.2 * len(results), 3.4), layout="constrained")
+    for axes, (name, found) in zip(figure.subplots(1, len(results), squeeze=False)[0], results.items(), strict=True):
+        draw(axes, TASKS[name].title, found)
+    figure.axes[0].set_ylabel("return of an episode")
+    figure.axes[0].legend(loc="lower right", frameon=False)
+    return figure
+
+
+def learnt(name: str, generations: int = 20, seed: int = 1) -> Learnt:
+    """Learn a task, on all processors."""
+    with Trainer(TASKS[name]) as trainer:
+        return learn(trainer, generations, seed)
+
+
+def summary(name: str, found: Learnt) -> list[str]:
+    """Return lines with the returns of the test episodes, and the weights."""
+    returns = {"random": found.by_chance, "by hand": found.by_hand, "learnt": found.curve[-1]}
+    lines = [f"{name:10s} {policy:8s} {of.mean():5.1f} +- {of.std():.1f}" for policy, of in returns.items()]
+    return [*lines, f"{name:10s} policy: [{', '.join(f'{weight:.2f}' for weight in found.weights)}]"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("tasks", nargs="*", metavar="TASK", help=f"of {', '.join(TASKS)}; without: all")
+    parser.add_argument("-g", "--generations", type=int, default=20, help="default: %(default)s")
+    parser.add_argument("-s", "--seed", type=int, default=1, help="of the search; default: %(default)s")
+    parser.add_argument("-o", "--output", type=Path, default=Path("learning.png"), help="default: %(default)s")
+    options = parser.parse_args(arguments)
+    if unknown := sorted(set(options.tasks) - set(TASKS)):
+        parser.error(f"no task is called {', '.join(unknown)}; there are {', '.join(TASKS)}")
+    if options.generations < 1 or options.seed < 1:
+        parser.error("--generations and --seed: expected integers from 1 on")
+    results = {}
+    for name in options.tasks or TASKS:
+        results[name] = learnt(name, options.generations, options.seed)
+        print(*summary(name, results[name]), sep="\n", flush=True)
+    figure_of(results).savefig(options.output, dpi=110)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
