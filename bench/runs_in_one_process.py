@@ -2,7 +2,8 @@
 
     .venv/bin/python bench/runs_in_one_process.py [number of runs, 1000 without it]
 
-Each run has 20 robots of run_and_tumble and 5 s, and writes its rows. Both ways use all processors. On a busy machine, compare the processor time.
+Each run has 20 robots of run_and_tumble and 5 s, and writes its rows. Both ways use all processors.
+On a busy machine, compare the processor time.
 """
 
 from __future__ import annotations
@@ -63,9 +64,8 @@ def main() -> None:
     for name, function in (("one process each", run_process), ("one process", run_inside)):
         seconds(function, 10)  # programs and libraries are in memory then
         duration_s, used_s = seconds(function, runs)
-        print(
-            f"{name:18s}{duration_s:8.2f} s; per run {duration_s / runs * 1e3:7.2f} ms, processor {used_s / runs * 1e3:.2f} ms"
-        )
+        each_ms, used_ms = duration_s / runs * 1e3, used_s / runs * 1e3
+        print(f"{name:18s}{duration_s:8.2f} s; per run {each_ms:7.2f} ms, processor {used_ms:.2f} ms")
 
 
 if __name__ == "__main__":
