@@ -144,6 +144,7 @@ POGO_END_API
 
 #ifndef REAL_ROBOT
 #include "pogosim/simulation.h"
+#include "pogosim/world.h"
 #endif
 
 #endif

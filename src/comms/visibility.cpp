@@ -239,14 +239,21 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
 std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_t robot, std::uint8_t emitters,
                                                 float range_mm) {
     receivers_.clear();
-    if (range_mm <= 0.0F) {
-        return receivers_;
+    if (range_mm > 0.0F) {
+        find_receivers(world, robot, emitters, range_mm);
     }
+    if (!world.robots.switched_off.empty()) {
+        std::erase_if(receivers_, [&](Receiver const& receiver) { return !is_alive(world.robots, receiver.robot); });
+    }
+    return receivers_;
+}
+
+void Visibility::find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm) {
     if (world.spec_of(robot).emitters == Emitters::outline) {
         if ((emitters & 1U) != 0) {
             add_robots_near(world, outline_of(world, robot), range_mm);
         }
-        return receivers_;
+        return;
     }
     gather_candidates(world, robot, range_mm);
     for (int emitter = 0; emitter < kFaceCount; ++emitter) {
@@ -267,7 +274,6 @@ std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_
         add_outlines_near(world, robot, emitters, range_mm);
     }
     std::sort(receivers_.begin(), receivers_.end(), [](auto const& a, auto const& b) { return a.robot < b.robot; });
-    return receivers_;
 }
 
 std::uint8_t faces_that_see(World const& world, std::uint32_t receiver, Vec2 emitter_mm, float range_mm) {

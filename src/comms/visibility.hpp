@@ -44,7 +44,7 @@ public:
 
     /// The robots that the given emitters of `robot` (bit d: emitter d) reach at a range of `range_mm`, each once,
     /// through the nearest emitter that sees it, in the order of their indices. An outline has one emitter, number 0.
-    /// Valid until the next call.
+    /// Robots that are switched off cover others, but receive nothing. Valid until the next call.
     std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
 
     /// Vector from the centre of `robot`, which has a body, to the nearest point of the outline of `outline_robot`
@@ -77,6 +77,7 @@ private:
         float high;
     };
 
+    void find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
     void gather_candidates(World const& world, std::uint32_t robot, float range_mm);
     void look(World const& world, std::uint32_t robot, int emitter, float range_mm);
     void add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);

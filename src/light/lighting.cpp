@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -17,6 +19,35 @@ constexpr std::size_t kCellBytes = sizeof(std::int16_t);
 
 std::string cells_text(LightMap const& map) {
     return fmt::format("{} x {} cells", map.columns, map.rows);
+}
+
+int scaled(int level, float intensity) {
+    constexpr auto brightest = static_cast<float>(std::numeric_limits<std::int16_t>::max());
+    return static_cast<int>(std::lround(std::clamp(static_cast<float>(level) * intensity, 0.0F, brightest)));
+}
+
+void scale_levels(SpotSpec& spec, float intensity) {
+    for (int* const level : {&spec.value, &spec.edge_value, &spec.photo_start_value}) {
+        *level = scaled(*level, intensity);
+    }
+}
+
+/// Both kinds of rays.
+void scale_levels(auto& spec, float intensity) {
+    spec.value = scaled(spec.value, intensity);
+    spec.white_frame_value = scaled(spec.white_frame_value, intensity);
+}
+
+std::unique_ptr<Lamp> make_lamp(LampSpec const& spec, LampSetting const& setting, World const& world) {
+    return std::visit(
+        [&](auto changed) {
+            changed.centre_mm = changed.centre_mm + setting.moved_mm;
+            if (setting.intensity != 1.0F) {
+                scale_levels(changed, setting.intensity);
+            }
+            return make_lamp(changed, world.arena, world.light);
+        },
+        spec);
 }
 
 }  // namespace
@@ -36,8 +67,9 @@ LightMap make_light_map(Arena const& arena, int columns, int rows) {
 
 Lighting::Lighting(std::vector<LampSpec> const& lamps, World const& world) {
     for (LampSpec const& spec : lamps) {
-        auto const make = [&](auto const& kind) { return make_lamp(kind, world.arena, world.light); };
-        auto const add = [&] { lamps_.push_back({.lamp = std::visit(make, spec), .shown = {}}); };
+        auto const add = [&] {
+            lamps_.push_back({.spec = spec, .number = lamps_.size(), .lamp = make_lamp(spec, {}, world)});
+        };
         auto const purpose = [&] {
             return fmt::format("the cells that lamp {} of {} lights, of the {} of the light map", lamps_.size() + 1,
                                lamps.size(), cells_text(world.light));
@@ -47,13 +79,27 @@ Lighting::Lighting(std::vector<LampSpec> const& lamps, World const& world) {
     std::ranges::stable_sort(lamps_, {}, [](Entry const& entry) { return entry.lamp->layer(); });
 }
 
+/// Returns whether the setting of the lamp is a new one.
+bool Lighting::take_over(Entry& entry, World const& world) {
+    LampSetting const setting = entry.number < world.lamps.size() ? world.lamps[entry.number].setting : LampSetting();
+    if (setting == entry.setting) {
+        return false;
+    }
+    if (setting.intensity != entry.setting.intensity || setting.moved_mm != entry.setting.moved_mm) {
+        entry.lamp = make_lamp(entry.spec, setting, world);
+    }
+    entry.setting = setting;
+    return true;
+}
+
 void Lighting::update(World& world) {
     // What has changed?
     bool any_changed = is_first_update_;
     bool base_changed = is_first_update_;
     for (Entry& entry : lamps_) {
+        bool const is_set = take_over(entry, world);
         LampState const state = entry.lamp->state_at(world.time_s());
-        if (state != entry.shown) {
+        if (state != entry.shown || is_set) {
             entry.shown = state;
             any_changed = true;
             base_changed = base_changed || entry.lamp->layer() == Layer::still;
@@ -77,7 +123,7 @@ void Lighting::update(World& world) {
     // Put them on again, where they are now.
     painted_.clear();
     for (Entry const& entry : lamps_) {
-        if (entry.lamp->layer() != Layer::still) {
+        if (entry.lamp->layer() != Layer::still && entry.setting.is_on) {
             entry.lamp->paint(entry.shown, map, painted_);
         }
     }
@@ -86,7 +132,11 @@ void Lighting::update(World& world) {
 std::vector<LampMark> Lighting::marks() const {
     std::vector<LampMark> marks;
     for (Entry const& entry : lamps_) {
+        std::size_t const before = marks.size();
         entry.lamp->mark(entry.shown, marks);
+        for (std::size_t i = before; i < marks.size() && !entry.setting.is_on; ++i) {
+            marks[i].beam_is_on = false;
+        }
     }
     return marks;
 }
@@ -94,7 +144,7 @@ std::vector<LampMark> Lighting::marks() const {
 void Lighting::sum_still_lamps(LightMap& map) {
     std::ranges::fill(map.level, std::int16_t{0});
     for (Entry const& entry : lamps_) {
-        if (entry.lamp->layer() == Layer::still) {
+        if (entry.lamp->layer() == Layer::still && entry.setting.is_on) {
             entry.lamp->paint(entry.shown, map, painted_);
         }
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "light/lamp.hpp"
+#include "world/specs.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -16,10 +17,11 @@ LightMap make_light_map(Arena const& arena, int columns, int rows);
 /// All lamps of a run. A step costs what changes: the cells that moving lamps light before and after it.
 class Lighting {
 public:
-    /// Of the world, only the arena and the cells of the map count.
+    /// Of the world, only the arena and the cells of the map count. Lamp i has the setting world.lamps[i], or the usual
+    /// one where there is none.
     Lighting(std::vector<LampSpec> const& lamps, World const& world);
 
-    /// Writes world.light for the present time.
+    /// Writes world.light for the present time and the settings of the lamps.
     void update(World& world);
 
     /// Where the lamps stand, and their beams, at the last update.
@@ -28,10 +30,14 @@ public:
 private:
     /// A lamp, and what of it is on the map.
     struct Entry {
+        LampSpec spec;  // of the configuration
+        std::size_t number = 0;
         std::unique_ptr<Lamp> lamp;
-        LampState shown;
+        LampState shown{};
+        LampSetting setting{};
     };
 
+    static bool take_over(Entry& entry, World const& world);
     void sum_still_lamps(LightMap& map);
 
     std::vector<Entry> lamps_;            // in the order in which they are put on the map

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "robot/computer.hpp"
+#include "robot/held_values.hpp"
 #include "robot/printed_lines.hpp"
 #include "world/data_table.hpp"
 #include "world/parameter_source.hpp"
@@ -33,9 +35,30 @@ struct DataExport {
     std::vector<bool> was_set;     // by column, in any row
     std::int64_t filled_rows = 0;  // exported rows for which the program's callback ran
     DataRow row;
+    HeldValues held;              // of columns that the whole run sets
+    bool is_declared = false;     // callback_create_data_schema has run or is running
+    bool awaits_step = false;     // only callback_global_step can set values
     bool declaring = false;       // inside callback_create_data_schema
     bool filling = false;         // inside callback_export_data
     std::size_t next_column = 0;  // where the search for the next value's column starts
+};
+
+class Programs;
+
+/// What callbacks of the whole run need of other rooms to see and change the world.
+struct WorldAccess {
+    Programs* programs = nullptr;
+    std::function<bool(Object const& object, Vec2 centre_mm)> is_free{};  // of walls
+    std::function<void()> update_light{};                                 // takes the settings of lamps over
+    bool light_is_stale = false;                                          // a setting has changed since
+    bool gave_user_data = false;                                          // in callback_global_setup
+
+    void settle_light() {
+        if (light_is_stale) {
+            light_is_stale = false;
+            update_light();
+        }
+    }
 };
 
 /// What user code can access besides its own robot.
@@ -48,7 +71,8 @@ struct RunServices {
     bool stop_requested = false;
     std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once
     std::vector<std::string_view> warned;           // formats of warn_once
-    PrintedLines* printed_lines = nullptr;          // gets the lines of robots; null: nobody wants them
+    WorldAccess access{};
+    PrintedLines* printed_lines = nullptr;  // gets the lines of robots; null: nobody wants them
 
     /// Logs a warning that names the running robot and its tick, the first time in the run that this format (a literal)
     /// is used.
@@ -73,6 +97,7 @@ struct Context {
     char const* phase = "";          // "user_step", for messages
     std::string* printed = nullptr;  // what was printed here since the last line end
     bool is_system = false;          // a callback of the whole run: global setup, data schema, global step
+    bool sees_world = false;         // one of these or a click, in which the functions of world.h may be called
 
     bool has_robot() const { return robot != kNone; }
     /// False in the global step and in a wall, which have no place.

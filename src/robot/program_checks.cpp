@@ -98,7 +98,7 @@ void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Comput
 }
 
 void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields) {
-    if (data.filled_rows == 0) {
+    if (data.filled_rows == 0 && !data.awaits_step) {
         return;
     }
     std::vector<std::string> unset;
@@ -111,8 +111,10 @@ void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std
     }
     if (!unset.empty()) {
         bool const one = unset.size() == 1;
-        log().info("the column{} {} of the data file {} empty: callback_export_data never set {} (data_set_value_*)",
-                   one ? "" : "s", fmt::join(unset, ", "), one ? "is" : "are", one ? "it" : "them");
+        log().info("the column{} {} of the data file {} empty: {} never set {} ({})", one ? "" : "s",
+                   fmt::join(unset, ", "), one ? "is" : "are",
+                   data.awaits_step ? "callback_global_step" : "callback_export_data", one ? "it" : "them",
+                   data.awaits_step ? "pogosim_world_set_column" : "data_set_value_*");
     }
 }
 

@@ -12,6 +12,7 @@
 #include <limits>
 #include <new>
 #include <string_view>
+#include <utility>
 
 #include "base/memory.hpp"
 #include "robot/drive.hpp"
@@ -42,6 +43,8 @@ constexpr char const* kSystemCategory = "__system";
 // Ids of the random streams that do not belong to one robot's body.
 constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
+
+constexpr std::int64_t kNever = std::int64_t{1} << 62U;  // us; room for what a callback may add to it
 
 /// Bytes from one robot's user data to the next one's.
 std::size_t stride_of(std::size_t user_data_bytes) {
@@ -115,6 +118,7 @@ void call_main(int (*function)(), char** arguments) {
 
 Programs::Programs(ProgramImage image, World& world, RunServices& services, std::uint64_t seed)
     : image_(std::move(image)), world_(world), services_(services) {
+    services_.access.programs = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
         return fmt::format("the computers of {} robots, {} bytes each", count, sizeof(Computer));
@@ -210,18 +214,32 @@ void Programs::enter(std::uint32_t robot, char const* phase) {
 void Programs::enter_as_system(std::uint32_t robot, char const* phase) {
     enter(robot, phase);
     context.printed = &system_.printed;
-    context.is_system = true;
+    context.is_system = context.sees_world = true;
 }
 
 void Programs::leave() {
     context.computer->loop = stored_globals();
 }
 
-void Programs::call(std::uint32_t robot, char const* phase, void (*function)()) {
-    if (function != nullptr) {
-        enter(robot, phase);
-        function();
-        leave();
+/// A robot that is switched off is as it was before, for the call; it sends nothing.
+void Programs::call(std::uint32_t robot, char const* phase, void (*function)(), bool sees_world) {
+    if (function == nullptr) {
+        return;
+    }
+    Suspended const* const off = find_suspended(robot);
+    std::size_t const transmissions = world_.air.transmissions.size();
+    std::size_t const payload_bytes = world_.air.payloads.size();
+    if (off != nullptr) {
+        wake(*off);
+    }
+    enter(robot, phase);
+    context.sees_world = sees_world;
+    function();
+    leave();
+    if (Suspended* const still_off = find_suspended(robot)) {
+        rest(*still_off);
+        world_.air.transmissions.resize(transmissions);
+        world_.air.payloads.resize(payload_bytes);
     }
 }
 
@@ -266,7 +284,8 @@ void Programs::run_global_setup() {
     };
     std::size_t const before = digest();
     call_as_system(robot, "callback_global_setup", callback_global_setup);
-    if (count > 1 && digest() != before) {
+    without_exceptions([this] { services_.access.settle_light(); });
+    if (count > 1 && digest() != before && !services_.access.gave_user_data) {
         warn_of_user_data_in_setup(world_.robots.id[robot]);
     }
 }
@@ -294,19 +313,27 @@ void Programs::start() {
 }
 
 void Programs::declare_columns() {
-    services_.data.declaring = true;
+    services_.data.declaring = services_.data.is_declared = true;
     call_as_system(kNone, "callback_create_data_schema", callback_create_data_schema);
     services_.data.declaring = false;
-    warn_of_empty_columns(services_.data.columns, computers_);
+    if (callback_global_step == nullptr && services_.data.held.empty()) {
+        warn_of_empty_columns(services_.data.columns, computers_);
+    } else {
+        auto const exports = [](Computer const& self) { return self.program.export_data != nullptr; };
+        services_.data.awaits_step = std::ranges::none_of(computers_, exports);
+    }
 }
 
 void Programs::run_step() {
-    std::int64_t const now_us = std::llround(world_.time_s() * kMicrosecondsPerSecond);
+    std::int64_t const now_us = this->now_us();
     if (callback_global_step != nullptr && now_us >= system_.clock_us) {
         enter(kNone, "callback_global_step");
+        context.sees_world = true;
         pogo_main_loop_step(callback_global_step);
         leave();
+        without_exceptions([this] { services_.access.settle_light(); });
     }
+    hold_suspended();
     auto const count = static_cast<std::uint32_t>(computers_.size());
     for (std::uint32_t i = 0; i < count; ++i) {
         if (now_us < computers_[i].clock_us) {
@@ -316,6 +343,61 @@ void Programs::run_step() {
             computers_[i].clock_us = now_us;  // without a sleep the clock follows the steps
         }
         tick(i);
+    }
+}
+
+std::int64_t Programs::now_us() const {
+    return std::llround(world_.time_s() * kMicrosecondsPerSecond);
+}
+
+void Programs::set_alive(std::uint32_t robot, bool alive) {
+    if (alive == is_alive(world_.robots, robot)) {
+        return;
+    }
+    auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
+    std::vector<std::uint32_t>& switched_off = world_.robots.switched_off;
+    auto const entry = std::ranges::lower_bound(switched_off, robot);
+    if (alive) {
+        wake(*place);
+        suspended_.erase(place);
+        switched_off.erase(entry);
+    } else {
+        switched_off.insert(entry, robot);
+        rest(*suspended_.insert(place, {.robot = robot}));
+    }
+}
+
+Programs::Suspended* Programs::find_suspended(std::uint32_t robot) {
+    auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
+    return place != suspended_.end() && place->robot == robot ? &*place : nullptr;
+}
+
+std::int64_t Programs::clock_us(std::uint32_t robot) const {
+    auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
+    return place != suspended_.end() && place->robot == robot ? place->clock_us : computers_[robot].clock_us;
+}
+
+void Programs::wake(Suspended const& self) {
+    computers_[self.robot].clock_us = std::max(self.clock_us, now_us());
+    world_.robots.led[self.robot] = self.leds;
+}
+
+/// Never due: that takes no branch in run_step(). Of one that rests already, nothing is kept.
+void Programs::rest(Suspended& self) {
+    std::int64_t const clock_us = std::exchange(computers_[self.robot].clock_us, kNever);
+    Leds const leds = std::exchange(world_.robots.led[self.robot], {});
+    if (clock_us < kNever) {
+        self.clock_us = clock_us;
+        self.leds = leds;
+    }
+}
+
+/// As motors without power do, but without their noise.
+void Programs::hold_suspended() {
+    for (Suspended const& self : suspended_) {
+        if (computers_[self.robot].motors.driven && world_.spec_of(self.robot).has_wheels) {
+            world_.robots.drive[self.robot] = {.velocity_mm_s = {}, .angular_velocity_rad_s = 0.0F, .fresh = true};
+        }
     }
 }
 
@@ -335,9 +417,10 @@ void Programs::tick(std::uint32_t robot) {
     }
 }
 
-void Programs::export_row(std::size_t robot) {
+void Programs::export_row(std::size_t robot, std::uint32_t object) {
     DataExport& data = services_.data;
     data.row.values.assign(data.columns.size(), CellValue());
+    data.held.fill(object, data.row.values);
     data.row.exported = true;
     data.filling = true;
     data.next_column = 0;
@@ -348,7 +431,8 @@ void Programs::export_row(std::size_t robot) {
 
 bool Programs::click(std::uint32_t robot) {
     void (*const callback)() = computers_[robot].program.click;
-    call(robot, "robot_click", callback);
+    call(robot, "robot_click", callback, /*sees_world=*/true);
+    without_exceptions([this] { services_.access.settle_light(); });
     return callback != nullptr;
 }
 

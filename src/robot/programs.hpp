@@ -47,14 +47,32 @@ public:
     /// One step: the global step, then every robot that is due.
     void run_step();
 
-    /// callback_export_data of one robot. Its row is in the services' data afterwards.
-    void export_row(std::size_t robot);
+    /// callback_export_data of one robot, index `object` in World::objects. Its row is in the services' data
+    /// afterwards.
+    void export_row(std::size_t robot, std::uint32_t object);
 
     /// callback_robot_click of one robot. False: it has none.
     bool click(std::uint32_t robot);
 
     /// callback_robot_end of every robot.
     void end();
+
+    /// Switches a robot off or on. Off, it runs only callbacks that look at it (callback_export_data,
+    /// callback_robot_end, callback_robot_click), its motors hold its body, and its LEDs are dark. On again, it goes on
+    /// as it was, at its own time or now, whatever is later. Does nothing the second time.
+    void set_alive(std::uint32_t robot, bool alive);
+
+    /// A robot that is switched off, and what it goes on with.
+    struct Suspended {
+        std::uint32_t robot = 0;
+        std::int64_t clock_us = 0;
+        Leds leds{};
+    };
+    /// All robots that are switched off, as in Robots::switched_off.
+    std::span<Suspended const> suspended() const { return suspended_; }
+
+    /// Clock of a robot between two of its ticks, us; of one that is switched off, when that happened.
+    std::int64_t clock_us(std::uint32_t robot) const;
 
     /// Warns about messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
     void warn_of_messages(std::uint64_t arrivals) const;
@@ -76,7 +94,10 @@ public:
     std::size_t user_data_stride() const;
 
     /// Reach of a message that this robot sends now, at its present emitter power, mm; 0: it sends none.
-    float ir_range_mm(std::size_t robot) const {
+    float ir_range_mm(std::uint32_t robot) const {
+        if (!is_alive(world_.robots, robot)) {
+            return 0.0F;
+        }
         return world_.spec_of(robot).ir.range_at_mm(computers_[robot].ir_power);
     }
 
@@ -102,7 +123,12 @@ private:
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
     void run_global_setup();
-    void call(std::uint32_t robot, char const* phase, void (*function)());
+    void call(std::uint32_t robot, char const* phase, void (*function)(), bool sees_world = false);
+    std::int64_t now_us() const;
+    Suspended* find_suspended(std::uint32_t robot);
+    void wake(Suspended const& self);
+    void rest(Suspended& self);
+    void hold_suspended();
     void call_as_system(std::uint32_t robot, char const* phase, void (*function)());
     void tick(std::uint32_t robot);
     Computer& computer(std::uint32_t robot);
@@ -112,7 +138,8 @@ private:
     World& world_;
     RunServices& services_;
     std::vector<Computer> computers_;
-    Computer system_;  // of the global step
+    Computer system_;                   // of the global step
+    std::vector<Suspended> suspended_;  // by robot, ascending
     FencedMemory user_data_;
     std::string program_name_;
     std::array<char*, 2> main_arguments_{};  // of the program's main(): its name, and NULL

@@ -19,6 +19,14 @@ int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor) 
     return world.light.at(wrapped(world, bodies.position_mm[body] + offset));
 }
 
+double mean_light(World const& world, std::uint32_t body) {
+    double sum = 0.0;
+    for (std::size_t sensor = 0; sensor < kPhotosensorCount; ++sensor) {
+        sum += light_at_sensor(world, body, sensor);
+    }
+    return sum / kPhotosensorCount;
+}
+
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter) {
     if (meter.interval_s <= 0.0F) {
         return {};

@@ -11,6 +11,9 @@ namespace pogosim {
 /// Light level at a photosensor (0 back, 1 front left, 2 front right) of a robot with this body, sensor counts.
 int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor);
 
+/// Mean of the three photosensors, sensor counts.
+double mean_light(World const& world, std::uint32_t body);
+
 /// Mean acceleration over the last tick in the frame of the robot with this body, m/s2: x forward, y to the right.
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter);
 

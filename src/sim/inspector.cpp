@@ -33,7 +33,6 @@ void add_motion(World const& world, Object const& object, Inspection& inspection
 
 void add_computer(Computer const& computer, Inspection& inspection) {
     inspection.ticks = computer.loop.ticks;
-    inspection.clock_s = static_cast<double>(computer.clock_us) * kSecondsPerUs;
     std::ranges::copy(computer.motors.power, inspection.motor_power.begin());
     std::ranges::copy(computer.motors.direction, inspection.motor_direction.begin());
     inspection.messages_sent = computer.messages_sent;
@@ -54,6 +53,7 @@ Inspection Inspector::inspect(std::uint32_t robot) {
     Computer const& computer = programs_.computer_of(robot);
     Inspection inspection;
     inspection.robot = robot;
+    inspection.clock_s = static_cast<double>(programs_.clock_us(robot)) * kSecondsPerUs;
     inspection.id = world_.robots.id[robot];
     inspection.category = world_.categories[world_.robots.category[robot]].name;
     inspection.led = world_.robots.led[robot];

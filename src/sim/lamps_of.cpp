@@ -124,6 +124,22 @@ std::vector<LampSpec> lamps_of(Scenario const& scenario, World const& world) {
     return lamps;
 }
 
+std::vector<PlacedLamp> placed_lamps(Scenario const& scenario, Arena const& arena) {
+    std::vector<PlacedLamp> lamps;
+    for (ObjectConfig const& object : scenario.objects) {
+        if (object.spec.lamp) {
+            bool const is_spot = std::holds_alternative<SpotSpec>(*object.spec.lamp);
+            auto const place = [&](auto const& spec) {
+                return is_spot ? spec.centre_mm : lit_box(spec.shape, spec.centre_mm, arena).centre();
+            };
+            PlacedLamp const lamp{
+                .category = object.category, .start_mm = std::visit(place, *object.spec.lamp), .setting = {}};
+            lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), lamp);
+        }
+    }
+    return lamps;
+}
+
 LampArea area_at_start(LampSpec const& lamp) {
     LampArea area = std::visit([](auto const& spec) { return LampArea{spec.shape, spec.centre_mm}; }, lamp);
     if (auto const* const spot = std::get_if<SpotSpec>(&lamp)) {

@@ -12,6 +12,9 @@ namespace pogosim {
 /// that light nothing: their centre is outside the arena's bounding box, or they lie between the centres of cells.
 std::vector<LampSpec> lamps_of(Scenario const& scenario, World const& world);
 
+/// The same lamps as things of the world.
+std::vector<PlacedLamp> placed_lamps(Scenario const& scenario, Arena const& arena);
+
 /// The area that a lamp can light at time 0.
 struct LampArea {
     Shape shape;

@@ -171,7 +171,7 @@ std::optional<UserFailure> Recorder::fill_table() {
         }
         bool has_row = true;
         if (object.robot != kNone) {
-            if (auto failure = call_user_code([this, &object] { programs_.export_row(object.robot); })) {
+            if (auto failure = call_user_code([this, &object, i] { programs_.export_row(object.robot, i); })) {
                 return failure;
             }
             has_row = export_.row.exported;
@@ -179,8 +179,11 @@ std::optional<UserFailure> Recorder::fill_table() {
         if (has_row) {
             table_.object.push_back(i);
             table_.cells.resize(table_.object.size() * export_.columns.size());
+            std::span const cells = std::span(table_.cells).last(export_.columns.size());
             if (object.robot != kNone) {
-                std::ranges::copy(export_.row.values, table_.cells.end() - std::ssize(export_.row.values));
+                std::ranges::copy(export_.row.values, cells.begin());
+            } else {
+                export_.held.fill(i, cells);
             }
         }
     }

@@ -14,6 +14,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/places.hpp"
+#include "robot/hold_value.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
 #include "sim/lamps_of.hpp"
@@ -39,6 +40,12 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     }
 }
 
+Lighting make_lighting(Scenario const& scenario, World& world) {
+    std::vector<LampSpec> const lamps = lamps_of(scenario, world);
+    world.lamps = placed_lamps(scenario, world.arena);
+    return {lamps, world};
+}
+
 }  // namespace
 
 Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions options)
@@ -50,11 +57,16 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       guard_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       programs_(std::move(program), world_, services_, seed_),
-      lighting_(lamps_of(scenario_, world_), world_),
+      lighting_(make_lighting(scenario_, world_)),
       physics_(make_physics(scenario_, world_)),
       recorder_(scenario_, world_, programs_, services_.data, seed_),
       pictures_(Pictures::make(scenario_, world_, programs_, lighting_, options_.film)),
-      stages_(options_.measure_stages) {}
+      stages_(options_.measure_stages) {
+    services_.access.is_free = [this](Object const& object, Vec2 place_mm) {
+        return free_places().is_free(object, place_mm);
+    };
+    services_.access.update_light = [this] { lighting_.update(world_); };
+}
 
 Simulation::~Simulation() = default;
 
@@ -321,6 +333,24 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
     pogosim::set_pose(world_, moved, centre_mm, heading_rad);
     touches_.add_move(object, world_.time_s());
     return true;
+}
+
+void Simulation::set_alive(std::uint32_t robot, bool alive) {
+    programs_.set_alive(robot, alive);
+    touches_.add_switch(world_.time_s());
+}
+
+void Simulation::set_lamp(std::size_t lamp, LampSetting const& setting) {
+    world_.lamps[lamp].setting = setting;
+    lighting_.update(world_);
+    touches_.add_switch(world_.time_s());
+}
+
+void Simulation::set_column(std::optional<std::uint32_t> object, std::string const& name, double value) {
+    if (!services_.data.is_declared) {
+        throw ConfigError(fmt::format("column '{}': the run records no rows (enable_data_logging: false)", name));
+    }
+    hold_value(services_.data, world_.objects.size(), object, name, value);
 }
 
 bool Simulation::set_parameter(std::string const& name, std::string const& yaml_value) {

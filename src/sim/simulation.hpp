@@ -98,6 +98,17 @@ public:
     /// that the run was touched. Throws ConfigError for a place in a wall or outside of the arena.
     bool set_pose(std::uint32_t object, Vec2 centre_mm, float heading_rad);
 
+    /// Switches a robot (index into World::robots) off or on, see Programs::set_alive(). The data file says that the
+    /// run was touched.
+    void set_alive(std::uint32_t robot, bool alive);
+
+    /// Sets a lamp (index into World::lamps), and the light accordingly. The data file says that the run was touched.
+    void set_lamp(std::size_t lamp, LampSetting const& setting);
+
+    /// The value of a user column from now on, in the rows of all objects or of one (index into World::objects), see
+    /// HeldValues. Throws ConfigError.
+    void set_column(std::optional<std::uint32_t> object, std::string const& name, double value);
+
     /// Gives the variables that the program has set to the value of `parameters.NAME` another one. False if there are
     /// none. Throws ConfigError for a value that the program would have been refused.
     bool set_parameter(std::string const& name, std::string const& yaml_value);

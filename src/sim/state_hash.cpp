@@ -47,6 +47,12 @@ private:
     std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
+void add_leds(Hash& hash, Leds const& leds) {
+    for (Rgb const colour : leds) {
+        hash.add((colour.r << 16) | (colour.g << 8) | colour.b);
+    }
+}
+
 void add_world(Hash& hash, World const& world) {
     hash.add(world.step);
     Bodies const& bodies = world.bodies;
@@ -55,9 +61,7 @@ void add_world(Hash& hash, World const& world) {
     hash.add_all(bodies.velocity_mm_s);
     hash.add_all(bodies.angular_velocity_rad_s);
     for (Leds const& leds : world.robots.led) {
-        for (Rgb const colour : leds) {
-            hash.add((colour.r << 16) | (colour.g << 8) | colour.b);
-        }
+        add_leds(hash, leds);
     }
     hash.add_all(world.robots.stream);
     hash.add_all(world.light.level);
@@ -97,6 +101,21 @@ std::uint64_t state_hash(World const& world, Programs const& programs) {
     auto const computers = programs.computers();
     for (std::size_t robot = 0; robot < computers.size(); ++robot) {
         add_robot(hash, computers[robot], world.mailboxes, robot);
+    }
+    // Nothing is added where nobody has changed what these say.
+    for (Programs::Suspended const& off : programs.suspended()) {
+        hash.add(off.robot);
+        hash.add(off.clock_us);
+        add_leds(hash, off.leds);
+    }
+    for (std::size_t lamp = 0; lamp < world.lamps.size(); ++lamp) {
+        LampSetting const& setting = world.lamps[lamp].setting;
+        if (setting != LampSetting()) {
+            hash.add(lamp);
+            hash.add(static_cast<int>(setting.is_on));
+            hash.add(setting.intensity);
+            hash.add(setting.moved_mm);
+        }
     }
     return mix64(hash.value());
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace pogosim {
 
 namespace {
@@ -32,16 +34,26 @@ void Touches::add_click(double time_s) {
     ++clicks_;
 }
 
+void Touches::add_switch(double time_s) {
+    begin(time_s);
+    moved_object_ = kNone;
+    ++switches_;
+}
+
 std::string Touches::text() const {
-    int const count = moves_ + clicks_;
+    int const count = moves_ + clicks_ + switches_;
     if (!any()) {
         return "";
     }
     auto const times = [](int n) { return n == 1 ? std::string("once") : fmt::format("{} times", n); };
-    std::string const what =
-        clicks_ == 0  ? "objects moved by hand"
-        : moves_ == 0 ? "robots clicked"
-                      : fmt::format("objects moved by hand {}, robots clicked {}", times(moves_), times(clicks_));
+    std::string what;
+    for (auto const& [did, n] : {std::pair{"objects moved by hand", moves_}, std::pair{"robots clicked", clicks_},
+                                 std::pair{"robots or lamps switched", switches_}}) {
+        if (n > 0) {
+            bool const is_all = n == count;
+            what += (what.empty() ? "" : ", ") + std::string(did) + (is_all ? "" : " " + times(n));
+        }
+    }
     return count == 1 ? fmt::format("once, at t = {:.4f} s: {}", first_s_, what)
                       : fmt::format("{} from t = {:.4f} s on: {}", times(count), first_s_, what);
 }

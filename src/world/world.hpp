@@ -10,6 +10,9 @@
 //                     fixed; clears robots.drive[i].fresh
 //   record, render and view only read
 //
+// Callbacks of the whole run, which run before the robots, also write poses, robots.switched_off (by way of Programs)
+// and the settings of lamps (pogosim/world.h).
+//
 // No stage keeps its own version of this. What others write between two steps is true from then on:
 //
 //   a pose                   bodies go on from there, fixed ones too; write it with set_pose(), free of walls
@@ -18,6 +21,7 @@
 //   robots.drive[i], fresh   is the velocity of this body in the next step, unless its motors ask for another one
 //   light.level[i]           is sensed and shown until a lamp writes this cell, see above
 //   a message in a mailbox   is received
+//   lamps[i].setting         is seen in the light of the next step
 //
 // A pose or velocity that is not finite is taken back. All else stays as it is when the run starts.
 #pragma once
@@ -98,7 +102,26 @@ struct Robots {
     std::vector<Drive> drive;
     std::vector<RandomStream> stream;  // noise of motors and sensors, losses on the air
 
+    // Robots that are switched off, ascending: they send and hear nothing. Written by Programs::set_alive().
+    std::vector<std::uint32_t> switched_off;
+
     std::size_t size() const { return id.size(); }
+};
+
+/// What a program or a host has made of a lamp.
+struct LampSetting {
+    bool is_on = true;
+    float intensity = 1.0F;  // its levels are those of the configuration times this
+    Vec2 moved_mm;           // from where the configuration has it
+
+    friend bool operator==(LampSetting const&, LampSetting const&) = default;
+};
+
+/// A lamp among the things of the world; how it shines is in the room `light`.
+struct PlacedLamp {
+    std::string category;
+    Vec2 start_mm;  // where the configuration has it, or the centre of its orbit
+    LampSetting setting;
 };
 
 struct Category {
@@ -158,6 +181,7 @@ struct World {
     std::vector<Ring> rings;
     Robots robots;
     std::vector<Outline> outlines;
+    std::vector<PlacedLamp> lamps;  // in the order of the configuration
     LightMap light;
 
     // Messages.
@@ -182,6 +206,9 @@ void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float headin
 /// Puts an object that has a body elsewhere, at rest, whether it is fixed or not: a rigid body with its centre at
 /// `centre_mm` and with this heading, a ring as it is with its middle there.
 void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad);
+
+/// Whether a robot is switched on.
+bool is_alive(Robots const& robots, std::uint32_t robot);
 
 /// Middle of an object: of its bodies, or where it stands when it has none. Not wrapped.
 Vec2 centre_mm(World const& world, Object const& object);

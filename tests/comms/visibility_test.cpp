@@ -34,6 +34,19 @@ std::vector<std::uint32_t> reached(World const& world, std::uint32_t robot, std:
 
 using Robots = std::vector<std::uint32_t>;
 
+TEST(Visibility, RobotThatIsSwitchedOffReceivesNothingAndStillCoversOthers) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    add_robot(world, {560, 500});
+    add_robot(world, {615, 500});  // in the shadow of robot 1
+    add_robot(world, {500, 560});
+    EXPECT_EQ(reached(world, 0, kAllFaces), (Robots{1, 3}));
+    world.robots.switched_off = {1};
+    EXPECT_EQ(reached(world, 0, kAllFaces), Robots{3});
+    world.robots.switched_off = {1, 3};
+    EXPECT_EQ(reached(world, 0, kAllFaces), Robots{});
+}
+
 TEST(Visibility, RangeGoesFromTheEmitterToTheReceiversBorder) {
     // Centre distance at which the front emitter just reaches: radius + range + radius.
     float const limit = kRadius + 80.0F + kRadius;

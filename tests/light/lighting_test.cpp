@@ -49,6 +49,41 @@ TEST(Lighting, OfTwoRaysTheLaterOneWins) {
     EXPECT_EQ(testing::count_cells(lit_world({narrow, ray}), 10), 10000);
 }
 
+/// Levels in the middle and 300 mm to the left of it, after setting the only lamp to this.
+std::pair<int, int> levels_with(LampSpec const& lamp, LampSetting const& setting) {
+    World world = testing::dark_world();
+    world.lamps = {{.category = "lamp", .start_mm = {}, .setting = {}}};
+    Lighting lighting({lamp}, world);
+    lighting.update(world);
+    world.lamps[0].setting = setting;
+    lighting.update(world);
+    return {world.light.at({505, 505}), world.light.at({205, 505})};
+}
+
+TEST(Lighting, LampOfEveryKindIsSwitchedDimmedAndMoved) {
+    using Levels = std::pair<int, int>;
+    SpotSpec orbiting = disk_lamp(1000);
+    orbiting.orbit = {.radius_mm = 10.0F, .angular_speed_rad_s = 1.0, .phase_rad = 0.0};
+    for (LampSpec const& lamp : {LampSpec(disk_lamp(1000)), LampSpec(orbiting)}) {
+        EXPECT_EQ(levels_with(lamp, {}), (Levels{1000, 0}));
+        EXPECT_EQ(levels_with(lamp, {.is_on = false, .moved_mm = {}}), (Levels{0, 0}));
+        EXPECT_EQ(levels_with(lamp, {.intensity = 0.5F, .moved_mm = {}}), (Levels{500, 0}));
+        EXPECT_EQ(levels_with(lamp, {.intensity = 100.0F, .moved_mm = {}}), (Levels{32767, 0}));
+        EXPECT_EQ(levels_with(lamp, {.moved_mm = {-300, 0}}), (Levels{0, 1000}));
+    }
+    RotatingRaySpec ray;
+    ray.shape.kind = ShapeKind::disk;
+    ray.shape.radius_mm = 100.0F;
+    ray.centre_mm = {505, 505};
+    ray.half_width_rad = std::numbers::pi;
+    ray.white_frame_duration_s = 0.0;
+    ray.value = 1000;
+    EXPECT_EQ(levels_with(ray, {}), (Levels{1000, 0}));
+    EXPECT_EQ(levels_with(ray, {.is_on = false, .moved_mm = {}}), (Levels{0, 0}));
+    EXPECT_EQ(levels_with(ray, {.intensity = 0.5F, .moved_mm = {}}), (Levels{500, 0}));
+    EXPECT_EQ(levels_with(ray, {.moved_mm = {-300, 0}}), (Levels{0, 1000}));
+}
+
 TEST(Lighting, MapFollowsTheTime) {
     SpotSpec lamp = global_lamp(200);
     lamp.photo_start_at_s = 0.02F;

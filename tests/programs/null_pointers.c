@@ -123,6 +123,27 @@ static void create_data_schema(void) {
     FOR_NULL(data_add_column_float16.name, data_add_column_float16(NULL))
 }
 
+static void global_step(void) {
+    pogosim_pose_t pose;
+    pogosim_velocity_t velocity;
+    uint8_t r = 0, g = 0, b = 0;
+    double x_mm = 0.0, y_mm = 0.0;
+    pogosim_world_pose(0, &pose);
+    pogosim_world_velocity(0, &velocity);
+    pogosim_world_led(0, 0, &r, &g, &b);
+    FOR_NULL(world_category_size.category, pogosim_world_category_size(NULL))
+    FOR_NULL(world_object.category, pogosim_world_object(NULL, 0))
+    FOR_NULL(world_pose.pose, pogosim_world_pose(0, NULL))
+    FOR_NULL(world_velocity.velocity, pogosim_world_velocity(0, NULL))
+    FOR_NULL(world_led.r, pogosim_world_led(0, 0, NULL, &g, &b))
+    FOR_NULL(world_led.g, pogosim_world_led(0, 0, &r, NULL, &b))
+    FOR_NULL(world_led.b, pogosim_world_led(0, 0, &r, &g, NULL))
+    FOR_NULL(world_lamp_position.x_mm, pogosim_world_lamp_position(0, NULL, &y_mm))
+    FOR_NULL(world_lamp_position.y_mm, pogosim_world_lamp_position(0, &x_mm, NULL))
+    FOR_NULL(world_set_column.name, pogosim_world_set_column(NULL, 1.0))
+    FOR_NULL(world_set_object_column.name, pogosim_world_set_object_column(0, NULL, 1.0))
+}
+
 static void global_setup(void) {
     init_string_from_configuration(call, "call", sizeof(call));
 }
@@ -131,6 +152,7 @@ int main(void) {
     pogobot_init();
     pogobot_start(NULL, user_step);
     SET_CALLBACK(callback_global_setup, global_setup);
+    SET_CALLBACK(callback_global_step, global_step);
     SET_CALLBACK(callback_create_data_schema, create_data_schema);
     SET_CALLBACK(callback_export_data, export_data);
     return 0;
