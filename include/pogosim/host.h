@@ -64,18 +64,18 @@ int pogosim_run_end(pogosim_run* run);
 void pogosim_run_close(pogosim_run* run);
 
 /// A number: "time" (s), "step", "step_count" (steps of the whole run), "time_step" (s), "seed", "object_count",
-/// "robot_count", "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
+/// "robot_count", "lamp_count", "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 
 /// An array. Of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
 /// "bodies.velocity" (n, 2) mm/s, "bodies.angular_velocity" (n) rad/s, "bodies.radius" (n) mm. Of robots (rows: objects
 /// that run the program): "robots.id", "robots.category" (index into pogosim_run_categories), "robots.body" (index of
-/// its body; 2^32 - 1: none), "robots.led" (n, 5, 3), "robots.ticks", "robots.clock" (us), "robots.messages_sent",
-/// "robots.messages_received", "robots.user_data". Of the floor: "light" (rows, columns) sensor counts. Of the columns
-/// that the program has added to the data file, by robot, what data_set_value_* gave at the last save: "columns.NAME",
-/// and "columns_absent.NAME", true for robots that gave no value or wrote no row; for them "columns.NAME" has NaN, 0 or
-/// false. A column of strings has the type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only
-/// until the next step.
+/// its body; 2^32 - 1: none), "robots.led" (n, 5, 3), "robots.ticks", "robots.clock" (us; at least 2^62: switched off),
+/// "robots.messages_sent", "robots.messages_received", "robots.user_data". Of the floor: "light" (rows, columns) sensor
+/// counts. Of the columns that the program has added to the data file, by robot, what data_set_value_* gave at the last
+/// save: "columns.NAME", and "columns_absent.NAME", true for robots that gave no value or wrote no row; for them
+/// "columns.NAME" has NaN, 0 or false. A column of strings has the type "text": UTF-8, each ended by a zero, so many
+/// bytes; it stays in place only until the next step.
 int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_array* array);
 
 /// Names of the categories, a line each. Valid as long as the run.
@@ -90,6 +90,46 @@ char const* pogosim_run_messages(pogosim_run* run);
 
 /// Puts the body of a robot elsewhere, at rest. mm and rad.
 int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad);
+
+/// An object: what has a body or runs the program, in the order of the rows of the data file.
+struct pogosim_object {
+    uint32_t id;        ///< robot_id in the data file
+    uint32_t category;  ///< index into pogosim_run_categories
+    uint32_t robot;     ///< row in arrays of robots; 2^32 - 1: runs no program
+    int32_t is_alive;   ///< 0: switched off
+    double x_mm;        ///< of a membrane, its middle; in a periodic arena, inside its box
+    double y_mm;
+    double heading_rad;  ///< -pi to pi; 0 for what has no body of its own
+    double light;        ///< sensor counts, without noise
+};
+
+/// A lamp, in the order of the configuration.
+struct pogosim_lamp {
+    char const* category;  ///< valid as long as the run; ignored when a lamp is set
+    int32_t is_on;         ///< 0: dark, whatever the configuration says
+    double intensity;      ///< its levels are those of the configuration times this; at least 0
+    double x_mm;           ///< where it stands; of one on an orbit, the centre of the orbit
+    double y_mm;
+};
+
+/// What an object is like now. `object`: from 0 to the number "object_count" - 1.
+int pogosim_run_object(pogosim_run const* run, size_t object, struct pogosim_object* found);
+
+/// Puts an object elsewhere, at rest. mm and rad.
+int pogosim_run_set_object_pose(pogosim_run* run, size_t object, double x_mm, double y_mm, double heading_rad);
+
+/// Switches an object that runs the program off (0) or on, see pogosim_world_set_alive() in world.h.
+int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive);
+
+/// What a lamp is like now. `lamp`: from 0 to the number "lamp_count" - 1.
+int pogosim_run_lamp(pogosim_run const* run, size_t lamp, struct pogosim_lamp* found);
+
+/// Switches, dims and moves a lamp. The light on the floor is the new one at once.
+int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, struct pogosim_lamp const* setting);
+
+/// Sets a column that the program has declared: its value in all rows of an object from now on, unless the program's
+/// callback_export_data sets another one. `object`: negative for all objects.
+int pogosim_run_set_column(pogosim_run* run, int64_t object, char const* name, double value);
 
 /// Gives the global variable that the program has set from `parameters.NAME` another value, written in YAML.
 int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* value);

@@ -5,48 +5,20 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "host/hosted_run.hpp"
+#include "host/status.hpp"
 #include "pogosim/version.h"
 #include "robot/sensing.hpp"
 
 using namespace pogosim;
 
 namespace {
-
-std::string& error_text() {
-    static thread_local std::string text;
-    return text;
-}
-
-int failed(std::string const& what, int status = POGOSIM_USAGE) {
-    error_text() = what;
-    return status;
-}
-
-/// Runs what may throw, and returns its status.
-template <class Body>
-int with_status(Body const& body) {
-    try {
-        return body();
-    } catch (RunFailure const& failure) {
-        return failed(failure.what(), failure.code == ExitCode::user_program ? POGOSIM_PROGRAM_FAILED : POGOSIM_USAGE);
-    } catch (std::bad_alloc const&) {
-        return failed(kOutOfMemory);
-    } catch (std::exception const& error) {
-        return failed(error.what());
-    } catch (...) {
-        return failed("unknown error");
-    }
-}
 
 struct NamedNumber {
     std::string_view name;
@@ -61,21 +33,10 @@ constexpr std::array kNumbers{
     NamedNumber{"seed", [](Simulation const& s) { return static_cast<double>(s.seed()); }},
     NamedNumber{"object_count", [](Simulation const& s) { return static_cast<double>(s.world().objects.size()); }},
     NamedNumber{"robot_count", [](Simulation const& s) { return static_cast<double>(s.world().robots.size()); }},
+    NamedNumber{"lamp_count", [](Simulation const& s) { return static_cast<double>(s.world().lamps.size()); }},
     NamedNumber{"user_data_bytes",
                 [](Simulation const& s) { return static_cast<double>(s.programs().user_data_bytes()); }},
 };
-
-/// Mean of the sensors of a body.
-double light_at_robot(World const& world, std::uint32_t body) {
-    if (body == kNone) {
-        return -1.0;
-    }
-    double sum = 0.0;
-    for (std::size_t sensor = 0; sensor < kPhotosensorCount; ++sensor) {
-        sum += light_at_sensor(world, body, sensor);
-    }
-    return sum / kPhotosensorCount;
-}
 
 }  // namespace
 
@@ -179,7 +140,8 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
 void pogosim_run_light_levels(pogosim_run const* run, double* levels) {
     World const& world = run->simulation().world();
     for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
-        levels[robot] = light_at_robot(world, world.robots.body[robot]);
+        std::uint32_t const body = world.robots.body[robot];
+        levels[robot] = body == kNone ? -1.0 : mean_light(world, body);
     }
 }
 

@@ -9,7 +9,20 @@ from __future__ import annotations
 import ctypes
 import functools
 import sys
-from ctypes import POINTER, byref, c_char, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint64, c_void_p
+from ctypes import (
+    POINTER,
+    byref,
+    c_char,
+    c_char_p,
+    c_double,
+    c_int,
+    c_int32,
+    c_int64,
+    c_size_t,
+    c_uint32,
+    c_uint64,
+    c_void_p,
+)
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +58,33 @@ class ArrayPlace(ctypes.Structure):
     )
 
 
+class ObjectState(ctypes.Structure):
+    """`struct pogosim_object`."""
+
+    _fields_ = (
+        ("id", c_uint32),
+        ("category", c_uint32),
+        ("robot", c_uint32),
+        ("is_alive", c_int32),
+        ("x_mm", c_double),
+        ("y_mm", c_double),
+        ("heading_rad", c_double),
+        ("light", c_double),
+    )
+
+
+class LampState(ctypes.Structure):
+    """`struct pogosim_lamp`."""
+
+    _fields_ = (
+        ("category", c_char_p),
+        ("is_on", c_int32),
+        ("intensity", c_double),
+        ("x_mm", c_double),
+        ("y_mm", c_double),
+    )
+
+
 PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_host_error": (c_char_p, ()),
     "pogosim_host_version": (c_char_p, ()),
@@ -57,6 +97,12 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_categories": (c_char_p, (c_void_p,)),
     "pogosim_run_messages": (c_char_p, (c_void_p,)),
     "pogosim_run_set_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),
+    "pogosim_run_object": (c_int, (c_void_p, c_size_t, POINTER(ObjectState))),
+    "pogosim_run_set_object_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),
+    "pogosim_run_set_alive": (c_int, (c_void_p, c_size_t, c_int)),
+    "pogosim_run_lamp": (c_int, (c_void_p, c_size_t, POINTER(LampState))),
+    "pogosim_run_set_lamp": (c_int, (c_void_p, c_size_t, POINTER(LampState))),
+    "pogosim_run_set_column": (c_int, (c_void_p, c_int64, c_char_p, c_double)),
     "pogosim_run_set_parameter": (c_int, (c_void_p, c_char_p, c_char_p)),
     "pogosim_run_columns": (c_char_p, (c_void_p,)),
     "pogosim_run_light_levels": (None, (c_void_p, c_void_p)),

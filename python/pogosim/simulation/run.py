@@ -23,6 +23,7 @@ from pogosim.simulation.arrays import array_of
 from pogosim.simulation.columns import Columns
 from pogosim.simulation.errors import ConfigurationError, SimulationError
 from pogosim.simulation.library import OVER, OpenRun, check, library, open_run
+from pogosim.simulation.objects import Lamps, Objects, check_object
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
 
@@ -409,6 +410,39 @@ class Simulation:
         angle = float(self.headings[robot]) if heading is None else heading
         with self._busy():
             check(library().pogosim_run_set_pose(self._run, robot, x, y, angle))
+
+    @property
+    def objects(self) -> Objects:
+        """All objects, in the order of the configuration: robots, passive objects, walls. See `WorldObject`."""
+        return Objects(self)
+
+    @property
+    def lamps(self) -> Lamps:
+        """All lamps, in the order of the configuration. See `Lamp`."""
+        return Lamps(self)
+
+    @property
+    def alive(self) -> npt.NDArray[np.bool_]:
+        """Whether each robot is switched on. Shape (robots,); a copy."""
+        state = {found.robot: found.is_alive for found in self.objects if found.robot is not None}
+        return np.array([state[robot] for robot in range(len(state))], dtype=np.bool_)
+
+    def set_column(self, name: str, value: float, *, obj: int | None = None) -> None:
+        """Set a column that the program has declared: its value in all rows from now on.
+
+        Args:
+            name: Of the column, as in `data_add_column_double`.
+            value: A number that the type of the column has.
+            obj: Index of an object, for its rows only; None: for all objects. Values that the program's
+                callback_export_data sets stand.
+
+        Raises:
+            ConfigurationError: There is no such column or object, no data file, or it is not a value of its type.
+        """
+        if obj is not None:
+            check_object(self, obj)
+        with self._busy():
+            check(library().pogosim_run_set_column(self._run, -1 if obj is None else obj, name.encode(), value))
 
     def _set_parameter(self, name: str, value: Any) -> None:
         with self._busy():

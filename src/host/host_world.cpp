@@ -1,0 +1,125 @@
+// pogosim/host.h: objects, lamps and columns of a run.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/error.hpp"
+#include "host/hosted_run.hpp"
+#include "host/status.hpp"
+#include "pogosim/host.h"
+#include "robot/sensing.hpp"
+
+using namespace pogosim;
+
+namespace {
+
+Object const& object_at(World const& world, std::size_t object) {
+    if (object >= world.objects.size()) {
+        throw ConfigError(fmt::format("there is no object {}: the run has {}", object, world.objects.size()));
+    }
+    return world.objects[object];
+}
+
+PlacedLamp const& lamp_at(World const& world, std::size_t lamp) {
+    if (lamp >= world.lamps.size()) {
+        throw ConfigError(fmt::format("there is no lamp {}: the run has {}", lamp, world.lamps.size()));
+    }
+    return world.lamps[lamp];
+}
+
+float number(char const* name, double value, double smallest) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    if (!(value >= smallest && value <= largest)) {
+        throw ConfigError(fmt::format("{}: expected a finite number{}, found {}", name,
+                                      smallest == 0.0 ? " of at least 0" : "", value));
+    }
+    return static_cast<float>(value);
+}
+
+}  // namespace
+
+int pogosim_run_object(pogosim_run const* run, size_t object, pogosim_object* found) {
+    return with_status([&] {
+        World const& world = run->simulation().world();
+        Object const& of = object_at(world, object);
+        Vec2 const place_mm = wrapped(world, centre_mm(world, of));
+        bool const is_rigid = of.body_count == 1;
+        bool const runs_program = of.robot != kNone;
+        *found = {.id = of.id,
+                  .category = of.category,
+                  .robot = of.robot,
+                  .is_alive = !runs_program || is_alive(world.robots, of.robot) ? 1 : 0,
+                  .x_mm = place_mm.x,
+                  .y_mm = place_mm.y,
+                  .heading_rad = is_rigid ? wrap_angle(world.bodies.heading_rad[of.body]) : 0.0F,
+                  .light = is_rigid && runs_program ? mean_light(world, of.body) : world.light.at(place_mm)};
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_run_set_object_pose(pogosim_run* run, size_t object, double x_mm, double y_mm, double heading_rad) {
+    return with_status([&] {
+        World const& world = run->simulation().world();
+        Object const& moved = object_at(world, object);
+        Vec2 const place_mm{static_cast<float>(x_mm), static_cast<float>(y_mm)};
+        if (!run->simulation().set_pose(static_cast<std::uint32_t>(object), place_mm,
+                                        static_cast<float>(heading_rad))) {
+            throw ConfigError(fmt::format("object {} of category '{}' has no body that could be moved", object,
+                                          world.categories[moved.category].name));
+        }
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive) {
+    return with_status([&] {
+        World const& world = run->simulation().world();
+        Object const& of = object_at(world, object);
+        if (of.robot == kNone) {
+            throw ConfigError(
+                fmt::format("object {} of category '{}' runs no program", object, world.categories[of.category].name));
+        }
+        run->simulation().set_alive(of.robot, alive != 0);
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_run_lamp(pogosim_run const* run, size_t lamp, pogosim_lamp* found) {
+    return with_status([&] {
+        PlacedLamp const& of = lamp_at(run->simulation().world(), lamp);
+        Vec2 const place_mm = of.start_mm + of.setting.moved_mm;
+        *found = {.category = of.category.c_str(),
+                  .is_on = of.setting.is_on ? 1 : 0,
+                  .intensity = of.setting.intensity,
+                  .x_mm = place_mm.x,
+                  .y_mm = place_mm.y};
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, pogosim_lamp const* setting) {
+    return with_status([&] {
+        constexpr double lowest = std::numeric_limits<float>::lowest();
+        PlacedLamp const& of = lamp_at(run->simulation().world(), lamp);
+        Vec2 const place_mm{number("x", setting->x_mm, lowest), number("y", setting->y_mm, lowest)};
+        bool const stays = place_mm == of.start_mm + of.setting.moved_mm;
+        run->simulation().set_lamp(lamp, {.is_on = setting->is_on != 0,
+                                          .intensity = number("intensity", setting->intensity, 0.0),
+                                          .moved_mm = stays ? of.setting.moved_mm : place_mm - of.start_mm});
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_run_set_column(pogosim_run* run, int64_t object, char const* name, double value) {
+    return with_status([&] {
+        std::optional<std::uint32_t> of;
+        if (object >= 0) {
+            object_at(run->simulation().world(), static_cast<std::size_t>(object));
+            of = static_cast<std::uint32_t>(object);
+        }
+        run->simulation().set_column(of, name, value);
+        return POGOSIM_OK;
+    });
+}

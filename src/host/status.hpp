@@ -1,0 +1,40 @@
+// What functions of pogosim/host.h return: no exception crosses into the host.
+#pragma once
+
+#include <exception>
+#include <new>
+#include <string>
+
+#include "base/memory.hpp"
+#include "host/hosted_run.hpp"
+
+namespace pogosim {
+
+/// What pogosim_host_error() says in this thread.
+inline std::string& error_text() {
+    static thread_local std::string text;
+    return text;
+}
+
+inline int failed(std::string const& what, int status = POGOSIM_USAGE) {
+    error_text() = what;
+    return status;
+}
+
+/// Runs what may throw, and returns its status.
+template <class Body>
+int with_status(Body const& body) {
+    try {
+        return body();
+    } catch (RunFailure const& failure) {
+        return failed(failure.what(), failure.code == ExitCode::user_program ? POGOSIM_PROGRAM_FAILED : POGOSIM_USAGE);
+    } catch (std::bad_alloc const&) {
+        return failed(kOutOfMemory);
+    } catch (std::exception const& error) {
+        return failed(error.what());
+    } catch (...) {
+        return failed("unknown error");
+    }
+}
+
+}  // namespace pogosim
