@@ -25,7 +25,7 @@ struct Delivery {
 
 struct DeliveryLog {
     std::int64_t step = 0;             // in which they were sent
-    Air air;                           // the transmissions
+    TransmissionQueue air;             // the transmissions
     std::vector<Delivery> deliveries;  // transmission by transmission, receivers in the order of their indices
 };
 

@@ -23,7 +23,7 @@ constexpr Vec2 in_frame_of(Vec2 v, Vec2 axis) {
 }
 
 /// Grows with the angle of the direction from -180 to 180 degrees as -2 to 2, without trigonometry.
-float pseudo_angle(Vec2 direction) {
+float diamond_angle(Vec2 direction) {
     float const side = direction.y / (std::abs(direction.x) + std::abs(direction.y));
     if (direction.x >= 0.0F) {
         return side;
@@ -69,7 +69,7 @@ void Visibility::update(World const& world) {
 void Visibility::gather_candidates(World const& world, std::uint32_t robot, float range_mm) {
     std::uint32_t const body = world.robots.body[robot];
     Vec2 const centre = world.bodies.position_mm[body];
-    Vec2 const axis = world.bodies.axis[body];
+    Vec2 const axis = world.bodies.heading_dir[body];
     float const reach_mm = emitter_radius_mm(world, robot) + range_mm;
     candidates_.clear();
     float const farthest_mm = reach_mm + largest_radius_mm_;
@@ -139,8 +139,8 @@ void Visibility::look(World const& world, std::uint32_t robot, int emitter, floa
             float const radius_mm = candidates_[sight.candidate].radius_mm;
             float const sine2 = std::min(radius_mm * radius_mm / sight.distance_mm2, 1.0F);
             Vec2 const half_width{std::sqrt(1.0F - sine2), std::sqrt(sine2)};
-            sight.low = pseudo_angle(in_frame_of(sight.from_emitter_mm, half_width));
-            sight.high = pseudo_angle(rotate(sight.from_emitter_mm, half_width));
+            sight.low = diamond_angle(in_frame_of(sight.from_emitter_mm, half_width));
+            sight.high = diamond_angle(rotate(sight.from_emitter_mm, half_width));
             if (is_covered(sight)) {
                 return true;
             }
@@ -169,7 +169,7 @@ void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std:
         if ((emitters & bit) == 0) {
             continue;
         }
-        Vec2 const place = rotate(rim_mm * kFaceNormals[emitter], world.bodies.axis[body]);
+        Vec2 const place = rotate(rim_mm * kFaceNormals[emitter], world.bodies.heading_dir[body]);
         for (OutlineIndex::Piece const& piece : pieces) {
             std::uint8_t& reached = outline_emitters_[piece.outline];
             if ((reached & bit) == 0 && squared_distance(piece, place) <= range_mm * range_mm) {
@@ -209,7 +209,7 @@ std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std
     unsigned faces = 0;
     for (OutlineIndex::Piece const& piece : outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm)) {
         for (unsigned face = 0; piece.outline == outline && face < kFaceCount; ++face) {
-            Vec2 const place = rotate(rim_mm * kFaceNormals[face], world.bodies.axis[body]);
+            Vec2 const place = rotate(rim_mm * kFaceNormals[face], world.bodies.heading_dir[body]);
             if (squared_distance(piece, place) <= range_mm * range_mm) {
                 faces |= 1U << face;
             }
@@ -261,7 +261,7 @@ void Visibility::find_receivers(World const& world, std::uint32_t robot, std::ui
             look(world, robot, emitter, range_mm);
         }
     }
-    Vec2 const axis = world.bodies.axis[world.robots.body[robot]];
+    Vec2 const axis = world.bodies.heading_dir[world.robots.body[robot]];
     for (Candidate const& candidate : candidates_) {
         if (std::isfinite(candidate.nearest_mm2)) {
             receivers_.push_back({.robot = candidate.robot,
@@ -279,7 +279,7 @@ void Visibility::find_receivers(World const& world, std::uint32_t robot, std::ui
 std::uint8_t faces_that_see(World const& world, std::uint32_t receiver, Vec2 emitter_mm, float range_mm) {
     std::uint32_t const body = world.robots.body[receiver];
     float const rim_mm = emitter_radius_mm(world, receiver);
-    Vec2 const emitter = in_frame_of(emitter_mm, world.bodies.axis[body]);
+    Vec2 const emitter = in_frame_of(emitter_mm, world.bodies.heading_dir[body]);
     std::uint8_t faces = 0;
     std::size_t best = 0;
     for (std::size_t face = 0; face < kFaceCount; ++face) {

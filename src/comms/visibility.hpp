@@ -63,7 +63,7 @@ private:
         unsigned emitters;     // bit d: emitter d sees it
     };
 
-    /// A candidate as one emitter sees it; `low` and `high` are the edges of its shadow, see pseudo_angle().
+    /// A candidate as one emitter sees it; `low` and `high` are the edges of its shadow, see diamond_angle().
     struct Sight {
         float distance_mm2;
         float low;

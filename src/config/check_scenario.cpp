@@ -58,7 +58,7 @@ void check_object_count(Scenario const& scenario) {
     for (ObjectConfig const& object : scenario.objects) {
         robots += object.spec.robot ? object.nb : 0;
         all += object.spec.robot || object.spec.body ? object.nb : 0;
-        bodies += std::int64_t{object.nb} * (object.spec.ring ? object.spec.ring->body_count : 1);
+        bodies += std::int64_t{object.nb} * (object.spec.membrane ? object.spec.membrane->body_count : 1);
     }
     if (all > kMaxObjects) {
         fail_at(place_of(scenario, "objects"),

@@ -135,9 +135,9 @@ void refuse_both(MapReader const& reader, std::string_view one, std::string_view
     }
 }
 
-void refuse_fixed_wheels_and_rings(MapReader const& reader, ObjectConfig const& object) {
+void refuse_fixed_wheels_and_membranes(MapReader const& reader, ObjectConfig const& object) {
     bool const has_wheels = object.spec.robot && object.spec.robot->has_wheels;
-    if (object.spec.body && object.spec.body->fixed && (has_wheels || object.spec.ring)) {
+    if (object.spec.body && object.spec.body->fixed && (has_wheels || object.spec.membrane)) {
         fail_at({*reader.find("body_fixed"), reader.path_of("body_fixed")},
                 fmt::format("{} cannot be fixed; use a passive_object, an active_object or a pogobject",
                             has_wheels ? "a robot with wheels" : "a membrane"));
@@ -153,7 +153,7 @@ Polygon read_disk_area(MapReader& reader) {
 }
 
 void read_placement(MapReader& reader, ObjectConfig& object) {
-    refuse_fixed_wheels_and_rings(reader, object);
+    refuse_fixed_wheels_and_membranes(reader, object);
     for (std::string_view const key : {"poses", "area", "initial_formation"}) {
         refuse_both(reader, key, "x");
         refuse_both(reader, key, "y");

@@ -50,8 +50,9 @@ std::string key_of(Scenario const& scenario, ObjectConfig const& object, ObjectS
             return object.own_formation.area_mm ? "area" : "initial_formation";
         case ObjectSetting::linear_speed:
             return "max_linear_speed";
-        case ObjectSetting::ring_thickness:
-            return object.spec.ring->segments && object.spec.ring->thickness_mm ? "rect_thickness" : "dot_radius";
+        case ObjectSetting::membrane_thickness:
+            return object.spec.membrane->segments && object.spec.membrane->thickness_mm ? "rect_thickness"
+                                                                                        : "dot_radius";
         case ObjectSetting::size:
             return size_key(object.spec);
         case ObjectSetting::x:

@@ -25,11 +25,11 @@ enum class Setting {
 /// Values of an entry of `objects`.
 enum class ObjectSetting {
     angular_speed,
-    body_count,  // of a ring
+    body_count,  // of a membrane
     count,
     formation,  // of the entry itself: its area, or its name
     linear_speed,
-    ring_thickness,
+    membrane_thickness,
     size,  // what makes the shape too large, or a lamp too small
     x,     // or the poses
     y,

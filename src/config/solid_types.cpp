@@ -46,58 +46,63 @@ void read_pogowall(MapReader& reader, ObjectConfig& object) {
 
 constexpr int kMostBodies = 10000;  // of one membrane
 
-std::span<Key<RingSpec> const> ring_keys() {
-    using K = Key<RingSpec>;
-    constexpr auto has_dot_radius = [](RingSpec const& ring) { return !(ring.segments && ring.thickness_mm); };
-    constexpr auto has_springs = [](RingSpec const& ring) { return !ring.segments || ring.cross_span > 1; };
+std::span<Key<MembraneSpec> const> membrane_keys() {
+    using K = Key<MembraneSpec>;
+    constexpr auto has_dot_radius = [](MembraneSpec const& membrane) {
+        return !(membrane.segments && membrane.thickness_mm);
+    };
+    constexpr auto has_springs = [](MembraneSpec const& membrane) {
+        return !membrane.segments || membrane.cross_span > 1;
+    };
     static std::array const keys{
-        K{"num_dots", &RingSpec::body_count, between(3, kMostBodies), "", "Number of bodies along the outline."},
-        K{"dot_radius", &RingSpec::radius_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm", "Radius of a dot."}
+        K{"num_dots", &MembraneSpec::body_count, between(3, kMostBodies), "", "Number of bodies along the outline."},
+        K{"dot_radius", &MembraneSpec::radius_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm",
+          "Radius of a dot."}
             .only_if(has_dot_radius),
-        K{"cross_span", &RingSpec::cross_span, between(0, kMostBodies), "dots",
+        K{"cross_span", &MembraneSpec::cross_span, between(0, kMostBodies), "dots",
           "Above 1: adds weaker springs from each dot to the one this many places further on, which keep the membrane "
           "from folding."},
-        K{"stiffness", &RingSpec::stiffness_hz, above(0).up_to(1e4), "Hz",
+        K{"stiffness", &MembraneSpec::stiffness_hz, above(0).up_to(1e4), "Hz",
           "Natural frequency of the springs between neighbours; their damping ratio is body_linear_damping."}
             .only_if(has_springs),
-        K{"serialize_dot_pose", &RingSpec::in_data_file, any(), "",
+        K{"serialize_dot_pose", &MembraneSpec::in_data_file, any(), "",
           "Record each dot as a row of the data file, with its number in the column subpart_id."},
     };
     return keys;
 }
 
-std::span<Key<RingSpec> const> thickness_keys() {
-    using K = Key<RingSpec>;
+std::span<Key<MembraneSpec> const> thickness_keys() {
+    using K = Key<MembraneSpec>;
     static std::array const keys{
-        K{"rect_thickness", &RingSpec::thickness_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm",
+        K{"rect_thickness", &MembraneSpec::thickness_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm",
           "Thickness of the segments; default: dot_radius."},
     };
     return keys;
 }
 
-void read_ring_object(MapReader& reader, ObjectConfig& object, bool segments) {
+void read_membrane_object(MapReader& reader, ObjectConfig& object, bool segments) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
     RobotSpec kind;
     kind.emitters = Emitters::outline;
     kind.has_wheels = false;
     read_robot(reader, object, kind);
     read_body(reader, object);
-    RingSpec& ring = object.spec.ring.emplace();
-    ring.segments = segments;
+    MembraneSpec& membrane = object.spec.membrane.emplace();
+    membrane.segments = segments;
     if (segments) {
-        reader.read(thickness_keys(), ring);
+        reader.read(thickness_keys(), membrane);
     }
-    reader.read(ring_keys(), ring);
+    reader.read(membrane_keys(), membrane);
     read_placement(reader, object);
     read_colormap(reader, object);
 }
 
 void read_membrane(MapReader& reader, ObjectConfig& object) {
-    read_ring_object(reader, object, /*segments=*/false);
+    read_membrane_object(reader, object, /*segments=*/false);
 }
 
 void read_rectmembrane(MapReader& reader, ObjectConfig& object) {
-    read_ring_object(reader, object, /*segments=*/true);
+    read_membrane_object(reader, object, /*segments=*/true);
 }
 
 void read_active_object(MapReader& reader, ObjectConfig& object) {

@@ -52,19 +52,19 @@ pogosim_array leds(std::vector<Leds> const& values) {
                      {sizeof(Leds), sizeof(Rgb), 1});
 }
 
-/// A member of each robot's computer.
+/// A member of each robot's controller.
 template <class T>
 pogosim_array members(Simulation const& simulation, T const& of_first) {
-    auto const computers = simulation.programs().computers();
-    return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(computers.size())}, {sizeof(Computer)});
+    auto const all = simulation.controllers().all();
+    return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(all.size())}, {sizeof(Controller)});
 }
 
 pogosim_array user_data(Simulation const& simulation) {
-    Programs const& programs = simulation.programs();
-    auto const computers = programs.computers();
-    return described(computers.empty() ? nullptr : computers.front().user_data,
-                     fmt::format("|V{}", programs.user_data_bytes()), {static_cast<std::int64_t>(computers.size())},
-                     {static_cast<std::int64_t>(programs.user_data_stride())});
+    Controllers const& controllers = simulation.controllers();
+    auto const all = controllers.all();
+    return described(all.empty() ? nullptr : all.front().user_data, fmt::format("|V{}", controllers.user_data_bytes()),
+                     {static_cast<std::int64_t>(all.size())},
+                     {static_cast<std::int64_t>(controllers.user_data_stride())});
 }
 
 pogosim_array light(LightMap const& map) {
@@ -73,10 +73,10 @@ pogosim_array light(LightMap const& map) {
 }
 
 /// Stands in for the first of no robots.
-Computer const& first_computer(Simulation const& simulation) {
-    static Computer const none;
-    auto const computers = simulation.programs().computers();
-    return computers.empty() ? none : computers.front();
+Controller const& first_controller(Simulation const& simulation) {
+    static Controller const none;
+    auto const all = simulation.controllers().all();
+    return all.empty() ? none : all.front();
 }
 
 struct NamedArray {
@@ -94,11 +94,12 @@ constexpr std::array kArrays{
     NamedArray{"robots.category", [](Simulation const& s) { return numbers(s.world().robots.category); }},
     NamedArray{"robots.body", [](Simulation const& s) { return numbers(s.world().robots.body); }},
     NamedArray{"robots.led", [](Simulation const& s) { return leds(s.world().robots.led); }},
-    NamedArray{"robots.ticks", [](Simulation const& s) { return members(s, first_computer(s).loop.ticks); }},
-    NamedArray{"robots.clock", [](Simulation const& s) { return members(s, first_computer(s).clock_us); }},
-    NamedArray{"robots.messages_sent", [](Simulation const& s) { return members(s, first_computer(s).messages_sent); }},
+    NamedArray{"robots.ticks", [](Simulation const& s) { return members(s, first_controller(s).loop.ticks); }},
+    NamedArray{"robots.clock", [](Simulation const& s) { return members(s, first_controller(s).clock_us); }},
+    NamedArray{"robots.messages_sent",
+               [](Simulation const& s) { return members(s, first_controller(s).messages_sent); }},
     NamedArray{"robots.messages_received",
-               [](Simulation const& s) { return members(s, first_computer(s).messages_received); }},
+               [](Simulation const& s) { return members(s, first_controller(s).messages_received); }},
     NamedArray{"robots.user_data", user_data},
     NamedArray{"light", [](Simulation const& s) { return light(s.world().light); }},
 };

@@ -35,7 +35,7 @@ constexpr std::array kNumbers{
     NamedNumber{"robot_count", [](Simulation const& s) { return static_cast<double>(s.world().robots.size()); }},
     NamedNumber{"lamp_count", [](Simulation const& s) { return static_cast<double>(s.world().lamps.size()); }},
     NamedNumber{"user_data_bytes",
-                [](Simulation const& s) { return static_cast<double>(s.programs().user_data_bytes()); }},
+                [](Simulation const& s) { return static_cast<double>(s.controllers().user_data_bytes()); }},
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr float kTolerance = 1e-3F;  // of an axis
 void assert_motion(Bodies const& bodies) {
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {
         assert(is_finite(bodies, i));
-        assert(length(bodies.axis[i] - direction(bodies.heading_rad[i])) < kTolerance);
+        assert(length(bodies.heading_dir[i] - direction(bodies.heading_rad[i])) < kTolerance);
         assert(!bodies.spec[i].fixed || bodies.velocity_mm_s[i] == Vec2{});
         assert(!bodies.spec[i].fixed || bodies.angular_velocity_rad_s[i] == 0.0F);
     }

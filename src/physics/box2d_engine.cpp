@@ -15,10 +15,10 @@
 #include "physics/coinciding_centres.hpp"
 #include "physics/containment.hpp"
 #include "physics/known_motion.hpp"
+#include "physics/membrane_area.hpp"
+#include "physics/membrane_filter.hpp"
+#include "physics/membrane_sides.hpp"
 #include "physics/physics_engine.hpp"
-#include "physics/ring_area.hpp"
-#include "physics/ring_filter.hpp"
-#include "physics/ring_sides.hpp"
 #include "physics/wrap_objects.hpp"
 
 namespace pogosim {
@@ -29,8 +29,8 @@ struct Iterations {
     int velocity;
     int position;
 };
-constexpr Iterations kForContacts{6, 3};
-constexpr Iterations kForJoints{12, 6};  // a pull has to go round a ring
+constexpr Iterations kContactIterations{6, 3};
+constexpr Iterations kJointIterations{12, 6};  // a pull has to go round a membrane
 // Box2D detects a contact only once it exists, so a pair overlaps by the distance travelled since. Steps are cut into
 // sub-steps in which no two robots at full speed approach by more than this, as long as that is not too many.
 constexpr float kApproachMm = 1.0F;
@@ -40,10 +40,10 @@ constexpr int kMaxSubsteps = 8;
 constexpr int kMostSubsteps = 100;
 constexpr float kMostMotionMm = 0.99F * b2_maxTranslation * kMmPerUnit;
 constexpr float kMostTurnRad = 0.99F * b2_maxRotation;
-// The joints of a ring yield to bodies that hit it hard. It holds those that move by up to this share of half its
+// The joints of a membrane yield to bodies that hit it hard. It holds those that move by up to this share of half its
 // thickness per sub-step (found by trial with robots of 5 to 40 mm), or as far as in the sub-steps of slow robots.
-constexpr float kRingShare = 0.2F;
-constexpr float kLeastRingMotionMm = 0.5F * kApproachMm;
+constexpr float kMembraneShare = 0.2F;
+constexpr float kLeastMembraneMotionMm = 0.5F * kApproachMm;
 // Bodies that get their shapes in the order of the bodies, at most: see order_of_shapes().
 constexpr std::size_t kMostInOrder = 65536;
 // Box2D calls slower collisions inelastic; its own limit of 1 unit/s is the full speed of a robot.
@@ -52,7 +52,7 @@ constexpr float kRestitutionThreshold = 0.05F;  // units/s
 // swings just so often.
 constexpr float kMostSwingsPerStep = 0.5F;
 // The solver cannot hold back a heavy body by a chain of light ones. A robot with wheels weighs so many times as much
-// as a body of a ring at most; lighter ones get more mass.
+// as a body of a membrane at most; lighter ones get more mass.
 constexpr float kMostMassRatio = 30.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
@@ -69,12 +69,12 @@ std::vector<std::uint32_t> order_of_shapes(std::size_t count) {
     return order;
 }
 
-/// What a body may move in a sub-step: see kMostMotionMm and kRingShare.
+/// What a body may move in a sub-step: see kMostMotionMm and kMembraneShare.
 float most_motion_mm(World const& world) {
     float most_mm = kMostMotionMm;
-    for (Ring const& ring : world.rings) {
-        float const half_thickness_mm = inner_radius(world.bodies.shape[ring.body]);
-        most_mm = std::min(most_mm, std::max(kRingShare * half_thickness_mm, kLeastRingMotionMm));
+    for (Membrane const& membrane : world.membranes) {
+        float const half_thickness_mm = inner_radius(world.bodies.shape[membrane.body]);
+        most_mm = std::min(most_mm, std::max(kMembraneShare * half_thickness_mm, kLeastMembraneMotionMm));
     }
     return most_mm;
 }
@@ -93,8 +93,8 @@ struct Fastest {
 /// than the motors have set some.
 Fastest fastest_of(World const& world, bool others_set_velocities) {
     Fastest fastest;
-    for (Drive const& drive : world.robots.drive) {
-        fastest.count(drive.velocity_mm_s, drive.angular_velocity_rad_s);
+    for (VelocityCommand const& command : world.robots.command) {
+        fastest.count(command.velocity_mm_s, command.angular_velocity_rad_s);
     }
     for (std::size_t i = 0; others_set_velocities && i < world.bodies.size(); ++i) {
         fastest.count(world.bodies.velocity_mm_s[i], world.bodies.angular_velocity_rad_s[i]);
@@ -131,14 +131,14 @@ public:
         for (std::uint32_t const i : order_of_shapes(world.bodies.size())) {
             add_shape_of(world.bodies, i);
         }
-        add_mass_to_rings(world);
+        add_mass_to_membranes(world);
         for (Joint const& joint : world.joints) {
             add_joint(joint, kMostSwingsPerStep / static_cast<float>(world.time_step_s));
         }
-        for (Ring const& ring : world.rings) {
-            areas_.emplace_back(ring, bodies_);
+        for (Membrane const& membrane : world.membranes) {
+            areas_.emplace_back(membrane, bodies_);
         }
-        if (!world.rings.empty()) {
+        if (!world.membranes.empty()) {
             sides_.emplace(world, bodies_);
         }
         known_.copy(world.bodies);
@@ -146,16 +146,16 @@ public:
 
     void advance(World& world) override {
         take_over(world);
-        impose_drives(world);
+        impose_commands(world);
         if (!any_awake_) {
             return;  // nothing moves, as in a swarm that only talks
         }
         int const substeps =
             substeps_for(fastest_of(world, others_set_velocities_), most_motion_mm_, world.time_step_s);
-        Iterations const iterations = world.joints.empty() ? kForContacts : kForJoints;
+        Iterations const iterations = world.joints.empty() ? kContactIterations : kJointIterations;
         auto const dt_s = static_cast<float>(world.time_step_s / substeps);
         for (int i = 0; i < substeps; ++i) {
-            for (RingArea const& area : areas_) {
+            for (MembraneArea const& area : areas_) {
                 area.push(dt_s);
             }
             engine_.Step(dt_s, iterations.velocity, iterations.position);
@@ -185,7 +185,7 @@ public:
     MotionLimits motion_limits() const override {
         return {.motion_mm = kMostSubsteps * most_motion_mm_,
                 .turn_rad = kMostSubsteps * kMostTurnRad,
-                .is_of_rings = most_motion_mm_ < kMostMotionMm};
+                .is_of_membranes = most_motion_mm_ < kMostMotionMm};
     }
 
 private:
@@ -220,7 +220,7 @@ private:
             b2Body& body = *bodies_[i];
             body.SetTransform(to_box2d(bodies.position_mm[i]), bodies.heading_rad[i]);
             b2Rot const& rotation = body.GetTransform().q;
-            bodies.axis[i] = {rotation.c, rotation.s};
+            bodies.heading_dir[i] = {rotation.c, rotation.s};
         }
         // A fixed body would not wake those it lands on.
         for (b2Body* const body : bodies_) {
@@ -287,16 +287,16 @@ private:
     }
 
     /// Mass scaling: see kMostMassRatio.
-    void add_mass_to_rings(World const& world) {
+    void add_mass_to_membranes(World const& world) {
         float heaviest = 0.0F;
         for (std::size_t i = 0; i < world.robots.size(); ++i) {
             if (world.spec_of(i).has_wheels) {
                 heaviest = std::max(heaviest, bodies_[world.robots.body[i]]->GetMass());
             }
         }
-        for (Ring const& ring : world.rings) {
-            for (std::uint32_t k = 0; k < ring.body_count; ++k) {
-                b2Body& body = *bodies_[ring.body + k];
+        for (Membrane const& membrane : world.membranes) {
+            for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
+                b2Body& body = *bodies_[membrane.body + k];
                 float const factor = heaviest / (kMostMassRatio * body.GetMass());
                 if (factor > 1.0F) {
                     set_mass(body, factor * body.GetMass(), body.GetInertia() / body.GetMass());
@@ -305,19 +305,19 @@ private:
         }
     }
 
-    void impose_drives(World& world) {
+    void impose_commands(World& world) {
         Robots& robots = world.robots;
         for (std::size_t i = 0; i < robots.size(); ++i) {
-            Drive& drive = robots.drive[i];
-            if (!drive.fresh) {
+            VelocityCommand& command = robots.command[i];
+            if (!command.pending) {
                 continue;
             }
-            drive.fresh = false;
+            command.pending = false;
             b2Body& body = *bodies_[robots.body[i]];
-            body.SetLinearVelocity(to_box2d(drive.velocity_mm_s));
-            body.SetAngularVelocity(drive.angular_velocity_rad_s);
+            body.SetLinearVelocity(to_box2d(command.velocity_mm_s));
+            body.SetAngularVelocity(command.angular_velocity_rad_s);
             any_awake_ = any_awake_ || body.IsAwake();
-            sweep_if_fast(body, drive.velocity_mm_s, world.bodies.radius_mm[robots.body[i]], world.time_step_s);
+            sweep_if_fast(body, command.velocity_mm_s, world.bodies.radius_mm[robots.body[i]], world.time_step_s);
         }
     }
 
@@ -364,21 +364,21 @@ private:
         any_awake_ = true;
         b2Transform const& pose = body.GetTransform();
         bodies.position_mm[i] = from_box2d(pose.p);
-        bodies.axis[i] = {pose.q.c, pose.q.s};
+        bodies.heading_dir[i] = {pose.q.c, pose.q.s};
         bodies.heading_rad[i] = body.GetAngle();
         bodies.velocity_mm_s[i] = from_box2d(body.GetLinearVelocity());
         bodies.angular_velocity_rad_s[i] = body.GetAngularVelocity();
     }
 
-    RingFilter filter_;
+    MembraneFilter filter_;
     b2World engine_;
     float most_motion_mm_;                    // in a sub-step
     std::optional<Containment> containment_;  // nobody leaves a periodic world
-    std::optional<RingSides> sides_;          // when there are rings
+    std::optional<MembraneSides> sides_;      // when there are membranes
     KnownMotion known_;
     bool any_awake_ = true;
     bool others_set_velocities_ = false;  // so far, not only the motors
-    std::vector<RingArea> areas_;
+    std::vector<MembraneArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
 };
 

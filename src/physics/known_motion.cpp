@@ -40,7 +40,7 @@ bool KnownMotion::has_other_velocity(Bodies const& bodies, std::uint32_t body) c
 void KnownMotion::restore(Bodies& bodies, std::uint32_t body) const {
     bodies.position_mm[body] = position_mm_[body];
     bodies.heading_rad[body] = heading_rad_[body];
-    bodies.axis[body] = direction(heading_rad_[body]);
+    bodies.heading_dir[body] = direction(heading_rad_[body]);
     bodies.velocity_mm_s[body] = velocity_mm_s_[body];
     bodies.angular_velocity_rad_s[body] = angular_velocity_rad_s_[body];
 }

@@ -15,16 +15,16 @@ namespace pogosim {
 struct MotionLimits {
     float motion_mm;
     float turn_rad;
-    bool is_of_rings;  // motion_mm: it is what the soft rings of the world can hold back
+    bool is_of_membranes;  // motion_mm: it is what the soft membranes of the world can hold back
 };
 
 class PhysicsEngine {
 public:
     virtual ~PhysicsEngine() = default;
 
-    /// Takes over what others have written to the bodies of the world, see world.hpp, imposes fresh drives, advances
-    /// all bodies by one time step and writes their poses and velocities back. Bodies that overlap are pushed apart
-    /// in the next steps.
+    /// Takes over what others have written to the bodies of the world, see world.hpp, imposes pending velocity
+    /// commands, advances all bodies by one time step and writes their poses and velocities back. Bodies that overlap
+    /// are pushed apart in the next steps.
     virtual void advance(World& world) = 0;
 
     virtual MotionLimits motion_limits() const = 0;

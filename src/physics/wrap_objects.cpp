@@ -28,16 +28,16 @@ void shift(EngineBodies const& bodies, Object const& object, Vec2 way_mm) {
     }
 }
 
-/// Wraps a ring with the rigid objects in it, and takes these off the list of those still to wrap.
-void wrap_with_contents(World const& world, EngineBodies const& bodies, Object const& ring,
+/// Wraps a membrane with the rigid objects in it, and takes these off the list of those still to wrap.
+void wrap_with_contents(World const& world, EngineBodies const& bodies, Object const& membrane,
                         std::vector<Object const*>& rest) {
     Polygon line;
-    for (std::uint32_t k = 0; k < ring.body_count; ++k) {
-        line.push_back(from_box2d(bodies[ring.body + k]->GetPosition()));
+    for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
+        line.push_back(from_box2d(bodies[membrane.body + k]->GetPosition()));
     }
     Box const box = bounding_box(line);
-    Vec2 const way = offset_into_bounds(world, centre_of(bodies, ring));
-    shift(bodies, ring, way);
+    Vec2 const way = offset_into_bounds(world, centre_of(bodies, membrane));
+    shift(bodies, membrane, way);
     std::erase_if(rest, [&](Object const* object) {
         Vec2 const place = from_box2d(bodies[object->body]->GetPosition());
         bool const is_inside = box.contains(place) && contains(line, place);

@@ -139,7 +139,7 @@ void draw_figure(Scene const& scene, Figure const& figure, bool lateral_leds) {
     });
 }
 
-/// The bodies of a ring one after the other, from the first, wherever seams are.
+/// The bodies of a membrane one after the other, from the first, wherever seams are.
 Polygon unrolled(Scene const& scene, Object const& object) {
     std::vector<Vec2> const& position = scene.snapshot.position_mm;
     Polygon centres{position[object.body]};
@@ -150,10 +150,11 @@ Polygon unrolled(Scene const& scene, Object const& object) {
 }
 
 void draw_membrane(Scene const& scene, Object const& object, Coverage& scratch) {
-    RingSpec const& ring = *scene.scenery().categories[object.category].spec.ring;
-    float const half_mm = ring.segments ? 0.5F * ring.thickness_mm.value_or(ring.radius_mm) : ring.radius_mm;
-    float const dot_mm = half_mm * (ring.segments ? 0.35F : 1.0F);
-    float const line_mm = 2.0F * half_mm / (ring.segments ? 1.0F : 3.0F);
+    MembraneSpec const& membrane = *scene.scenery().categories[object.category].spec.membrane;
+    float const half_mm =
+        membrane.segments ? 0.5F * membrane.thickness_mm.value_or(membrane.radius_mm) : membrane.radius_mm;
+    float const dot_mm = half_mm * (membrane.segments ? 0.35F : 1.0F);
+    float const line_mm = 2.0F * half_mm / (membrane.segments ? 1.0F : 3.0F);
     Pixel const colour = object.robot == kNone ? palette::kNoLed : led_colour(scene.snapshot.led[object.robot][0]);
     Polygon const centres = unrolled(scene, object);
     Box around = bounding_box(centres);

@@ -11,7 +11,7 @@ namespace pogosim {
 /// Where robots have been, in the colour their head LED had there, fading into the past.
 void draw_trails(Scene const& scene);
 
-/// Soft rings: the line through their bodies, and these.
+/// Soft membranes: the line through their bodies, and these.
 void draw_membranes(Scene const& scene);
 
 /// The light of head LEDs on the floor around them.

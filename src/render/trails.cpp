@@ -8,7 +8,7 @@ namespace pogosim {
 namespace {
 
 bool leaves_a_trail(World const& world, std::size_t robot) {
-    return world.robots.body[robot] != kNone && !world.categories[world.robots.category[robot]].spec.ring;
+    return world.robots.body[robot] != kNone && !world.categories[world.robots.category[robot]].spec.membrane;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ public:
     static constexpr std::size_t kLength = 512;
     static constexpr float kSpacingMm = 2.0F;
 
-    /// Takes the positions of the robots of a world, once a step. Robots without a body, and rings, leave no trail.
+    /// Takes the positions of the robots of a world, once a step. Robots without a body, and membranes, leave no trail.
     void follow(World const& world);
 
     std::size_t robot_count() const { return count_.size(); }

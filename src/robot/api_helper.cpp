@@ -32,7 +32,7 @@ pogosim::RandomStream& outside_stream() {
 }
 
 pogosim::RandomStream& current_stream() {
-    return context.computer != nullptr ? context.computer->random : outside_stream();
+    return context.controller != nullptr ? context.controller->random : outside_stream();
 }
 
 }  // namespace
@@ -65,10 +65,10 @@ void pogosim_exit(int status) {
 }
 
 void pogobot_init() {
-    if (context.computer == nullptr) {
+    if (context.controller == nullptr) {
         return;  // before main(), in a static constructor
     }
-    pogosim::Program& program = context.computer->program;
+    pogosim::Program& program = context.controller->program;
     if (program.registered && std::string_view(context.phase) == "main") {
         context.services->warn_once(
             "pogobot_init() is called after pogobot_start(), which never returns on a real robot: call it first");
@@ -83,12 +83,12 @@ uint16_t pogobot_helper_getid() {
 
 int16_t pogobot_helper_getRandSeed() {
     require_robot(__func__);
-    pogosim::Computer& computer = *context.computer;
-    if (!computer.seed_taken) {
-        computer.seed_taken = true;
-        return computer.first_seed;
+    pogosim::Controller& controller = *context.controller;
+    if (!controller.seed_taken) {
+        controller.seed_taken = true;
+        return controller.first_seed;
     }
-    return static_cast<int16_t>(computer.seeds.bits());
+    return static_cast<int16_t>(controller.seeds.bits());
 }
 
 void pogobot_helper_print_version() {

@@ -45,8 +45,8 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
     if (!context.has_robot() || emitters == 0 || power == 0) {
         return kSent;
     }
-    ++context.computer->messages_sent;
-    pogosim::Air& air = context.world->air;
+    ++context.controller->messages_sent;
+    pogosim::TransmissionQueue& air = context.world->air;
     air.transmissions.push_back({.robot = context.robot,
                                  .emitters = emitters,
                                  .message_bytes = static_cast<std::uint16_t>(header_bytes + header.payload_length),
@@ -69,7 +69,7 @@ std::uint8_t power_list(std::uint8_t emitters) {
     unsigned list = 0;
     for (unsigned face = 0; face < kFaceCount; ++face) {
         if ((emitters >> face & 1U) != 0) {
-            list |= static_cast<unsigned>(context.computer->ir_power) << (face * pogobot_infrared_emitter_width_bits);
+            list |= static_cast<unsigned>(context.controller->ir_power) << (face * pogobot_infrared_emitter_width_bits);
         }
     }
     return static_cast<std::uint8_t>(list);
@@ -108,7 +108,7 @@ std::uint32_t send_short(std::uint8_t emitters, std::uint8_t const* payload, std
                              .sender_ir_index = 0xF,
                              .receiver_ir_index = 0,
                              .payload_length = size};
-    return emit(emitters, context.computer->ir_power, header, kShortHeaderBytes, payload);
+    return emit(emitters, context.controller->ir_power, header, kShortHeaderBytes, payload);
 }
 
 }  // namespace
@@ -177,14 +177,14 @@ uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t*
 
 void pogobot_infrared_set_power(uint8_t power) {
     require_robot(__func__);
-    context.computer->ir_power = std::min<uint8_t>(power, pogobot_infrared_emitter_power_max);
+    context.controller->ir_power = std::min<uint8_t>(power, pogobot_infrared_emitter_power_max);
 }
 
 void pogobot_infrared_update() {}
 
 int pogobot_infrared_message_available() {
     require_robot(__func__);
-    context.computer->program.reads_messages = true;
+    context.controller->program.reads_messages = true;
     return context.has_robot() && !context.world->mailboxes.empty(context.robot) ? 1 : 0;
 }
 
@@ -198,7 +198,7 @@ void pogobot_infrared_clear_message_queue() {
 void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) {
     require_robot("pogobot_infrared_recover_next_message");
     require_argument(message, "pogobot_infrared_recover_next_message", "message");
-    context.computer->program.reads_messages = true;
+    context.controller->program.reads_messages = true;
     FrameHeader header;
     std::array<std::byte, MAX_PAYLOAD_SIZE_BYTES> payload;
     if (!context.has_robot() || !context.world->mailboxes.pop(context.robot, header, payload.data())) {
@@ -207,7 +207,7 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
             "pogobot_infrared_message_available() first");
         return;
     }
-    ++context.computer->messages_received;
+    ++context.controller->messages_received;
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES).
     std::size_t const size = std::min<std::size_t>(header.payload_length, max_payload_bytes);
     header.payload_length = static_cast<std::uint16_t>(size);

@@ -36,8 +36,8 @@ void pogobot_motor_power_set(motor_id motor, uint16_t value) {
     require_robot(__func__);
     if (is_motor(motor)) {
         warn_if_negative(value);
-        context.computer->motors.power[motor] = std::min<uint16_t>(value, motorFull);
-        context.computer->motors.driven = true;
+        context.controller->motors.power[motor] = std::min<uint16_t>(value, motorFull);
+        context.controller->motors.driven = true;
     }
 }
 
@@ -49,14 +49,14 @@ void pogobot_motor_set(motor_id motor, uint16_t value) {
 void pogobot_motor_dir_set(motor_id motor, uint8_t value) {
     require_robot(__func__);
     if (is_motor(motor)) {
-        context.computer->motors.direction[motor] = value != 0 ? 1 : 0;
-        context.computer->motors.driven = true;
+        context.controller->motors.direction[motor] = value != 0 ? 1 : 0;
+        context.controller->motors.driven = true;
     }
 }
 
 uint32_t pogobot_motor_dir_current_status() {
     require_robot(__func__);
-    auto const& direction = context.computer->motors.direction;
+    auto const& direction = context.controller->motors.direction;
     return static_cast<uint32_t>(direction[motorR] | (direction[motorL] << 1) | (direction[motorB] << 2));
 }
 
@@ -65,7 +65,7 @@ int8_t pogobot_motor_dir_mem_get(uint8_t* p_directions) {
     if (p_directions == nullptr) {
         return -1;
     }
-    std::copy_n(context.computer->motors.stored_direction.begin(), kMotorCount, p_directions);
+    std::copy_n(context.controller->motors.stored_direction.begin(), kMotorCount, p_directions);
     return 0;
 }
 
@@ -74,7 +74,7 @@ int8_t pogobot_motor_dir_mem_set(uint8_t* p_directions) {
     if (p_directions == nullptr) {
         return -1;
     }
-    std::copy_n(p_directions, kMotorCount, context.computer->motors.stored_direction.begin());
+    std::copy_n(p_directions, kMotorCount, context.controller->motors.stored_direction.begin());
     return 0;
 }
 
@@ -83,7 +83,7 @@ uint8_t pogobot_motor_power_mem_get(uint16_t* p_powers) {
     if (p_powers == nullptr) {
         return UINT8_MAX;
     }
-    std::copy_n(context.computer->motors.stored_power.begin(), kMotorCount, p_powers);
+    std::copy_n(context.controller->motors.stored_power.begin(), kMotorCount, p_powers);
     return 0;
 }
 
@@ -92,6 +92,6 @@ uint8_t pogobot_motor_power_mem_set(uint16_t* p_powers) {
     if (p_powers == nullptr) {
         return UINT8_MAX;
     }
-    std::copy_n(p_powers, kMotorCount, context.computer->motors.stored_power.begin());
+    std::copy_n(p_powers, kMotorCount, context.controller->motors.stored_power.begin());
     return 0;
 }

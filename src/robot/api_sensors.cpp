@@ -35,7 +35,7 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     }
     pogosim::World& world = *context.world;
     int level = pogosim::light_at_sensor(world, context.body(), sensor_number) +
-                context.computer->photosensor_bias[sensor_number];
+                context.controller->photosensor_bias[sensor_number];
     float const noise = context.spec().photosensor_noise_stddev;
     if (noise > 0.0F) {
         level += static_cast<int>(noise * world.robots.stream[context.robot].normal());
@@ -53,7 +53,7 @@ void pogobot_imu_read(float* acc, float* gyro) {
         return;
     }
     Vec2 const acceleration =
-        pogosim::acceleration_m_s2(*context.world, context.body(), context.computer->accelerometer);
+        pogosim::acceleration_m_s2(*context.world, context.body(), context.controller->accelerometer);
     acc[0] = std::clamp(acceleration.y, -kMaxAcceleration, kMaxAcceleration);
     acc[1] = std::clamp(acceleration.x, -kMaxAcceleration, kMaxAcceleration);
     gyro[2] = std::clamp(0.0F - context.world->bodies.angular_velocity_rad_s[context.body()], -kMaxAngularVelocity,

@@ -20,7 +20,7 @@ constexpr int kFreeClockReads = 1000;
 constexpr std::int64_t kClockReadUs = 1;
 
 std::int64_t now_us() {
-    pogosim::Computer& self = *context.computer;
+    pogosim::Controller& self = *context.controller;
     if (++self.clock_reads > kFreeClockReads) {
         self.clock_us += kClockReadUs;
     }
@@ -86,7 +86,7 @@ bool pogobot_timer_has_expired(time_reference_t* timer) {
 void pogobot_timer_wait_for_expiry(time_reference_t* timer) {
     require_robot(__func__);
     require_argument(timer, __func__, "timer");
-    context.computer->clock_us = std::max(context.computer->clock_us, timer->origin_us);
+    context.controller->clock_us = std::max(context.controller->clock_us, timer->origin_us);
 }
 
 void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset) {
@@ -97,7 +97,7 @@ void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t m
 
 void msleep(int milliseconds) {
     require_robot(__func__);
-    context.computer->clock_us += std::max(0, milliseconds) * kMicrosecondsPerMillisecond;
+    context.controller->clock_us += std::max(0, milliseconds) * kMicrosecondsPerMillisecond;
 }
 
 void pli_timer_sleep_stopwatch_init() {}

@@ -11,8 +11,8 @@
 
 #include "base/error.hpp"
 #include "robot/context.hpp"
+#include "robot/controllers.hpp"
 #include "robot/hold_value.hpp"
-#include "robot/programs.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/sensing.hpp"
 #include "robot/user_guard.hpp"
@@ -266,7 +266,7 @@ void* pogosim_world_user_data(uint32_t object) {
     Object const& found = object_at(__func__, object);
     WorldAccess& access = context.services->access;
     access.gave_user_data = true;
-    return found.robot == kNone ? nullptr : access.programs->computer_of(found.robot).user_data;
+    return found.robot == kNone ? nullptr : access.programs->controller_of(found.robot).user_data;
 }
 
 bool pogosim_world_is_alive(uint32_t object) {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "robot/computer.hpp"
+#include "robot/controller.hpp"
 #include "robot/held_values.hpp"
 #include "robot/printed_lines.hpp"
 #include "world/data_table.hpp"
@@ -43,11 +43,11 @@ struct DataExport {
     std::size_t next_column = 0;  // where the search for the next value's column starts
 };
 
-class Programs;
+class Controllers;
 
 /// What callbacks of the whole run need of other rooms to see and change the world.
 struct WorldAccess {
-    Programs* programs = nullptr;
+    Controllers* programs = nullptr;
     std::function<bool(Object const& object, Vec2 centre_mm)> is_free{};  // of walls
     std::function<void()> update_light{};                                 // takes the settings of lamps over
     bool light_is_stale = false;                                          // a setting has changed since
@@ -92,12 +92,12 @@ private:
 struct Context {
     World* world = nullptr;
     RunServices* services = nullptr;
-    Computer* computer = nullptr;    // never null while user code runs
-    std::uint32_t robot = kNone;     // index in World::robots; kNone in the context of callback_global_step
-    char const* phase = "";          // "user_step", for messages
-    std::string* printed = nullptr;  // what was printed here since the last line end
-    bool is_system = false;          // a callback of the whole run: global setup, data schema, global step
-    bool sees_world = false;         // one of these or a click, in which the functions of world.h may be called
+    Controller* controller = nullptr;  // never null while user code runs
+    std::uint32_t robot = kNone;       // index in World::robots; kNone in the context of callback_global_step
+    char const* phase = "";            // "user_step", for messages
+    std::string* printed = nullptr;    // what was printed here since the last line end
+    bool is_system = false;            // a callback of the whole run: global setup, data schema, global step
+    bool sees_world = false;           // one of these or a click, in which the functions of world.h may be called
 
     bool has_robot() const { return robot != kNone; }
     /// False in the global step and in a wall, which have no place.

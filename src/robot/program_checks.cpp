@@ -20,13 +20,13 @@ constexpr std::size_t kRobotMemoryBytes = std::size_t{128} * 1024;  // SRAM of a
 
 /// For each category, whether it has robots and all of them are so.
 template <class Test>
-std::vector<bool> categories_where_all(World const& world, std::span<Computer const> computers, Test const& is_so) {
+std::vector<bool> categories_where_all(World const& world, std::span<Controller const> controllers, Test const& is_so) {
     std::vector<std::size_t> robots(world.categories.size());
     std::vector<std::size_t> matching(world.categories.size());
-    for (std::size_t i = 0; i < computers.size(); ++i) {
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
         std::uint32_t const category = world.robots.category[i];
         ++robots[category];
-        matching[category] += is_so(computers[i]) ? 1 : 0;
+        matching[category] += is_so(controllers[i]) ? 1 : 0;
     }
     std::vector<bool> all(world.categories.size());
     for (std::size_t category = 0; category < all.size(); ++category) {
@@ -35,13 +35,13 @@ std::vector<bool> categories_where_all(World const& world, std::span<Computer co
     return all;
 }
 
-bool sends_never(Computer const& computer) {
-    return computer.loop.send != nullptr && computer.loop.send_percent == 0 && computer.loop.sent == 0;
+bool sends_never(Controller const& controller) {
+    return controller.loop.send != nullptr && controller.loop.send_percent == 0 && controller.loop.sent == 0;
 }
 
-bool receives_never(Computer const& computer) {
-    return computer.loop.receive != nullptr && computer.loop.max_messages_per_tick == 0 &&
-           !computer.program.reads_messages;
+bool receives_never(Controller const& controller) {
+    return controller.loop.receive != nullptr && controller.loop.max_messages_per_tick == 0 &&
+           !controller.program.reads_messages;
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ void warn_of_user_data_in_setup(std::uint32_t id) {
     log().warn("callback_global_setup changed USERDATA (mydata) of robot #{} only: initialise it in user_init", id);
 }
 
-void warn_of_idle_categories(World const& world, std::span<Computer const> computers,
+void warn_of_idle_categories(World const& world, std::span<Controller const> controllers,
                              std::span<std::string const> started) {
     // A name that is another category's is no slip.
     std::vector<std::string> strange;
@@ -66,9 +66,9 @@ void warn_of_idle_categories(World const& world, std::span<Computer const> compu
     });
     std::string const calls = started.empty() ? "" : fmt::format(" (only for {})", fmt::join(started, ", "));
     std::vector<bool> warned(world.categories.size());
-    for (std::size_t i = 0; i < computers.size(); ++i) {
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
         std::uint32_t const category = world.robots.category[i];
-        if (!computers[i].program.registered && !warned[category]) {
+        if (!controllers[i].program.registered && !warned[category]) {
             warned[category] = true;
             std::string const& name = world.categories[category].name;
             log().warn("the program has no pogobot_start() for category '{}'{}; its robots will do nothing{}", name,
@@ -77,19 +77,19 @@ void warn_of_idle_categories(World const& world, std::span<Computer const> compu
     }
 }
 
-void warn_of_missing_init(std::span<Computer const> computers) {
-    auto const runs = [](Computer const& computer) { return computer.program.registered; };
-    auto const is_prepared = [](Computer const& computer) { return computer.program.prepared; };
-    if (std::ranges::any_of(computers, runs) && std::ranges::none_of(computers, is_prepared)) {
+void warn_of_missing_init(std::span<Controller const> controllers) {
+    auto const runs = [](Controller const& controller) { return controller.program.registered; };
+    auto const is_prepared = [](Controller const& controller) { return controller.program.prepared; };
+    if (std::ranges::any_of(controllers, runs) && std::ranges::none_of(controllers, is_prepared)) {
         log().warn(
             "the program never calls pogobot_init(), which real robots require: call it in main(), before "
             "pogobot_start()");
     }
 }
 
-void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Computer const> computers) {
-    auto const exports = [](Computer const& computer) { return computer.program.export_data != nullptr; };
-    if (!columns.empty() && !computers.empty() && std::ranges::none_of(computers, exports)) {
+void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Controller const> controllers) {
+    auto const exports = [](Controller const& controller) { return controller.program.export_data != nullptr; };
+    if (!columns.empty() && !controllers.empty() && std::ranges::none_of(controllers, exports)) {
         log().warn(
             "the column '{}'{} of the data file will be empty: the program does not set callback_export_data "
             "(SET_CALLBACK in main())",
@@ -118,10 +118,10 @@ void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std
     }
 }
 
-void warn_of_lost_messages(World const& world, std::span<Computer const> computers) {
+void warn_of_lost_messages(World const& world, std::span<Controller const> controllers) {
     std::vector<std::uint64_t> lost(world.categories.size());
-    for (std::size_t i = 0; i < computers.size(); ++i) {
-        if (computers[i].program.reads_messages) {
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        if (controllers[i].program.reads_messages) {
             lost[world.robots.category[i]] += world.mailboxes.dropped(i);
         }
     }
@@ -135,9 +135,9 @@ void warn_of_lost_messages(World const& world, std::span<Computer const> compute
     }
 }
 
-void warn_of_unused_messages(World const& world, std::span<Computer const> computers, std::uint64_t arrivals) {
-    auto const mute = categories_where_all(world, computers, sends_never);
-    auto const deaf = categories_where_all(world, computers, receives_never);
+void warn_of_unused_messages(World const& world, std::span<Controller const> controllers, std::uint64_t arrivals) {
+    auto const mute = categories_where_all(world, controllers, sends_never);
+    auto const deaf = categories_where_all(world, controllers, receives_never);
     for (std::size_t category = 0; category < world.categories.size(); ++category) {
         std::string const& name = world.categories[category].name;
         if (mute[category]) {
@@ -152,8 +152,8 @@ void warn_of_unused_messages(World const& world, std::span<Computer const> compu
                 name);
         }
     }
-    auto const reads = [](Computer const& computer) { return computer.program.reads_messages; };
-    if (arrivals > 0 && std::ranges::none_of(computers, reads) && std::ranges::none_of(deaf, std::identity())) {
+    auto const reads = [](Controller const& controller) { return controller.program.reads_messages; };
+    if (arrivals > 0 && std::ranges::none_of(controllers, reads) && std::ranges::none_of(deaf, std::identity())) {
         log().warn(
             "{} messages arrived, but no robot reads them: set msg_rx_fn in user_init, or call "
             "pogobot_infrared_message_available() in user_step",
@@ -161,12 +161,12 @@ void warn_of_unused_messages(World const& world, std::span<Computer const> compu
     }
 }
 
-void warn_of_send_percent(World const& world, std::span<Computer const> computers) {
+void warn_of_send_percent(World const& world, std::span<Controller const> controllers) {
     constexpr int most_percent = 100;
     std::vector<bool> warned(world.categories.size());
-    for (std::size_t i = 0; i < computers.size(); ++i) {
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
         std::uint32_t const category = world.robots.category[i];
-        int const percent = computers[i].loop.send_percent;
+        int const percent = controllers[i].loop.send_percent;
         if (percent > most_percent && !warned[category]) {
             warned[category] = true;
             log().warn("percent_msgs_sent_per_ticks is {} in category '{}': values above 100 count as 100", percent,

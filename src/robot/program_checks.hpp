@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "robot/computer.hpp"
 #include "robot/context.hpp"
+#include "robot/controller.hpp"
 #include "world/data_table.hpp"
 #include "world/world.hpp"
 
@@ -24,27 +24,27 @@ void warn_of_large_user_data(std::size_t bytes);
 void warn_of_user_data_in_setup(std::uint32_t id);
 
 /// Categories without a pogobot_start(). `started`: those that the program's calls do name.
-void warn_of_idle_categories(World const& world, std::span<Computer const> computers,
+void warn_of_idle_categories(World const& world, std::span<Controller const> controllers,
                              std::span<std::string const> started);
 
 /// A program that has never called pogobot_init(), not even in user_init.
-void warn_of_missing_init(std::span<Computer const> computers);
+void warn_of_missing_init(std::span<Controller const> controllers);
 
 /// Columns of the data file that cannot be filled.
-void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Computer const> computers);
+void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Controller const> controllers);
 
 /// Columns that the program's callback left empty in all of its rows. `fields`: the columns that the data file has;
 /// absent: all.
 void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std::string>> const& fields);
 
 /// Messages dropped because the queue of a robot that reads messages was full, by category.
-void warn_of_lost_messages(World const& world, std::span<Computer const> computers);
+void warn_of_lost_messages(World const& world, std::span<Controller const> controllers);
 
 /// Messages that are never read, or that a program intends to send and read but cannot. `arrivals`: messages that
 /// reached robots in the whole run.
-void warn_of_unused_messages(World const& world, std::span<Computer const> computers, std::uint64_t arrivals);
+void warn_of_unused_messages(World const& world, std::span<Controller const> controllers, std::uint64_t arrivals);
 
 /// A percent_msgs_sent_per_ticks above 100, by category.
-void warn_of_send_percent(World const& world, std::span<Computer const> computers);
+void warn_of_send_percent(World const& world, std::span<Controller const> controllers);
 
 }  // namespace pogosim

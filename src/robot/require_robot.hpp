@@ -10,7 +10,7 @@ namespace pogosim {
 
 /// Does not return if no robot is running. `function`: its name, for the message.
 inline void require_robot(char const* function) {
-    if (context.computer == nullptr) [[unlikely]] {
+    if (context.controller == nullptr) [[unlikely]] {
         called_without_robot(function);
     }
 }

@@ -15,7 +15,7 @@ constexpr float kMmPerM = 1000.0F;
 
 int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor) {
     Bodies const& bodies = world.bodies;
-    Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor], bodies.axis[body]);
+    Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor], bodies.heading_dir[body]);
     return world.light.at(wrapped(world, bodies.position_mm[body] + offset));
 }
 
@@ -32,7 +32,7 @@ Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer con
         return {};
     }
     Vec2 const change = meter.current_mm_s - meter.previous_mm_s;
-    Vec2 const axis = world.bodies.axis[body];
+    Vec2 const axis = world.bodies.heading_dir[body];
     return (1.0F / (meter.interval_s * kMmPerM)) * Vec2{dot(change, axis), cross(axis, change)};
 }
 

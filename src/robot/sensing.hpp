@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "robot/computer.hpp"
+#include "robot/controller.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {

@@ -17,7 +17,7 @@
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
 #include "sim/find_file.hpp"
-#include "sim/make_ring.hpp"
+#include "sim/make_membrane.hpp"
 #include "sim/place_objects.hpp"
 #include "world/assert_world.hpp"
 
@@ -74,11 +74,11 @@ void build_arena(Scenario const& scenario, World& world) {
     tell_scale(scenario, outline, world.arena);
 }
 
-std::uint32_t add_body(Bodies& bodies, RingBody const& body, BodySpec const& spec) {
+std::uint32_t add_body(Bodies& bodies, MembraneBody const& body, BodySpec const& spec) {
     auto const index = static_cast<std::uint32_t>(bodies.size());
     bodies.position_mm.push_back(body.position_mm);
     bodies.heading_rad.push_back(body.heading_rad);
-    bodies.axis.push_back(direction(body.heading_rad));
+    bodies.heading_dir.push_back(direction(body.heading_rad));
     bodies.velocity_mm_s.push_back({});
     bodies.angular_velocity_rad_s.push_back(0.0F);
     bodies.radius_mm.push_back(bounding_radius(body.shape));
@@ -88,19 +88,19 @@ std::uint32_t add_body(Bodies& bodies, RingBody const& body, BodySpec const& spe
 }
 
 void add_bodies(World& world, Object& object, ObjectSpec const& spec, Placement const& placement) {
-    if (!spec.ring) {
+    if (!spec.membrane) {
         object.body = add_body(world.bodies, {placement.position_mm, placement.heading_rad, spec.shape}, *spec.body);
         object.body_count = 1;
         return;
     }
-    RingParts const ring = make_ring(spec, placement);
+    MembraneParts const membrane = make_membrane(spec, placement);
     object.body = static_cast<std::uint32_t>(world.bodies.size());
-    object.body_count = static_cast<std::uint32_t>(ring.bodies.size());
-    for (RingBody const& body : ring.bodies) {
+    object.body_count = static_cast<std::uint32_t>(membrane.bodies.size());
+    for (MembraneBody const& body : membrane.bodies) {
         add_body(world.bodies, body, *spec.body);
     }
-    world.rings.push_back({.body = object.body, .body_count = object.body_count});
-    for (Joint joint : ring.joints) {
+    world.membranes.push_back({.body = object.body, .body_count = object.body_count});
+    for (Joint joint : membrane.joints) {
         joint.a += object.body;
         joint.b += object.body;
         world.joints.push_back(joint);
@@ -114,7 +114,7 @@ void add_robot(World& world, Object const& object, std::uint32_t seed) {
     robots.category.push_back(object.category);
     robots.body.push_back(object.body);
     robots.led.push_back({});
-    robots.drive.push_back({});
+    robots.command.push_back({});
     robots.stream.emplace_back(seed, index);
 }
 
@@ -123,7 +123,7 @@ Outline outline_of(World const& world, Object const& object, ObjectSpec const& s
     Outline line{.robot = object.robot, .polygons = {}, .body = object.body, .body_count = object.body_count};
     if (spec.shape.kind == ShapeKind::arena) {
         line.polygons = world.arena.polygons;
-    } else if (!spec.ring) {
+    } else if (!spec.membrane) {
         line.polygons = {moved(outline(spec.shape), placement.position_mm, placement.heading_rad)};
     }
     return line;
@@ -138,7 +138,7 @@ public:
 
     void add(std::uint32_t category, Placement const& placement) {
         ObjectSpec const& spec = world_.categories[category].spec;
-        bool const is_robot_like = spec.robot && spec.body && !spec.ring;
+        bool const is_robot_like = spec.robot && spec.body && !spec.membrane;
         Object object{.id = is_robot_like ? next_up_++ : next_down_--, .category = category};
         if (spec.body) {
             add_bodies(world_, object, spec, placement);
@@ -214,12 +214,12 @@ std::string objects_text(Scenario const& scenario) {
 /// A membrane contains whatever is larger than the gaps between its bodies.
 void warn_of_gaps(Scenario const& scenario) {
     for (ObjectConfig const& membrane : scenario.objects) {
-        if (!membrane.spec.ring || membrane.nb == 0) {
+        if (!membrane.spec.membrane || membrane.nb == 0) {
             continue;
         }
-        float const gap_mm = widest_gap_mm(make_ring(membrane.spec, {}));
+        float const gap_mm = widest_gap_mm(make_membrane(membrane.spec, {}));
         for (ObjectConfig const& other : scenario.objects) {
-            if (other.nb > 0 && other.spec.body && !other.spec.ring &&
+            if (other.nb > 0 && other.spec.body && !other.spec.membrane &&
                 2.0F * bounding_radius(other.spec.shape) < gap_mm) {
                 log().warn(
                     "{}: the gaps between its dots can grow to {:.1f} mm, so '{}' may slip through; use more or larger "

@@ -51,7 +51,7 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
 
 void check_motion(Scenario const& scenario, MotionLimits const& limits, double time_step_s) {
     char const* const can_simulate = "can be simulated";
-    char const* const can_move = limits.is_of_rings ? "a membrane can hold back" : can_simulate;
+    char const* const can_move = limits.is_of_membranes ? "a membrane can hold back" : can_simulate;
     for (ObjectConfig const& object : scenario.objects) {
         if (object.nb == 0 || !object.spec.body || !object.spec.robot || !object.spec.robot->has_wheels) {
             continue;

@@ -10,7 +10,7 @@
 #include "base/grid.hpp"
 #include "base/log.hpp"
 #include "config/places.hpp"
-#include "sim/make_ring.hpp"
+#include "sim/make_membrane.hpp"
 
 namespace pogosim {
 
@@ -35,8 +35,8 @@ struct Finding {
 };
 
 float half_thickness_mm(ObjectSpec const& spec) {
-    if (spec.ring) {
-        return half_thickness_mm(*spec.ring);
+    if (spec.membrane) {
+        return half_thickness_mm(*spec.membrane);
     }
     switch (spec.shape.kind) {
         case ShapeKind::rectangle:
@@ -127,10 +127,10 @@ std::vector<Obstacle> obstacles_of(ObjectConfig const& object, std::vector<Place
     std::vector<Obstacle> obstacles;
     std::string const name = fmt::format("'{}'", object.category);
     for (Placement const& pose : poses) {
-        if (object.spec.ring) {
+        if (object.spec.membrane) {
             obstacles.push_back({.name = name,
-                                 .line = ring_line(object.spec, pose),
-                                 .half_thickness_mm = half_thickness_mm(*object.spec.ring),
+                                 .line = membrane_line(object.spec, pose),
+                                 .half_thickness_mm = half_thickness_mm(*object.spec.membrane),
                                  .solid = false});
         } else {
             obstacles.push_back(solid_obstacle(name, object.spec.shape, pose.position_mm, pose.heading_rad));

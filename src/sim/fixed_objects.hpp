@@ -9,7 +9,7 @@
 
 namespace pogosim {
 
-/// One obstacle for each of these poses of a tangible entry: a rigid body is solid, a ring encloses free space.
+/// One obstacle for each of these poses of a tangible entry: a rigid body is solid, a membrane encloses free space.
 std::vector<Obstacle> obstacles_of(ObjectConfig const& object, std::vector<Placement> const& poses);
 
 /// Warns about entries with a fixed position whose objects overlap each other or a wall deeply, naming both.

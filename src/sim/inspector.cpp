@@ -15,7 +15,7 @@ Object const& object_of(World const& world, std::uint32_t robot) {
     return *std::ranges::find(world.objects, robot, &Object::robot);
 }
 
-/// Of the middle of a ring, or of its only body.
+/// Of the middle of a membrane, or of its only body.
 void add_motion(World const& world, Object const& object, Inspection& inspection) {
     Bodies const& bodies = world.bodies;
     Vec2 velocity_mm_s;
@@ -31,37 +31,37 @@ void add_motion(World const& world, Object const& object, Inspection& inspection
     }
 }
 
-void add_computer(Computer const& computer, Inspection& inspection) {
-    inspection.ticks = computer.loop.ticks;
-    std::ranges::copy(computer.motors.power, inspection.motor_power.begin());
-    std::ranges::copy(computer.motors.direction, inspection.motor_direction.begin());
-    inspection.messages_sent = computer.messages_sent;
-    inspection.messages_received = computer.messages_received;
+void add_controller(Controller const& controller, Inspection& inspection) {
+    inspection.ticks = controller.loop.ticks;
+    std::ranges::copy(controller.motors.power, inspection.motor_power.begin());
+    std::ranges::copy(controller.motors.direction, inspection.motor_direction.begin());
+    inspection.messages_sent = controller.messages_sent;
+    inspection.messages_received = controller.messages_received;
 }
 
-void add_sensors(World const& world, std::uint32_t body, Computer const& computer, Inspection& inspection) {
+void add_sensors(World const& world, std::uint32_t body, Controller const& controller, Inspection& inspection) {
     for (std::size_t sensor = 0; sensor < inspection.light.size(); ++sensor) {
         inspection.light[sensor] = light_at_sensor(world, body, sensor);
     }
-    inspection.acceleration_m_s2 = acceleration_m_s2(world, body, computer.accelerometer);
+    inspection.acceleration_m_s2 = acceleration_m_s2(world, body, controller.accelerometer);
 }
 
 }  // namespace
 
 Inspection Inspector::inspect(std::uint32_t robot) {
     Object const& object = object_of(world_, robot);
-    Computer const& computer = programs_.computer_of(robot);
+    Controller const& controller = controllers_.controller_of(robot);
     Inspection inspection;
     inspection.robot = robot;
-    inspection.clock_s = static_cast<double>(programs_.clock_us(robot)) * kSecondsPerUs;
+    inspection.clock_s = static_cast<double>(controllers_.clock_us(robot)) * kSecondsPerUs;
     inspection.id = world_.robots.id[robot];
     inspection.category = world_.categories[world_.robots.category[robot]].name;
     inspection.led = world_.robots.led[robot];
     inspection.messages_waiting = static_cast<std::size_t>(world_.mailboxes.size(robot));
-    add_computer(computer, inspection);
+    add_controller(controller, inspection);
     if (object.body != kNone) {
         add_motion(world_, object, inspection);
-        add_sensors(world_, object.body, computer, inspection);
+        add_sensors(world_, object.body, controller, inspection);
     }
     inspection.neighbours = neighbours_of(robot);
     inspection.columns = rows_.last_row(robot);
@@ -71,7 +71,7 @@ Inspection Inspector::inspect(std::uint32_t robot) {
 
 std::vector<Neighbour> Inspector::neighbours_of(std::uint32_t robot) {
     std::vector<Neighbour> neighbours;
-    float const range_mm = programs_.ir_range_mm(robot);
+    float const range_mm = controllers_.ir_range_mm(robot);
     bool const is_outline = world_.spec_of(robot).emitters == Emitters::outline;
     visibility_.update(world_);
     for (Receiver const& receiver : visibility_.receivers(world_, robot, kAllFaces, range_mm)) {

@@ -5,8 +5,8 @@
 
 #include "comms/visibility.hpp"
 #include "render/inspection.hpp"
+#include "robot/controllers.hpp"
 #include "robot/printed_lines.hpp"
-#include "robot/programs.hpp"
 #include "sim/recorded_rows.hpp"
 #include "world/world.hpp"
 
@@ -15,8 +15,8 @@ namespace pogosim {
 class Inspector {
 public:
     /// References outlive this.
-    Inspector(World const& world, Programs const& programs)
-        : world_(world), programs_(programs), lines_(world.robots.size()), rows_(world.robots.size()) {}
+    Inspector(World const& world, Controllers const& controllers)
+        : world_(world), controllers_(controllers), lines_(world.robots.size()), rows_(world.robots.size()) {}
 
     /// A robot as it is between two steps. Only reads: no user code runs, and nothing is drawn from a random stream.
     Inspection inspect(std::uint32_t robot);
@@ -29,7 +29,7 @@ private:
     std::vector<Neighbour> neighbours_of(std::uint32_t robot);
 
     World const& world_;
-    Programs const& programs_;
+    Controllers const& controllers_;
     Visibility visibility_;
     PrintedLines lines_;
     RecordedRows rows_;

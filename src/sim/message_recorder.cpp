@@ -43,7 +43,7 @@ void MessageRecorder::open(MessageLogOptions const& options) {
 }
 
 void MessageRecorder::record() {
-    Air const& air = deliveries_.air;
+    TransmissionQueue const& air = deliveries_.air;
     for (Delivery const& delivery : deliveries_.deliveries) {
         Transmission const& transmission = air.transmissions[delivery.transmission];
         MessageRow row{.time_s = static_cast<float>(static_cast<double>(deliveries_.step) * world_.time_step_s),

@@ -149,7 +149,7 @@ PictureFormat picture_format(Scenario const& scenario, World const& world) {
                       .trails = view.show_trajectory_traces}};
 }
 
-std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& world, Programs const& programs,
+std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& world, Controllers const& controllers,
                                          Lighting const& lighting, std::string const& film) {
     if (!makes_frames(scenario) && film.empty()) {
         return nullptr;
@@ -158,16 +158,16 @@ std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& 
     if (!film.empty()) {
         check_film_speed(scenario);
     }
-    return std::unique_ptr<Pictures>(new Pictures(scenario, world, programs, lighting, film));
+    return std::unique_ptr<Pictures>(new Pictures(scenario, world, controllers, lighting, film));
 }
 
-Pictures::Pictures(Scenario const& scenario, World const& world, Programs const& programs, Lighting const& lighting,
-                   std::string const& film)
+Pictures::Pictures(Scenario const& scenario, World const& world, Controllers const& controllers,
+                   Lighting const& lighting, std::string const& film)
     : scenario_(scenario),
       world_(world),
       names_(scenario.view.frames_name),
       film_(film),
-      taker_(world, programs, lighting),
+      taker_(world, controllers, lighting),
       parts_(parts_for(picture_format(scenario, world).paint)),
       frame_times_(scenario.view.save_video_period_s, 1),
       film_times_(film_period_s(scenario), 0),

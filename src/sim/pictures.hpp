@@ -9,7 +9,7 @@
 #include "light/lighting.hpp"
 #include "render/frame_names.hpp"
 #include "render/picture_writer.hpp"
-#include "robot/programs.hpp"
+#include "robot/controllers.hpp"
 #include "sim/multiples.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "world/world.hpp"
@@ -23,7 +23,7 @@ class Pictures {
 public:
     /// Null if the run makes no pictures. `film`: empty for none. All references outlive it. Throws ConfigError if
     /// frames or the film cannot be written, and OutOfMemory.
-    static std::unique_ptr<Pictures> make(Scenario const& scenario, World const& world, Programs const& programs,
+    static std::unique_ptr<Pictures> make(Scenario const& scenario, World const& world, Controllers const& controllers,
                                           Lighting const& lighting, std::string const& film);
 
     /// At the start of the run and after each step: hands over the pictures that are due. Throws OutputError, at the
@@ -35,7 +35,7 @@ public:
     bool finish();
 
 private:
-    Pictures(Scenario const& scenario, World const& world, Programs const& programs, Lighting const& lighting,
+    Pictures(Scenario const& scenario, World const& world, Controllers const& controllers, Lighting const& lighting,
              std::string const& film);
 
     void delete_old_frames() const;

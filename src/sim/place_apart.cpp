@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "config/places.hpp"
 #include "geometry/outline_survey.hpp"
-#include "sim/make_ring.hpp"
+#include "sim/make_membrane.hpp"
 
 namespace pogosim {
 

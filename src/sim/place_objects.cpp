@@ -13,7 +13,7 @@
 #include "sim/find_file.hpp"
 #include "sim/fixed_objects.hpp"
 #include "sim/lamps_of.hpp"
-#include "sim/make_ring.hpp"
+#include "sim/make_membrane.hpp"
 #include "sim/place_apart.hpp"
 
 namespace pogosim {
@@ -23,7 +23,7 @@ namespace {
 // The random stream of the formation belongs to no robot; robots have theirs by their index.
 constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;
 
-// A smaller distance between bodies of a ring is below the tolerance of the physics.
+// A smaller distance between bodies of a membrane is below the tolerance of the physics.
 constexpr float kSmallestStepMm = 0.1F;
 
 constexpr std::size_t kNoEntry = std::numeric_limits<std::size_t>::max();
@@ -51,15 +51,15 @@ void check_size(Scenario const& scenario, World const& world, ObjectConfig const
     }
 }
 
-/// Bodies of a ring need a line to lie on and some distance from each other.
-void check_ring(Scenario const& scenario, ObjectConfig const& object) {
-    RingSpec const& ring = *object.spec.ring;
+/// Bodies of a membrane need a line to lie on and some distance from each other.
+void check_membrane(Scenario const& scenario, ObjectConfig const& object) {
+    MembraneSpec const& membrane = *object.spec.membrane;
     float const radius_mm = bounding_radius(object.spec.shape);
-    if (half_thickness_mm(ring) > radius_mm) {
-        throw ConfigError(fmt::format("{}: the ring is too thick for a shape of radius {:g} mm",
-                                      place_of(scenario, object, ObjectSetting::ring_thickness), radius_mm));
+    if (half_thickness_mm(membrane) > radius_mm) {
+        throw ConfigError(fmt::format("{}: the membrane is too thick for a shape of radius {:g} mm",
+                                      place_of(scenario, object, ObjectSetting::membrane_thickness), radius_mm));
     }
-    Polygon const line = ring_line(object.spec, {});
+    Polygon const line = membrane_line(object.spec, {});
     float const step_mm = length(line[1] - line[0]);
     if (step_mm < kSmallestStepMm) {
         throw ConfigError(fmt::format("{}: that many would be only {:.2g} mm apart; the minimum is {} mm",
@@ -90,7 +90,7 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
             fail_too_large(scenario, world, object, std::max(size_mm.x, size_mm.y));
         }
     }
-    if (!object.spec.ring) {
+    if (!object.spec.membrane) {
         return;
     }
     auto const is_inside = [&](Vec2 point) { return stands_inside(world, point); };
@@ -99,7 +99,7 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
         throw ConfigError(fmt::format("{}: around ({:g}, {:g}) the object reaches beyond {}", where, centre_mm.x,
                                       centre_mm.y, arena_text(world.arena)));
     }
-    if (!std::ranges::all_of(make_ring(object.spec, pose).bodies, is_inside, &RingBody::position_mm)) {
+    if (!std::ranges::all_of(make_membrane(object.spec, pose).bodies, is_inside, &MembraneBody::position_mm)) {
         throw ConfigError(
             fmt::format("{}: around ({:g}, {:g}) some dots of the object would start beyond the walls of {}", where,
                         centre_mm.x, centre_mm.y, arena_text(world.arena)));
@@ -131,7 +131,7 @@ std::string radii_text(Scenario const& scenario, std::vector<std::size_t> const&
 Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig const& root,
                   std::vector<Placement> const& poses) {
     ObjectSpec const& spec = root.spec;
-    bool const is_solid = spec.body && !spec.ring;
+    bool const is_solid = spec.body && !spec.membrane;
     if (root.nb == 0 || is_solid) {
         throw ConfigError(fmt::format("{}: '{}' {}; use the arena, a wall, a membrane or a lamp",
                                       place_of(scenario, Setting::formation_root), root.category,
@@ -144,9 +144,9 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     if (spec.shape.kind == ShapeKind::arena) {
         return world.arena;
     }
-    Polygon space = outline(inset(spec.shape, spec.ring ? 2.0F * half_thickness_mm(*spec.ring) : 0.0F));
+    Polygon space = outline(inset(spec.shape, spec.membrane ? 2.0F * half_thickness_mm(*spec.membrane) : 0.0F));
     if (signed_area(space) < 1.0) {
-        throw ConfigError(fmt::format("{}: the ring of '{}' is so thick that it leaves no space inside; enlarge {}",
+        throw ConfigError(fmt::format("{}: the membrane of '{}' is so thick that it leaves no space inside; enlarge {}",
                                       place_of(scenario, Setting::formation_root), root.category,
                                       place_of(scenario, root, ObjectSetting::size)));
     }
@@ -221,8 +221,8 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     };
     for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
         ObjectConfig const& object = scenario.objects[i];
-        if (object.spec.ring && object.nb > 0) {
-            check_ring(scenario, object);
+        if (object.spec.membrane && object.nb > 0) {
+            check_membrane(scenario, object);
         }
         if (is_placed_by_formation(object)) {
             check_size(scenario, world, object);

@@ -29,7 +29,7 @@ std::int32_t packed_rgb(Rgb color) {
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-/// A rigid body has a place and a heading, a ring the place of its first body, a wall its centre and heading 0.
+/// A rigid body has a place and a heading, a membrane the place of its first body, a wall its centre and heading 0.
 ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
     ObjectRow row{.time_s = static_cast<float>(world.time_s()),
                   .category = world.categories[object.category].name,
@@ -56,17 +56,17 @@ ObjectRow row_of(World const& world, Object const& object, std::optional<std::in
 
 bool has_subparts(World const& world) {
     return std::ranges::any_of(world.categories, [](Category const& category) {
-        return category.spec.ring && category.spec.ring->in_data_file;
+        return category.spec.membrane && category.spec.membrane->in_data_file;
     });
 }
 
 }  // namespace
 
-Recorder::Recorder(Scenario const& scenario, World const& world, Programs& programs, DataExport const& data,
+Recorder::Recorder(Scenario const& scenario, World const& world, Controllers& controllers, DataExport const& data,
                    std::uint32_t seed)
     : scenario_(scenario),
       world_(world),
-      programs_(programs),
+      controllers_(controllers),
       export_(data),
       seed_(seed),
       category_is_recorded_(recorded_categories(scenario, world)),
@@ -84,7 +84,7 @@ std::optional<UserFailure> Recorder::open() {
     if (!output().enable_data_logging) {
         return std::nullopt;
     }
-    if (auto failure = call_user_code([this] { programs_.declare_columns(); })) {
+    if (auto failure = call_user_code([this] { controllers_.declare_columns(); })) {
         return failure;
     }
     make_data_file();
@@ -171,7 +171,7 @@ std::optional<UserFailure> Recorder::fill_table() {
         }
         bool has_row = true;
         if (object.robot != kNone) {
-            if (auto failure = call_user_code([this, &object, i] { programs_.export_row(object.robot, i); })) {
+            if (auto failure = call_user_code([this, &object, i] { controllers_.export_row(object.robot, i); })) {
                 return failure;
             }
             has_row = export_.row.exported;
@@ -195,7 +195,7 @@ void Recorder::write_row(Object const& object, std::span<CellValue const> user) 
         data_file_->append(row_of(world_, object, std::nullopt), user);
         return;
     }
-    ObjectRow const built_in = row_of(world_, object, programs_.ticks(object.robot));
+    ObjectRow const built_in = row_of(world_, object, controllers_.ticks(object.robot));
     data_file_->append(built_in, user);
     record_subparts(object);
     if (shown_ != nullptr) {
@@ -205,10 +205,10 @@ void Recorder::write_row(Object const& object, std::span<CellValue const> user) 
 
 void Recorder::record_subparts(Object const& object) {
     ObjectSpec const& spec = world_.categories[object.category].spec;
-    if (!spec.ring || !spec.ring->in_data_file) {
+    if (!spec.membrane || !spec.membrane->in_data_file) {
         return;
     }
-    ObjectRow row = row_of(world_, object, programs_.ticks(object.robot));
+    ObjectRow row = row_of(world_, object, controllers_.ticks(object.robot));
     for (std::uint32_t part = 0; part < object.body_count; ++part) {
         Vec2 const position_mm = wrapped(world_, world_.bodies.position_mm[object.body + part]);
         row.x_mm = position_mm.x;

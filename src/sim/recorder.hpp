@@ -11,7 +11,7 @@
 
 #include "config/scenario.hpp"
 #include "record/data_file.hpp"
-#include "robot/programs.hpp"
+#include "robot/controllers.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/message_recorder.hpp"
 #include "sim/multiples.hpp"
@@ -25,7 +25,7 @@ class Recorder {
 public:
     /// Locks the files, so that no other run writes them. All references outlive this. `data` is what user code
     /// declares and exports. Throws OutputError.
-    Recorder(Scenario const& scenario, World const& world, Programs& programs, DataExport const& data,
+    Recorder(Scenario const& scenario, World const& world, Controllers& controllers, DataExport const& data,
              std::uint32_t seed);
 
     /// Lets the program declare its columns and opens the files that are wanted. Throws OutputError.
@@ -83,7 +83,7 @@ private:
 
     Scenario const& scenario_;
     World const& world_;
-    Programs& programs_;
+    Controllers& controllers_;
     DataExport const& export_;
     std::uint32_t seed_;
     std::vector<bool> category_is_recorded_;

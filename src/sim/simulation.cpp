@@ -56,11 +56,11 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       parameters_(scenario_),
       guard_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
-      programs_(std::move(program), world_, services_, seed_),
+      controllers_(std::move(program), world_, services_, seed_),
       lighting_(make_lighting(scenario_, world_)),
       physics_(make_physics(scenario_, world_)),
-      recorder_(scenario_, world_, programs_, services_.data, seed_),
-      pictures_(Pictures::make(scenario_, world_, programs_, lighting_, options_.film)),
+      recorder_(scenario_, world_, controllers_, services_.data, seed_),
+      pictures_(Pictures::make(scenario_, world_, controllers_, lighting_, options_.film)),
       stages_(options_.measure_stages) {
     services_.access.is_free = [this](Object const& object, Vec2 place_mm) {
         return free_places().is_free(object, place_mm);
@@ -76,14 +76,14 @@ std::int64_t Simulation::step_count() const {
 
 SnapshotTaker& Simulation::snapshots() {
     if (!snapshots_) {
-        snapshots_ = std::make_unique<SnapshotTaker>(world_, programs_, lighting_);
+        snapshots_ = std::make_unique<SnapshotTaker>(world_, controllers_, lighting_);
     }
     return *snapshots_;
 }
 
 Inspector& Simulation::inspector() {
     if (!inspector_) {
-        inspector_ = std::make_unique<Inspector>(world_, programs_);
+        inspector_ = std::make_unique<Inspector>(world_, controllers_);
         services_.printed_lines = &inspector_->lines();
         recorder_.show(&inspector_->rows());
     }
@@ -151,13 +151,13 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
             throw;
         }
         report(*failure);
-        call_user_code([this] { programs_.print_unfinished_lines(); });
+        call_user_code([this] { controllers_.print_unfinished_lines(); });
         return failure->code;
     }
     bool const all_pictures_written = finish();
-    programs_.warn_of_messages(channel_.receptions());
+    controllers_.warn_of_messages(channel_.receptions());
     if (!scenario_.output.categories) {  // else a column may be that of a category without rows
-        programs_.tell_of_unset_columns(scenario_.output.fields);
+        controllers_.tell_of_unset_columns(scenario_.output.fields);
     }
     report_unread_parameters();
     if (interrupted()) {
@@ -213,8 +213,8 @@ std::optional<UserFailure> Simulation::run_steps() {
 std::optional<UserFailure> Simulation::end_programs() {
     Thread const thread(*this);
     return call_user_code([this] {
-        programs_.end();
-        programs_.print_unfinished_lines();
+        controllers_.end();
+        controllers_.print_unfinished_lines();
     });
 }
 
@@ -249,10 +249,10 @@ void Simulation::save_while_waiting() {
 std::optional<UserFailure> Simulation::start() {
     Thread const thread(*this);
     log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s, physics engine {}", seed_,
-                world_.robots.size(), programs_.user_data_bytes(), step_count(), world_.time_step_s,
+                world_.robots.size(), controllers_.user_data_bytes(), step_count(), world_.time_step_s,
                 physics_engine_behind(scenario_.physics_engine));
     lighting_.update(world_);
-    if (auto failure = call_user_code([this] { programs_.start(); })) {
+    if (auto failure = call_user_code([this] { controllers_.start(); })) {
         return failure;
     }
     fit_time_step();
@@ -272,7 +272,7 @@ std::optional<UserFailure> Simulation::step() {
     stages_.begin_step();
     lighting_.update(world_);
     stages_.end(Stage::light);
-    if (auto failure = call_user_code([this] { programs_.run_step(); })) {
+    if (auto failure = call_user_code([this] { controllers_.run_step(); })) {
         return failure;
     }
     stages_.end(Stage::robots);
@@ -294,7 +294,7 @@ std::optional<UserFailure> Simulation::step() {
 std::optional<UserFailure> Simulation::click(std::uint32_t robot) {
     Thread const thread(*this);
     bool has_callback = false;
-    auto failure = call_user_code([&] { has_callback = programs_.click(robot); });
+    auto failure = call_user_code([&] { has_callback = controllers_.click(robot); });
     if (has_callback || failure) {
         touches_.add_click(world_.time_s());
     }
@@ -336,7 +336,7 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
 }
 
 void Simulation::set_alive(std::uint32_t robot, bool alive) {
-    programs_.set_alive(robot, alive);
+    controllers_.set_alive(robot, alive);
     touches_.add_switch(world_.time_s());
 }
 
@@ -380,7 +380,7 @@ bool Simulation::finish() {
 }
 
 void Simulation::fit_time_step() {
-    int const hz = programs_.highest_loop_hz();
+    int const hz = controllers_.highest_loop_hz();
     if (hz == 0) {
         return;
     }

@@ -14,8 +14,8 @@
 #include "light/lighting.hpp"
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
+#include "robot/controllers.hpp"
 #include "robot/program_image.hpp"
-#include "robot/programs.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/inspector.hpp"
 #include "sim/pictures.hpp"
@@ -92,13 +92,13 @@ public:
     std::uint32_t seed() const { return seed_; }
 
     /// See state_hash.hpp.
-    std::uint64_t hash() const { return state_hash(world_, programs_); }
+    std::uint64_t hash() const { return state_hash(world_, controllers_); }
 
     /// Puts an object (index into World::objects) elsewhere, at rest. False for one without a body. The data file says
     /// that the run was touched. Throws ConfigError for a place in a wall or outside of the arena.
     bool set_pose(std::uint32_t object, Vec2 centre_mm, float heading_rad);
 
-    /// Switches a robot (index into World::robots) off or on, see Programs::set_alive(). The data file says that the
+    /// Switches a robot (index into World::robots) off or on, see Controllers::set_alive(). The data file says that the
     /// run was touched.
     void set_alive(std::uint32_t robot, bool alive);
 
@@ -153,7 +153,7 @@ public:
     /// To be written between two steps; see world.hpp for what that does. The data file does not say so.
     World& world() { return world_; }
     IrChannel const& channel() const { return channel_; }
-    Programs const& programs() const { return programs_; }
+    Controllers const& controllers() const { return controllers_; }
     StageClock const& stages() const { return stages_; }
     std::int64_t step_count() const;  // steps of the whole run
 
@@ -161,10 +161,12 @@ private:
     /// This thread works for this run.
     struct Thread {
         explicit Thread(Simulation& simulation)
-            : logging(simulation.options_.log.get()), guarded(simulation.guard_), programs(simulation.programs_) {}
+            : logging(simulation.options_.log.get()),
+              guarded(simulation.guard_),
+              controllers(simulation.controllers_) {}
         LogScope logging;
         GuardedThread guarded;
-        Programs::Thread programs;
+        Controllers::Thread controllers;
     };
 
     std::optional<UserFailure> run_steps();
@@ -181,7 +183,7 @@ private:
     UserParameters parameters_;
     UserGuard guard_;
     RunServices services_;
-    Programs programs_;
+    Controllers controllers_;
     Lighting lighting_;
     IrChannel channel_;
     std::unique_ptr<PhysicsEngine> physics_;

@@ -4,9 +4,9 @@
 
 namespace pogosim {
 
-SnapshotTaker::SnapshotTaker(World const& world, Programs const& programs, Lighting const& lighting)
+SnapshotTaker::SnapshotTaker(World const& world, Controllers const& controllers, Lighting const& lighting)
     : world_(world),
-      programs_(programs),
+      controllers_(controllers),
       lighting_(lighting),
       scenery_(std::make_shared<Scenery const>(make_scenery(world))) {}
 
@@ -29,7 +29,7 @@ Snapshot SnapshotTaker::take(SnapshotParts parts) {
     if (parts.links) {
         range_mm_.clear();
         for (std::size_t robot = 0; robot < world_.robots.size(); ++robot) {
-            range_mm_.push_back(programs_.ir_range_mm(robot));
+            range_mm_.push_back(controllers_.ir_range_mm(robot));
         }
         snapshot.links = link_finder_.find(world_, range_mm_);
     }

@@ -7,7 +7,7 @@
 
 #include "light/lighting.hpp"
 #include "render/snapshot.hpp"
-#include "robot/programs.hpp"
+#include "robot/controllers.hpp"
 #include "sim/link_finder.hpp"
 #include "world/world.hpp"
 
@@ -16,7 +16,7 @@ namespace pogosim {
 class SnapshotTaker {
 public:
     /// All references outlive this.
-    SnapshotTaker(World const& world, Programs const& programs, Lighting const& lighting);
+    SnapshotTaker(World const& world, Controllers const& controllers, Lighting const& lighting);
 
     std::shared_ptr<Scenery const> const& scenery() const { return scenery_; }
 
@@ -32,7 +32,7 @@ private:
     std::shared_ptr<LightMap const> light();
 
     World const& world_;
-    Programs const& programs_;
+    Controllers const& controllers_;
     Lighting const& lighting_;
     std::shared_ptr<Scenery const> scenery_;
     std::shared_ptr<LightMap const> light_;  // the last one handed out

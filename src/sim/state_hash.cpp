@@ -69,9 +69,9 @@ void add_world(Hash& hash, World const& world) {
     hash.add(std::span<std::byte const>(world.air.payloads));
 }
 
-void add_robot(Hash& hash, Computer const& computer, Mailboxes const& mailboxes, std::size_t robot) {
-    hash.add(computer.clock_us);
-    LoopGlobals const& loop = computer.loop;
+void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailboxes, std::size_t robot) {
+    hash.add(controller.clock_us);
+    LoopGlobals const& loop = controller.loop;
     hash.add(loop.ticks);
     hash.add(loop.loop_hz);
     hash.add(loop.max_messages_per_tick);
@@ -81,29 +81,29 @@ void add_robot(Hash& hash, Computer const& computer, Mailboxes const& mailboxes,
     hash.add(loop.received);
     hash.add(loop.milliseconds);
     for (std::size_t motor = 0; motor < kMotorCount; ++motor) {
-        hash.add(computer.motors.power[motor]);
-        hash.add(computer.motors.direction[motor]);
+        hash.add(controller.motors.power[motor]);
+        hash.add(controller.motors.direction[motor]);
     }
-    hash.add(computer.ir_power);
-    hash.add(computer.messages_sent);
-    hash.add(computer.messages_received);
-    hash.add(computer.random);
-    hash.add(computer.seeds);
+    hash.add(controller.ir_power);
+    hash.add(controller.messages_sent);
+    hash.add(controller.messages_received);
+    hash.add(controller.random);
+    hash.add(controller.seeds);
     hash.add(mailboxes.size(robot));
     hash.add(mailboxes.dropped(robot));
 }
 
 }  // namespace
 
-std::uint64_t state_hash(World const& world, Programs const& programs) {
+std::uint64_t state_hash(World const& world, Controllers const& controllers) {
     Hash hash;
     add_world(hash, world);
-    auto const computers = programs.computers();
-    for (std::size_t robot = 0; robot < computers.size(); ++robot) {
-        add_robot(hash, computers[robot], world.mailboxes, robot);
+    auto const all = controllers.all();
+    for (std::size_t robot = 0; robot < all.size(); ++robot) {
+        add_robot(hash, all[robot], world.mailboxes, robot);
     }
     // Nothing is added where nobody has changed what these say.
-    for (Programs::Suspended const& off : programs.suspended()) {
+    for (Controllers::Suspended const& off : controllers.suspended()) {
         hash.add(off.robot);
         hash.add(off.clock_us);
         add_leds(hash, off.leds);

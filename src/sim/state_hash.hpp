@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "robot/programs.hpp"
+#include "robot/controllers.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -12,6 +12,6 @@ namespace pogosim {
 /// light, messages on their way and in queues, clocks, motors, main loops and random streams of all robots. The user
 /// data are not in it, as they may contain pointers; what differs in them shows in what robots do. FNV-1a, in words of
 /// 64 bits, see G. Fowler, L. C. Noll and K.-P. Vo, "The FNV Non-Cryptographic Hash Algorithm", RFC 9923.
-std::uint64_t state_hash(World const& world, Programs const& programs);
+std::uint64_t state_hash(World const& world, Controllers const& controllers);
 
 }  // namespace pogosim

@@ -48,7 +48,7 @@ std::optional<std::uint32_t> object_at(Snapshot const& snapshot, Vec2 point_mm, 
 }
 
 Vec2 centre_of(Snapshot const& snapshot, Object const& object) {
-    // From the first one, so that the seam of a periodic arena does not tear a ring.
+    // From the first one, so that the seam of a periodic arena does not tear a membrane.
     Vec2 const first_mm = snapshot.position_mm[object.body];
     Vec2 sum_mm;
     for (std::uint32_t body = object.body; body < object.body + object.body_count; ++body) {

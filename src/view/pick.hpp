@@ -8,7 +8,7 @@
 
 namespace pogosim {
 
-/// The robot with a body that is nearest to the point, if the point is within its radius plus `margin_mm`. A ring
+/// The robot with a body that is nearest to the point, if the point is within its radius plus `margin_mm`. A membrane
 /// counts through its nearest part.
 std::optional<std::uint32_t> robot_at(Snapshot const& snapshot, Vec2 point_mm, float margin_mm);
 

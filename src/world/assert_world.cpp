@@ -15,7 +15,7 @@ bool are_bodies(World const& world, std::uint32_t first, std::uint32_t count) {
 
 void assert_sizes(Bodies const& bodies) {
     assert(bodies.heading_rad.size() == bodies.size());
-    assert(bodies.axis.size() == bodies.size());
+    assert(bodies.heading_dir.size() == bodies.size());
     assert(bodies.velocity_mm_s.size() == bodies.size());
     assert(bodies.angular_velocity_rad_s.size() == bodies.size());
     assert(bodies.radius_mm.size() == bodies.size());
@@ -28,7 +28,7 @@ void assert_robots(World const& world) {
     assert(robots.category.size() == robots.size());
     assert(robots.body.size() == robots.size());
     assert(robots.led.size() == robots.size());
-    assert(robots.drive.size() == robots.size());
+    assert(robots.command.size() == robots.size());
     assert(robots.stream.size() == robots.size());
     assert(world.mailboxes.robot_count() == robots.size());
     for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -60,8 +60,8 @@ void assert_structure(World const& world) {
     for (Joint const& joint : world.joints) {
         assert(joint.a < world.bodies.size() && joint.b < world.bodies.size() && joint.a != joint.b);
     }
-    for (Ring const& ring : world.rings) {
-        assert(ring.body_count > 2 && are_bodies(world, ring.body, ring.body_count));
+    for (Membrane const& membrane : world.membranes) {
+        assert(membrane.body_count > 2 && are_bodies(world, membrane.body, membrane.body_count));
     }
     for (Outline const& outline : world.outlines) {
         assert(outline.robot < world.robots.size());

@@ -31,11 +31,11 @@ struct Transmission {
     float send_probability = 0.0F;    // of the sender, per tick
     float range_mm = 0.0F;            // from an emitter to the receiver's border
     FrameHeader header;
-    std::size_t payload_offset = 0;  // into Air::payloads
+    std::size_t payload_offset = 0;  // into TransmissionQueue::payloads
 };
 
 /// All transmissions of the current step, in the order in which the robots made them.
-struct Air {
+struct TransmissionQueue {
     std::vector<Transmission> transmissions;
     std::vector<std::byte> payloads;
 

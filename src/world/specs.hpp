@@ -107,8 +107,8 @@ struct RobotSpec {
     bool rotate_leds_45_deg = true;         // drawing only
 };
 
-/// A soft body: bodies along the outline of the shape, joined in a ring by springs.
-struct RingSpec {
+/// A soft body: bodies along the outline of the shape, joined in a closed row by springs.
+struct MembraneSpec {
     int body_count = 100;
     bool segments = false;                // rectangles joined by hinges; else disks
     float radius_mm = 10.0F;              // of a disk
@@ -177,8 +177,9 @@ using LampSpec = std::variant<SpotSpec, RotatingRaySpec, AlternatingRaysSpec>;
 /// The parts of the objects of a category; all are optional.
 struct ObjectSpec {
     Shape shape;
-    std::optional<BodySpec> body;    // tangible: takes part in collisions
-    std::optional<RingSpec> ring;    // the body is a soft ring along the shape's outline instead of the rigid shape
+    std::optional<BodySpec> body;  // tangible: takes part in collisions
+    std::optional<MembraneSpec>
+        membrane;                    // the body is a soft membrane along the shape's outline instead of the rigid shape
     std::optional<RobotSpec> robot;  // runs user code
     std::optional<LampSpec> lamp;    // gives light
     Colormap colormap = Colormap::rainbow;  // drawing only

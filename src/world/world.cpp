@@ -15,7 +15,7 @@ std::int16_t LightMap::at(Vec2 point_mm) const {
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad) {
     bodies.position_mm[body] = position_mm;
     bodies.heading_rad[body] = heading_rad;
-    bodies.axis[body] = direction(heading_rad);
+    bodies.heading_dir[body] = direction(heading_rad);
     bodies.velocity_mm_s[body] = {};
     bodies.angular_velocity_rad_s[body] = 0.0F;
 }

@@ -4,21 +4,22 @@
 //   sim       writes  step; before the first one all that the configuration says, time_step_s last
 //   light     writes  light.level: first of all cells, then of those under moving lamps, and of all again when a lamp
 //                     that stands still goes on or off
-//   robot     writes  robots.led, robots.drive, air; takes messages out of mailboxes; draws from robots.stream
+//   robot     writes  robots.led, robots.command, air; takes messages out of mailboxes; draws from robots.stream
 //   comms     writes  mailboxes; clears air; draws from robots.stream
 //   physics   writes  position_mm, heading_rad, axis, velocity_mm_s and angular_velocity_rad_s of bodies that are not
-//                     fixed; clears robots.drive[i].fresh
+//                     fixed; clears robots.command[i].pending
 //   record, render and view only read
 //
-// Callbacks of the whole run, which run before the robots, also write poses, robots.switched_off (by way of Programs)
-// and the settings of lamps (pogosim/world.h).
+// Callbacks of the whole run, which run before the robots, also write poses, robots.switched_off (by way of
+// Controllers) and the settings of lamps (pogosim/world.h).
 //
 // No stage keeps its own version of this. What others write between two steps is true from then on:
 //
 //   a pose                   bodies go on from there, fixed ones too; write it with set_pose(), free of walls
 //   a velocity               bodies go on with it, unless their motors ask for another one; fixed ones keep 0
 //   robots.led               is shown and recorded until the program sets it again
-//   robots.drive[i], fresh   is the velocity of this body in the next step, unless its motors ask for another one
+//   robots.command[i]        is the velocity of this body in the next step if it is pending, unless its motors ask for
+//                            another one
 //   light.level[i]           is sensed and shown until a lamp writes this cell, see above
 //   a message in a mailbox   is received
 //   lamps[i].setting         is seen in the light of the next step
@@ -58,7 +59,7 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 struct Bodies {
     std::vector<Vec2> position_mm;
     std::vector<float> heading_rad;  // not wrapped
-    std::vector<Vec2> axis;          // unit vector along the heading, which decides
+    std::vector<Vec2> heading_dir;   // unit vector along the heading, which decides
     std::vector<Vec2> velocity_mm_s;
     std::vector<float> angular_velocity_rad_s;  // clockwise on the screen
     std::vector<float> radius_mm;               // bounding disk
@@ -81,28 +82,28 @@ struct Joint {
 };
 
 /// Bodies in a closed row, clockwise on the screen, that keep the area they enclose.
-struct Ring {
+struct Membrane {
     std::uint32_t body = 0;  // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;
 };
 
 /// The velocity a robot's motors ask of its body.
-struct Drive {
+struct VelocityCommand {
     Vec2 velocity_mm_s;
     float angular_velocity_rad_s = 0.0F;
-    bool fresh = false;  // set at a control tick, cleared when physics has imposed it
+    bool pending = false;  // set at a control tick, cleared when physics has imposed it
 };
 
 /// Objects that run user code. Shape: one entry per robot, in order of creation.
 struct Robots {
     std::vector<std::uint32_t> id;        // what the data file shows; on the air: id_on_air()
     std::vector<std::uint32_t> category;  // index into World::categories
-    std::vector<std::uint32_t> body;      // index into World::bodies, the first one of a ring; kNone: it has none
+    std::vector<std::uint32_t> body;      // index into World::bodies, the first one of a membrane; kNone: it has none
     std::vector<Leds> led;
-    std::vector<Drive> drive;
+    std::vector<VelocityCommand> command;
     std::vector<RandomStream> stream;  // noise of motors and sensors, losses on the air
 
-    // Robots that are switched off, ascending: they send and hear nothing. Written by Programs::set_alive().
+    // Robots that are switched off, ascending: they send and hear nothing. Written by Controllers::set_alive().
     std::vector<std::uint32_t> switched_off;
 
     std::size_t size() const { return id.size(); }
@@ -135,15 +136,15 @@ struct Object {
     std::uint32_t category = 0;    // index into World::categories
     std::uint32_t robot = kNone;   // index into World::robots
     std::uint32_t body = kNone;    // index into World::bodies, of the first of body_count
-    std::uint32_t body_count = 0;  // more than one: a ring, in this order
+    std::uint32_t body_count = 0;  // more than one: a membrane, in this order
     Vec2 fixed_mm{};  // where it stands when it has no body; along the arena's walls: the centre of its box
 };
 
 /// Where an object with Emitters::outline sends and receives.
 struct Outline {
     std::uint32_t robot = 0;        // index into World::robots
-    std::vector<Polygon> polygons;  // mm, of one that stands still; empty: through the bodies of a ring
-    std::uint32_t body = kNone;     // the ring, as in Object
+    std::vector<Polygon> polygons;  // mm, of one that stands still; empty: through the bodies of a membrane
+    std::uint32_t body = kNone;     // the membrane, as in Object
     std::uint32_t body_count = 0;
 };
 
@@ -178,14 +179,14 @@ struct World {
     std::vector<Object> objects;       // in order of creation
     Bodies bodies;
     std::vector<Joint> joints;
-    std::vector<Ring> rings;
+    std::vector<Membrane> membranes;
     Robots robots;
     std::vector<Outline> outlines;
     std::vector<PlacedLamp> lamps;  // in the order of the configuration
     LightMap light;
 
     // Messages.
-    Air air;
+    TransmissionQueue air;
     Mailboxes mailboxes;
 
     double time_s() const { return static_cast<double>(step) * time_step_s; }
@@ -204,7 +205,7 @@ constexpr std::uint16_t id_on_air(std::uint32_t id) {
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad);
 
 /// Puts an object that has a body elsewhere, at rest, whether it is fixed or not: a rigid body with its centre at
-/// `centre_mm` and with this heading, a ring as it is with its middle there.
+/// `centre_mm` and with this heading, a membrane as it is with its middle there.
 void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad);
 
 /// Whether a robot is switched on.

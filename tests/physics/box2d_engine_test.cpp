@@ -100,7 +100,7 @@ TEST(Physics, HolesPushOutwards) {
 TEST(Physics, FastBodyDoesNotJumpAWall) {
     World world = square_world(1000.0F);
     add_robot(world, {500, 500}, 0.0F, body(0.0F));
-    world.robots.drive[0] = {.velocity_mm_s = {15000, 0}, .angular_velocity_rad_s = 0.0F, .fresh = true};
+    world.robots.command[0] = {.velocity_mm_s = {15000, 0}, .angular_velocity_rad_s = 0.0F, .pending = true};
     run(world, 1.0);
     EXPECT_LT(world.bodies.position_mm[0].x, 1000.0F - 26.5F + 1.0F);
 }
@@ -108,9 +108,9 @@ TEST(Physics, FastBodyDoesNotJumpAWall) {
 TEST(Physics, DriveIsImposedOnce) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 1.0F));
-    world.robots.drive[0] = {.velocity_mm_s = {100, 0}, .angular_velocity_rad_s = 1.0F, .fresh = true};
+    world.robots.command[0] = {.velocity_mm_s = {100, 0}, .angular_velocity_rad_s = 1.0F, .pending = true};
     run(world, 1.0);
-    EXPECT_FALSE(world.robots.drive[0].fresh);
+    EXPECT_FALSE(world.robots.command[0].pending);
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * std::exp(-1.0F), 0.5F);
 }
 

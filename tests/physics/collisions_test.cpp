@@ -161,8 +161,8 @@ TEST(Shapes, DoNotOverlapWhenTheyArePressedTogether) {
         add(world, pair.right, kMiddle, {}, {.restitution = 0.0F});
         auto const engine = make_box2d_engine(world, {});
         for (int i = 0; i < 300; ++i) {
-            world.robots.drive[0] = {.velocity_mm_s = {20, 0}, .fresh = true};
-            world.robots.drive[1] = {.velocity_mm_s = {-20, 0}, .fresh = true};
+            world.robots.command[0] = {.velocity_mm_s = {20, 0}, .pending = true};
+            world.robots.command[1] = {.velocity_mm_s = {-20, 0}, .pending = true};
             engine->advance(world);
         }
         float const gap_mm = world.bodies.position_mm[1].x - world.bodies.position_mm[0].x - pair.touch_mm;
@@ -190,7 +190,7 @@ TEST(Collision, FastRobotDoesNotJumpASmallBody) {
     World world = square_world(2000.0F);
     add(world, disk(5.0F), {500, 1000}, {});
     add(world, disk(5.0F), {612.5F, 1000}, {});
-    world.robots.drive[0] = {.velocity_mm_s = {2e4F, 0}, .fresh = true};
+    world.robots.command[0] = {.velocity_mm_s = {2e4F, 0}, .pending = true};
     auto const engine = make_box2d_engine(world, {});
     engine->advance(world);
     engine->advance(world);

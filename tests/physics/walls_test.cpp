@@ -118,9 +118,9 @@ void steer(Scene& scene, Vec2 target_mm, RandomStream& random) {
         Vec2 const way = target_mm - world.bodies.position_mm[i];
         float const heading = i % 2 == 0 ? std::atan2(way.y, way.x) : world.bodies.heading_rad[i];
         Vec2 const noise{0.1F * random.normal(), 0.1F * random.normal()};
-        world.robots.drive[i] = {.velocity_mm_s = scene.speed_mm_s * (direction(heading) + noise),
-                                 .angular_velocity_rad_s = scene.angular_velocity_rad_s * random.normal(),
-                                 .fresh = true};
+        world.robots.command[i] = {.velocity_mm_s = scene.speed_mm_s * (direction(heading) + noise),
+                                   .angular_velocity_rad_s = scene.angular_velocity_rad_s * random.normal(),
+                                   .pending = true};
     }
 }
 
@@ -169,7 +169,7 @@ TEST(Walls, FastRobotSlidesAlongThem) {
         float const along_mm = 0.6F * speed_mm_s * 0.001F;
         int const steps = std::max(1, static_cast<int>(300.0F / along_mm));
         for (int i = 0; i < steps; ++i) {
-            world.robots.drive[0] = {.velocity_mm_s = {0.6F * speed_mm_s, 0.8F * speed_mm_s}, .fresh = true};
+            world.robots.command[0] = {.velocity_mm_s = {0.6F * speed_mm_s, 0.8F * speed_mm_s}, .pending = true};
             engine->advance(world);
         }
         EXPECT_NEAR(world.bodies.position_mm[0].x, 500.0F + along_mm * static_cast<float>(steps), 2.0F) << speed_mm_s;
@@ -193,7 +193,7 @@ TEST(Walls, ThrowFastSpecksBackWithinAStep) {
     // 1 m in a step, four times the way to the wall.
     World world = square_world(500.0F);
     add_robot(world, {250, 250}, 0.0F, body_of({.radius_mm = 0.1F}, 0.0F));
-    world.robots.drive[0] = {.velocity_mm_s = {1e5F, 0}, .fresh = true};
+    world.robots.command[0] = {.velocity_mm_s = {1e5F, 0}, .pending = true};
     make_box2d_engine(world, {.friction = 0.0F, .restitution = 0.5F})->advance(world);
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, -5e4F, 1.0F);
     EXPECT_LT(world.bodies.position_mm[0].x, 400.0F);
@@ -204,7 +204,7 @@ TEST(Walls, PressedRobotStopsLittleMoreThanAMillimetreBefore) {
     add_robot(world, {900, 500}, 0.0F, body_of({.radius_mm = 26.5F}, 0.0F));
     auto const engine = make_box2d_engine(world, {.restitution = 0.0F});
     for (int i = 0; i < 500; ++i) {
-        world.robots.drive[0] = {.velocity_mm_s = {20, 0}, .fresh = true};
+        world.robots.command[0] = {.velocity_mm_s = {20, 0}, .pending = true};
         engine->advance(world);
     }
     EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F - 26.5F - 0.65F, 0.65F);
@@ -221,8 +221,8 @@ TEST(PeriodicWorld, KeepsEverybodyWithinItsBoundsAtEverySpeed) {
         auto const engine = make_box2d_engine(world, {});
         for (int step = 0; step < 100; ++step) {
             for (std::size_t i = 0; i < world.robots.size(); ++i) {
-                world.robots.drive[i] = {.velocity_mm_s = speed_mm_s * direction(world.bodies.heading_rad[i]),
-                                         .fresh = true};
+                world.robots.command[i] = {.velocity_mm_s = speed_mm_s * direction(world.bodies.heading_rad[i]),
+                                           .pending = true};
             }
             engine->advance(world);
             for (Vec2 const place : world.bodies.position_mm) {
@@ -236,7 +236,8 @@ TEST(Speed, IsWhatTheMotorsAskForHoweverFarAStepGoes) {
     for (float const speed_mm_s : {100.0F, 3e4F, 1e6F}) {
         World world = square_world(1e6F);
         add_robot(world, {1000, 5e5F});
-        world.robots.drive[0] = {.velocity_mm_s = {speed_mm_s, 0}, .angular_velocity_rad_s = 1000.0F, .fresh = true};
+        world.robots.command[0] = {
+            .velocity_mm_s = {speed_mm_s, 0}, .angular_velocity_rad_s = 1000.0F, .pending = true};
         make_box2d_engine(world, {})->advance(world);
         EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 0.01F * speed_mm_s, 1.0F);
         EXPECT_NEAR(world.bodies.heading_rad[0], 10.0F, 1e-3F);

@@ -52,7 +52,7 @@ TEST(SetPose, BodyIsAtRestAtTheNewPlaceAndStaysThere) {
         run(*engine, world, steps);
         expect_at(world.bodies.position_mm[0], {700, 600});
         EXPECT_NEAR(world.bodies.heading_rad[0], 1.5F, 1e-5F);
-        EXPECT_NEAR(world.bodies.axis[0].y, std::sin(1.5F), 1e-5F);
+        EXPECT_NEAR(world.bodies.heading_dir[0].y, std::sin(1.5F), 1e-5F);
         EXPECT_EQ(world.bodies.velocity_mm_s[0], Vec2{});
         EXPECT_EQ(world.bodies.angular_velocity_rad_s[0], 0.0F);
     }
@@ -106,7 +106,7 @@ TEST(WrittenBodies, PoseAloneTakesEffectAndKeepsTheVelocity) {
     world.bodies.heading_rad[0] = 1.5F;
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {550, 700}, 0.1F);
-    EXPECT_NEAR(world.bodies.axis[0].y, std::sin(1.5F), 1e-5F);
+    EXPECT_NEAR(world.bodies.heading_dir[0].y, std::sin(1.5F), 1e-5F);
 }
 
 TEST(WrittenBodies, VelocityTakesEffectAlsoOnABodyAsleep) {
@@ -163,7 +163,7 @@ TEST(WrittenBodies, WhatIsNotFiniteIsTakenBack) {
         run(*engine, world, 3);
         expect_at(world.bodies.position_mm[0], {200, 200});
         EXPECT_NEAR(world.bodies.heading_rad[0], 1.0F, 1e-5F);
-        EXPECT_NEAR(length(world.bodies.axis[0]), 1.0F, 1e-5F);
+        EXPECT_NEAR(length(world.bodies.heading_dir[0]), 1.0F, 1e-5F);
         EXPECT_EQ(world.bodies.velocity_mm_s[0], Vec2{});
     };
     world.bodies.position_mm[0] = {nan, 300};
@@ -181,7 +181,7 @@ TEST(WrittenBodies, DriveOfAnotherThanTheProgramMovesARobot) {
     add_robot(world, {200, 200});
     auto const engine = make_box2d_engine(world, {});
     run(*engine, world, 200);
-    world.robots.drive[0] = {.velocity_mm_s = {0, 100}, .fresh = true};
+    world.robots.command[0] = {.velocity_mm_s = {0, 100}, .pending = true};
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {200, 300}, 0.1F);
 }

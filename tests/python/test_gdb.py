@@ -61,7 +61,7 @@ def types(tmp_path_factory: pytest.TempPathFactory) -> str:
     program = compile_program(folder / "types", source, ROOT / "src" / "world" / "mailbox.cpp", flags=flags)
     names = ("world", "leds", "leds[0]", "world.bodies.position_mm", "world.robots", "world.bodies", "world.mailboxes")
     lines = [f"source {PRINTERS}", "break stop_here", "run", "up"]
-    lines += [f"print {name}" for name in (*names, "computer", "&computer")]
+    lines += [f"print {name}" for name in (*names, "controller", "&controller")]
     return debug([program], lines, folder)
 
 
@@ -99,15 +99,15 @@ def test_mailboxes_count_messages_near_and_far(types: str) -> None:
 
 
 def test_computer_has_all_its_members(types: str) -> None:
-    computer = printed(types, 8)
-    assert computer.startswith("computer at 2.500000 s, 156 ticks = {clock_us = 2500000, ")
-    header = (ROOT / "src" / "robot" / "computer.hpp").read_text()
-    body = header[header.index("struct Computer {") :]
+    controller = printed(types, 8)
+    assert controller.startswith("controller at 2.500000 s, 156 ticks = {clock_us = 2500000, ")
+    header = (ROOT / "src" / "robot" / "controller.hpp").read_text()
+    body = header[header.index("struct Controller {") :]
     body = body[: body.index("\n};")]
     names = re.findall(r"^    [\w:<>, *]+ [*]?(\w+)(?: = .*|\{.*\})?;", body, re.MULTILINE)
     assert len(names) > 10
-    assert [name for name in names if f"{name} = " not in computer] == []
-    assert printed(types, 9).startswith("(pogosim::Computer *) 0x")
+    assert [name for name in names if f"{name} = " not in controller] == []
+    assert printed(types, 9).startswith("(pogosim::Controller *) 0x")
 
 
 @pytest.fixture(scope="module")
@@ -141,12 +141,12 @@ def test_world_and_computers_are_found_in_every_build(folder: Path) -> None:
     output = debug_run(
         folder,
         "break user_step if $robot() == 0 && $ticks() == 3",
-        *("run", "print $world()", "print $computer(4)", "print $world().robots.led"),
+        *("run", "print $world()", "print $controller(4)", "print $world().robots.led"),
     )
     assert re.match(
         r"world at step \d+, t = 0\.0\d+ s: 2 categories, 9 objects, 9 bodies, .* 9 robots", printed(output, 1)
     )
-    assert re.match(r"computer at 0\.\d+ s, 3 ticks = ", printed(output, 2))
+    assert re.match(r"controller at 0\.\d+ s, 3 ticks = ", printed(output, 2))
     assert re.match(r"std::vector of length 9, capacity \d+ = \{#ff8000 #000000 ", printed(output, 3))
 
 
@@ -162,7 +162,7 @@ def test_gdb_reads_the_file_beside_the_library_if_it_may(folder: Path) -> None:
     ("where", "line", "message"),
     [
         ("break user_step", "print $data(9)", "There is no robot #9: ids are 0 to 8."),
-        ("break user_step", "print $computer(-1)", "There is no robot #-1: ids are 0 to 8."),
+        ("break user_step", "print $controller(-1)", "There is no robot #-1: ids are 0 to 8."),
         ("break look_at_all", "print $data(0)", "A callback of the whole run"),
         ("show version", "print $robot()", "There is no running simulation here"),
     ],

@@ -182,8 +182,8 @@ TEST(Membrane, IsARingOfDotsAlsoAcrossASeam) {
     World world = square_world();
     world.periodic = true;
     ObjectSpec spec = testing::pogobot_spec();
-    spec.ring.emplace();
-    spec.ring->radius_mm = 10.0F;
+    spec.membrane.emplace();
+    spec.membrane->radius_mm = 10.0F;
     spec.shape.radius_mm = 10.0F;
     constexpr int kDots = 40;
     for (int i = 0; i < kDots; ++i) {

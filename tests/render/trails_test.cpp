@@ -83,11 +83,11 @@ TEST(Trail, StaysInsideAPeriodicArenaAndMeasuresAcrossItsSeam) {
 TEST(Trail, IsLeftByRigidBodiesWithAProgramOnly) {
     World world = square_world();
     add_robot(world, {100, 200});
-    world.categories[0].spec.ring.emplace();
+    world.categories[0].spec.membrane.emplace();
     Trails trails;
     trails.follow(world);
     EXPECT_EQ(trails.size(0), 0U);
-    world.categories[0].spec.ring.reset();
+    world.categories[0].spec.membrane.reset();
     world.robots.body[0] = kNone;
     trails.follow(world);
     EXPECT_EQ(trails.size(0), 0U);

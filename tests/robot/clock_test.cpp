@@ -24,8 +24,8 @@ std::unique_ptr<Simulation> run_one(void (*init)(), void (*step)(), double secon
 }
 
 TEST(Clock, SixtyHertzGives62AndAHalfTicksASecond) {
-    EXPECT_NEAR(run_one(nullptr, nullptr, 1.0)->programs().ticks(0), 63, 1);
-    EXPECT_NEAR(run_one(nullptr, nullptr, 48.5)->programs().ticks(0), 3031, 2);
+    EXPECT_NEAR(run_one(nullptr, nullptr, 1.0)->controllers().ticks(0), 63, 1);
+    EXPECT_NEAR(run_one(nullptr, nullptr, 48.5)->controllers().ticks(0), 3031, 2);
 }
 
 TEST(Clock, SleepIsCutToWholeMilliseconds) {
@@ -37,14 +37,14 @@ TEST(Clock, SleepIsCutToWholeMilliseconds) {
     for (Case const& c : {Case{10, 0.1}, Case{30, 0.033}, Case{40, 0.025}, Case{90, 0.011}}) {
         hz = c.hz;
         auto const simulation = run_one([] { main_loop_hz = hz; }, nullptr, 20.0);
-        EXPECT_NEAR(simulation->programs().ticks(0), 20.0 / c.period_s, 1.5) << int{c.hz} << " Hz";
+        EXPECT_NEAR(simulation->controllers().ticks(0), 20.0 / c.period_s, 1.5) << int{c.hz} << " Hz";
     }
 }
 
 TEST(Clock, ZeroHertzTicksAtEachStep) {
     static int32_t elapsed_us = 0;
     auto const step = [] { elapsed_us = pogobot_stopwatch_get_elapsed_microseconds(&_global_timer); };
-    EXPECT_EQ(run_one([] { main_loop_hz = 0; }, step, 1.0)->programs().ticks(0), 100U);
+    EXPECT_EQ(run_one([] { main_loop_hz = 0; }, step, 1.0)->controllers().ticks(0), 100U);
     EXPECT_EQ(elapsed_us, 990000);
 }
 
@@ -61,7 +61,7 @@ TEST(Clock, SleepingRobotMissesItsTicks) {
             msleep(500);
         }
     };
-    EXPECT_NEAR(run_one(nullptr, step, 1.0)->programs().ticks(0), 62 - 30, 1);
+    EXPECT_NEAR(run_one(nullptr, step, 1.0)->controllers().ticks(0), 62 - 30, 1);
 }
 
 TEST(Clock, LateTickIsReportedOnTheErrorLedForASecond) {
@@ -172,7 +172,7 @@ TEST(Clock, DriftMakesClocksDiffer) {
     double sum = 0.0;
     double squares = 0.0;
     for (std::size_t i = 0; i < 30; ++i) {
-        double const drift_us = 20e6 / simulation.programs().ticks(i) - 16000.0;
+        double const drift_us = 20e6 / simulation.controllers().ticks(i) - 16000.0;
         sum += drift_us / 30.0;
         squares += drift_us * drift_us / 30.0;
     }

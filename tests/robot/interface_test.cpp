@@ -50,7 +50,7 @@ TEST(Program, RobotWithoutControllerTicksAllTheSame) {
     Simulation simulation(testing::test_program(), square_scene({robots(1)}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 1.0));
-    EXPECT_NEAR(simulation.programs().ticks(0), 62, 1);
+    EXPECT_NEAR(simulation.controllers().ticks(0), 62, 1);
 }
 
 TEST(UserData, IsZeroAtFirstAndEachRobotsOwn) {
@@ -83,8 +83,8 @@ TEST(LoopGlobals, AreEachRobotsOwn) {
     Simulation simulation(testing::test_program(), square_scene({robots(2)}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 2.0));
-    EXPECT_NEAR(simulation.programs().ticks(0), 20, 1);
-    EXPECT_NEAR(simulation.programs().ticks(1), 80, 1);
+    EXPECT_NEAR(simulation.controllers().ticks(0), 20, 1);
+    EXPECT_NEAR(simulation.controllers().ticks(1), 80, 1);
 }
 
 TEST(RandomNumbers, SeedsDifferOnEveryRobotAndRepeatWithTheRun) {

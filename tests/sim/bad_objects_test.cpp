@@ -82,11 +82,11 @@ TEST(BadObjects, MembranesWithoutDots) {
 
 TEST(BadObjects, RingsThatCannotBe) {
     expect_refused("membrane", {{"geometry: disk, radius: 100, dot_radius: 150",
-                                 ".dot_radius: the ring is too thick for a shape of radius 100 mm"},
+                                 ".dot_radius: the membrane is too thick for a shape of radius 100 mm"},
                                 {"geometry: disk, radius: 100, num_dots: 9000",
                                  ".num_dots: that many would be only 0.063 mm apart; the minimum is 0.1 mm"}});
     expect_refused("rectmembrane", {{"geometry: disk, radius: 100, rect_thickness: 201",
-                                     ".rect_thickness: the ring is too thick for a shape of radius 100 mm"},
+                                     ".rect_thickness: the membrane is too thick for a shape of radius 100 mm"},
                                     {"geometry: disk, rect_thickness: 0",
                                      ".rect_thickness: expected a number above 0, at most 1000000 (mm), found 0"}});
     EXPECT_EQ(error_with("  it: {type: membrane, geometry: disk}\n"), "no error");  // all defaults
@@ -95,14 +95,14 @@ TEST(BadObjects, RingsThatCannotBe) {
 std::string const kArena = "the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm";
 
 TEST(BadObjects, WhatMaySlipThroughAMembraneIsNamedIfThereIsAny) {
-    std::string const ring = "  it: {type: membrane, geometry: disk, radius: 60, num_dots: 5}\n";
+    std::string const membrane = "  it: {type: membrane, geometry: disk, radius: 60, num_dots: 5}\n";
     for (int const nb : {0, 1}) {
         Folder const folder;
         Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
         std::string text = kScene;
         text.replace(text.find("ROOT"), 4, "");
-        Folder::write("x.yaml",
-                      text + ring + "  pea: {type: passive_object, geometry: disk, nb: " + std::to_string(nb) + "}\n");
+        Folder::write("x.yaml", text + membrane +
+                                    "  pea: {type: passive_object, geometry: disk, nb: " + std::to_string(nb) + "}\n");
         Warnings const warnings;
         build_world(load_scenario("x.yaml", {}), 1);
         EXPECT_EQ(warnings.text().find("'pea' may slip through") != std::string::npos, nb == 1) << warnings.text();
@@ -156,17 +156,19 @@ TEST(BadObjects, WallsOfAShapeNeedAPlace) {
 }
 
 TEST(BadObjects, FormationsInsideOfSomethingThatIsNoSpace) {
-    std::string const ring = "  it: {type: membrane, geometry: disk, radius: 150";
+    std::string const membrane = "  it: {type: membrane, geometry: disk, radius: 150";
     std::string const key = "x.yaml:4: initial_formation_root_object: ";
-    EXPECT_EQ(error_with(ring + "}\n", "it"), "no error");
-    EXPECT_EQ(error_with(ring + "}\n", "nobody"), key + "expected 'arena' or a category of 'objects', found 'nobody'");
-    EXPECT_EQ(error_with(ring + ", nb: 0}\n", "it"),
+    EXPECT_EQ(error_with(membrane + "}\n", "it"), "no error");
+    EXPECT_EQ(error_with(membrane + "}\n", "nobody"),
+              key + "expected 'arena' or a category of 'objects', found 'nobody'");
+    EXPECT_EQ(error_with(membrane + ", nb: 0}\n", "it"),
               key + "'it' has no objects; use the arena, a wall, a membrane or a lamp");
     EXPECT_EQ(error_with("  it: {type: passive_object, geometry: disk, radius: 150}\n", "it"),
               key + "'it' is solid, so nothing fits inside; use the arena, a wall, a membrane or a lamp");
-    EXPECT_EQ(error_with(ring + ", dot_radius: 90}\n", "it"),
-              key + "the ring of 'it' is so thick that it leaves no space inside; enlarge x.yaml:7: objects.it.radius");
-    std::string const narrow = error_with(ring + ", dot_radius: 65}\n", "it");
+    EXPECT_EQ(
+        error_with(membrane + ", dot_radius: 90}\n", "it"),
+        key + "the membrane of 'it' is so thick that it leaves no space inside; enlarge x.yaml:7: objects.it.radius");
+    std::string const narrow = error_with(membrane + ", dot_radius: 65}\n", "it");
     EXPECT_TRUE(narrow.starts_with("x.yaml:3: initial_formation: 'random' cannot place 1 object ")) << narrow;
     EXPECT_TRUE(narrow.ends_with(" (inside 'it': x.yaml:4: initial_formation_root_object)")) << narrow;
 }

@@ -96,7 +96,7 @@ TEST(Inspector, ShowsAccelerationAlongTheRobotsAxes) {
     use_program(idle, full_ahead_later);
     Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500})}), {});
     start(simulation);
-    while (simulation.programs().ticks(0) < 6) {  // the fifth tick starts the motors, the sixth measures
+    while (simulation.controllers().ticks(0) < 6) {  // the fifth tick starts the motors, the sixth measures
         ASSERT_FALSE(simulation.step());
     }
     Vec2 const acceleration = simulation.inspector().inspect(0).acceleration_m_s2;
@@ -185,7 +185,7 @@ TEST(Inspector, KeepsTheLastTwentyLinesOfARobot) {
     Inspector& inspector = simulation.inspector();
     start(simulation);
     EXPECT_TRUE(inspector.inspect(1).lines.empty());
-    while (simulation.programs().ticks(1) < 30) {
+    while (simulation.controllers().ticks(1) < 30) {
         ASSERT_FALSE(simulation.step());
     }
     auto const lines = inspector.inspect(1).lines;

@@ -71,18 +71,18 @@ void stand_still() {
     };
 }
 
-Polygon line_of(World const& world, Ring const& ring) {
-    auto const first = world.bodies.position_mm.begin() + ring.body;
-    return {first, first + ring.body_count};
+Polygon line_of(World const& world, Membrane const& membrane) {
+    auto const first = world.bodies.position_mm.begin() + membrane.body;
+    return {first, first + membrane.body_count};
 }
 
-/// Watches a simulation: who is inside of which ring, areas, finite numbers.
+/// Watches a simulation: who is inside of which membrane, areas, finite numbers.
 class Watch {
 public:
     explicit Watch(Scenario scenario) : simulation_(testing::test_program(), std::move(scenario), {}) {
         EXPECT_FALSE(simulation_.start());
-        for (Ring const& ring : world().rings) {
-            first_areas_.push_back(signed_area(line_of(world(), ring)));
+        for (Membrane const& membrane : world().membranes) {
+            first_areas_.push_back(signed_area(line_of(world(), membrane)));
         }
         first_regions_ = regions();
     }
@@ -120,11 +120,11 @@ public:
     }
 
 private:
-    /// For each robot with wheels and each ring: is it inside?
+    /// For each robot with wheels and each membrane: is it inside?
     std::vector<bool> regions() const {
         std::vector<bool> inside;
-        for (Ring const& ring : world().rings) {
-            Polygon const line = line_of(world(), ring);
+        for (Membrane const& membrane : world().membranes) {
+            Polygon const line = line_of(world(), membrane);
             for (std::size_t i = 0; i < world().robots.size(); ++i) {
                 if (world().spec_of(i).has_wheels) {
                     inside.push_back(contains(line, world().bodies.position_mm[world().robots.body[i]]));
@@ -137,7 +137,7 @@ private:
     void look() {
         EXPECT_EQ(regions(), first_regions_) << "somebody got through before " << world().time_s() << " s";
         for (std::size_t i = 0; i < first_areas_.size(); ++i) {
-            double const part = signed_area(line_of(world(), world().rings[i])) / first_areas_[i];
+            double const part = signed_area(line_of(world(), world().membranes[i])) / first_areas_[i];
             smallest_ = std::min(smallest_, part);
             largest_ = std::max(largest_, part);
         }
@@ -208,10 +208,10 @@ TEST(Membrane, HoldsInEveryShapeAndMake) {
             ObjectConfig object = membrane(segments);
             object.spec.shape = {.kind = make.kind, .radius_mm = 180, .width_mm = 320, .height_mm = 300};
             object.spec.shape.side_length_mm = 520;
-            object.spec.ring->body_count = make.dots;
-            object.spec.ring->radius_mm = make.dot_radius_mm;
-            object.spec.ring->cross_span = make.cross_span;
-            object.spec.ring->stiffness_hz = make.stiffness_hz;
+            object.spec.membrane->body_count = make.dots;
+            object.spec.membrane->radius_mm = make.dot_radius_mm;
+            object.spec.membrane->cross_span = make.cross_span;
+            object.spec.membrane->stiffness_hz = make.stiffness_hz;
             object.spec.body->linear_damping = make.damping;
             object.spec.body->density = make.density;
             push_everywhere();
@@ -229,9 +229,9 @@ TEST(Membrane, HoldsInEveryShapeAndMake) {
 
 /// Ten robots of this make in a membrane of 250 mm, all full ahead, each to a side of its own.
 Scenario fast_scene(bool segments, float radius_mm, float speed_mm_s, double time_step_s) {
-    ObjectConfig ring = membrane(segments);
-    ring.spec.shape.radius_mm = 250.0F;
-    ring.spec.ring->body_count = 120;
+    ObjectConfig soft = membrane(segments);
+    soft.spec.shape.radius_mm = 250.0F;
+    soft.spec.membrane->body_count = 120;
     std::vector<ObjectConfig> robots = robots_around({500, 500}, 9, 140.0F);
     robots.push_back(testing::robot_at({500, 500}));
     for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -239,7 +239,7 @@ Scenario fast_scene(bool segments, float radius_mm, float speed_mm_s, double tim
         robots[i].spec.robot->max_linear_speed_mm_s = speed_mm_s;
         robots[i].heading_rad = 1.7F * static_cast<float>(i);
     }
-    Scenario scenario = scene({ring}, robots);
+    Scenario scenario = scene({soft}, robots);
     scenario.time_step_s = time_step_s;
     return scenario;
 }
@@ -368,7 +368,7 @@ TEST(Membrane, SeveralPushEachOtherWithoutMixing) {
     for (int i = 0; i < 4; ++i) {
         ObjectConfig object = membrane(i % 2 == 0);
         object.spec.shape.radius_mm = 180.0F;
-        object.spec.ring->body_count = 60;
+        object.spec.membrane->body_count = 60;
         object.position_mm = Vec2{250.0F + 500.0F * static_cast<float>(i % 2), i < 2 ? 250.0F : 750.0F};
         for (ObjectConfig const& robot : robots_around(*object.position_mm, 5, 80.0F)) {
             robots.push_back(robot);
@@ -396,7 +396,7 @@ TEST(Membrane, CrossesTheSeamOfAPeriodicArenaWithWhatItHolds) {
         bool came_back = false;
         for (int i = 0; i < 150; ++i) {
             watch.run_for(0.1);
-            float const x = centroid(line_of(watch.world(), watch.world().rings[0])).x;
+            float const x = centroid(line_of(watch.world(), watch.world().membranes[0])).x;
             EXPECT_GT(x, -1.0F);
             EXPECT_LT(x, 1001.0F);
             was_left = was_left || x > 900.0F;

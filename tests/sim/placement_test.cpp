@@ -234,8 +234,8 @@ TEST(FixedBody, StaysWhereItIsWhateverHitsIt) {
     for (int step = 0; step < 300; ++step) {
         for (Object const& robot : built.of("robots")) {
             Vec2 const way = Vec2{500, 500} - built.place(robot);
-            world.robots.drive[robot.robot] = {.velocity_mm_s = (2000.0F / std::max(length(way), 1.0F)) * way,
-                                               .fresh = true};
+            world.robots.command[robot.robot] = {.velocity_mm_s = (2000.0F / std::max(length(way), 1.0F)) * way,
+                                                 .pending = true};
         }
         engine->advance(world);
     }

@@ -101,11 +101,11 @@ TEST(Snapshot, LinksCountThePresentEmitterPower) {
     start(simulation);
     EXPECT_TRUE(simulation.snapshots().take(kAll).links.empty());  // power 1: 20 mm, and 47 mm lie between them
     bool linked = false;
-    while (simulation.programs().ticks(0) < 13) {
+    while (simulation.controllers().ticks(0) < 13) {
         ASSERT_FALSE(simulation.step());
-        std::uint32_t const power = (simulation.programs().ticks(0) - 1) / 4;
+        std::uint32_t const power = (simulation.controllers().ticks(0) - 1) / 4;
         linked = simulation.snapshots().take(kAll).links.size() == 1;
-        EXPECT_EQ(linked, power >= 2) << simulation.programs().ticks(0);
+        EXPECT_EQ(linked, power >= 2) << simulation.controllers().ticks(0);
     }
     EXPECT_TRUE(linked);
 }

@@ -42,7 +42,7 @@ void use_supervised(void (*init)(), void (*step)(), void (*supervisor)()) {
 }
 
 TestData const& data_of(Simulation const& simulation, std::size_t robot) {
-    return *reinterpret_cast<TestData const*>(simulation.programs().computer_of(robot).user_data);
+    return *reinterpret_cast<TestData const*>(simulation.controllers().controller_of(robot).user_data);
 }
 
 ObjectConfig bright_disk(Vec2 centre_mm, int value) {
@@ -121,7 +121,7 @@ TEST(Supervisor, RobotsSenseTheLampThatWasSwitchedInTheSameStep) {
     while (simulation.world().time_s() < 0.2) {
         double const time_s = simulation.world().time_s();
         ASSERT_FALSE(simulation.step());
-        int const now = static_cast<int>(simulation.programs().ticks(0));
+        int const now = static_cast<int>(simulation.controllers().ticks(0));
         if (now != std::exchange(ticks, now)) {
             EXPECT_EQ(data_of(simulation, 0).number[static_cast<std::size_t>(now - 1) % 8], time_s > 0.095 ? 0 : 1000)
                 << time_s;
@@ -170,19 +170,19 @@ TEST(Supervisor, RobotThatIsSwitchedOffStandsStillAndDarkAndGoesOnWhereItWas) {
     Simulation simulation(testing::test_program(), square_scene({robot_at({200, 200})}), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(run_for(simulation, 0.5));
-    std::uint32_t const ticks = simulation.programs().ticks(0);
+    std::uint32_t const ticks = simulation.controllers().ticks(0);
     float const x = simulation.world().bodies.position_mm[0].x;
     EXPECT_NEAR(x, 250, 2);
     ASSERT_FALSE(run_for(simulation, 0.5));
     EXPECT_EQ(simulation.world().bodies.position_mm[0].x, x);
     EXPECT_EQ(simulation.world().robots.led[0][0], Rgb{});
-    EXPECT_EQ(simulation.programs().ticks(0), ticks);
+    EXPECT_EQ(simulation.controllers().ticks(0), ticks);
     ASSERT_FALSE(simulation.step());
     EXPECT_EQ(simulation.world().robots.led[0][0], (Rgb{1, 2, 3}));
     ASSERT_FALSE(run_for(simulation, 0.49));
     EXPECT_NEAR(simulation.world().bodies.position_mm[0].x, x + 50, 2);
-    EXPECT_EQ(data_of(simulation, 0).number[0], simulation.programs().ticks(0));
-    EXPECT_GT(simulation.programs().ticks(0), ticks + 20);
+    EXPECT_EQ(data_of(simulation, 0).number[0], simulation.controllers().ticks(0));
+    EXPECT_GT(simulation.controllers().ticks(0), ticks + 20);
 }
 
 TEST(Supervisor, ClockOfARobotThatWasSwitchedOffHasGoneOn) {

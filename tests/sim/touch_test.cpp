@@ -177,10 +177,10 @@ TEST(Click, CallsTheCallbackInTheRobotsContext) {
     EXPECT_FALSE(simulation.click(1));
     EXPECT_EQ(simulation.world().robots.led[0][0], Rgb{});
     EXPECT_EQ(simulation.world().robots.led[1][0], (Rgb{0, 255, 0}));
-    auto const* const data = reinterpret_cast<TestData const*>(simulation.programs().computer_of(1).user_data);
+    auto const* const data = reinterpret_cast<TestData const*>(simulation.controllers().controller_of(1).user_data);
     EXPECT_EQ(data->number[0], 2);
     EXPECT_EQ(data->number[1], 1);
-    EXPECT_EQ(data->number[2], simulation.programs().ticks(1));
+    EXPECT_EQ(data->number[2], simulation.controllers().ticks(1));
     simulation.finish();
     EXPECT_EQ(touched(folder / "a.feather"), "2 times from t = 0.5000 s on: robots clicked");
 }

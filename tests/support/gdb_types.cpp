@@ -1,10 +1,10 @@
 // Values of the types that tools/gdb/pogosim_gdb.py prints, for tests/python/test_gdb.py.
-#include "robot/computer.hpp"
+#include "robot/controller.hpp"
 #include "world/world.hpp"
 
 namespace {
 
-void stop_here(pogosim::World const&, pogosim::Computer const&, pogosim::Leds const&) {}
+void stop_here(pogosim::World const&, pogosim::Controller const&, pogosim::Leds const&) {}
 
 }  // namespace
 
@@ -20,7 +20,7 @@ int main() {
     world.robots.category = {0, 0, 0};
     world.robots.body = {0, 1, 2};
     world.robots.led.resize(3);
-    world.robots.drive.resize(3);
+    world.robots.command.resize(3);
     world.robots.stream.resize(3);
     world.bodies.position_mm = {{12.5F, -3.0F}, {100.0F, 0.0F}};
     world.objects.resize(4);
@@ -33,11 +33,11 @@ int main() {
     world.mailboxes.push(2, {}, {});
     world.mailboxes.push(2, {}, {});
 
-    pogosim::Computer computer;
-    computer.clock_us = 2'500'000;
-    computer.loop.ticks = 156;
-    computer.motors.power = {512, 0, 7};
+    pogosim::Controller controller;
+    controller.clock_us = 2'500'000;
+    controller.loop.ticks = 156;
+    controller.motors.power = {512, 0, 7};
     pogosim::Leds const leds{{{255, 128, 0}, {}, {}, {}, {0, 0, 25}}};
-    stop_here(world, computer, leds);
+    stop_here(world, controller, leds);
     return 0;
 }

@@ -36,7 +36,7 @@ inline ObjectConfig membrane(bool segments = false, std::string const& category 
     spec.shape = {.kind = ShapeKind::disk, .radius_mm = 200.0F};
     spec.robot->has_wheels = false;
     spec.robot->emitters = Emitters::outline;
-    spec.ring.emplace().segments = segments;
+    spec.membrane.emplace().segments = segments;
     return object_of_type(segments ? "rectmembrane" : "membrane", category, spec);
 }
 

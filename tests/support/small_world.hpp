@@ -38,11 +38,11 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
     world.robots.category.push_back(0);
     world.robots.body.push_back(index);
     world.robots.led.push_back({});
-    world.robots.drive.push_back({});
+    world.robots.command.push_back({});
     world.robots.stream.emplace_back(1, index);
     world.bodies.position_mm.push_back(position_mm);
     world.bodies.heading_rad.push_back(heading_rad);
-    world.bodies.axis.push_back(direction(heading_rad));
+    world.bodies.heading_dir.push_back(direction(heading_rad));
     world.bodies.velocity_mm_s.push_back({});
     world.bodies.angular_velocity_rad_s.push_back(0.0F);
     world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
@@ -64,7 +64,7 @@ inline std::uint32_t add_outline(World& world, Outline outline, float range_mm) 
     world.robots.category.push_back(static_cast<std::uint32_t>(world.categories.size()));
     world.robots.body.push_back(outline.body);
     world.robots.led.push_back({});
-    world.robots.drive.push_back({});
+    world.robots.command.push_back({});
     world.robots.stream.emplace_back(1, robot);
     world.categories.push_back({"outlines", spec});
     outline.robot = robot;
@@ -78,7 +78,7 @@ inline std::uint32_t add_wall(World& world, std::vector<Polygon> polygons, float
     return add_outline(world, {.robot = 0, .polygons = std::move(polygons)}, range_mm);
 }
 
-/// A ring of bodies at these places, without other properties. Add it after all robots.
+/// A membrane of bodies at these places, without other properties. Add it after all robots.
 inline std::uint32_t add_membrane(World& world, Polygon const& dots, float range_mm = 80.0F) {
     auto const first = static_cast<std::uint32_t>(world.bodies.size());
     world.bodies.position_mm.insert(world.bodies.position_mm.end(), dots.begin(), dots.end());

@@ -35,7 +35,7 @@ TEST(AssertStructure, EachContradictionIsNoticed) {
         EXPECT_DEATH(assert_structure(world), "Assert");
     };
     expect_noticed([](World& world) { world.robots.led.pop_back(); });
-    expect_noticed([](World& world) { world.bodies.axis.pop_back(); });
+    expect_noticed([](World& world) { world.bodies.heading_dir.pop_back(); });
     expect_noticed([](World& world) { world.robots.body[1] = 2; });
     expect_noticed([](World& world) { world.robots.category[0] = 1; });
     expect_noticed([](World& world) { world.objects[1].robot = 0; });

@@ -103,11 +103,11 @@ class MembersPrinter:
         yield from members(self.value)
 
 
-class ComputerPrinter(MembersPrinter):
+class ControllerPrinter(MembersPrinter):
     """The robot's time in s, and how often it ticked; then all members."""
 
     def to_string(self) -> str:
-        text = f"computer at {int(self.value['clock_us']) / 1e6:.6f} s"
+        text = f"controller at {int(self.value['clock_us']) / 1e6:.6f} s"
         return text + f", {int(self.value['loop']['ticks'])} ticks"
 
 
@@ -168,7 +168,7 @@ ARRAYS = {"pogosim::Bodies", "pogosim::Robots"}
 PRINTERS: dict[str, Callable[[gdb.Value], object]] = {
     "pogosim::Vec2": Vec2Printer,
     "pogosim::Rgb": RgbPrinter,
-    "pogosim::Computer": ComputerPrinter,
+    "pogosim::Controller": ControllerPrinter,
     "pogosim::World": WorldPrinter,
     "pogosim::Mailboxes": MailboxesPrinter,
     **dict.fromkeys(ARRAYS, ArraysPrinter),
@@ -223,13 +223,13 @@ def index_of(robot: int) -> int:
     raise gdb.GdbError(f"There is no robot #{robot}: ids are {int(min(ids))} to {int(max(ids))}.")
 
 
-def computer_of(robot: int) -> gdb.Value:
-    """Return the computer of the robot with this id: computers are an array, and the context points into it."""
+def controller_of(robot: int) -> gdb.Value:
+    """Return the controller of the robot with this id: controllers are an array, and the context points into it."""
     found = context()
     running = int(found["robot"])
     if running == NONE:
         raise gdb.GdbError("A callback of the whole run is running. Stop in a robot's function: break user_step")
-    return (found["computer"] + (index_of(robot) - running)).dereference()
+    return (found["controller"] + (index_of(robot) - running)).dereference()
 
 
 class World(gdb.Function):
@@ -270,14 +270,14 @@ class Ticks(gdb.Function):
         return gdb.parse_and_eval("(unsigned int)pogobot_ticks")
 
 
-class Computer(gdb.Function):
-    """$computer(ID): the computer of a robot. What it keeps while another robot's program runs."""
+class Controller(gdb.Function):
+    """$controller(ID): the controller of a robot. What it keeps while another robot's program runs."""
 
     def __init__(self) -> None:
-        super().__init__("computer")
+        super().__init__("controller")
 
     def invoke(self, robot: gdb.Value) -> gdb.Value:
-        return computer_of(int(robot))
+        return controller_of(int(robot))
 
 
 class UserData(gdb.Function):
@@ -290,9 +290,9 @@ class UserData(gdb.Function):
         mine = gdb.parse_and_eval("mydata")
         if mine.type.strip_typedefs().target().strip_typedefs().code == gdb.TYPE_CODE_VOID:
             raise gdb.GdbError("The program has no user data with debug information: compile it with -g.")
-        return computer_of(int(robot))["user_data"].cast(mine.type).dereference()
+        return controller_of(int(robot))["user_data"].cast(mine.type).dereference()
 
 
 gdb.printing.register_pretty_printer(gdb.current_objfile(), Printers(), replace=True)
-for function in (World, RunningRobot, Ticks, Computer, UserData):
+for function in (World, RunningRobot, Ticks, Controller, UserData):
     function()

@@ -1,4 +1,4 @@
-// Keeps everything on its side of soft rings, whatever hits them.
+// Keeps everything on its side of soft membranes, whatever hits them.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 namespace pogosim {
 
 /// The engine's contacts and joints give way under blows and crowds that are too strong for its few iterations, and a
-/// body whose centre is past the middle of a ring is pushed on to the wrong side. So the sides are compared after each
-/// step: a body that has changed sides goes back to where it was before the step, at rest. When somebody is on the
-/// wrong side of a ring even so, because the ring moved over him, the step does not take place for anybody.
-/// Bodies that fit through the gaps between those of a ring may pass.
-class RingSides {
+/// body whose centre is past the middle of a membrane is pushed on to the wrong side. So the sides are compared after
+/// each step: a body that has changed sides goes back to where it was before the step, at rest. When somebody is on the
+/// wrong side of a membrane even so, because the membrane moved over him, the step does not take place for anybody.
+/// Bodies that fit through the gaps between those of a membrane may pass.
+class MembraneSides {
 public:
     /// Takes sides and poses as they are now. `bodies`: all of the world.
-    RingSides(World const& world, std::vector<b2Body*> const& bodies);
+    MembraneSides(World const& world, std::vector<b2Body*> const& bodies);
 
     /// To be called after a step of the engine. Returns whether bodies were put back.
     bool hold(std::vector<b2Body*> const& bodies);
@@ -31,9 +31,9 @@ private:
         b2Vec2 position;
         float angle_rad = 0.0F;
     };
-    /// A ring and the bodies that cannot pass it.
+    /// A membrane and the bodies that cannot pass it.
     struct Side {
-        Ring ring;
+        Membrane membrane;
         std::vector<std::uint32_t> others;     // indices into World::bodies
         std::vector<std::uint8_t> was_inside;  // each of them, before the step
         std::vector<std::uint8_t> is_inside;   // and now
@@ -46,7 +46,7 @@ private:
 
     std::vector<Side> sides_;
     std::vector<Pose> poses_;  // of all bodies, before the step
-    Polygon line_;             // scratch: the middle of a ring
+    Polygon line_;             // scratch: the middle of a membrane
 };
 
 }  // namespace pogosim

@@ -1,5 +1,5 @@
-// What the engine lets through a soft ring comes back.
-#include "physics/ring_sides.hpp"
+// What the engine lets through a soft membrane comes back.
+#include "physics/membrane_sides.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 namespace pogosim {
 namespace {
 
-/// A robot in the middle of a ring of 4 or more disks, another one outside; the engine's bodies are moved by hand.
-class RingOfDisks : public ::testing::Test {
+/// A robot in the middle of a membrane of 4 or more disks, another one outside; the engine's bodies are moved by hand.
+class MembraneOfDisks : public ::testing::Test {
 protected:
     void make(int count, float radius_mm, float spring_mm = 0.0F) {
-        ring_.body_count = static_cast<std::uint32_t>(count);
+        membrane_.body_count = static_cast<std::uint32_t>(count);
         for (int i = 0; i < count; ++i) {
             ObjectSpec spec = testing::pogobot_spec();
             spec.shape.radius_mm = radius_mm;
@@ -30,7 +30,7 @@ protected:
         }
         inside_ = testing::add_robot(world_, centre_mm_);
         outside_ = testing::add_robot(world_, {900, 500});
-        world_.rings.push_back(ring_);
+        world_.membranes.push_back(membrane_);
         for (Vec2 const position_mm : world_.bodies.position_mm) {
             b2BodyDef definition;
             definition.type = b2_dynamicBody;
@@ -45,16 +45,16 @@ protected:
     Vec2 place(std::uint32_t body) const { return from_box2d(bodies_[body]->GetPosition()); }
 
     Vec2 centre_mm_{500, 500};
-    Ring ring_;
+    Membrane membrane_;
     World world_ = testing::square_world();
     std::uint32_t inside_ = 0;
     std::uint32_t outside_ = 0;
     b2World engine_{b2Vec2_zero};
     std::vector<b2Body*> bodies_;
-    std::optional<RingSides> sides_;
+    std::optional<MembraneSides> sides_;
 };
 
-TEST_F(RingOfDisks, LeavesThoseAloneWhoStayOnTheirSide) {
+TEST_F(MembraneOfDisks, LeavesThoseAloneWhoStayOnTheirSide) {
     make(12, 10.0F);
     move(inside_, {550, 520});
     move(outside_, {620, 500});
@@ -64,7 +64,7 @@ TEST_F(RingOfDisks, LeavesThoseAloneWhoStayOnTheirSide) {
     EXPECT_EQ(bodies_[inside_]->GetLinearVelocity().y, 2.0F);
 }
 
-TEST_F(RingOfDisks, PutsBackAtRestWhoeverJumpsOutOrIn) {
+TEST_F(MembraneOfDisks, PutsBackAtRestWhoeverJumpsOutOrIn) {
     make(12, 10.0F);
     move(inside_, {560, 500});
     move(outside_, {700, 500});
@@ -83,9 +83,9 @@ TEST_F(RingOfDisks, PutsBackAtRestWhoeverJumpsOutOrIn) {
     EXPECT_EQ(place(outside_), (Vec2{690, 500}));
 }
 
-TEST_F(RingOfDisks, ComesBackWithEverybodyWhenItMovedOverSomebody) {
+TEST_F(MembraneOfDisks, ComesBackWithEverybodyWhenItMovedOverSomebody) {
     make(12, 10.0F);
-    for (std::uint32_t i = 0; i < ring_.body_count; ++i) {
+    for (std::uint32_t i = 0; i < membrane_.body_count; ++i) {
         move(i, place(i) + Vec2{200, 0});
     }
     move(outside_, {910, 500});
@@ -97,14 +97,14 @@ TEST_F(RingOfDisks, ComesBackWithEverybodyWhenItMovedOverSomebody) {
     }
 }
 
-TEST_F(RingOfDisks, LetsThroughWhatFitsBetweenItsDisks) {
+TEST_F(MembraneOfDisks, LetsThroughWhatFitsBetweenItsDisks) {
     make(6, 10.0F, /*spring_mm=*/80.0F);  // 64 mm remain when it is stretched
     move(inside_, {700, 500});
     EXPECT_FALSE(sides_->hold(bodies_));
     EXPECT_EQ(place(inside_), (Vec2{700, 500}));
 }
 
-TEST_F(RingOfDisks, StopsWhatDoesNotFitBetweenItsDisks) {
+TEST_F(MembraneOfDisks, StopsWhatDoesNotFitBetweenItsDisks) {
     make(6, 10.0F, /*spring_mm=*/65.0F);  // 48 mm
     move(inside_, {700, 500});
     EXPECT_TRUE(sides_->hold(bodies_));

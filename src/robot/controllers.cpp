@@ -1,4 +1,4 @@
-#include "robot/programs.hpp"
+#include "robot/controllers.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,10 +15,11 @@
 #include <utility>
 
 #include "base/memory.hpp"
-#include "robot/drive.hpp"
+#include "robot/assert_controllers.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
+#include "robot/velocity_command.hpp"
 
 extern "C" {
 // What programs declare as a pointer to their type of user data.
@@ -116,47 +117,47 @@ void call_main(int (*function)(), char** arguments) {
 
 }  // namespace
 
-Programs::Programs(ProgramImage image, World& world, RunServices& services, std::uint64_t seed)
+Controllers::Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed)
     : image_(std::move(image)), world_(world), services_(services) {
     services_.access.programs = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
-        return fmt::format("the computers of {} robots, {} bytes each", count, sizeof(Computer));
+        return fmt::format("the controllers of {} robots, {} bytes each", count, sizeof(Controller));
     };
-    allocate_for(purpose, static_cast<double>(count * sizeof(Computer)), [&] { computers_.resize(count); });
+    allocate_for(purpose, static_cast<double>(count * sizeof(Controller)), [&] { controllers_.resize(count); });
     allocate_user_data();
     draw_individual_differences(seed);
 }
 
-Programs::~Programs() {
+Controllers::~Controllers() {
     if (context.world == &world_) {
         context = {};
     }
 }
 
-std::size_t Programs::user_data_stride() const {
+std::size_t Controllers::user_data_stride() const {
     return stride_of(image_.user_data_bytes);
 }
 
-Programs::Thread::Thread(Programs& programs) : programs_(programs) {
-    callback_global_setup = programs.callbacks_.global_setup;
-    callback_create_data_schema = programs.callbacks_.create_data_schema;
-    callback_global_step = programs.callbacks_.global_step;
+Controllers::Thread::Thread(Controllers& controllers) : controllers_(controllers) {
+    callback_global_setup = controllers.callbacks_.global_setup;
+    callback_create_data_schema = controllers.callbacks_.create_data_schema;
+    callback_global_step = controllers.callbacks_.global_step;
 }
 
-Programs::Thread::~Thread() {
-    programs_.callbacks_ = {.global_setup = callback_global_setup,
-                            .create_data_schema = callback_create_data_schema,
-                            .global_step = callback_global_step};
+Controllers::Thread::~Thread() {
+    controllers_.callbacks_ = {.global_setup = callback_global_setup,
+                               .create_data_schema = callback_create_data_schema,
+                               .global_step = callback_global_step};
 }
 
-void Programs::allocate_user_data() {
+void Controllers::allocate_user_data() {
     // One block for all, the last place for the global step.
     std::size_t const stride = user_data_stride();
-    std::size_t const blocks = computers_.size() + 1;
+    std::size_t const blocks = controllers_.size() + 1;
     auto const purpose = [&] {
         return fmt::format("the user data (USERDATA) of {} robots and the global step, {} bytes each",
-                           computers_.size(), image_.user_data_bytes);
+                           controllers_.size(), image_.user_data_bytes);
     };
     allocate_for(purpose, static_cast<double>(stride) * static_cast<double>(blocks), [&] {
         if (stride > std::numeric_limits<std::ptrdiff_t>::max() / blocks) {
@@ -164,18 +165,18 @@ void Programs::allocate_user_data() {
         }
         user_data_ = FencedMemory(stride * blocks);
     });
-    for (std::size_t i = 0; i < computers_.size(); ++i) {
-        computers_[i].user_data = user_data_.data() + i * stride;
+    for (std::size_t i = 0; i < controllers_.size(); ++i) {
+        controllers_[i].user_data = user_data_.data() + i * stride;
     }
-    system_.user_data = user_data_.data() + computers_.size() * stride;
+    system_.user_data = user_data_.data() + controllers_.size() * stride;
     services_.program_memory = image_.variables;
     services_.program_memory.emplace_back(user_data_.data(), stride * blocks);
 }
 
-void Programs::draw_individual_differences(std::uint64_t seed) {
+void Controllers::draw_individual_differences(std::uint64_t seed) {
     std::uint64_t const key = mix64(seed + 1);
-    for (std::uint32_t i = 0; i < computers_.size(); ++i) {
-        Computer& self = computers_[i];
+    for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
+        Controller& self = controllers_[i];
         RobotSpec const& spec = world_.spec_of(i);
         RandomStream& stream = world_.robots.stream[i];
         self.random = RandomStream(seed, kRandStreams + i);
@@ -191,15 +192,15 @@ void Programs::draw_individual_differences(std::uint64_t seed) {
     system_.seeds = RandomStream(seed, kSeedStreams + kNone);
 }
 
-Computer& Programs::computer(std::uint32_t robot) {
-    return robot == kNone ? system_ : computers_[robot];
+Controller& Controllers::controller(std::uint32_t robot) {
+    return robot == kNone ? system_ : controllers_[robot];
 }
 
-void Programs::enter(std::uint32_t robot, char const* phase) {
-    Computer& self = computer(robot);
+void Controllers::enter(std::uint32_t robot, char const* phase) {
+    Controller& self = controller(robot);
     context = {.world = &world_,
                .services = &services_,
-               .computer = &self,
+               .controller = &self,
                .robot = robot,
                .phase = phase,
                .printed = &self.printed,
@@ -211,18 +212,18 @@ void Programs::enter(std::uint32_t robot, char const* phase) {
 }
 
 /// Code of the whole run that has a robot's memory, such as callback_global_setup.
-void Programs::enter_as_system(std::uint32_t robot, char const* phase) {
+void Controllers::enter_as_system(std::uint32_t robot, char const* phase) {
     enter(robot, phase);
     context.printed = &system_.printed;
     context.is_system = context.sees_world = true;
 }
 
-void Programs::leave() {
-    context.computer->loop = stored_globals();
+void Controllers::leave() {
+    context.controller->loop = stored_globals();
 }
 
 /// A robot that is switched off is as it was before, for the call; it sends nothing.
-void Programs::call(std::uint32_t robot, char const* phase, void (*function)(), bool sees_world) {
+void Controllers::call(std::uint32_t robot, char const* phase, void (*function)(), bool sees_world) {
     if (function == nullptr) {
         return;
     }
@@ -243,7 +244,7 @@ void Programs::call(std::uint32_t robot, char const* phase, void (*function)(), 
     }
 }
 
-void Programs::call_as_system(std::uint32_t robot, char const* phase, void (*function)()) {
+void Controllers::call_as_system(std::uint32_t robot, char const* phase, void (*function)()) {
     if (function != nullptr) {
         enter_as_system(robot, phase);
         function();
@@ -252,7 +253,7 @@ void Programs::call_as_system(std::uint32_t robot, char const* phase, void (*fun
 }
 
 /// In C++, what a robot does with its globals before main().
-void Programs::construct_user_data(std::uint32_t robot) {
+void Controllers::construct_user_data(std::uint32_t robot) {
     if (image_.construct_user_data != nullptr) {
         enter(robot, "constructor of USERDATA");
         image_.construct_user_data(mydata);
@@ -260,7 +261,7 @@ void Programs::construct_user_data(std::uint32_t robot) {
     }
 }
 
-void Programs::run_main(std::uint32_t robot) {
+void Controllers::run_main(std::uint32_t robot) {
     enter(robot, "main");
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
     // A program may modify its arguments, so each robot gets a fresh copy.
@@ -268,19 +269,19 @@ void Programs::run_main(std::uint32_t robot) {
     main_arguments_ = {program_name_.data(), nullptr};
     call_main(image_.main, main_arguments_.data());
     leave();
-    Program& program = computer(robot).program;
+    Program& program = controller(robot).program;
     program.export_data = callback_export_data;
     program.end = callback_robot_end;
     program.click = callback_robot_click;
 }
 
 /// Its mydata is that of the last robot, as long as programs are known to read it there.
-void Programs::run_global_setup() {
-    auto const count = static_cast<std::uint32_t>(computers_.size());
+void Controllers::run_global_setup() {
+    auto const count = static_cast<std::uint32_t>(controllers_.size());
     std::uint32_t const robot = count == 0 ? kNone : count - 1;
     auto const digest = [this, robot] {
         return std::hash<std::string_view>()(
-            {reinterpret_cast<char const*>(computer(robot).user_data), user_data_bytes()});
+            {reinterpret_cast<char const*>(controller(robot).user_data), user_data_bytes()});
     };
     std::size_t const before = digest();
     call_as_system(robot, "callback_global_setup", callback_global_setup);
@@ -290,8 +291,8 @@ void Programs::run_global_setup() {
     }
 }
 
-void Programs::start() {
-    auto const count = static_cast<std::uint32_t>(computers_.size());
+void Controllers::start() {
+    auto const count = static_cast<std::uint32_t>(controllers_.size());
     warn_of_large_user_data(user_data_bytes());
     construct_user_data(kNone);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -304,27 +305,27 @@ void Programs::start() {
     for (std::uint32_t i = 0; i < count; ++i) {
         run_main(i);
     }
-    warn_of_idle_categories(world_, computers_, services_.started_categories);
+    warn_of_idle_categories(world_, controllers_, services_.started_categories);
     run_global_setup();
     for (std::uint32_t i = 0; i < count; ++i) {
-        call(i, "user_init", computers_[i].program.init);
+        call(i, "user_init", controllers_[i].program.init);
     }
-    warn_of_missing_init(computers_);
+    warn_of_missing_init(controllers_);
 }
 
-void Programs::declare_columns() {
+void Controllers::declare_columns() {
     services_.data.declaring = services_.data.is_declared = true;
     call_as_system(kNone, "callback_create_data_schema", callback_create_data_schema);
     services_.data.declaring = false;
     if (callback_global_step == nullptr && services_.data.held.empty()) {
-        warn_of_empty_columns(services_.data.columns, computers_);
+        warn_of_empty_columns(services_.data.columns, controllers_);
     } else {
-        auto const exports = [](Computer const& self) { return self.program.export_data != nullptr; };
-        services_.data.awaits_step = std::ranges::none_of(computers_, exports);
+        auto const exports = [](Controller const& self) { return self.program.export_data != nullptr; };
+        services_.data.awaits_step = std::ranges::none_of(controllers_, exports);
     }
 }
 
-void Programs::run_step() {
+void Controllers::run_step() {
     std::int64_t const now_us = this->now_us();
     if (callback_global_step != nullptr && now_us >= system_.clock_us) {
         enter(kNone, "callback_global_step");
@@ -334,23 +335,24 @@ void Programs::run_step() {
         without_exceptions([this] { services_.access.settle_light(); });
     }
     hold_suspended();
-    auto const count = static_cast<std::uint32_t>(computers_.size());
+    auto const count = static_cast<std::uint32_t>(controllers_.size());
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (now_us < computers_[i].clock_us) {
+        if (now_us < controllers_[i].clock_us) {
             continue;
         }
-        if (computers_[i].loop.loop_hz == 0) {
-            computers_[i].clock_us = now_us;  // without a sleep the clock follows the steps
+        if (controllers_[i].loop.loop_hz == 0) {
+            controllers_[i].clock_us = now_us;  // without a sleep the clock follows the steps
         }
         tick(i);
     }
+    assert_controllers(world_, controllers_);
 }
 
-std::int64_t Programs::now_us() const {
+std::int64_t Controllers::now_us() const {
     return std::llround(world_.time_s() * kMicrosecondsPerSecond);
 }
 
-void Programs::set_alive(std::uint32_t robot, bool alive) {
+void Controllers::set_alive(std::uint32_t robot, bool alive) {
     if (alive == is_alive(world_.robots, robot)) {
         return;
     }
@@ -367,24 +369,24 @@ void Programs::set_alive(std::uint32_t robot, bool alive) {
     }
 }
 
-Programs::Suspended* Programs::find_suspended(std::uint32_t robot) {
+Controllers::Suspended* Controllers::find_suspended(std::uint32_t robot) {
     auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
     return place != suspended_.end() && place->robot == robot ? &*place : nullptr;
 }
 
-std::int64_t Programs::clock_us(std::uint32_t robot) const {
+std::int64_t Controllers::clock_us(std::uint32_t robot) const {
     auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
-    return place != suspended_.end() && place->robot == robot ? place->clock_us : computers_[robot].clock_us;
+    return place != suspended_.end() && place->robot == robot ? place->clock_us : controllers_[robot].clock_us;
 }
 
-void Programs::wake(Suspended const& self) {
-    computers_[self.robot].clock_us = std::max(self.clock_us, now_us());
+void Controllers::wake(Suspended const& self) {
+    controllers_[self.robot].clock_us = std::max(self.clock_us, now_us());
     world_.robots.led[self.robot] = self.leds;
 }
 
 /// Never due: that takes no branch in run_step(). Of one that rests already, nothing is kept.
-void Programs::rest(Suspended& self) {
-    std::int64_t const clock_us = std::exchange(computers_[self.robot].clock_us, kNever);
+void Controllers::rest(Suspended& self) {
+    std::int64_t const clock_us = std::exchange(controllers_[self.robot].clock_us, kNever);
     Leds const leds = std::exchange(world_.robots.led[self.robot], {});
     if (clock_us < kNever) {
         self.clock_us = clock_us;
@@ -393,16 +395,16 @@ void Programs::rest(Suspended& self) {
 }
 
 /// As motors without power do, but without their noise.
-void Programs::hold_suspended() {
+void Controllers::hold_suspended() {
     for (Suspended const& self : suspended_) {
-        if (computers_[self.robot].motors.driven && world_.spec_of(self.robot).has_wheels) {
-            world_.robots.drive[self.robot] = {.velocity_mm_s = {}, .angular_velocity_rad_s = 0.0F, .fresh = true};
+        if (controllers_[self.robot].motors.driven && world_.spec_of(self.robot).has_wheels) {
+            world_.robots.command[self.robot] = {.velocity_mm_s = {}, .angular_velocity_rad_s = 0.0F, .pending = true};
         }
     }
 }
 
-void Programs::tick(std::uint32_t robot) {
-    Computer& self = computers_[robot];
+void Controllers::tick(std::uint32_t robot) {
+    Controller& self = controllers_[robot];
     if (std::uint32_t const body = world_.robots.body[robot]; body != kNone) {
         measure_velocity(self.accelerometer, world_.bodies.velocity_mm_s[body], self.clock_us, self.loop.ticks == 0);
     }
@@ -413,60 +415,60 @@ void Programs::tick(std::uint32_t robot) {
     std::int64_t const slept_us = self.clock_us - self.loop.loop_timer.origin_us;
     self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);
     if (self.motors.driven && world_.spec_of(robot).has_wheels) {
-        drive(world_, robot, self.motors);
+        command_velocity(world_, robot, self.motors);
     }
 }
 
-void Programs::export_row(std::size_t robot, std::uint32_t object) {
+void Controllers::export_row(std::size_t robot, std::uint32_t object) {
     DataExport& data = services_.data;
     data.row.values.assign(data.columns.size(), CellValue());
     data.held.fill(object, data.row.values);
     data.row.exported = true;
     data.filling = true;
     data.next_column = 0;
-    call(static_cast<std::uint32_t>(robot), "export_data", computers_[robot].program.export_data);
+    call(static_cast<std::uint32_t>(robot), "export_data", controllers_[robot].program.export_data);
     data.filling = false;
-    data.filled_rows += data.row.exported && computers_[robot].program.export_data != nullptr ? 1 : 0;
+    data.filled_rows += data.row.exported && controllers_[robot].program.export_data != nullptr ? 1 : 0;
 }
 
-bool Programs::click(std::uint32_t robot) {
-    void (*const callback)() = computers_[robot].program.click;
+bool Controllers::click(std::uint32_t robot) {
+    void (*const callback)() = controllers_[robot].program.click;
     call(robot, "robot_click", callback, /*sees_world=*/true);
     without_exceptions([this] { services_.access.settle_light(); });
     return callback != nullptr;
 }
 
-void Programs::end() {
-    for (std::uint32_t i = 0; i < computers_.size(); ++i) {
-        call(i, "robot_end", computers_[i].program.end);
+void Controllers::end() {
+    for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
+        call(i, "robot_end", controllers_[i].program.end);
     }
 }
 
-void Programs::print_unfinished_lines() {
+void Controllers::print_unfinished_lines() {
     auto const print_rest = [this](std::uint32_t robot) {
-        if (!computer(robot).printed.empty()) {
+        if (!controller(robot).printed.empty()) {
             call(robot, "the end", [] { pogosim_puts(""); });
         }
     };
-    for (std::uint32_t i = 0; i < computers_.size(); ++i) {
+    for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
         print_rest(i);
     }
     print_rest(kNone);
 }
 
-void Programs::warn_of_messages(std::uint64_t arrivals) const {
-    warn_of_lost_messages(world_, computers_);
-    warn_of_unused_messages(world_, computers_, arrivals);
-    warn_of_send_percent(world_, computers_);
+void Controllers::warn_of_messages(std::uint64_t arrivals) const {
+    warn_of_lost_messages(world_, controllers_);
+    warn_of_unused_messages(world_, controllers_, arrivals);
+    warn_of_send_percent(world_, controllers_);
 }
 
-void Programs::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
+void Controllers::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
     pogosim::tell_of_unset_columns(services_.data, fields);
 }
 
-int Programs::highest_loop_hz() const {
+int Controllers::highest_loop_hz() const {
     int highest = 0;
-    for (Computer const& self : computers_) {
+    for (Controller const& self : controllers_) {
         highest = std::max<int>(highest, self.loop.loop_hz);
     }
     return highest;
@@ -501,15 +503,15 @@ void _pogobot_start(void (*user_init)(), void (*user_step)(), char const* catego
     if (!current_robot_category_is(category)) {
         return;
     }
-    if (context.computer->program.registered) {
+    if (context.controller->program.registered) {
         context.services->warn_once(
             "pogobot_start() is called again for the category '{}': the simulator uses the last call, a real robot the "
             "first",
             category);
     }
-    context.computer->program.registered = true;
-    context.computer->program.init = user_init;
-    context.computer->program.step = user_step;
+    context.controller->program.registered = true;
+    context.controller->program.init = user_init;
+    context.controller->program.step = user_step;
     pogobot_ticks = 0;
     pogobot_stopwatch_reset(&_global_timer);
     pogobot_stopwatch_reset(&timer_main_loop);

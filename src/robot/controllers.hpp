@@ -16,25 +16,25 @@
 
 namespace pogosim {
 
-class Programs {
+class Controllers {
 public:
-    /// Makes a computer for each robot of the world and one for the global step. `services` and `world` outlive this.
-    Programs(ProgramImage image, World& world, RunServices& services, std::uint64_t seed);
-    ~Programs();
+    /// Makes a controller for each robot of the world and one for the global step. `services` and `world` outlive this.
+    Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed);
+    ~Controllers();
 
-    Programs(Programs const&) = delete;
-    Programs& operator=(Programs const&) = delete;
+    Controllers(Controllers const&) = delete;
+    Controllers& operator=(Controllers const&) = delete;
 
     /// As long as this lives, the callbacks of the whole run are those that this program has set.
     class Thread {
     public:
-        explicit Thread(Programs& programs);
+        explicit Thread(Controllers& controllers);
         ~Thread();
         Thread(Thread const&) = delete;
         Thread& operator=(Thread const&) = delete;
 
     private:
-        Programs& programs_;
+        Controllers& controllers_;
     };
 
     /// Constructs the user data of C++ programs, runs main() for each robot, then callback_global_setup, then every
@@ -84,11 +84,11 @@ public:
     void print_unfinished_lines();
 
     /// Ticks this robot has executed.
-    std::uint32_t ticks(std::size_t robot) const { return computers_[robot].loop.ticks; }
+    std::uint32_t ticks(std::size_t robot) const { return controllers_[robot].loop.ticks; }
 
-    /// The state of this robot's computer between two of its ticks.
-    Computer const& computer_of(std::size_t robot) const { return computers_[robot]; }
-    std::span<Computer const> computers() const { return computers_; }
+    /// The state of this robot's controller between two of its ticks.
+    Controller const& controller_of(std::size_t robot) const { return controllers_[robot]; }
+    std::span<Controller const> all() const { return controllers_; }
 
     /// The user data of all robots: bytes from one robot's to the next one's.
     std::size_t user_data_stride() const;
@@ -98,7 +98,7 @@ public:
         if (!is_alive(world_.robots, robot)) {
             return 0.0F;
         }
-        return world_.spec_of(robot).ir.range_at_mm(computers_[robot].ir_power);
+        return world_.spec_of(robot).ir.range_at_mm(controllers_[robot].ir_power);
     }
 
     /// The highest main_loop_hz of all robots.
@@ -131,14 +131,14 @@ private:
     void hold_suspended();
     void call_as_system(std::uint32_t robot, char const* phase, void (*function)());
     void tick(std::uint32_t robot);
-    Computer& computer(std::uint32_t robot);
+    Controller& controller(std::uint32_t robot);
 
     ProgramImage image_;
     Callbacks callbacks_;
     World& world_;
     RunServices& services_;
-    std::vector<Computer> computers_;
-    Computer system_;                   // of the global step
+    std::vector<Controller> controllers_;
+    Controller system_;                 // of the global step
     std::vector<Suspended> suspended_;  // by robot, ascending
     FencedMemory user_data_;
     std::string program_name_;

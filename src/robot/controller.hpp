@@ -1,4 +1,4 @@
-// A robot's own computer: the state of its processor, memory and peripherals between two ticks. Plain data, one per
+// A robot's own controller: the state of its processor, memory and peripherals between two ticks. Plain data, one per
 // robot.
 #pragma once
 
@@ -62,7 +62,7 @@ struct Accelerometer {
     std::int64_t current_us = 0;  // the robot's clock at the last tick
 };
 
-struct Computer {
+struct Controller {
     std::int64_t clock_us = 0;        // the robot's own time
     std::int64_t clock_drift_us = 0;  // added at every tick
     int clock_reads = 0;              // since the tick began

@@ -1,4 +1,4 @@
-#include "physics/ring_area.hpp"
+#include "physics/membrane_area.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -9,35 +9,35 @@ namespace {
 
 // As stiff as the time step allows: a lost area is back within a few steps.
 constexpr float kSwingsPerStep = 0.25F;
-// A ring whose area is and stays as right as this is left alone: a push, even of nothing, would keep it from sleep.
+// A membrane whose area is and stays as right as this is left alone: a push, even of nothing, would keep it from sleep.
 constexpr float kTolerance = 1e-4F;  // of the area
 
-b2Vec2 position(std::vector<b2Body*> const& ring, std::size_t i) {
-    return ring[i % ring.size()]->GetWorldCenter();
+b2Vec2 position(std::vector<b2Body*> const& membrane, std::size_t i) {
+    return membrane[i % membrane.size()]->GetWorldCenter();
 }
 
 /// Signed, positive when the bodies run clockwise on the screen.
-float enclosed_area(std::vector<b2Body*> const& ring) {
+float enclosed_area(std::vector<b2Body*> const& membrane) {
     float twice = 0.0F;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        twice += b2Cross(position(ring, i), position(ring, i + 1));
+    for (std::size_t i = 0; i < membrane.size(); ++i) {
+        twice += b2Cross(position(membrane, i), position(membrane, i + 1));
     }
     return 0.5F * twice;
 }
 
 /// How the area grows when body i moves.
-b2Vec2 area_gradient(std::vector<b2Body*> const& ring, std::size_t i) {
-    b2Vec2 const across = position(ring, i + 1) - position(ring, i + ring.size() - 1);
+b2Vec2 area_gradient(std::vector<b2Body*> const& membrane, std::size_t i) {
+    b2Vec2 const across = position(membrane, i + 1) - position(membrane, i + membrane.size() - 1);
     return {0.5F * across.y, -0.5F * across.x};
 }
 
 }  // namespace
 
-RingArea::RingArea(Ring const& ring, std::vector<b2Body*> const& bodies)
-    : bodies_(bodies.begin() + ring.body, bodies.begin() + ring.body + ring.body_count),
+MembraneArea::MembraneArea(Membrane const& membrane, std::vector<b2Body*> const& bodies)
+    : bodies_(bodies.begin() + membrane.body, bodies.begin() + membrane.body + membrane.body_count),
       area_(enclosed_area(bodies_)) {}
 
-void RingArea::push(float dt_s) const {
+void MembraneArea::push(float dt_s) const {
     if (!bodies_.front()->IsAwake()) {
         return;  // joints let all of them sleep together
     }

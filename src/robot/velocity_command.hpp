@@ -3,15 +3,15 @@
 
 #include <cstddef>
 
-#include "robot/computer.hpp"
+#include "robot/controller.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
-/// Sets the world's drive of this robot to what its motors ask for, noise included; called at each control tick.
+/// Sets the velocity command of this robot to what its motors ask for, noise included; called at each control tick.
 ///
 /// With signed powers L and R (PWM, after the direction bits and the robot's bias), along the heading
 /// v = max_linear_speed (L + R) / (2 * 1023), clockwise on the screen omega = max_angular_speed (L - R) / 511.5.
-void drive(World& world, std::size_t robot, Motors const& motors);
+void command_velocity(World& world, std::size_t robot, Motors const& motors);
 
 }  // namespace pogosim

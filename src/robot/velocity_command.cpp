@@ -1,4 +1,4 @@
-#include "robot/drive.hpp"
+#include "robot/velocity_command.hpp"
 
 #include <cstdint>
 
@@ -17,13 +17,13 @@ float signed_power(Motors const& motors, motor_id motor, std::uint8_t forward_bi
 
 }  // namespace
 
-void drive(World& world, std::size_t robot, Motors const& motors) {
+void command_velocity(World& world, std::size_t robot, Motors const& motors) {
     RobotSpec const& spec = world.spec_of(robot);
     float const left = signed_power(motors, motorL, 1) + motors.bias;
     float const right = signed_power(motors, motorR, 0) - motors.bias;
 
     float const speed = spec.max_linear_speed_mm_s * (left + right) / (2.0F * kFullPower);
-    Vec2 velocity = speed * world.bodies.axis[world.robots.body[robot]];
+    Vec2 velocity = speed * world.bodies.heading_dir[world.robots.body[robot]];
     float angular_velocity = spec.max_angular_speed_rad_s * (left - right) / (kFullPower / 2.0F);
 
     RandomStream& stream = world.robots.stream[robot];
@@ -35,7 +35,8 @@ void drive(World& world, std::size_t robot, Motors const& motors) {
     if (spec.angular_noise_stddev > 0.0F) {
         angular_velocity += spec.angular_noise_stddev * stream.normal();
     }
-    world.robots.drive[robot] = {.velocity_mm_s = velocity, .angular_velocity_rad_s = angular_velocity, .fresh = true};
+    world.robots.command[robot] = {
+        .velocity_mm_s = velocity, .angular_velocity_rad_s = angular_velocity, .pending = true};
 }
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-#include "physics/ring_sides.hpp"
+#include "physics/membrane_sides.hpp"
 
 #include <algorithm>
 
@@ -6,15 +6,15 @@ namespace pogosim {
 
 namespace {
 
-bool is_part(Ring const& ring, std::size_t body) {
-    return body >= ring.body && body < std::size_t{ring.body} + ring.body_count;
+bool is_part(Membrane const& membrane, std::size_t body) {
+    return body >= membrane.body && body < std::size_t{membrane.body} + membrane.body_count;
 }
 
-/// Widest gap that the springs of a ring leave between two of its bodies, mm.
-float widest_gap_mm(World const& world, Ring const& ring) {
+/// Widest gap that the springs of a membrane leave between two of its bodies, mm.
+float widest_gap_mm(World const& world, Membrane const& membrane) {
     float widest_mm = 0.0F;
     for (Joint const& joint : world.joints) {
-        if (joint.max_stretch > 0.0F && is_part(ring, joint.a)) {
+        if (joint.max_stretch > 0.0F && is_part(membrane, joint.a)) {
             widest_mm = std::max(widest_mm, (1.0F + joint.max_stretch) * joint.length_mm -
                                                 world.bodies.radius_mm[joint.a] - world.bodies.radius_mm[joint.b]);
         }
@@ -24,13 +24,13 @@ float widest_gap_mm(World const& world, Ring const& ring) {
 
 }  // namespace
 
-RingSides::RingSides(World const& world, std::vector<b2Body*> const& bodies) {
-    for (Ring const& ring : world.rings) {
+MembraneSides::MembraneSides(World const& world, std::vector<b2Body*> const& bodies) {
+    for (Membrane const& membrane : world.membranes) {
         Side& side = sides_.emplace_back();
-        side.ring = ring;
-        float const gap_mm = widest_gap_mm(world, ring);
+        side.membrane = membrane;
+        float const gap_mm = widest_gap_mm(world, membrane);
         for (std::size_t i = 0; i < bodies.size(); ++i) {
-            if (!is_part(ring, i) && 2.0F * world.bodies.radius_mm[i] >= gap_mm) {
+            if (!is_part(membrane, i) && 2.0F * world.bodies.radius_mm[i] >= gap_mm) {
                 side.others.push_back(static_cast<std::uint32_t>(i));
             }
         }
@@ -38,7 +38,7 @@ RingSides::RingSides(World const& world, std::vector<b2Body*> const& bodies) {
     look_again(bodies);
 }
 
-bool RingSides::hold(std::vector<b2Body*> const& bodies) {
+bool MembraneSides::hold(std::vector<b2Body*> const& bodies) {
     bool const crossed = somebody_crossed(bodies);
     if (crossed) {
         for (Side const& side : sides_) {
@@ -58,7 +58,7 @@ bool RingSides::hold(std::vector<b2Body*> const& bodies) {
     return crossed;
 }
 
-void RingSides::look_again(std::vector<b2Body*> const& bodies) {
+void MembraneSides::look_again(std::vector<b2Body*> const& bodies) {
     for (Side& side : sides_) {
         find_sides(bodies, side);
         side.was_inside = side.is_inside;
@@ -66,7 +66,7 @@ void RingSides::look_again(std::vector<b2Body*> const& bodies) {
     remember_poses(bodies);
 }
 
-bool RingSides::somebody_crossed(std::vector<b2Body*> const& bodies) {
+bool MembraneSides::somebody_crossed(std::vector<b2Body*> const& bodies) {
     bool crossed = false;
     for (Side& side : sides_) {
         find_sides(bodies, side);
@@ -75,10 +75,10 @@ bool RingSides::somebody_crossed(std::vector<b2Body*> const& bodies) {
     return crossed;
 }
 
-void RingSides::find_sides(std::vector<b2Body*> const& bodies, Side& side) {
+void MembraneSides::find_sides(std::vector<b2Body*> const& bodies, Side& side) {
     line_.clear();
-    for (std::uint32_t k = 0; k < side.ring.body_count; ++k) {
-        line_.push_back(from_box2d(bodies[side.ring.body + k]->GetPosition()));
+    for (std::uint32_t k = 0; k < side.membrane.body_count; ++k) {
+        line_.push_back(from_box2d(bodies[side.membrane.body + k]->GetPosition()));
     }
     Box const box = bounding_box(line_);
     side.is_inside.assign(side.others.size(), 0);
@@ -90,14 +90,14 @@ void RingSides::find_sides(std::vector<b2Body*> const& bodies, Side& side) {
     }
 }
 
-void RingSides::put_back(std::vector<b2Body*> const& bodies, std::size_t i) const {
+void MembraneSides::put_back(std::vector<b2Body*> const& bodies, std::size_t i) const {
     b2Body& body = *bodies[i];
     body.SetTransform(poses_[i].position, poses_[i].angle_rad);
     body.SetLinearVelocity(b2Vec2_zero);
     body.SetAngularVelocity(0.0F);
 }
 
-void RingSides::remember_poses(std::vector<b2Body*> const& bodies) {
+void MembraneSides::remember_poses(std::vector<b2Body*> const& bodies) {
     poses_.clear();
     for (b2Body const* body : bodies) {
         poses_.push_back({body->GetPosition(), body->GetAngle()});

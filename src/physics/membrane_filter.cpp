@@ -1,0 +1,59 @@
+#include "physics/membrane_filter.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace pogosim {
+
+namespace {
+
+/// Along a straight line, bodies further on than this do not touch when the membrane is at rest.
+std::uint32_t touching_neighbours(Bodies const& bodies, Membrane const& membrane) {
+    float shortest_step_mm = std::numeric_limits<float>::infinity();
+    float largest_mm = 0.0F;
+    for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
+        std::uint32_t const body = membrane.body + k;
+        std::uint32_t const next = membrane.body + (k + 1) % membrane.body_count;
+        shortest_step_mm = std::min(shortest_step_mm, length(bodies.position_mm[next] - bodies.position_mm[body]));
+        largest_mm = std::max(largest_mm, 2.0F * bodies.radius_mm[body]);
+    }
+    return static_cast<std::uint32_t>(
+               std::min(largest_mm / shortest_step_mm, static_cast<float>(membrane.body_count))) +
+           1;
+}
+
+}  // namespace
+
+MembraneFilter::MembraneFilter(World const& world) : places_(world.membranes.empty() ? 0 : world.bodies.size()) {
+    for (std::uint32_t r = 0; r < world.membranes.size(); ++r) {
+        Membrane const& membrane = world.membranes[r];
+        std::uint32_t const neighbours = touching_neighbours(world.bodies, membrane);
+        for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
+            std::uint32_t const body = membrane.body + k;
+            places_[body] = {.membrane = r,
+                             .number = k,
+                             .count = membrane.body_count,
+                             .neighbours = neighbours,
+                             .at_rest_mm = world.bodies.position_mm[body],
+                             .radius_mm = world.bodies.radius_mm[body]};
+        }
+    }
+}
+
+bool MembraneFilter::ShouldCollide(b2Fixture* a, b2Fixture* b) {
+    std::uintptr_t const body_a = a->GetUserData().pointer;
+    std::uintptr_t const body_b = b->GetUserData().pointer;
+    if (body_a >= places_.size() || body_b >= places_.size()) {
+        return true;  // a wall, or there are no membranes
+    }
+    PlaceInRing const& one = places_[body_a];
+    PlaceInRing const& other = places_[body_b];
+    if (one.membrane == kNone || one.membrane != other.membrane) {
+        return true;
+    }
+    std::uint32_t const steps = one.number > other.number ? one.number - other.number : other.number - one.number;
+    bool const are_neighbours = std::min(steps, one.count - steps) <= one.neighbours;
+    return !are_neighbours && length(other.at_rest_mm - one.at_rest_mm) >= one.radius_mm + other.radius_mm;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,33 @@
+// Which bodies of a soft membrane may collide with each other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/box2d_units.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Bodies that overlap at rest, as close neighbours in a membrane and those around a sharp corner do, must not push
+/// each other away; the others of a membrane collide, so that it does not cross itself. A fixture's user data is the
+/// index of its body, kNone for walls.
+class MembraneFilter final : public b2ContactFilter {
+public:
+    explicit MembraneFilter(World const& world);
+
+    bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
+
+private:
+    struct PlaceInRing {
+        std::uint32_t membrane = kNone;
+        std::uint32_t number = 0;
+        std::uint32_t count = 0;
+        std::uint32_t neighbours = 0;  // those up to so many places on do not collide
+        Vec2 at_rest_mm;
+        float radius_mm = 0.0F;
+    };
+    std::vector<PlaceInRing> places_;  // of each body; empty without membranes
+};
+
+}  // namespace pogosim
