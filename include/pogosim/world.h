@@ -21,16 +21,16 @@ POGO_BEGIN_API
 
 /// Where an object is.
 typedef struct pogosim_pose_t {
-    double x_mm;
-    double y_mm;
-    double heading_rad;  ///< -pi to pi
+    double x_mm;         ///< to the right
+    double y_mm;         ///< down
+    double heading_rad;  ///< -pi to pi, clockwise on the screen
 } pogosim_pose_t;
 
 /// How an object moves.
 typedef struct pogosim_velocity_t {
-    double x_mm_s;
-    double y_mm_s;
-    double angular_rad_s;
+    double x_mm_s;         ///< to the right
+    double y_mm_s;         ///< down
+    double angular_rad_s;  ///< clockwise on the screen
 } pogosim_velocity_t;
 
 /// Simulated time, s.
