@@ -107,9 +107,7 @@ TEST(Supervisor, RobotsSenseTheLampThatWasSwitchedInTheSameStep) {
         idle, [] { mine().number[pogobot_ticks % 8] = pogobot_photosensors_read(0); },
         [] {
             if (pogosim_world_time() > 0.095) {
-                pogosim_world_set_lamp_on(0, false);
-                EXPECT_EQ(pogosim_world_light_at(500, 500), 0.0);
-                EXPECT_EQ(pogosim_world_light(0), 0.0);
+                pogosim_world_set_lamp_on(0, false);  // asking for the light would be a reason of its own to update it
             } else {
                 EXPECT_EQ(pogosim_world_light(0), 1000.0);
             }
