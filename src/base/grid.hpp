@@ -1,5 +1,5 @@
-// Points sorted into the cells of a grid, to find neighbours in time proportional to their number: UniformGrid sorts all
-// of them at once, which makes the fastest searches, and GrowingGrid takes one after the other.
+// Points sorted into the cells of a grid, to find neighbours in time proportional to their number: UniformGrid sorts
+// all of them at once, which makes the fastest searches, and GrowingGrid takes one after the other.
 #pragma once
 
 #include <algorithm>

@@ -242,8 +242,8 @@ std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_
     if (range_mm > 0.0F) {
         find_receivers(world, robot, emitters, range_mm);
     }
-    if (!world.robots.switched_off.empty()) {
-        std::erase_if(receivers_, [&](Receiver const& receiver) { return !is_alive(world.robots, receiver.robot); });
+    if (!world.switched_off.empty()) {
+        std::erase_if(receivers_, [&](Receiver const& receiver) { return !is_alive(world, receiver.robot); });
     }
     return receivers_;
 }

@@ -50,7 +50,7 @@ int pogosim_run_object(pogosim_run const* run, size_t object, pogosim_object* fo
         *found = {.id = of.id,
                   .category = of.category,
                   .robot = of.robot,
-                  .is_alive = !runs_program || is_alive(world.robots, of.robot) ? 1 : 0,
+                  .is_alive = !runs_program || is_alive(world, of.robot) ? 1 : 0,
                   .x_mm = place_mm.x,
                   .y_mm = place_mm.y,
                   .heading_rad = is_rigid ? wrap_angle(world.bodies.heading_rad[of.body]) : 0.0F,

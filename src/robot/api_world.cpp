@@ -271,7 +271,7 @@ void* pogosim_world_user_data(uint32_t object) {
 
 bool pogosim_world_is_alive(uint32_t object) {
     Object const& found = object_at(__func__, object);
-    return found.robot == kNone || pogosim::is_alive(context.world->robots, found.robot);
+    return found.robot == kNone || pogosim::is_alive(*context.world, found.robot);
 }
 
 void pogosim_world_set_alive(uint32_t object, bool alive) {

@@ -353,11 +353,11 @@ std::int64_t Controllers::now_us() const {
 }
 
 void Controllers::set_alive(std::uint32_t robot, bool alive) {
-    if (alive == is_alive(world_.robots, robot)) {
+    if (alive == is_alive(world_, robot)) {
         return;
     }
     auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
-    std::vector<std::uint32_t>& switched_off = world_.robots.switched_off;
+    std::vector<std::uint32_t>& switched_off = world_.switched_off;
     auto const entry = std::ranges::lower_bound(switched_off, robot);
     if (alive) {
         wake(*place);

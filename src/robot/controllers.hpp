@@ -68,7 +68,7 @@ public:
         std::int64_t clock_us = 0;
         Leds leds{};
     };
-    /// All robots that are switched off, as in Robots::switched_off.
+    /// All robots that are switched off, as in World::switched_off.
     std::span<Suspended const> suspended() const { return suspended_; }
 
     /// Clock of a robot between two of its ticks, us; of one that is switched off, when that happened.
@@ -95,7 +95,7 @@ public:
 
     /// Reach of a message that this robot sends now, at its present emitter power, mm; 0: it sends none.
     float ir_range_mm(std::uint32_t robot) const {
-        if (!is_alive(world_.robots, robot)) {
+        if (!is_alive(world_, robot)) {
             return 0.0F;
         }
         return world_.spec_of(robot).ir.range_at_mm(controllers_[robot].ir_power);

@@ -98,6 +98,8 @@ extern "C" {
 
 /// Defined when the program is built with -fsanitize=address, which gives threads such stacks and takes them away.
 __attribute__((weak)) void __asan_init();
+/// With -fsanitize=thread, whose own first thread must not run code of ours.
+__attribute__((weak)) void __tsan_init();
 
 using ThreadFunction = void* (*)(void*);
 
@@ -110,7 +112,7 @@ __attribute__((visibility("default"))) int pthread_create(pthread_t* thread, pth
     };
     using Create = int (*)(pthread_t*, pthread_attr_t const*, ThreadFunction, void*);
     static auto const create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
-    if (&__asan_init != nullptr) {
+    if (&__asan_init != nullptr || &__tsan_init != nullptr) {
         return create(thread, attributes, function, argument);
     }
     auto start = std::make_unique<Start>(Start{function, argument});

@@ -32,8 +32,8 @@ void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_
     }
 }
 
-bool is_alive(Robots const& robots, std::uint32_t robot) {
-    return !std::ranges::binary_search(robots.switched_off, robot);
+bool is_alive(World const& world, std::uint32_t robot) {
+    return !std::ranges::binary_search(world.switched_off, robot);
 }
 
 Vec2 centre_mm(World const& world, Object const& object) {

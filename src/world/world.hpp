@@ -10,7 +10,7 @@
 //                     fixed; clears robots.command[i].pending
 //   record, render and view only read
 //
-// Callbacks of the whole run, which run before the robots, also write poses, robots.switched_off (by way of
+// Callbacks of the whole run, which run before the robots, also write poses, switched_off (by way of
 // Controllers) and the settings of lamps (pogosim/world.h).
 //
 // No stage keeps its own version of this. What others write between two steps is true from then on:
@@ -103,9 +103,6 @@ struct Robots {
     std::vector<VelocityCommand> command;
     std::vector<RandomStream> stream;  // noise of motors and sensors, losses on the air
 
-    // Robots that are switched off, ascending: they send and hear nothing. Written by Controllers::set_alive().
-    std::vector<std::uint32_t> switched_off;
-
     std::size_t size() const { return id.size(); }
 };
 
@@ -181,6 +178,7 @@ struct World {
     std::vector<Joint> joints;
     std::vector<Membrane> membranes;
     Robots robots;
+    std::vector<std::uint32_t> switched_off;  // robots, ascending, by Controllers::set_alive(): they are deaf and mute
     std::vector<Outline> outlines;
     std::vector<PlacedLamp> lamps;  // in the order of the configuration
     LightMap light;
@@ -209,7 +207,7 @@ void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float headin
 void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad);
 
 /// Whether a robot is switched on.
-bool is_alive(Robots const& robots, std::uint32_t robot);
+bool is_alive(World const& world, std::uint32_t robot);
 
 /// Middle of an object: of its bodies, or where it stands when it has none. Not wrapped.
 Vec2 centre_mm(World const& world, Object const& object);

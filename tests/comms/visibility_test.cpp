@@ -41,9 +41,9 @@ TEST(Visibility, RobotThatIsSwitchedOffReceivesNothingAndStillCoversOthers) {
     add_robot(world, {615, 500});  // in the shadow of robot 1
     add_robot(world, {500, 560});
     EXPECT_EQ(reached(world, 0, kAllFaces), (Robots{1, 3}));
-    world.robots.switched_off = {1};
+    world.switched_off = {1};
     EXPECT_EQ(reached(world, 0, kAllFaces), Robots{3});
-    world.robots.switched_off = {1, 3};
+    world.switched_off = {1, 3};
     EXPECT_EQ(reached(world, 0, kAllFaces), Robots{});
 }
 
