@@ -138,7 +138,8 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
 /// `levels` has a place for each.
 void pogosim_run_light_levels(pogosim_run const* run, double* levels);
 
-/// A hash of the whole state, but for user data: equal for runs in the same state.
+/// A hash of poses, LEDs, light, controllers and random streams, and of how many messages wait; not of their contents,
+/// nor of user data. Equal for runs in the same state.
 uint64_t pogosim_run_hash(pogosim_run const* run);
 
 /// Brings the data file up to date.

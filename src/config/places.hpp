@@ -1,5 +1,5 @@
-// Where values were written, for messages of those who find out later that one of them cannot work. What a key is
-// called is known here and in the tables, and nowhere else.
+// Where values were written, for messages of those who find out later that one of them cannot work. Outside of
+// this room, code names values, not keys.
 #pragma once
 
 #include <string>

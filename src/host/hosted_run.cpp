@@ -1,5 +1,7 @@
 #include "host/hosted_run.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -7,10 +9,19 @@
 #include "base/error.hpp"
 #include "config/scenario.hpp"
 #include "robot/program_image.hpp"
+#include "sim/used_files.hpp"
 
 using namespace pogosim;
 
 namespace {
+
+/// Throws ConfigError if the run would write over the program.
+void check_program_file(Scenario const& scenario, char const* program) {
+    if (is_used_file(scenario, /*film=*/"", program)) {
+        throw ConfigError(
+            fmt::format("the run would overwrite its program '{}'; choose another file to write", program));
+    }
+}
 
 Scenario scenario_of(pogosim_run_options const& options) {
     std::vector<std::string> const settings(options.settings, options.settings + options.setting_count);
@@ -18,6 +29,7 @@ Scenario scenario_of(pogosim_run_options const& options) {
     if (options.seed >= 0) {
         scenario.seed = static_cast<std::uint32_t>(options.seed);
     }
+    check_program_file(scenario, options.program);
     return scenario;
 }
 

@@ -72,8 +72,12 @@ bool is_in_program(void const* variable) {
 
 void bind(BoundVariable const& bound) {
     bound.read(*context.services->parameters, bound.name, bound.variable, bound.size);
-    if (is_in_program(bound.variable)) {
-        context.services->bound_variables.push_back(bound);
+    auto& all = context.services->bound_variables;
+    auto const is_same = [&](BoundVariable const& known) {
+        return known.variable == bound.variable && known.name == bound.name;
+    };
+    if (is_in_program(bound.variable) && std::ranges::none_of(all, is_same)) {
+        all.push_back(bound);
     }
 }
 

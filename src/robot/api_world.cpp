@@ -37,10 +37,10 @@ void require_world(char const* function) {
     require_robot(function);
     if (!context.sees_world) {
         without_exceptions([&] {
-            throw ConfigError(
-                fmt::format("{}(): robots do not see the world; call it in callback_global_setup, callback_global_step "
-                            "or callback_robot_click",
-                            function));
+            throw ConfigError(fmt::format(
+                "{}(): robots do not see the world; call it in callback_global_setup, callback_global_step, "
+                "callback_create_data_schema or callback_robot_click",
+                function));
         });
     }
 }
@@ -266,7 +266,7 @@ void* pogosim_world_user_data(uint32_t object) {
     Object const& found = object_at(__func__, object);
     WorldAccess& access = context.services->access;
     access.gave_user_data = true;
-    return found.robot == kNone ? nullptr : access.programs->controller_of(found.robot).user_data;
+    return found.robot == kNone ? nullptr : access.controllers->controller_of(found.robot).user_data;
 }
 
 bool pogosim_world_is_alive(uint32_t object) {
@@ -276,7 +276,7 @@ bool pogosim_world_is_alive(uint32_t object) {
 
 void pogosim_world_set_alive(uint32_t object, bool alive) {
     Object const& found = robot_at(__func__, object);
-    without_exceptions([&] { context.services->access.programs->set_alive(found.robot, alive); });
+    without_exceptions([&] { context.services->access.controllers->set_alive(found.robot, alive); });
 }
 
 double pogosim_world_light_at(double x_mm, double y_mm) {

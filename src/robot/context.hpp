@@ -47,7 +47,7 @@ class Controllers;
 
 /// What callbacks of the whole run need of other rooms to see and change the world.
 struct WorldAccess {
-    Controllers* programs = nullptr;
+    Controllers* controllers = nullptr;
     std::function<bool(Object const& object, Vec2 centre_mm)> is_free{};  // of walls
     std::function<void()> update_light{};                                 // takes the settings of lamps over
     bool light_is_stale = false;                                          // a setting has changed since

@@ -119,7 +119,7 @@ void call_main(int (*function)(), char** arguments) {
 
 Controllers::Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed)
     : image_(std::move(image)), world_(world), services_(services) {
-    services_.access.programs = this;
+    services_.access.controllers = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
         return fmt::format("the controllers of {} robots, {} bytes each", count, sizeof(Controller));

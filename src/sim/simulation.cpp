@@ -324,8 +324,12 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
     if (moved.body == kNone) {
         return false;
     }
-    bool const is_finite = std::isfinite(centre_mm.x) && std::isfinite(centre_mm.y) && std::isfinite(heading_rad);
-    if (!is_finite || !free_places().is_free(moved, centre_mm)) {
+    auto const is_possible = [](float number) { return std::abs(number) <= kMaxLength; };
+    if (!is_possible(centre_mm.x) || !is_possible(centre_mm.y) || !is_possible(heading_rad)) {
+        throw ConfigError(fmt::format("expected finite numbers (mm, rad) up to {:g}, found ({:g}, {:g}), heading {:g}",
+                                      kMaxLength, centre_mm.x, centre_mm.y, heading_rad));
+    }
+    if (!free_places().is_free(moved, centre_mm)) {
         throw ConfigError(
             fmt::format("({:g}, {:g}) mm is no place for an object: it is in a wall or outside of the arena",
                         centre_mm.x, centre_mm.y));
@@ -336,6 +340,7 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
 }
 
 void Simulation::set_alive(std::uint32_t robot, bool alive) {
+    Thread const thread(*this);
     controllers_.set_alive(robot, alive);
     touches_.add_switch(world_.time_s());
 }
@@ -354,6 +359,7 @@ void Simulation::set_column(std::optional<std::uint32_t> object, std::string con
 }
 
 bool Simulation::set_parameter(std::string const& name, std::string const& yaml_value) {
+    Thread const thread(*this);
     UserParameters source = parameters_.with(name, yaml_value);
     bool has_variable = false;
     for (BoundVariable const& bound : services_.bound_variables) {

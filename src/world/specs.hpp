@@ -171,7 +171,7 @@ struct AlternatingRaysSpec {
     int white_frame_value = 32767;
 };
 
-/// A lamp. A new kind is a struct here, a file in src/light and one in src/config.
+/// A lamp. A new kind is a struct here, a file in src/light, and a function in src/config/lamp_types.cpp.
 using LampSpec = std::variant<SpotSpec, RotatingRaySpec, AlternatingRaysSpec>;
 
 /// The parts of the objects of a category; all are optional.

@@ -98,7 +98,7 @@ def test_mailboxes_count_messages_near_and_far(types: str) -> None:
     assert printed(types, 7) == "3 mailboxes, 22 messages, 11 dropped = {[0] = 1, [1] = 20, [2] = 1}"
 
 
-def test_computer_has_all_its_members(types: str) -> None:
+def test_controller_has_all_its_members(types: str) -> None:
     controller = printed(types, 8)
     assert controller.startswith("controller at 2.500000 s, 156 ticks = {clock_us = 2500000, ")
     header = (ROOT / "src" / "robot" / "controller.hpp").read_text()
@@ -137,7 +137,7 @@ def test_breakpoint_stops_in_one_robot(folder: Path) -> None:
     assert [printed(output, number) for number in range(3, 10)] == ["4", "5", "2", "4", "8", "8", "5"]
 
 
-def test_world_and_computers_are_found_in_every_build(folder: Path) -> None:
+def test_world_and_controllers_are_found_in_every_build(folder: Path) -> None:
     output = debug_run(
         folder,
         "break user_step if $robot() == 0 && $ticks() == 3",

@@ -71,3 +71,12 @@ def test_declared_arrows_make_no_circle() -> None:
         free = {name for name, needs in rooms.items() if not needs & set(rooms)}
         assert free, f"rooms in a circle: {sorted(rooms)}"
         rooms = {name: needs for name, needs in rooms.items() if name not in free}
+
+
+def test_every_source_is_a_part_of_its_room() -> None:
+    """A file that is only needed in Debug builds would be missed there, and nowhere else."""
+    text = (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
+    sources = [file for file in SOURCE.rglob("*") if file.suffix in {".c", ".cpp"}]
+    assert len(sources) > 100
+    missing = [str(file) for file in sources if not re.search(rf"\b{re.escape(file.name)}\b", text)]
+    assert missing == []

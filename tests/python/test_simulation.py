@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import logging
 import math
+import os
 import signal
 import subprocess
 import sys
@@ -280,7 +282,7 @@ def test_poses_can_be_set(sim: pogosim.Simulation) -> None:
     sim.set_pose(1, 480.0, 520.0)
     for robot, x, y, message in (
         (1, 0.0, 0.0, "no place for an object"),
-        (1, math.nan, 0.0, "no place for an object"),
+        (1, math.nan, 0.0, "expected finite numbers"),
         (3, 500.0, 500.0, "there is no robot 3: the run has 3"),
         (-1, 500.0, 500.0, "there is no robot -1: the run has 3"),
     ):
@@ -428,3 +430,120 @@ def test_many_runs_one_after_the_other_leave_nothing_behind(program: Path, scene
             simulation.step(5)
     gc.collect()
     assert (open_files(), mapped()) == (files, programs)
+
+
+@pytest.mark.parametrize("use", ["close", "reset", "end"])
+def test_simulation_in_use_cannot_be_ended_by_another_thread(program: Path, scene: Path, use: str) -> None:
+    settings = {"simulation_time": 1e6, "save_data_period": -1}
+    with pogosim.Simulation(program, scene, set=settings) as simulation:
+        begun = threading.Event()
+
+        def go() -> None:
+            begun.set()
+            simulation.step(20000)
+
+        thread = threading.Thread(target=go)
+        thread.start()
+        begun.wait()
+        refused = 0
+        while thread.is_alive() and refused < 100:
+            try:
+                getattr(simulation, use)()
+                break  # before the thread had it, or after
+            except pogosim.SimulationError as error:
+                assert "in use by another thread" in str(error)
+                refused += 1
+        thread.join()
+        if refused == 100:
+            assert simulation.steps == 20000
+
+
+def test_failure_of_one_of_many_comes_when_all_are_ready(program: Path, scene: Path) -> None:
+    runs = pogosim.VectorSimulation(program, scene, seeds=range(4), threads=3, set={"simulation_time": 30})
+    with runs:
+        runs[0].parameters["fail_at_tick"] = 3
+        with pytest.raises(pogosim.ProgramFailedError):
+            runs.step(2000)
+        assert [run.steps for run in runs][1:] == [2000] * 3
+        with pytest.raises(pogosim.SimulationError, match="seeds: expected 4, one for each run, found 1"):
+            runs.reset([1])
+        with pytest.raises(pogosim.SimulationError, match="seed: expected an integer from 0"):
+            runs.reset([1, 2, 3, 2**32])
+        assert [run.steps for run in runs][1:] == [2000] * 3
+    with pytest.raises(pogosim.SimulationError, match="closed"):
+        runs.step()
+
+
+def test_ctrl_c_while_many_step_stops_all_of_them() -> None:
+    code = (
+        "import os, signal, threading, pogosim\n"
+        f"with pogosim.VectorSimulation({str(HANABI)!r}, {str(SIMPLE)!r}, seeds=range(4), threads=3,"
+        " set={'simulation_time': 1e6, 'save_data_period': -1}) as runs:\n"
+        "    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+        "    try:\n"
+        "        runs.step(10**8)\n"
+        "    except KeyboardInterrupt:\n"
+        "        print('interrupted', runs.step(2))\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert (ended.returncode, ended.stdout) == (0, "interrupted [2, 2, 2, 2]\n"), ended.stderr
+
+
+@pytest.mark.parametrize("steps", [2**31, 2**63, 2**64 + 3])
+def test_more_steps_than_there_are_go_to_the_end(sim: pogosim.Simulation, steps: int) -> None:
+    assert sim.step(steps) == sim.step_count
+    assert sim.is_over
+
+
+@pytest.mark.parametrize(("until_s", "steps"), [(1e17, 200), (math.inf, 200), (-math.inf, 0), (-1.0, 0), (0.5, 50)])
+def test_run_goes_as_far_as_the_run_has_time(sim: pogosim.Simulation, until_s: float, steps: int) -> None:
+    assert sim.run(until_s) == steps
+
+
+def test_numbers_that_are_none_are_refused(sim: pogosim.Simulation) -> None:
+    with pytest.raises(pogosim.ConfigurationError, match="until_s"):
+        sim.run(math.nan)
+    with pytest.raises(TypeError):
+        sim.step(1.5)  # type: ignore[arg-type]
+    with pytest.raises(pogosim.ConfigurationError, match="expected finite numbers"):
+        sim.set_pose(0, 500, 500, math.nan)
+    with pytest.raises(pogosim.ConfigurationError, match="expected finite numbers"):
+        sim.set_pose(0, 1e12, 500)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**32, 2**64])
+def test_seed_out_of_range_is_refused_and_the_run_goes_on(program: Path, scene: Path, seed: int) -> None:
+    with pytest.raises(pogosim.ConfigurationError, match="seed: expected an integer from 0 to 4294967295"):
+        pogosim.Simulation(program, scene, seed=seed)
+    with pogosim.Simulation(program, scene, seed=5) as simulation:
+        simulation.step(3)
+        with pytest.raises(pogosim.ConfigurationError, match="seed: expected"):
+            simulation.reset(seed)
+        assert simulation.step(2) == 2
+
+
+def test_simulations_are_not_copied(sim: pogosim.Simulation) -> None:
+    with pytest.raises(TypeError, match="cannot be copied or pickled"):
+        copy.copy(sim)
+
+
+def test_child_process_leaves_the_rows_of_its_parent(sim: pogosim.Simulation) -> None:
+    sim.step(60)
+    child = os.fork()
+    if child == 0:
+        try:
+            sys.exit(0)
+        finally:
+            sim._remove_folder()
+            os._exit(0)
+    os.waitpid(child, 0)
+    assert len(sim.to_dataframe()) == 6  # of two saves, the one at the start included
+
+
+@pytest.mark.parametrize("key", ["data_filename", "message_log"])
+def test_program_is_not_overwritten(program: Path, scene: Path, tmp_path: Path, key: str) -> None:
+    own = tmp_path / "own.so"
+    own.write_bytes(program.read_bytes())
+    with pytest.raises(pogosim.ConfigurationError, match="the run would overwrite its program"):
+        pogosim.Simulation(own, scene, set={key: str(own)})
+    assert own.read_bytes() == program.read_bytes()

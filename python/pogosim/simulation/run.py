@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import math
+import operator
+import os
 import shutil
 import tempfile
 import threading
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 NO_BODY = 2**32 - 1
+MOST_SEED = 2**32 - 1
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
 LEVELS = {"D": logging.DEBUG, "I": logging.INFO, "W": logging.WARNING, "E": logging.ERROR}
@@ -58,7 +61,7 @@ def settings_of(values: Mapping[str, Any]) -> list[str]:
 
 
 class Parameters(MutableMapping[str, Any]):
-    """Values under `parameters` of the configuration, by name (dots address entries of maps).
+    """Values under `parameters` of the configuration that `set` gave, or that were set since, by name (dots: in maps).
 
     Setting one gives the program's variable the value at once, and every later `reset` begins with it.
     """
@@ -133,9 +136,11 @@ class Simulation:
         self.configuration = Path(configuration)
         self.parameters = Parameters(self)
         self._remove_folder: Callable[[], object] = bool
+        self._should_pause = False
+        check_seed(seed)
         if data_file is None:
             folder = tempfile.mkdtemp(prefix="pogosim-")
-            self._remove_folder = weakref.finalize(self, shutil.rmtree, folder, True)
+            self._remove_folder = weakref.finalize(self, remove_own_folder, folder, os.getpid())
             self.data_file = Path(folder) / "data.feather"
         else:
             self.data_file = Path(data_file)
@@ -177,14 +182,17 @@ class Simulation:
             ConfigurationError: The program refused its configuration, or the data file cannot be written.
             KeyboardInterrupt: Ctrl-C. The run can go on afterwards.
         """
+        steps = operator.index(steps)
         if steps < 0:
             raise ConfigurationError(f"steps: expected at least 0, found {steps}")
-        run = self._run
-        if self._has_failed:
-            raise SimulationError("the run has failed: reset it")
         made = 0
         with self._busy():
-            while made < steps and not self._is_over:
+            run = self._run
+            if self._has_failed:
+                raise SimulationError("the run has failed: reset it")
+            # One more than are left: the step that finds the run over.
+            steps = min(steps, self.step_count - self.steps + 1)
+            while made < steps and not self._is_over and not self._should_pause:
                 done = c_int64()
                 try:
                     status = check(library().pogosim_run_step(run, steps - made, SLICE_S, byref(done)))
@@ -199,18 +207,22 @@ class Simulation:
 
     def run(self, until_s: float = math.inf) -> int:
         """Go on until this simulated time, or the end of the run. Returns how many steps were made."""
-        if math.isinf(until_s):
-            return self.step(max(0, self.step_count - self.steps))
-        return self.step(max(0, round(until_s / self.time_step) - self.steps))
+        if math.isnan(until_s):
+            raise ConfigurationError("until_s: expected a time (s), found nan")
+        last = min(max(until_s / self.time_step, 0.0), float(self.step_count))
+        return self.step(max(0, round(last) - self.steps))
 
     def end(self) -> None:
         """End the run: `callback_robot_end`, and a complete data file."""
         with self._busy():
-            try:
-                check(library().pogosim_run_end(self._run))
-            finally:
-                self._is_over = True
-                self._pass_messages_on()
+            self._end()
+
+    def _end(self) -> None:
+        try:
+            check(library().pogosim_run_end(self._run))
+        finally:
+            self._is_over = True
+            self._pass_messages_on()
 
     def reset(self, seed: int | None = None) -> None:
         """Begin again: the program is loaded anew, with variables as new, and the parameters set so far.
@@ -220,23 +232,26 @@ class Simulation:
         """
         if self._is_closed:
             raise SimulationError(CLOSED)
-        self._close_run()
-        self._open(self._seed if seed is None else seed)
+        check_seed(seed)
+        with self._busy():
+            self._close_run()
+            self._open(self._seed if seed is None else seed)
 
     def close(self) -> None:
         """End the run. Its memory is freed as soon as no array of it is left."""
-        self._is_closed = True
-        try:
-            self._close_run()
-        finally:
-            self._remove_folder()
+        with self._busy():
+            self._is_closed = True
+            try:
+                self._close_run()
+            finally:
+                self._remove_folder()
 
     def _close_run(self) -> None:
         if self._handle is None:
             return
         self._seed = self.seed
         try:
-            self.end()
+            self._end()
         finally:
             self._arrays.clear()
             self._slices.clear()
@@ -249,6 +264,9 @@ class Simulation:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def __reduce__(self) -> str:
+        raise TypeError("a simulation cannot be copied or pickled: make another one")
 
     def __repr__(self) -> str:
         state = "closed" if self._handle is None else f"t = {self.time:g} s of {self.step_count * self.time_step:g} s"
@@ -361,7 +379,7 @@ class Simulation:
 
     @property
     def state_hash(self) -> int:
-        """Equal for runs in the same state: poses, LEDs, light, messages, clocks, random streams; not USERDATA."""
+        """Equal for runs in the same state: poses, LEDs, light, counts of messages, clocks, random streams."""
         found: int = library().pogosim_run_hash(self._run)
         return found
 
@@ -537,6 +555,18 @@ def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
     interface["data"] = (address, False)
     holder = type("UserData", (), {"__array_interface__": interface, "owner": array})()
     return np.asarray(holder)
+
+
+def check_seed(seed: int | None) -> None:
+    """Raise ConfigurationError for what is no seed."""
+    if seed is not None and not 0 <= operator.index(seed) <= MOST_SEED:
+        raise ConfigurationError(f"seed: expected an integer from 0 to {MOST_SEED}, found {seed}")
+
+
+def remove_own_folder(folder: str, process: int) -> None:
+    """Remove a folder, but not at the end of a child process that the one that made it has forked."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def shared_object(program: Path) -> Path:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.outputs import PathLike
-from pogosim.simulation.run import Simulation
+from pogosim.simulation.errors import ConfigurationError, SimulationError
+from pogosim.simulation.run import CLOSED, Simulation, check_seed
 
 T = TypeVar("T")
 
@@ -46,6 +47,7 @@ class VectorSimulation:
             **options: As of `Simulation`, the same for all.
         """
         self._threads = ThreadPoolExecutor(threads or os.cpu_count() or 1, thread_name_prefix="pogosim")
+        self._is_closed = False
         try:
             self.simulations = list(
                 self._threads.map(lambda seed: Simulation(program, configuration, seed=seed, **options), seeds)
@@ -55,8 +57,33 @@ class VectorSimulation:
             raise
 
     def each(self, function: Callable[[Simulation], T]) -> list[T]:
-        """Call a function with each run, on the threads. Returns what it returned, in order."""
-        return list(self._threads.map(function, self.simulations))
+        """Call a function with each run, on the threads.
+
+        Returns:
+            What it returned, in order. If it raises an exception for some runs, the others go on, and the first of
+            these exceptions comes when all are ready. After Ctrl-C, runs that step stop between two time steps.
+        """
+        if self._is_closed:
+            raise SimulationError(CLOSED)
+        calls = [self._threads.submit(function, simulation) for simulation in self.simulations]
+        try:
+            wait(calls)
+        except BaseException:
+            for call in calls:
+                call.cancel()
+            self._pause(calls)
+            raise
+        return [call.result() for call in calls]
+
+    def _pause(self, calls: list[Future[T]]) -> None:
+        """Let runs stop between two time steps; none is in use afterwards."""
+        for simulation in self.simulations:
+            simulation._should_pause = True
+        try:
+            wait(calls)
+        finally:
+            for simulation in self.simulations:
+                simulation._should_pause = False
 
     def step(self, steps: int = 1) -> list[int]:
         """Go on with all of them, see `Simulation.step`. Returns how many steps each has made."""
@@ -64,8 +91,13 @@ class VectorSimulation:
 
     def reset(self, seeds: Sequence[int] | range | None = None) -> None:
         """Begin all of them again, with these seeds or their own."""
-        chosen = list(seeds) if seeds is not None else [simulation.seed for simulation in self.simulations]
-        list(self._threads.map(lambda pair: pair[0].reset(pair[1]), zip(self.simulations, chosen, strict=True)))
+        chosen: list[int | None] = [None] * len(self) if seeds is None else list(seeds)
+        if len(chosen) != len(self):
+            raise ConfigurationError(f"seeds: expected {len(self)}, one for each run, found {len(chosen)}")
+        for seed in chosen:
+            check_seed(seed)
+        seed_of = dict(zip(map(id, self.simulations), chosen, strict=True))
+        self.each(lambda simulation: simulation.reset(seed_of[id(simulation)]))
 
     @property
     def positions(self) -> npt.NDArray[Any]:
@@ -94,6 +126,7 @@ class VectorSimulation:
 
     def close(self) -> None:
         """End all runs."""
+        self._is_closed = True
         for simulation in self.simulations:
             simulation.close()
         self._threads.shutdown()
