@@ -406,7 +406,7 @@ TEST(Supervisor, RobotsDoNotSeeTheWorld) {
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->what,
               "pogosim_world_object_count(): robots do not see the world; call it in callback_global_setup, "
-              "callback_global_step or callback_robot_click");
+              "callback_global_step, callback_create_data_schema or callback_robot_click");
     EXPECT_EQ(failure->code, ExitCode::usage);
 }
 
