@@ -6,7 +6,7 @@
 ///
 /// Real robots have none of this: use it inside `#ifdef SIMULATOR`. Errors end the run with a message and exit code 2;
 /// each function fails outside of these callbacks, for an index that does not exist, for NULL, and for numbers that are
-/// not finite.
+/// not finite; a column takes NaN for no value.
 ///
 /// Objects are everything that has a body or runs the program: robots, passive objects, walls, membranes. Their index
 /// runs from 0 to pogosim_world_object_count() - 1, in the order of the configuration, which is the order of the rows

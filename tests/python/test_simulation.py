@@ -547,3 +547,24 @@ def test_program_is_not_overwritten(program: Path, scene: Path, tmp_path: Path, 
     with pytest.raises(pogosim.ConfigurationError, match="the run would overwrite its program"):
         pogosim.Simulation(own, scene, set={key: str(own)})
     assert own.read_bytes() == program.read_bytes()
+
+
+def test_parameter_that_the_next_run_refuses_can_be_mended(sim: pogosim.Simulation) -> None:
+    sim._settings["parameters.gain"] = "much"
+    with pytest.raises(pogosim.ConfigurationError, match="expected a number"):
+        sim.reset()
+    with pytest.raises(pogosim.SimulationError, match="the last reset failed"):
+        sim.step()
+    sim.parameters["gain"] = 3.0
+    sim.reset()
+    sim.step(10)
+    assert sim.user_data["gain"].tolist() == [3.0] * 3
+
+
+def test_error_says_which_of_many_runs_has_failed(program: Path, scene: Path) -> None:
+    with pogosim.VectorSimulation(program, scene, seeds=range(3), set={"simulation_time": 30}) as runs:
+        runs[2].parameters["fail_at_tick"] = 3
+        with pytest.raises(pogosim.ProgramFailedError, match=r"^run 2: .*robot #1"):
+            runs.step(100)
+        runs[2].reset()
+        assert runs.step(1)[2] == 1

@@ -230,3 +230,14 @@ def test_data_file_says_that_a_host_switched_something(hosted: Path, tmp_path: P
         simulation.run()
     _, metadata = load_dataframe(file)
     assert metadata["touched"] == "2 times from t = 0.5000 s on: robots or lamps switched"
+
+
+def test_slips_of_the_pen_are_errors(sim: pogosim.Simulation) -> None:
+    with pytest.raises(pogosim.ConfigurationError, match="is_on: expected True or False, found 'off'"):
+        sim.lamps[0].is_on = "off"  # type: ignore[assignment]
+    with pytest.raises(AttributeError):
+        sim.lamps[0].on = False  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError):
+        sim.objects[0].pose = (1, 2)  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="read-only"):
+        sim.alive[0] = False

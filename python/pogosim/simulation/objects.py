@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from ctypes import byref
 from typing import TYPE_CHECKING, overload
 
+import numpy as np
+
 from pogosim.simulation.errors import ConfigurationError
 from pogosim.simulation.library import LampState, ObjectState, check, library
 
@@ -28,6 +30,8 @@ class WorldObject:
     Attributes:
         index: In `Simulation.objects`.
     """
+
+    __slots__ = ("_simulation", "index")  # a misspelt name is an error
 
     def __init__(self, simulation: Simulation, index: int) -> None:
         self._simulation = simulation
@@ -154,6 +158,8 @@ class Lamp:
         index: In `Simulation.lamps`.
     """
 
+    __slots__ = ("_simulation", "index")  # a misspelt name is an error
+
     def __init__(self, simulation: Simulation, index: int) -> None:
         self._simulation = simulation
         self.index = index
@@ -180,6 +186,8 @@ class Lamp:
 
     @is_on.setter
     def is_on(self, on: bool) -> None:
+        if not isinstance(on, (bool, np.bool_)):
+            raise ConfigurationError(f"is_on: expected True or False, found {on!r}")
         state = self._state()
         state.is_on = bool(on)
         self._set(state)

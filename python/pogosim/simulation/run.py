@@ -25,7 +25,7 @@ from pogosim.simulation.arrays import array_of
 from pogosim.simulation.columns import Columns
 from pogosim.simulation.errors import ConfigurationError, SimulationError
 from pogosim.simulation.library import OVER, OpenRun, check, library, open_run
-from pogosim.simulation.objects import Lamps, Objects, check_object
+from pogosim.simulation.objects import Lamps, Objects, WorldObject, check_object
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
 
@@ -441,30 +441,37 @@ class Simulation:
 
     @property
     def alive(self) -> npt.NDArray[np.bool_]:
-        """Whether each robot is switched on. Shape (robots,); a copy."""
-        state = {found.robot: found.is_alive for found in self.objects if found.robot is not None}
-        return np.array([state[robot] for robot in range(len(state))], dtype=np.bool_)
+        """Whether each robot is switched on. Shape (robots,); read-only copy: objects have `kill()` and `revive()`."""
+        alive = np.ones(len(self.robot_ids), dtype=np.bool_)
+        for state in (found._state() for found in self.objects):
+            if state.robot != NO_BODY:
+                alive[state.robot] = state.is_alive
+        alive.flags.writeable = False
+        return alive
 
-    def set_column(self, name: str, value: float, *, obj: int | None = None) -> None:
+    def set_column(self, name: str, value: float, obj: int | WorldObject | None = None) -> None:
         """Set a column that the program has declared: its value in all rows from now on.
 
         Args:
             name: Of the column, as in `data_add_column_double`.
             value: A number that the type of the column has.
-            obj: Index of an object, for its rows only; None: for all objects. Values that the program's
+            obj: An object or its index, for its rows only; None: for all objects. Values that the program's
                 callback_export_data sets stand.
 
         Raises:
             ConfigurationError: There is no such column or object, no data file, or it is not a value of its type.
         """
+        index = -1
         if obj is not None:
-            check_object(self, obj)
+            index = obj.index if isinstance(obj, WorldObject) else operator.index(obj)
+            check_object(self, index)
         with self._busy():
-            check(library().pogosim_run_set_column(self._run, -1 if obj is None else obj, name.encode(), value))
+            check(library().pogosim_run_set_column(self._run, index, name.encode(), float(value)))
 
     def _set_parameter(self, name: str, value: Any) -> None:
         with self._busy():
-            check(library().pogosim_run_set_parameter(self._run, name.encode(), yaml_text(value).encode()))
+            if self._handle is not None or self._is_closed:  # else the last reset failed, perhaps because of this one
+                check(library().pogosim_run_set_parameter(self._run, name.encode(), yaml_text(value).encode()))
         self._settings[f"parameters.{name}"] = plain(value)
         self._parameter_values[name] = plain(value)
 
@@ -493,7 +500,9 @@ class Simulation:
     @property
     def _run(self) -> c_void_p:
         if self._handle is None:
-            raise SimulationError(CLOSED)
+            raise SimulationError(
+                CLOSED if self._is_closed else "the last reset failed: mend what it said, and reset again"
+            )
         return self._handle.pointer
 
     def _busy(self) -> Busy:

@@ -18,6 +18,14 @@ from pogosim.simulation.run import CLOSED, Simulation, check_seed
 T = TypeVar("T")
 
 
+def call_with_run(function: Callable[[Simulation], T], simulation: Simulation, index: int) -> T:
+    """Call a function with a run; errors of runs say which one it was."""
+    try:
+        return function(simulation)
+    except SimulationError as error:
+        raise type(error)(f"run {index}: {error}") from None
+
+
 class VectorSimulation:
     """Runs of one program with different seeds, stepped together on several threads.
 
@@ -65,7 +73,8 @@ class VectorSimulation:
         """
         if self._is_closed:
             raise SimulationError(CLOSED)
-        calls = [self._threads.submit(function, simulation) for simulation in self.simulations]
+        runs = enumerate(self.simulations)
+        calls = [self._threads.submit(call_with_run, function, simulation, index) for index, simulation in runs]
         try:
             wait(calls)
         except BaseException:
