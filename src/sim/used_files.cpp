@@ -63,6 +63,11 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     return files;
 }
 
+/// A file and the one beside it, in which it is put together.
+bool are_named_together(UsedFile const& a, UsedFile const& b) {
+    return a.setting == b.setting && a.is_output == b.is_output;
+}
+
 /// A device may well be used twice: /dev/stdin and /dev/stdout are one terminal.
 bool are_same(std::filesystem::path const& a, std::filesystem::path const& b) {
     std::error_code error;
@@ -123,7 +128,7 @@ void check_used_files(Scenario const& scenario, std::string const& film) {
         for (std::size_t j = 0; j < i; ++j) {
             UsedFile const& written = files[i];
             UsedFile const& other = files[j];
-            if (written.is_output && written.setting != other.setting && are_same(written.path, other.path)) {
+            if (written.is_output && !are_named_together(written, other) && are_same(written.path, other.path)) {
                 throw ConfigError(fmt::format(
                     "{}: '{}'{} is the same file as {}, {}; choose another file", where_it_is_named(scenario, written),
                     written.path.string(), purpose_of_file_beside(written), described(scenario, other), fate(other)));
