@@ -92,8 +92,9 @@ float number(char const* function, char const* name, double value) {
 
 /// The objects of one entry of World::categories: they have been created one after the other.
 std::span<Object const> objects_of(World const& world, std::uint32_t category) {
-    auto const range = std::ranges::equal_range(world.objects, category, {}, &Object::category);
-    return {range.begin(), range.end()};
+    auto const first = std::ranges::lower_bound(world.objects, category, {}, &Object::category);
+    auto const end = std::ranges::upper_bound(world.objects, category, {}, &Object::category);
+    return {first, end};
 }
 
 /// The object of this number, from 0, among those of a category; kNone if it has no such number. Several entries of a
