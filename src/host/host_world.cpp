@@ -54,7 +54,7 @@ int pogosim_run_object(pogosim_run const* run, size_t object, pogosim_object* fo
                   .x_mm = place_mm.x,
                   .y_mm = place_mm.y,
                   .heading_rad = is_rigid ? wrap_angle(world.bodies.heading_rad[of.body]) : 0.0F,
-                  .light = is_rigid && runs_program ? mean_light(world, of.body) : world.light.at(place_mm)};
+                  .light = light_of(world, of)};
         return POGOSIM_OK;
     });
 }

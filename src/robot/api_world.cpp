@@ -288,11 +288,8 @@ double pogosim_world_light_at(double x_mm, double y_mm) {
 
 double pogosim_world_light(uint32_t object) {
     Object const& found = object_at(__func__, object);
-    pogosim::LightMap const& light = settled_light();
-    World const& world = *context.world;
-    return found.robot != kNone && found.body_count == 1
-               ? pogosim::mean_light(world, found.body)
-               : light.at(pogosim::wrapped(world, pogosim::centre_mm(world, found)));
+    settled_light();
+    return pogosim::light_of(*context.world, found);
 }
 
 uint32_t pogosim_world_lamp_count() {

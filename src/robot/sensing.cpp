@@ -27,6 +27,11 @@ double mean_light(World const& world, std::uint32_t body) {
     return sum / kPhotosensorCount;
 }
 
+double light_of(World const& world, Object const& object) {
+    bool const has_sensors = object.robot != kNone && object.body_count == 1;
+    return has_sensors ? mean_light(world, object.body) : world.light.at(wrapped(world, centre_mm(world, object)));
+}
+
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter) {
     if (meter.interval_s <= 0.0F) {
         return {};

@@ -14,6 +14,9 @@ int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor);
 /// Mean of the three photosensors, sensor counts.
 double mean_light(World const& world, std::uint32_t body);
 
+/// Light at an object, sensor counts, without noise: mean of the sensors of a rigid robot; of others, in the middle.
+double light_of(World const& world, Object const& object);
+
 /// Mean acceleration over the last tick in the frame of the robot with this body, m/s2: x forward, y to the right.
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter);
 
