@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -117,10 +118,10 @@ int substeps_for(Fastest const& fastest, float most_motion_mm, double time_step_
 class Box2dEngine final : public PhysicsEngine {
 public:
     Box2dEngine(World const& world, WallSpec const& walls)
-        : filter_(world), engine_(b2Vec2_zero), most_motion_mm_(most_motion_mm(world)) {
-        engine_.SetContinuousPhysics(false);
-        engine_.SetAutoClearForces(false);  // there are none
-        engine_.SetContactFilter(&filter_);
+        : filter_(world), engine_(std::make_unique<b2World>(b2Vec2_zero)), most_motion_mm_(most_motion_mm(world)) {
+        engine_->SetContinuousPhysics(false);
+        engine_->SetAutoClearForces(false);  // there are none
+        engine_->SetContactFilter(&filter_);
         if (!world.periodic) {
             add_walls(world.arena, walls);
             containment_.emplace(world);
@@ -158,7 +159,7 @@ public:
             for (MembraneArea const& area : areas_) {
                 area.push(dt_s);
             }
-            engine_.Step(dt_s, iterations.velocity, iterations.position);
+            step(dt_s, iterations);
         }
         if (containment_) {
             containment_->hold(bodies_);
@@ -214,6 +215,16 @@ private:
         known_.copy(bodies);
     }
 
+    void step(float dt_s, Iterations iterations) {
+        try {
+            engine_->Step(dt_s, iterations.velocity, iterations.position);
+        } catch (std::bad_alloc const&) {
+            // Box2D cannot clean up a step that was cut short: its stack asserts that nothing is left on it.
+            static_cast<void>(engine_.release());
+            throw;
+        }
+    }
+
     void take_over_poses(Bodies& bodies, std::vector<std::uint32_t> const& moved) {
         part_coinciding_centres(bodies.position_mm, moved);
         for (std::uint32_t const i : moved) {
@@ -253,7 +264,7 @@ private:
 
     void add_walls(Arena const& arena, WallSpec const& walls) {
         b2BodyDef definition;
-        b2Body* const ground = engine_.CreateBody(&definition);
+        b2Body* const ground = engine_->CreateBody(&definition);
         for (std::size_t i = 0; i < arena.polygons.size(); ++i) {
             b2FixtureDef fixture;
             fixture.userData.pointer = kNone;
@@ -273,7 +284,7 @@ private:
         definition.angularVelocity = bodies.angular_velocity_rad_s[i];
         definition.linearDamping = bodies.spec[i].linear_damping;
         definition.angularDamping = bodies.spec[i].angular_damping;
-        return engine_.CreateBody(&definition);
+        return engine_->CreateBody(&definition);
     }
 
     void add_shape_of(Bodies const& bodies, std::uint32_t i) {
@@ -325,7 +336,7 @@ private:
     void sweep_if_fast(b2Body& body, Vec2 velocity_mm_s, float radius_mm, double time_step_s) {
         double const step_mm = length(velocity_mm_s) * time_step_s;
         if (step_mm > kSweptShare * radius_mm) {
-            engine_.SetContinuousPhysics(true);
+            engine_->SetContinuousPhysics(true);
             body.SetBullet(true);
         }
     }
@@ -337,7 +348,7 @@ private:
         if (joint.length_mm == 0.0F) {
             b2RevoluteJointDef hinge;
             hinge.Initialize(a, b, at_a);
-            engine_.CreateJoint(&hinge);
+            engine_->CreateJoint(&hinge);
             return;
         }
         b2DistanceJointDef spring;
@@ -348,7 +359,7 @@ private:
         spring.maxLength = joint.max_stretch > 0.0F ? (1.0F + joint.max_stretch) * spring.length : b2_maxFloat;
         float const frequency_hz = std::min(joint.stiffness_hz, stiffest_hz);
         b2LinearStiffness(spring.stiffness, spring.damping, frequency_hz, joint.damping_ratio, a, b);
-        engine_.CreateJoint(&spring);
+        engine_->CreateJoint(&spring);
     }
 
     void read_back(Bodies& bodies, std::size_t i) {
@@ -371,7 +382,7 @@ private:
     }
 
     MembraneFilter filter_;
-    b2World engine_;
+    std::unique_ptr<b2World> engine_;
     float most_motion_mm_;                    // in a sub-step
     std::optional<Containment> containment_;  // nobody leaves a periodic world
     std::optional<MembraneSides> sides_;      // when there are membranes
