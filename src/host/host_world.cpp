@@ -44,8 +44,7 @@ int pogosim_run_object(pogosim_run const* run, size_t object, pogosim_object* fo
     return with_status([&] {
         World const& world = run->simulation().world();
         Object const& of = object_at(world, object);
-        Vec2 const place_mm = wrapped(world, centre_mm(world, of));
-        bool const is_rigid = of.body_count == 1;
+        auto const [place_mm, heading_rad] = pose_of(world, of);
         bool const runs_program = of.robot != kNone;
         *found = {.id = of.id,
                   .category = of.category,
@@ -53,7 +52,7 @@ int pogosim_run_object(pogosim_run const* run, size_t object, pogosim_object* fo
                   .is_alive = !runs_program || is_alive(world, of.robot) ? 1 : 0,
                   .x_mm = place_mm.x,
                   .y_mm = place_mm.y,
-                  .heading_rad = is_rigid ? wrap_angle(world.bodies.heading_rad[of.body]) : 0.0F,
+                  .heading_rad = heading_rad,
                   .light = light_of(world, of)};
         return POGOSIM_OK;
     });
@@ -89,7 +88,7 @@ int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive) {
 int pogosim_run_lamp(pogosim_run const* run, size_t lamp, pogosim_lamp* found) {
     return with_status([&] {
         PlacedLamp const& of = lamp_at(run->simulation().world(), lamp);
-        Vec2 const place_mm = of.start_mm + of.setting.moved_mm;
+        Vec2 const place_mm = of.place_mm();
         *found = {.category = of.category.c_str(),
                   .is_on = of.setting.is_on ? 1 : 0,
                   .intensity = of.setting.intensity,
@@ -104,7 +103,7 @@ int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, pogosim_lamp const* sett
         constexpr double lowest = std::numeric_limits<float>::lowest();
         PlacedLamp const& of = lamp_at(run->simulation().world(), lamp);
         Vec2 const place_mm{number("x", setting->x_mm, lowest), number("y", setting->y_mm, lowest)};
-        bool const stays = place_mm == of.start_mm + of.setting.moved_mm;
+        bool const stays = place_mm == of.place_mm();
         run->simulation().set_lamp(lamp, {.is_on = setting->is_on != 0,
                                           .intensity = number("intensity", setting->intensity, 0.0),
                                           .moved_mm = stays ? of.setting.moved_mm : place_mm - of.start_mm});

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <string_view>
 
 #include "pogosim/program.h"
 #include "robot/context.hpp"
@@ -69,7 +68,7 @@ void pogobot_init() {
         return;  // before main(), in a static constructor
     }
     pogosim::Program& program = context.controller->program;
-    if (program.registered && std::string_view(context.phase) == "main") {
+    if (program.registered && context.phase == pogosim::Phase::main) {
         context.services->warn_once(
             "pogobot_init() is called after pogobot_start(), which never returns on a real robot: call it first");
     }

@@ -12,7 +12,6 @@
 #include "base/error.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
-#include "robot/hold_value.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/sensing.hpp"
 #include "robot/user_guard.hpp"
@@ -144,7 +143,7 @@ void set_column(char const* function, std::optional<uint32_t> object, char const
         DataExport& data = context.services->data;
         if (!data.is_declared) {
             // Before the columns are declared, or in a run without a data file, which never asks for them.
-            if (std::string_view(context.phase) == "callback_global_setup") {
+            if (context.phase == pogosim::Phase::global_setup) {
                 throw ConfigError(fmt::format(
                     "{}(\"{}\"): columns are declared after callback_global_setup; call it in callback_global_step, or "
                     "in callback_create_data_schema after data_add_column_*",
@@ -153,7 +152,7 @@ void set_column(char const* function, std::optional<uint32_t> object, char const
             return;
         }
         try {
-            pogosim::hold_value(data, context.world->objects.size(), object, name, value);
+            data.hold(context.world->objects.size(), object, name, value);
         } catch (ConfigError const& error) {
             throw ConfigError(fmt::format("{}(): {}", function, error.what()));
         }
@@ -214,9 +213,7 @@ bool pogosim_world_runs_program(uint32_t object) {
 void pogosim_world_pose(uint32_t object, pogosim_pose_t* pose) {
     Object const& found = object_at(__func__, object);
     require_argument(pose, __func__, "pose");
-    World const& world = *context.world;
-    Vec2 const place = pogosim::wrapped(world, pogosim::centre_mm(world, found));
-    float const heading = found.body_count == 1 ? pogosim::wrap_angle(world.bodies.heading_rad[found.body]) : 0.0F;
+    auto const [place, heading] = pogosim::pose_of(*context.world, found);
     *pose = {.x_mm = place.x, .y_mm = place.y, .heading_rad = heading};
 }
 
@@ -329,7 +326,7 @@ void pogosim_world_lamp_position(uint32_t lamp, double* x_mm, double* y_mm) {
     require_argument(x_mm, __func__, "x_mm");
     require_argument(y_mm, __func__, "y_mm");
     PlacedLamp const& found = lamp_at(__func__, lamp);
-    Vec2 const place = found.start_mm + found.setting.moved_mm;
+    Vec2 const place = found.place_mm();
     *x_mm = place.x;
     *y_mm = place.y;
 }
@@ -337,7 +334,7 @@ void pogosim_world_lamp_position(uint32_t lamp, double* x_mm, double* y_mm) {
 void pogosim_world_set_lamp_position(uint32_t lamp, double x_mm, double y_mm) {
     PlacedLamp& found = lamp_at(__func__, lamp);
     Vec2 const place{number(__func__, "x_mm", x_mm), number(__func__, "y_mm", y_mm)};
-    if (place != found.start_mm + found.setting.moved_mm) {
+    if (place != found.place_mm()) {
         found.setting.moved_mm = place - found.start_mm;
     }
     set_lamp_changed();

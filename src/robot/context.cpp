@@ -21,12 +21,13 @@ void RunServices::warn_of_robot(std::string const& text) {
 }
 
 std::string current_place() {
-    return context.is_system ? current_robot_name() : fmt::format("{} of {}", context.phase, current_robot_name());
+    return context.is_system ? current_robot_name()
+                             : fmt::format("{} of {}", name_of(context.phase), current_robot_name());
 }
 
 std::string current_robot_name() {
     if (context.is_system) {
-        return fmt::format("{}, tick {}", context.phase, pogobot_ticks);
+        return fmt::format("{}, tick {}", name_of(context.phase), pogobot_ticks);
     }
     World const& world = *context.world;
     return fmt::format("robot #{} of category '{}', tick {}", world.robots.id[context.robot],

@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "robot/controller.hpp"
-#include "robot/held_values.hpp"
+#include "robot/data_export.hpp"
+#include "robot/phase.hpp"
 #include "robot/printed_lines.hpp"
 #include "world/data_table.hpp"
 #include "world/parameter_source.hpp"
@@ -27,20 +28,6 @@ struct BoundVariable {
     void (*read)(ParameterSource& source, std::string const& name, void* variable, std::size_t size) = nullptr;
     void* variable = nullptr;
     std::size_t size = 1;  // of an array, or a text with its end
-};
-
-/// The user's columns and the row being filled.
-struct DataExport {
-    std::vector<ColumnSpec> columns;
-    std::vector<bool> was_set;     // by column, in any row
-    std::int64_t filled_rows = 0;  // exported rows for which the program's callback ran
-    DataRow row;
-    HeldValues held;              // of columns that the whole run sets
-    bool is_declared = false;     // callback_create_data_schema has run or is running
-    bool awaits_step = false;     // only callback_global_step can set values
-    bool declaring = false;       // inside callback_create_data_schema
-    bool filling = false;         // inside callback_export_data
-    std::size_t next_column = 0;  // where the search for the next value's column starts
 };
 
 class Controllers;
@@ -94,10 +81,10 @@ struct Context {
     RunServices* services = nullptr;
     Controller* controller = nullptr;  // never null while user code runs
     std::uint32_t robot = kNone;       // index in World::robots; kNone in the context of callback_global_step
-    char const* phase = "";            // "user_step", for messages
-    std::string* printed = nullptr;    // what was printed here since the last line end
-    bool is_system = false;            // a callback of the whole run: global setup, data schema, global step
-    bool sees_world = false;           // one of these or a click, in which the functions of world.h may be called
+    Phase phase = Phase::none;
+    std::string* printed = nullptr;  // what was printed here since the last line end
+    bool is_system = false;          // a callback of the whole run: global setup, data schema, global step
+    bool sees_world = false;         // one of these or a click, in which the functions of world.h may be called
 
     bool has_robot() const { return robot != kNone; }
     /// False in the global step and in a wall, which have no place.

@@ -196,7 +196,7 @@ Controller& Controllers::controller(std::uint32_t robot) {
     return robot == kNone ? system_ : controllers_[robot];
 }
 
-void Controllers::enter(std::uint32_t robot, char const* phase) {
+void Controllers::enter(std::uint32_t robot, Phase phase) {
     Controller& self = controller(robot);
     context = {.world = &world_,
                .services = &services_,
@@ -212,7 +212,7 @@ void Controllers::enter(std::uint32_t robot, char const* phase) {
 }
 
 /// Code of the whole run that has a robot's memory, such as callback_global_setup.
-void Controllers::enter_as_system(std::uint32_t robot, char const* phase) {
+void Controllers::enter_as_system(std::uint32_t robot, Phase phase) {
     enter(robot, phase);
     context.printed = &system_.printed;
     context.is_system = context.sees_world = true;
@@ -223,7 +223,7 @@ void Controllers::leave() {
 }
 
 /// A robot that is switched off is as it was before, for the call; it sends nothing.
-void Controllers::call(std::uint32_t robot, char const* phase, void (*function)(), bool sees_world) {
+void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world) {
     if (function == nullptr) {
         return;
     }
@@ -244,7 +244,7 @@ void Controllers::call(std::uint32_t robot, char const* phase, void (*function)(
     }
 }
 
-void Controllers::call_as_system(std::uint32_t robot, char const* phase, void (*function)()) {
+void Controllers::call_as_system(std::uint32_t robot, Phase phase, void (*function)()) {
     if (function != nullptr) {
         enter_as_system(robot, phase);
         function();
@@ -255,14 +255,14 @@ void Controllers::call_as_system(std::uint32_t robot, char const* phase, void (*
 /// In C++, what a robot does with its globals before main().
 void Controllers::construct_user_data(std::uint32_t robot) {
     if (image_.construct_user_data != nullptr) {
-        enter(robot, "constructor of USERDATA");
+        enter(robot, Phase::construct_user_data);
         image_.construct_user_data(mydata);
         leave();
     }
 }
 
 void Controllers::run_main(std::uint32_t robot) {
-    enter(robot, "main");
+    enter(robot, Phase::main);
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
     // A program may modify its arguments, so each robot gets a fresh copy.
     program_name_ = image_.name;
@@ -284,7 +284,7 @@ void Controllers::run_global_setup() {
             {reinterpret_cast<char const*>(controller(robot).user_data), user_data_bytes()});
     };
     std::size_t const before = digest();
-    call_as_system(robot, "callback_global_setup", callback_global_setup);
+    call_as_system(robot, Phase::global_setup, callback_global_setup);
     without_exceptions([this] { services_.access.settle_light(); });
     if (count > 1 && digest() != before && !services_.access.gave_user_data) {
         warn_of_user_data_in_setup(world_.robots.id[robot]);
@@ -308,14 +308,14 @@ void Controllers::start() {
     warn_of_idle_categories(world_, controllers_, services_.started_categories);
     run_global_setup();
     for (std::uint32_t i = 0; i < count; ++i) {
-        call(i, "user_init", controllers_[i].program.init);
+        call(i, Phase::user_init, controllers_[i].program.init);
     }
     warn_of_missing_init(controllers_);
 }
 
 void Controllers::declare_columns() {
     services_.data.declaring = services_.data.is_declared = true;
-    call_as_system(kNone, "callback_create_data_schema", callback_create_data_schema);
+    call_as_system(kNone, Phase::create_data_schema, callback_create_data_schema);
     services_.data.declaring = false;
     if (callback_global_step == nullptr && services_.data.held.empty()) {
         warn_of_empty_columns(services_.data.columns, controllers_);
@@ -328,7 +328,7 @@ void Controllers::declare_columns() {
 void Controllers::run_step() {
     std::int64_t const now_us = this->now_us();
     if (callback_global_step != nullptr && now_us >= system_.clock_us) {
-        enter(kNone, "callback_global_step");
+        enter(kNone, Phase::global_step);
         context.sees_world = true;
         pogo_main_loop_step(callback_global_step);
         leave();
@@ -408,7 +408,7 @@ void Controllers::tick(std::uint32_t robot) {
     if (std::uint32_t const body = world_.robots.body[robot]; body != kNone) {
         measure_velocity(self.accelerometer, world_.bodies.velocity_mm_s[body], self.clock_us, self.loop.ticks == 0);
     }
-    enter(robot, "user_step");
+    enter(robot, Phase::user_step);
     pogo_main_loop_step(self.program.step);
     leave();
     // The drift must not turn the clock back.
@@ -426,28 +426,28 @@ void Controllers::export_row(std::size_t robot, std::uint32_t object) {
     data.row.exported = true;
     data.filling = true;
     data.next_column = 0;
-    call(static_cast<std::uint32_t>(robot), "export_data", controllers_[robot].program.export_data);
+    call(static_cast<std::uint32_t>(robot), Phase::export_data, controllers_[robot].program.export_data);
     data.filling = false;
     data.filled_rows += data.row.exported && controllers_[robot].program.export_data != nullptr ? 1 : 0;
 }
 
 bool Controllers::click(std::uint32_t robot) {
     void (*const callback)() = controllers_[robot].program.click;
-    call(robot, "robot_click", callback, /*sees_world=*/true);
+    call(robot, Phase::robot_click, callback, /*sees_world=*/true);
     without_exceptions([this] { services_.access.settle_light(); });
     return callback != nullptr;
 }
 
 void Controllers::end() {
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
-        call(i, "robot_end", controllers_[i].program.end);
+        call(i, Phase::robot_end, controllers_[i].program.end);
     }
 }
 
 void Controllers::print_unfinished_lines() {
     auto const print_rest = [this](std::uint32_t robot) {
         if (!controller(robot).printed.empty()) {
-            call(robot, "the end", [] { pogosim_puts(""); });
+            call(robot, Phase::last_line, [] { pogosim_puts(""); });
         }
     };
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {

@@ -117,19 +117,19 @@ private:
 
     void allocate_user_data();
     void draw_individual_differences(std::uint64_t seed);
-    void enter(std::uint32_t robot, char const* phase);
-    void enter_as_system(std::uint32_t robot, char const* phase);
+    void enter(std::uint32_t robot, Phase phase);
+    void enter_as_system(std::uint32_t robot, Phase phase);
     static void leave();
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
     void run_global_setup();
-    void call(std::uint32_t robot, char const* phase, void (*function)(), bool sees_world = false);
+    void call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world = false);
     std::int64_t now_us() const;
     Suspended* find_suspended(std::uint32_t robot);
     void wake(Suspended const& self);
     void rest(Suspended& self);
     void hold_suspended();
-    void call_as_system(std::uint32_t robot, char const* phase, void (*function)());
+    void call_as_system(std::uint32_t robot, Phase phase, void (*function)());
     void tick(std::uint32_t robot);
     Controller& controller(std::uint32_t robot);
 

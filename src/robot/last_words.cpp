@@ -101,7 +101,7 @@ void prepare_words_of_run(char const* what) {
         return;
     }
     PlaceText where;
-    where << " in " << context.phase << ", tick ";
+    where << " in " << name_of(context.phase) << ", tick ";
     where.whole(pogobot_ticks);
     append_time(where);
     last_words() = words_of_run(where.c_str(), what, "");
@@ -137,7 +137,7 @@ void keep_data_file_note(DataFileNote const& note) {
 
 PlaceText running_place() {
     PlaceText text;
-    text << context.phase;
+    text << name_of(context.phase);
     if (!context.is_system) {
         text << " of robot #";
         text.whole(context.world->robots.id[context.robot]) << " of category '" << get_current_robot_category() << "'";

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <csignal>
 #include <ctime>
-#include <string_view>
 
 #include "base/save_progress.hpp"
 #include "robot/caught_signals.hpp"
@@ -31,8 +30,7 @@ constexpr double kSlowestDiskBytesPerS = 1e7;
 
 /// A program for the SDK alone has its endless loop where the robot starts.
 bool is_at_robots_start() {
-    std::string_view const phase = context.phase;
-    return phase == "main" || phase == "user_init";
+    return context.phase == Phase::main || context.phase == Phase::user_init;
 }
 
 constexpr auto kMoveTheLoop = ": move the body of its endless loop into user_step (see docs/porting.md)";

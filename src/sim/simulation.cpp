@@ -8,13 +8,11 @@
 #include <optional>
 #include <random>
 #include <string>
-#include <string_view>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/places.hpp"
-#include "robot/hold_value.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
 #include "sim/lamps_of.hpp"
@@ -296,7 +294,7 @@ std::optional<UserFailure> Simulation::click(std::uint32_t robot) {
     bool has_callback = false;
     auto failure = call_user_code([&] { has_callback = controllers_.click(robot); });
     if (has_callback || failure) {
-        touches_.add_click(world_.time_s());
+        touches_.add(Touch::click, world_.time_s());
     }
     return failure;
 }
@@ -342,20 +340,21 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
 void Simulation::set_alive(std::uint32_t robot, bool alive) {
     Thread const thread(*this);
     controllers_.set_alive(robot, alive);
-    touches_.add_switch(world_.time_s());
+    touches_.add(Touch::alive, world_.time_s());
 }
 
 void Simulation::set_lamp(std::size_t lamp, LampSetting const& setting) {
     world_.lamps[lamp].setting = setting;
     lighting_.update(world_);
-    touches_.add_switch(world_.time_s());
+    touches_.add(Touch::lamp, world_.time_s());
 }
 
 void Simulation::set_column(std::optional<std::uint32_t> object, std::string const& name, double value) {
     if (!services_.data.is_declared) {
         throw ConfigError(fmt::format("column '{}': the run records no rows (enable_data_logging: false)", name));
     }
-    hold_value(services_.data, world_.objects.size(), object, name, value);
+    services_.data.hold(world_.objects.size(), object, name, value);
+    touches_.add(Touch::column, world_.time_s());
 }
 
 bool Simulation::set_parameter(std::string const& name, std::string const& yaml_value) {
@@ -367,6 +366,9 @@ bool Simulation::set_parameter(std::string const& name, std::string const& yaml_
             bound.read(source, bound.name, bound.variable, bound.size);
             has_variable = true;
         }
+    }
+    if (has_variable) {
+        touches_.add(Touch::parameter, world_.time_s());
     }
     return has_variable;
 }
@@ -413,7 +415,7 @@ void Simulation::report(UserFailure const& failure) const {
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
     // C++ compilers let a function without its return run on into the next one; only a real main() is excused.
     bool const may_lack_return = failure.code == ExitCode::user_program && !failure.in_other_thread &&
-                                 !failure.too_long && std::string_view(context.phase) == "main";
+                                 !failure.too_long && context.phase == Phase::main;
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
               failed ? "failed" : "ended", where, failure.what,
               may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", recorder_.note());

@@ -26,8 +26,8 @@ public:
         add(stream.bits());  // of a copy: the numbers that would come
         add(stream.bits());
     }
-    void add(std::span<std::byte const> bytes) {
-        add(bytes.size());
+    /// Without their number.
+    void add_bytes(std::span<std::byte const> bytes) {
         for (std::byte const byte : bytes) {
             add(std::to_integer<std::uint8_t>(byte));
         }
@@ -66,7 +66,8 @@ void add_world(Hash& hash, World const& world) {
     hash.add_all(world.robots.stream);
     hash.add_all(world.light.level);
     hash.add(world.air.transmissions.size());
-    hash.add(std::span<std::byte const>(world.air.payloads));
+    hash.add(world.air.payloads.size());
+    hash.add_bytes(world.air.payloads);
 }
 
 void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailboxes, std::size_t robot) {
@@ -90,6 +91,9 @@ void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailbo
     hash.add(controller.random);
     hash.add(controller.seeds);
     hash.add(mailboxes.size(robot));
+    for (std::span<std::byte const> const messages : mailboxes.waiting(robot)) {
+        hash.add_bytes(messages);
+    }
     hash.add(mailboxes.dropped(robot));
 }
 

@@ -80,6 +80,11 @@ bool Mailboxes::pop(std::size_t robot, FrameHeader& header, std::byte* payload) 
     return false;
 }
 
+std::array<std::span<std::byte const>, 2> Mailboxes::waiting(std::size_t robot) const {
+    Queue const& queue = queues_[robot];
+    return {queue.near.bytes(queue.near_block.data()), queue.far.bytes(far_blocks_.get() + queue.far_block)};
+}
+
 void Mailboxes::clear(std::size_t robot) {
     queues_[robot].near = {};
     queues_[robot].far = {};

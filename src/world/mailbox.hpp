@@ -69,6 +69,9 @@ public:
     /// Takes the oldest message out; `payload` receives payload_length bytes. False when there is none.
     bool pop(std::size_t robot, FrameHeader& header, std::byte* payload);
 
+    /// Headers and payloads of the waiting messages: the oldest ones, then the others.
+    std::array<std::span<std::byte const>, 2> waiting(std::size_t robot) const;
+
     void clear(std::size_t robot);
 
     /// Messages lost to full queues since the start.
@@ -82,6 +85,7 @@ private:
         std::uint32_t count = 0;
 
         bool has_room(std::size_t bytes, std::size_t capacity) const { return tail - head + bytes <= capacity; }
+        std::span<std::byte const> bytes(std::byte const* block) const { return {block + head, block + tail}; }
         void push(std::byte* block, std::size_t capacity, FrameHeader const& header,
                   std::span<std::byte const> payload);
         void pop(std::byte const* block, FrameHeader& header, std::byte* payload);

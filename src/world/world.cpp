@@ -49,6 +49,12 @@ Vec2 centre_mm(World const& world, Object const& object) {
     return first + (1.0F / static_cast<float>(object.body_count)) * sum;
 }
 
+Pose pose_of(World const& world, Object const& object) {
+    bool const is_rigid = object.body_count == 1;
+    return {.position_mm = wrapped(world, centre_mm(world, object)),
+            .heading_rad = is_rigid ? wrap_angle(world.bodies.heading_rad[object.body]) : 0.0F};
+}
+
 Vec2 minimum_image(World const& world, Vec2 a, Vec2 b) {
     Vec2 d = b - a;
     if (world.periodic) {

@@ -120,6 +120,8 @@ struct PlacedLamp {
     std::string category;
     Vec2 start_mm;  // where the configuration has it, or the centre of its orbit
     LampSetting setting;
+
+    Vec2 place_mm() const { return start_mm + setting.moved_mm; }
 };
 
 struct Category {
@@ -211,6 +213,15 @@ bool is_alive(World const& world, std::uint32_t robot);
 
 /// Middle of an object: of its bodies, or where it stands when it has none. Not wrapped.
 Vec2 centre_mm(World const& world, Object const& object);
+
+struct Pose {
+    Vec2 position_mm;
+    float heading_rad;  // [-pi, pi)
+};
+
+/// Where an object stands for users: its middle, inside the arena also when the world is periodic, and its heading, 0
+/// if it is not one rigid body.
+Pose pose_of(World const& world, Object const& object);
 
 /// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.
 Vec2 minimum_image(World const& world, Vec2 a, Vec2 b);

@@ -229,7 +229,8 @@ def test_data_file_says_that_a_host_switched_something(hosted: Path, tmp_path: P
         simulation.lamps[0].is_on = False
         simulation.run()
     _, metadata = load_dataframe(file)
-    assert metadata["touched"] == "2 times from t = 0.5000 s on: robots or lamps switched"
+    expected = "2 times from t = 0.5000 s on: robots switched off or on once, lamps set once"
+    assert metadata["touched"] == expected
 
 
 def test_slips_of_the_pen_are_errors(sim: pogosim.Simulation) -> None:

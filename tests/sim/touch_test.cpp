@@ -245,7 +245,7 @@ TEST(Touches, MovesOfOneObjectInARowCountOnce) {
     touches.add_move(3, 2.24);
     EXPECT_EQ(touches.text(), "3 times from t = 1.2300 s on: objects moved by hand");
     touches.add_move(3, 5.0);
-    touches.add_click(5.0);
+    touches.add(Touch::click, 5.0);
     touches.add_move(3, 5.0);
     EXPECT_EQ(touches.text(), "6 times from t = 1.2300 s on: objects moved by hand 5 times, robots clicked once");
 }

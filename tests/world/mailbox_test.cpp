@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "base/random.hpp"
@@ -23,6 +25,21 @@ bool push(Mailboxes& boxes, std::size_t robot, std::vector<std::byte> const& pay
     FrameHeader header;
     header.payload_length = static_cast<std::uint16_t>(payload.size());
     return boxes.push(robot, header, payload);
+}
+
+/// Of messages that lie one after the other, in two parts.
+std::vector<std::vector<std::byte>> payloads_of(std::array<std::span<std::byte const>, 2> const& messages) {
+    std::vector<std::vector<std::byte>> payloads;
+    for (std::span<std::byte const> part : messages) {
+        while (!part.empty()) {
+            FrameHeader header;
+            std::memcpy(&header, part.data(), sizeof(header));
+            std::span<std::byte const> const payload = part.subspan(sizeof(header), header.payload_length);
+            payloads.emplace_back(payload.begin(), payload.end());
+            part = part.subspan(sizeof(header) + payload.size());
+        }
+    }
+    return payloads;
 }
 
 TEST(Mailbox, GivesMessagesBackFirstInFirstOut) {
@@ -70,6 +87,7 @@ TEST(Mailbox, BehavesAsAPlainQueueForAnySequenceOfMessages) {
                 expected[robot].pop_front();
             }
         }
+        EXPECT_EQ(payloads_of(boxes.waiting(robot)), std::vector(expected[robot].begin(), expected[robot].end()));
     }
 }
 

@@ -1,7 +1,8 @@
-#include "robot/held_values.hpp"
+#include "robot/data_export.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <variant>
@@ -29,8 +30,7 @@ CellValue whole(ColumnSpec const& column, double value, char const* type) {
     return static_cast<std::int64_t>(value);
 }
 
-}  // namespace
-
+/// A number as a value of a column. Throws ConfigError for one that the column's type does not have.
 CellValue cell_of(ColumnSpec const& column, double value) {
     switch (column.type) {
         case ColumnType::int8:
@@ -57,6 +57,8 @@ CellValue cell_of(ColumnSpec const& column, double value) {
     }
     return value;
 }
+
+}  // namespace
 
 HeldValues::Column& HeldValues::at(std::size_t column) {
     if (columns_.size() <= column) {
@@ -86,6 +88,25 @@ void HeldValues::fill(std::uint32_t object, std::span<CellValue> row) const {
             row[i] = held.of_all;
         }
     }
+}
+
+void DataExport::hold(std::size_t object_count, std::optional<std::uint32_t> object, std::string_view name,
+                      double value) {
+    auto const found = std::ranges::find(columns, name, &ColumnSpec::name);
+    if (found == columns.end()) {
+        throw ConfigError(
+            fmt::format("the data file has no column '{}' of the program; declare it with data_add_column_* in "
+                        "callback_create_data_schema",
+                        name));
+    }
+    auto const column = static_cast<std::size_t>(found - columns.begin());
+    CellValue const cell = cell_of(*found, value);
+    if (object) {
+        held.set_for(column, *object, object_count, cell);
+    } else {
+        held.set_for_all(column, cell);
+    }
+    was_set[column] = true;
 }
 
 }  // namespace pogosim

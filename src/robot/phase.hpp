@@ -1,0 +1,43 @@
+// Which of a program's functions runs.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace pogosim {
+
+enum class Phase : std::uint8_t {
+    none,
+    construct_user_data,
+    main,
+    global_setup,
+    user_init,
+    create_data_schema,
+    global_step,
+    user_step,
+    export_data,
+    robot_click,
+    robot_end,
+    last_line
+};
+
+/// For messages: "user_step". Safe in signal handlers.
+constexpr char const* name_of(Phase phase) {
+    constexpr std::array kNames{"",
+                                "constructor of USERDATA",
+                                "main",
+                                "callback_global_setup",
+                                "user_init",
+                                "callback_create_data_schema",
+                                "callback_global_step",
+                                "user_step",
+                                "export_data",
+                                "robot_click",
+                                "robot_end",
+                                "the end"};
+    static_assert(kNames.size() == static_cast<std::size_t>(Phase::last_line) + 1);
+    return kNames[static_cast<std::size_t>(phase)];
+}
+
+}  // namespace pogosim
