@@ -91,6 +91,8 @@ std::string key_of(Setting setting) {
             return "frames_name";
         case Setting::message_log:
             return "message_log";
+        case Setting::physics_engine:
+            return "physics_engine";
         case Setting::speed_up:
             return "GUI_speed_up";
     }

@@ -19,6 +19,7 @@ enum class Setting {
     formation_root,
     frames_name,
     message_log,
+    physics_engine,
     speed_up,
 };
 

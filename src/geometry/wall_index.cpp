@@ -119,7 +119,7 @@ WallIndex::Cells WallIndex::cells_of(Box const& box) const {
 }
 
 template <class Visit>
-void WallIndex::for_each_cell(Edge const& edge, Visit const& visit) const {
+void WallIndex::for_each_cell(WallEdge const& edge, Visit const& visit) const {
     // Of each row, the columns between which the edge crosses it; a little more against rounding.
     float const margin = 0.01F * cell_mm_;
     Cells const cells = cells_of(box_around(edge.from, edge.to, margin));
@@ -141,40 +141,29 @@ void WallIndex::for_each_cell(Edge const& edge, Visit const& visit) const {
     }
 }
 
-template <class Visit>
-void WallIndex::for_each_edge(Box const& box, Visit const& visit) const {
-    Cells const cells = cells_of(box);
-    for (int row = cells.first_row; row <= cells.last_row; ++row) {
-        // The cells of a row follow each other.
-        std::size_t const row_start = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
-        std::uint32_t const first = start_[row_start + static_cast<std::size_t>(cells.first_column)];
-        std::uint32_t const last = start_[row_start + static_cast<std::size_t>(cells.last_column) + 1];
-        for (std::uint32_t k = first; k < last; ++k) {
-            visit(edges_[k]);
-        }
-    }
-}
-
 WallIndex::WallIndex(Arena const& arena) : origin_mm_(arena.bounds.min) {
-    std::vector<Edge> all;
     for (Polygon const& polygon : arena.polygons) {
         bool const is_outer = &polygon == &arena.polygons.front();
         bool const forward = (signed_area(polygon) > 0.0) == is_outer;
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
+        auto const first = static_cast<std::uint32_t>(all_.size());
+        auto const count = static_cast<std::uint32_t>(polygon.size());
+        for (std::uint32_t i = 0; i < count; ++i) {
             Vec2 const from = polygon[i];
-            Vec2 const to = polygon[(i + 1) % polygon.size()];
-            all.push_back(forward ? Edge{from, to} : Edge{to, from});
+            Vec2 const to = polygon[(i + 1) % count];
+            std::uint32_t const before = first + (i + (forward ? count - 1 : 1)) % count;
+            all_.push_back(
+                {.from = forward ? from : to, .to = forward ? to : from, .number = first + i, .previous = before});
         }
     }
     Vec2 const size = arena.bounds.size();
-    double const along = std::clamp(2.0 * std::sqrt(static_cast<double>(all.size())), kFewestCells, kMostCells);
+    double const along = std::clamp(2.0 * std::sqrt(static_cast<double>(all_.size())), kFewestCells, kMostCells);
     cell_mm_ = std::max(size.x, size.y) / static_cast<float>(along);
     columns_ = static_cast<int>(size.x / cell_mm_) + 1;
     rows_ = static_cast<int>(size.y / cell_mm_) + 1;
 
     // Counting sort by cell.
     start_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
-    for (Edge const& edge : all) {
+    for (WallEdge const& edge : all_) {
         for_each_cell(edge, [&](std::size_t cell) { ++start_[cell + 1]; });
     }
     for (std::size_t cell = 1; cell < start_.size(); ++cell) {
@@ -182,7 +171,7 @@ WallIndex::WallIndex(Arena const& arena) : origin_mm_(arena.bounds.min) {
     }
     edges_.resize(start_.back());
     std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-    for (Edge const& edge : all) {
+    for (WallEdge const& edge : all_) {
         for_each_cell(edge, [&](std::size_t cell) { edges_[next[cell]++] = edge; });
     }
 }
@@ -190,7 +179,7 @@ WallIndex::WallIndex(Arena const& arena) : origin_mm_(arena.bounds.min) {
 float WallIndex::distance(Vec2 point_mm, float most_mm) const {
     double nearest = most_mm;
     Vec2d const point = wide(point_mm);
-    for_each_edge(box_around(point_mm, point_mm, most_mm), [&](Edge const& edge) {
+    for_each_edge(box_around(point_mm, point_mm, most_mm), [&](WallEdge const& edge) {
         nearest = std::min(nearest, length(point - Wall(edge.from, edge.to).nearest(point)));
     });
     return static_cast<float>(nearest);
@@ -200,7 +189,7 @@ std::optional<WallTouch> WallIndex::first_touch(Vec2 from_mm, Vec2 motion_mm, fl
     Vec2d const from = wide(from_mm);
     Vec2d const motion = wide(motion_mm);
     std::optional<WallTouch> first;
-    for_each_edge(box_around(from_mm, from_mm + motion_mm, radius_mm), [&](Edge const& edge) {
+    for_each_edge(box_around(from_mm, from_mm + motion_mm, radius_mm), [&](WallEdge const& edge) {
         Wall const wall(edge.from, edge.to);
         double const fraction = wall.touch(from, motion, radius_mm);
         if (fraction <= 1.0 && (!first || fraction < first->fraction)) {

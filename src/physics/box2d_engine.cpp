@@ -115,6 +115,10 @@ int substeps_for(Fastest const& fastest, float most_motion_mm, double time_step_
     return static_cast<int>(std::min(substeps, static_cast<float>(kMostSubsteps)));
 }
 
+bool is_finite(b2Body const& body) {
+    return body.GetPosition().IsValid() && std::isfinite(body.GetAngle());
+}
+
 class Box2dEngine final : public PhysicsEngine {
 public:
     Box2dEngine(World const& world, WallSpec const& walls)
@@ -128,6 +132,9 @@ public:
         }
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
             bodies_.push_back(add_body(world.bodies, i));
+        }
+        if (containment_) {
+            contain_from_here();
         }
         for (std::uint32_t const i : order_of_shapes(world.bodies.size())) {
             add_shape_of(world.bodies, i);
@@ -162,10 +169,10 @@ public:
             step(dt_s, iterations);
         }
         if (containment_) {
-            containment_->hold(bodies_);
+            hold_in_walls();
         }
         if (sides_ && sides_->hold(bodies_) && containment_) {
-            containment_->start_from(bodies_);
+            contain_from_here();
         }
         if (world.periodic) {
             wrap_objects(world, bodies_);
@@ -239,7 +246,7 @@ private:
         }
         any_awake_ = true;
         if (containment_) {
-            containment_->start_from(bodies_);
+            contain_from_here();
         }
         if (sides_) {
             sides_->look_again(bodies_);
@@ -260,6 +267,33 @@ private:
         others_set_velocities_ = others_set_velocities_ || moves;
         any_awake_ = any_awake_ || body.IsAwake();
         sweep_if_fast(body, bodies.velocity_mm_s[i], bodies.radius_mm[i], world.time_step_s);
+    }
+
+    /// A pose that is not finite becomes the last one, at rest.
+    void hold_in_walls() {
+        for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+            b2Body& body = *bodies_[i];
+            if (!body.IsAwake() || body.GetType() == b2_staticBody) {
+                continue;
+            }
+            if (!is_finite(body)) {
+                body.SetTransform(to_box2d(containment_->last(i)), 0.0F);
+                body.SetLinearVelocity(b2Vec2_zero);
+                body.SetAngularVelocity(0.0F);
+            }
+            Vec2 const place_mm = from_box2d(body.GetPosition());
+            Vec2 const held_mm = containment_->hold(i, place_mm);
+            if (held_mm != place_mm) {
+                body.SetTransform(to_box2d(held_mm), body.GetAngle());
+                containment_->start_from(i, from_box2d(body.GetPosition()));
+            }
+        }
+    }
+
+    void contain_from_here() {
+        for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+            containment_->start_from(i, from_box2d(bodies_[i]->GetPosition()));
+        }
     }
 
     void add_walls(Arena const& arena, WallSpec const& walls) {

@@ -12,12 +12,14 @@ namespace {
 struct Engine {
     std::string name;
     std::unique_ptr<PhysicsEngine> (*make)(World const&, WallSpec const&);
+    std::string (*why_unfit)(World const&);
 };
 
 /// The first one is the automatic choice.
-std::array<Engine, 1> const& engines() {
-    static std::array<Engine, 1> const table{{
-        {"box2d", make_box2d_engine},
+std::array<Engine, 2> const& engines() {
+    static std::array<Engine, 2> const table{{
+        {"box2d", make_box2d_engine, [](World const&) { return std::string(); }},
+        {"disk", make_disk_engine, why_unfit_for_disk_engine},
     }};
     return table;
 }
@@ -41,6 +43,10 @@ std::vector<std::string> const& physics_engine_names() {
 
 std::string const& physics_engine_behind(std::string const& name) {
     return engine_named(name).name;
+}
+
+std::string why_unfit(std::string const& name, World const& world) {
+    return engine_named(name).why_unfit(world);
 }
 
 std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls) {

@@ -39,11 +39,16 @@ std::vector<std::string> const& physics_engine_names();
 /// The engine that a name stands for: another one than `name` for kAutomaticEngine only.
 std::string const& physics_engine_behind(std::string const& name);
 
+/// Why this engine cannot move what is in the world: "moves disks only, but ...". Empty if it can.
+std::string why_unfit(std::string const& name, World const& world);
+
 /// An engine for the arena and the bodies as they are in the world now. `name`: one of the known ones. Throws
 /// ConfigError when the arena is too small to build walls.
 std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls);
 
 // The engines.
+std::unique_ptr<PhysicsEngine> make_disk_engine(World const& world, WallSpec const& walls);
+std::string why_unfit_for_disk_engine(World const& world);
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls);
 
 }  // namespace pogosim

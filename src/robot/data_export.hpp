@@ -53,8 +53,8 @@ struct DataExport {
     bool filling = false;         // inside callback_export_data
     std::size_t next_column = 0;  // where the search for the next value's column starts
 
-    /// From now on the column has this value in the rows of all objects, or of one of `object_count`. Throws ConfigError
-    /// for an unknown column and for a value that the type of the column does not have.
+    /// From now on the column has this value in the rows of all objects, or of one of `object_count`. Throws
+    /// ConfigError for an unknown column and for a value that the type of the column does not have.
     void hold(std::size_t object_count, std::optional<std::uint32_t> object, std::string_view name, double value);
 };
 

@@ -29,10 +29,14 @@ std::uint32_t seed_of(Scenario const& scenario) {
 }
 
 std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world) {
+    std::string const& engine = scenario.physics_engine;
+    if (std::string const reason = why_unfit(engine, world); !reason.empty()) {
+        throw ConfigError(fmt::format("{}: {} {}; use {} or box2d", place_of(scenario, Setting::physics_engine), engine,
+                                      reason, kAutomaticEngine));
+    }
     auto const purpose = [&] { return fmt::format("the physics of {} bodies", world.bodies.size()); };
     try {
-        return allocate_for(purpose, std::nullopt,
-                            [&] { return make_physics_engine(scenario.physics_engine, world, scenario.walls); });
+        return allocate_for(purpose, std::nullopt, [&] { return make_physics_engine(engine, world, scenario.walls); });
     } catch (ConfigError const& error) {
         throw ConfigError(fmt::format("{}: {}", place_of(scenario, Setting::arena_surface), error.what()));
     }

@@ -9,13 +9,17 @@
 #include <numbers>
 
 #include "physics/physics_engine.hpp"
+#include "support/each_engine.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
 namespace {
 
 using testing::add_robot;
+using testing::make_engine;
 using testing::square_world;
+
+class Collisions : public testing::EachEngine {};
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kToleranceMm = 0.55F;  // the engine's, and a step
@@ -57,7 +61,7 @@ void add(World& world, Shape const& shape, Vec2 position_mm, Vec2 velocity_mm_s,
 }
 
 void run(World& world, double seconds) {
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     for (auto steps = std::lround(seconds / world.time_step_s); steps > 0; --steps) {
         engine->advance(world);
     }
@@ -124,7 +128,7 @@ float nearest_approach_mm(Shape const& shape, Vec2 towards) {
     World world = fine_world();
     add(world, shape, kMiddle, {}, {.density = 1e6F});
     add(world, disk(20.0F), kMiddle - 150.0F * towards, 50.0F * towards);
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     float nearest_mm = 150.0F;
     for (int i = 0; i < 4000; ++i) {
         engine->advance(world);
@@ -159,7 +163,7 @@ TEST(Shapes, DoNotOverlapWhenTheyArePressedTogether) {
         World world = square_world(2000.0F);
         add(world, pair.left, kMiddle - Vec2{pair.touch_mm + 1.0F, 0.0F}, {}, {.restitution = 0.0F});
         add(world, pair.right, kMiddle, {}, {.restitution = 0.0F});
-        auto const engine = make_box2d_engine(world, {});
+        auto const engine = make_engine(world, {});
         for (int i = 0; i < 300; ++i) {
             world.robots.command[0] = {.velocity_mm_s = {20, 0}, .pending = true};
             world.robots.command[1] = {.velocity_mm_s = {-20, 0}, .pending = true};
@@ -171,7 +175,7 @@ TEST(Shapes, DoNotOverlapWhenTheyArePressedTogether) {
     }
 }
 
-TEST(Collision, HeadOnLosesRelativeSpeedByTheRestitutionAndKeepsMomentum) {
+TEST_P(Collisions, HeadOnLosesRelativeSpeedByTheRestitutionAndKeepsMomentum) {
     for (float const restitution : {0.0F, 0.3F, 0.8F, 1.0F}) {
         World world = fine_world();
         Material const material{.density = 10.0F, .restitution = restitution};
@@ -185,20 +189,20 @@ TEST(Collision, HeadOnLosesRelativeSpeedByTheRestitutionAndKeepsMomentum) {
     }
 }
 
-TEST(Collision, FastRobotDoesNotJumpASmallBody) {
+TEST_P(Collisions, FastRobotDoesNotJumpASmallBody) {
     // 25 mm per sub-step, and the other one is in the middle between two places of the robot.
     World world = square_world(2000.0F);
     add(world, disk(5.0F), {500, 1000}, {});
     add(world, disk(5.0F), {612.5F, 1000}, {});
     world.robots.command[0] = {.velocity_mm_s = {2e4F, 0}, .pending = true};
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     engine->advance(world);
     engine->advance(world);
     EXPECT_GT(world.bodies.velocity_mm_s[1].x, 1e3F);
     EXPECT_LT(world.bodies.position_mm[0].x, world.bodies.position_mm[1].x);
 }
 
-TEST(Collision, ObliqueOneChangesVelocitiesAlongTheLineOfCentresOnly) {
+TEST_P(Collisions, ObliqueOneChangesVelocitiesAlongTheLineOfCentresOnly) {
     // The centres pass at half the sum of the radii: the line of centres is at 30 degrees to the path.
     constexpr float radius_mm = 30.0F;
     constexpr float restitution = 0.6F;
@@ -279,6 +283,8 @@ TEST(Collision, FrictionTurnsBodiesAndKeepsMomentumAndAngularMomentum) {
     EXPECT_NEAR(after.linear.y / before.linear.y, 1.0F, 5e-3F);
     EXPECT_NEAR(after.angular / before.angular, 1.0F, 0.02F);
 }
+
+POGOSIM_FOR_EACH_ENGINE(Collisions);
 
 }  // namespace
 }  // namespace pogosim

@@ -12,13 +12,17 @@
 #include "physics/coinciding_centres.hpp"
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
+#include "support/each_engine.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
 namespace {
 
 using testing::add_robot;
+using testing::make_engine;
 using testing::square_world;
+
+class Written : public testing::EachEngine {};
 
 constexpr float kRadius = 26.5F;
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -40,12 +44,12 @@ World world_with_hole() {
     return world;
 }
 
-TEST(SetPose, BodyIsAtRestAtTheNewPlaceAndStaysThere) {
+TEST_P(Written, BodyIsAtRestAtTheNewPlaceAndStaysThere) {
     World world = square_world();
     add_robot(world, {200, 200});
     world.bodies.velocity_mm_s[0] = {100, 50};
     world.bodies.angular_velocity_rad_s[0] = 3.0F;
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 20);
     set_pose(world, world.objects[0], {700, 600}, 1.5F);
     for (int steps : {0, 1, 100}) {
@@ -58,22 +62,22 @@ TEST(SetPose, BodyIsAtRestAtTheNewPlaceAndStaysThere) {
     }
 }
 
-TEST(SetPose, BodyCanBePutBeyondAWall) {
+TEST_P(Written, BodyCanBePutBeyondAWall) {
     World world = world_with_hole();
     add_robot(world, {200, 500});
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 5);
     set_pose(world, world.objects[0], {800, 500}, 0.0F);
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {800, 500});
 }
 
-TEST(SetPose, BodiesThatOverlapSeparateWithinASecond) {
+TEST_P(Written, BodiesThatOverlapSeparateWithinASecond) {
     for (Vec2 const place : {Vec2{500, 500}, Vec2{510, 500}, Vec2{500, 540}}) {
         World world = square_world();
         add_robot(world, {200, 200});
         add_robot(world, {500, 500});
-        auto const engine = make_box2d_engine(world, {});
+        auto const engine = make_engine(world, {});
         run(*engine, world, 200);  // everything sleeps
         set_pose(world, world.objects[0], place, 0.0F);
         run(*engine, world, 100);
@@ -81,13 +85,13 @@ TEST(SetPose, BodiesThatOverlapSeparateWithinASecond) {
     }
 }
 
-TEST(SetPose, FixedBodyIsMovedAndPushesOthersAway) {
+TEST_P(Written, FixedBodyIsMovedAndPushesOthersAway) {
     World world = square_world();
     ObjectSpec spec = testing::pogobot_spec();
     spec.body->fixed = true;
     add_robot(world, {200, 200}, 0.0F, spec);
     add_robot(world, {500, 500});
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 200);
     set_pose(world, world.objects[0], {480, 500}, 0.0F);
     expect_at(world.bodies.position_mm[0], {480, 500});
@@ -96,11 +100,11 @@ TEST(SetPose, FixedBodyIsMovedAndPushesOthersAway) {
     EXPECT_GT(world.bodies.position_mm[1].x, 480.0F + 2.0F * kRadius - 1.0F);
 }
 
-TEST(WrittenBodies, PoseAloneTakesEffectAndKeepsTheVelocity) {
+TEST_P(Written, PoseAloneTakesEffectAndKeepsTheVelocity) {
     World world = square_world();
     add_robot(world, {200, 200});
     world.bodies.velocity_mm_s[0] = {50, 0};
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 10);
     world.bodies.position_mm[0] = {500, 700};
     world.bodies.heading_rad[0] = 1.5F;
@@ -109,11 +113,11 @@ TEST(WrittenBodies, PoseAloneTakesEffectAndKeepsTheVelocity) {
     EXPECT_NEAR(world.bodies.heading_dir[0].y, std::sin(1.5F), 1e-5F);
 }
 
-TEST(WrittenBodies, VelocityTakesEffectAlsoOnABodyAsleep) {
+TEST_P(Written, VelocityTakesEffectAlsoOnABodyAsleep) {
     World world = square_world();
     add_robot(world, {200, 200});
     add_robot(world, {600, 600});
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 200);
     world.bodies.velocity_mm_s[0] = {100, 50};
     world.bodies.angular_velocity_rad_s[0] = 0.5F;
@@ -126,11 +130,11 @@ TEST(WrittenBodies, VelocityTakesEffectAlsoOnABodyAsleep) {
     expect_at(world.bodies.position_mm[0], {300, 250}, 0.1F);
 }
 
-TEST(WrittenBodies, FastBodyIsStoppedByWallsAndBodiesAlike) {
+TEST_P(Written, FastBodyIsStoppedByWallsAndBodiesAlike) {
     World world = world_with_hole();
     add_robot(world, {100, 500});
     add_robot(world, {300, 500});
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 5);
     world.bodies.velocity_mm_s[0] = {15000, 0};
     for (int i = 0; i < 100; ++i) {
@@ -140,24 +144,24 @@ TEST(WrittenBodies, FastBodyIsStoppedByWallsAndBodiesAlike) {
     }
 }
 
-TEST(WrittenBodies, FixedBodyKeepsItsVelocityOfZero) {
+TEST_P(Written, FixedBodyKeepsItsVelocityOfZero) {
     World world = square_world();
     ObjectSpec spec = testing::pogobot_spec();
     spec.body->fixed = true;
     add_robot(world, {200, 200}, 0.0F, spec);
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     world.bodies.velocity_mm_s[0] = {100, 0};
     run(*engine, world, 10);
     EXPECT_EQ(world.bodies.velocity_mm_s[0], Vec2{});
     expect_at(world.bodies.position_mm[0], {200, 200});
 }
 
-TEST(WrittenBodies, WhatIsNotFiniteIsTakenBack) {
+TEST_P(Written, WhatIsNotFiniteIsTakenBack) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     constexpr float infinity = std::numeric_limits<float>::infinity();
     World world = square_world();
     add_robot(world, {200, 200}, 1.0F);
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 5);
     auto const expect_unmoved = [&] {
         run(*engine, world, 3);
@@ -176,22 +180,22 @@ TEST(WrittenBodies, WhatIsNotFiniteIsTakenBack) {
     expect_unmoved();
 }
 
-TEST(WrittenBodies, DriveOfAnotherThanTheProgramMovesARobot) {
+TEST_P(Written, DriveOfAnotherThanTheProgramMovesARobot) {
     World world = square_world();
     add_robot(world, {200, 200});
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 200);
     world.robots.command[0] = {.velocity_mm_s = {0, 100}, .pending = true};
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {200, 300}, 0.1F);
 }
 
-TEST(WrittenBodies, CrowdOnOneSpotSeparates) {
+TEST_P(Written, CrowdOnOneSpotSeparates) {
     World world = square_world();
     for (int i = 0; i < 12; ++i) {
         add_robot(world, {100.0F + 60.0F * static_cast<float>(i), 200});
     }
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     run(*engine, world, 5);
     for (Vec2& place : world.bodies.position_mm) {
         place = {500, 500};
@@ -210,14 +214,14 @@ TEST(CoincidingCentres, OfMovedBodiesGoApartAndOthersStay) {
     EXPECT_EQ(places, (std::vector<Vec2>{{5, 5}, {5 + kApartMm, 5}, {9, 5}, {5 + 2 * kApartMm, 5}, {5, 6}}));
 }
 
-TEST(SetPose, HundredsOfRandomMovesLeaveEverythingInsideTheArena) {
+TEST_P(Written, HundredsOfRandomMovesLeaveEverythingInsideTheArena) {
     World world = world_with_hole();
     RandomStream random(1, 0);
     std::vector<Vec2> const places{{100, 100}, {300, 100}, {500, 100}, {700, 100}, {900, 100}, {100, 300}, {100, 700}};
     for (Vec2 const place : places) {
         add_robot(world, place, random.uniform(-kPi, kPi));
     }
-    auto const engine = make_box2d_engine(world, {});
+    auto const engine = make_engine(world, {});
     FreePlaces const free(world);
     for (int i = 0; i < 600; ++i) {
         auto const& object = world.objects[random.below(static_cast<std::uint32_t>(places.size()))];
@@ -274,6 +278,8 @@ TEST(FreePlaces, ObjectWithoutABodyStaysWhereItIs) {
     FreePlaces const free(world);
     EXPECT_EQ(free.nearest(wall, {200, 200}), (Vec2{500, 500}));
 }
+
+POGOSIM_FOR_EACH_ENGINE(Written);
 
 }  // namespace
 }  // namespace pogosim

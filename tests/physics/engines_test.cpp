@@ -4,13 +4,17 @@
 #include <numbers>
 
 #include "physics/physics_engine.hpp"
+#include "support/each_engine.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
 namespace {
 
 using testing::add_robot;
+using testing::make_engine;
 using testing::square_world;
+
+class Motion : public testing::EachEngine {};
 
 ObjectSpec body(float restitution, float friction = 0.0F, float damping = 0.0F) {
     ObjectSpec spec = testing::pogobot_spec();
@@ -23,14 +27,14 @@ ObjectSpec body(float restitution, float friction = 0.0F, float damping = 0.0F) 
 }
 
 void run(World& world, double seconds, WallSpec const& walls = {}) {
-    auto const engine = make_box2d_engine(world, walls);
+    auto const engine = make_engine(world, walls);
     auto const steps = std::lround(seconds / world.time_step_s);
     for (long i = 0; i < steps; ++i) {
         engine->advance(world);
     }
 }
 
-TEST(Physics, FreeBodyMovesStraightAtConstantSpeed) {
+TEST_P(Motion, FreeBodyMovesStraightAtConstantSpeed) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F));
     world.bodies.velocity_mm_s[0] = {100, 50};
@@ -41,7 +45,7 @@ TEST(Physics, FreeBodyMovesStraightAtConstantSpeed) {
     EXPECT_NEAR(world.bodies.heading_rad[0], 10.0F, 1e-3F);
 }
 
-TEST(Physics, DampedBodySlowsDownExponentially) {
+TEST_P(Motion, DampedBodySlowsDownExponentially) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 0.3F));
     world.bodies.velocity_mm_s[0] = {100, 0};
@@ -54,7 +58,7 @@ TEST(Physics, DampedBodySlowsDownExponentially) {
     EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 100.0F / 0.3F * (1.0F - left), 1.0F);
 }
 
-TEST(Physics, ElasticHeadOnCollisionSwapsTheVelocities) {
+TEST_P(Motion, ElasticHeadOnCollisionSwapsTheVelocities) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(1.0F));
     add_robot(world, {1100, 1000}, 0.0F, body(1.0F));
@@ -65,7 +69,7 @@ TEST(Physics, ElasticHeadOnCollisionSwapsTheVelocities) {
     EXPECT_NEAR(world.bodies.velocity_mm_s[1].x, 100.0F, 0.5F);
 }
 
-TEST(Physics, CollisionKeepsMomentumAndLosesSpeedByTheRestitution) {
+TEST_P(Motion, CollisionKeepsMomentumAndLosesSpeedByTheRestitution) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F));
     add_robot(world, {1100, 1000}, 0.0F, body(0.2F));
@@ -77,7 +81,7 @@ TEST(Physics, CollisionKeepsMomentumAndLosesSpeedByTheRestitution) {
     EXPECT_NEAR(b.x - a.x, 50.0F, 0.5F);  // the larger of both restitutions
 }
 
-TEST(Physics, WallThrowsABodyBackByItsRestitution) {
+TEST_P(Motion, WallThrowsABodyBackByItsRestitution) {
     for (Vec2 const velocity : {Vec2{100, 0}, Vec2{-100, 0}, Vec2{0, 100}, Vec2{0, -100}}) {
         World world = square_world(300.0F);
         add_robot(world, {150, 150}, 0.0F, body(0.0F));
@@ -88,7 +92,7 @@ TEST(Physics, WallThrowsABodyBackByItsRestitution) {
     }
 }
 
-TEST(Physics, HolesPushOutwards) {
+TEST_P(Motion, HolesPushOutwards) {
     World world = square_world(1000.0F);
     world.arena.polygons.push_back({{400, 400}, {600, 400}, {600, 600}, {400, 600}});
     add_robot(world, {200, 500}, 0.0F, body(0.0F));
@@ -97,7 +101,7 @@ TEST(Physics, HolesPushOutwards) {
     EXPECT_NEAR(world.bodies.position_mm[0].x, 400.0F - 26.5F, 1.0F);
 }
 
-TEST(Physics, FastBodyDoesNotJumpAWall) {
+TEST_P(Motion, FastBodyDoesNotJumpAWall) {
     World world = square_world(1000.0F);
     add_robot(world, {500, 500}, 0.0F, body(0.0F));
     world.robots.command[0] = {.velocity_mm_s = {15000, 0}, .angular_velocity_rad_s = 0.0F, .pending = true};
@@ -105,7 +109,7 @@ TEST(Physics, FastBodyDoesNotJumpAWall) {
     EXPECT_LT(world.bodies.position_mm[0].x, 1000.0F - 26.5F + 1.0F);
 }
 
-TEST(Physics, DriveIsImposedOnce) {
+TEST_P(Motion, DriveIsImposedOnce) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 1.0F));
     world.robots.command[0] = {.velocity_mm_s = {100, 0}, .angular_velocity_rad_s = 1.0F, .pending = true};
@@ -114,7 +118,7 @@ TEST(Physics, DriveIsImposedOnce) {
     EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * std::exp(-1.0F), 0.5F);
 }
 
-TEST(Physics, BodyLeavingAPeriodicWorldComesBackOnTheOtherSide) {
+TEST_P(Motion, BodyLeavingAPeriodicWorldComesBackOnTheOtherSide) {
     World world = square_world(1000.0F);
     world.periodic = true;
     add_robot(world, {950, 20}, 0.0F, body(0.5F));
@@ -123,6 +127,8 @@ TEST(Physics, BodyLeavingAPeriodicWorldComesBackOnTheOtherSide) {
     EXPECT_NEAR(world.bodies.position_mm[0].x, 50.0F, 0.1F);
     EXPECT_NEAR(world.bodies.position_mm[0].y, 920.0F, 0.1F);
 }
+
+POGOSIM_FOR_EACH_ENGINE(Motion);
 
 }  // namespace
 }  // namespace pogosim

@@ -1,0 +1,83 @@
+#include "physics/near_walls.hpp"
+
+#include <algorithm>
+
+namespace pogosim {
+
+namespace {
+
+Vec2 unit_vector(WallEdge const& edge) {
+    Vec2 const way = edge.to - edge.from;
+    float const far = length(way);
+    return far > 0.0F ? (1.0F / far) * way : Vec2{1.0F, 0.0F};
+}
+
+/// Distance from the edge, from either side.
+float distance(WallSide const& side, Vec2 point_mm) {
+    Vec2 const offset = point_mm - side.from_mm;
+    float const t = std::clamp(dot(offset, side.along), 0.0F, side.length_mm);
+    return length(offset - t * side.along);
+}
+
+}  // namespace
+
+std::optional<WallGap> gap_to(WallSide const& side, Vec2 point_mm) {
+    Vec2 const offset = point_mm - side.from_mm;
+    float const t = dot(offset, side.along);
+    if (t > side.length_mm) {
+        return std::nullopt;  // the next edge's
+    }
+    if (t >= 0.0F) {
+        float const distance_mm = dot(offset, side.normal);
+        return distance_mm >= 0.0F ? std::optional(WallGap{distance_mm, side.normal}) : std::nullopt;
+    }
+    if (!side.has_corner || dot(offset, side.along_previous) <= 0.0F) {
+        return std::nullopt;  // the previous edge's
+    }
+    float const far = length(offset);
+    return far > 0.0F ? WallGap{far, (1.0F / far) * offset} : WallGap{0.0F, side.normal};
+}
+
+NearWalls::NearWalls(World const& world, WallIndex const& walls) {
+    if (world.periodic) {
+        return;
+    }
+    for (WallEdge const& edge : walls.edges()) {
+        Vec2 const along = unit_vector(edge);
+        Vec2 const along_previous = unit_vector(walls.edges()[edge.previous]);
+        sides_.push_back({.from_mm = edge.from,
+                          .along = along,
+                          .normal = {-along.y, along.x},
+                          .length_mm = length(edge.to - edge.from),
+                          .along_previous = along_previous,
+                          .has_corner = cross(along_previous, along) < 0.0F});
+    }
+}
+
+void NearWalls::build(World const& world, WallIndex const& walls, float skin_mm) {
+    near_.clear();
+    if (sides_.empty()) {
+        return;
+    }
+    Bodies const& bodies = world.bodies;
+    for (std::uint32_t body = 0; body < bodies.size(); ++body) {
+        if (bodies.spec[body].fixed) {
+            continue;
+        }
+        float const reach_mm = bodies.radius_mm[body] + skin_mm;
+        Vec2 const place_mm = bodies.position_mm[body];
+        found_.clear();
+        walls.for_each_near(place_mm, reach_mm, [&](WallEdge const& edge) {
+            if (distance(sides_[edge.number], place_mm) < reach_mm &&
+                std::ranges::find(found_, edge.number) == found_.end()) {
+                found_.push_back(edge.number);
+            }
+        });
+        std::ranges::sort(found_);
+        for (std::uint32_t const edge : found_) {
+            near_.push_back({body, edge});
+        }
+    }
+}
+
+}  // namespace pogosim

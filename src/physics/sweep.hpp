@@ -1,0 +1,22 @@
+// Bodies that go so far in one step that they could jump over others.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Where a body was at the start of a step.
+struct Start {
+    std::uint32_t body;
+    Vec2 position_mm;
+};
+
+/// Stops fast disks where they meet another one on their straight way through the step; the next step makes the impact.
+/// `fast`: those that go further than others, with the places they come from. All positions are those at the end of the
+/// step, `dt_s` after the start.
+void stop_at_impacts(World& world, std::span<Start const> fast, float dt_s);
+
+}  // namespace pogosim

@@ -1,0 +1,116 @@
+// Crowds: what many contacts at once must keep.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "base/random.hpp"
+#include "support/each_engine.hpp"
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+using testing::add_robot;
+using testing::make_engine;
+using testing::square_world;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+class Crowds : public testing::EachEngine {
+protected:
+    bool is_disk_engine() const { return GetParam() == "disk"; }
+};
+
+ObjectSpec disk(float radius_mm, float restitution, float friction = 0.0F) {
+    ObjectSpec spec = testing::pogobot_spec();
+    spec.shape.radius_mm = radius_mm;
+    spec.body = BodySpec{.friction = friction, .restitution = restitution};
+    return spec;
+}
+
+/// Disks on a hexagonal lattice that fills a box of so many columns and rows with this share of its area.
+World packed(int columns, int rows, float coverage, float restitution) {
+    constexpr float radius_mm = 26.5F;
+    float const pitch_mm = radius_mm * std::sqrt(2.0F * kPi / (std::sqrt(3.0F) * coverage));
+    float const row_mm = pitch_mm * std::sqrt(3.0F) / 2.0F;
+    World world = square_world();
+    Vec2 const size{pitch_mm * (static_cast<float>(columns) + 0.5F), row_mm * static_cast<float>(rows - 1) + pitch_mm};
+    world.arena = make_arena({{{0, 0}, {size.x, 0}, {size.x, size.y}, {0, size.y}}});
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            float const x = pitch_mm * (static_cast<float>(column) + (row % 2 == 0 ? 0.5F : 1.0F));
+            add_robot(world, {x, row_mm * static_cast<float>(row) + 0.5F * pitch_mm}, 0.0F,
+                      disk(radius_mm, restitution));
+        }
+    }
+    return world;
+}
+
+double energy(World const& world) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+        double const r = world.bodies.radius_mm[i];
+        double const w = world.bodies.angular_velocity_rad_s[i];
+        sum += r * r * (squared_length(world.bodies.velocity_mm_s[i]) + 0.5 * r * r * w * w);
+    }
+    return sum;
+}
+
+float deepest_overlap_mm(World const& world) {
+    float deepest = 0.0F;
+    Bodies const& bodies = world.bodies;
+    for (std::size_t a = 0; a < bodies.size(); ++a) {
+        deepest = std::max(deepest, bodies.radius_mm[a] - world.arena.distance_to_walls(bodies.position_mm[a]));
+        for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+            float const reach = bodies.radius_mm[a] + bodies.radius_mm[b];
+            deepest = std::max(deepest, reach - length(bodies.position_mm[b] - bodies.position_mm[a]));
+        }
+    }
+    return deepest;
+}
+
+TEST_P(Crowds, DenseGasDoesNotOverlapNorGainEnergy) {
+    for (float const restitution : {0.0F, 0.5F, 1.0F}) {
+        World world = packed(20, 20, 0.8F, restitution);
+        RandomStream random(1, 0);
+        for (Vec2& velocity : world.bodies.velocity_mm_s) {
+            velocity = 60.0F * direction(random.uniform(-kPi, kPi));
+        }
+        auto const engine = make_engine(world, {.friction = 0.0F, .restitution = restitution});
+        double const before = energy(world);
+        double highest = 0.0;
+        float deepest_mm = 0.0F;
+        for (int step = 0; step < 1000; ++step) {
+            engine->advance(world);
+            highest = std::max(highest, energy(world));
+            deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
+        }
+        EXPECT_LT(deepest_mm, is_disk_engine() ? 0.5F : 2.5F) << restitution;
+        EXPECT_LT(highest, 1.001 * before) << restitution;
+        if (restitution == 1.0F) {
+            EXPECT_GT(energy(world), 0.9 * before);
+        }
+    }
+}
+
+TEST_P(Crowds, RobotsThatAllPushToOneSideStayApart) {
+    World world = packed(20, 20, 0.8F, 0.5F);
+    auto const engine = make_engine(world, {});
+    float deepest_mm = 0.0F;
+    for (int step = 0; step < 1500; ++step) {
+        for (VelocityCommand& command : world.robots.command) {
+            command = {.velocity_mm_s = {50.0F, 0.0F}, .pending = step % 2 == 0};
+        }
+        engine->advance(world);
+        deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
+    }
+    EXPECT_LT(deepest_mm, is_disk_engine() ? 1.0F : 6.0F);
+}
+
+POGOSIM_FOR_EACH_ENGINE(Crowds);
+
+}  // namespace
+}  // namespace pogosim
