@@ -90,7 +90,7 @@ private:
         return squared_length(dt_s * bodies.velocity_mm_s[body]) > ordinary_mm_ * ordinary_mm_;
     }
 
-    /// Bodies without a contact move on a straight line. Everybody turns.
+    /// Bodies without a contact move on a straight line.
     void move_others(Bodies& bodies, float dt_s) {
         for (std::uint32_t i = 0; i < bodies.size(); ++i) {
             if (bodies.spec[i].fixed) {
@@ -101,9 +101,9 @@ private:
                     starts_.push_back({i, bodies.position_mm[i]});
                 }
                 bodies.position_mm[i] = bodies.position_mm[i] + dt_s * bodies.velocity_mm_s[i];
-            }
-            if (bodies.angular_velocity_rad_s[i] != 0.0F) {
                 bodies.heading_rad[i] += dt_s * bodies.angular_velocity_rad_s[i];
+            }
+            if (solver_.has_contact(i) || bodies.angular_velocity_rad_s[i] != 0.0F) {
                 bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
             }
         }

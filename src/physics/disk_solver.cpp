@@ -295,6 +295,7 @@ void DiskSolver::solve_island(World& world, NearWalls const& walls, Island const
         for (std::uint32_t i = island.first_body; i < island.last_body; ++i) {
             std::uint32_t const body = touched_[i];
             bodies.position_mm[body] = bodies.position_mm[body] + time_s * bodies.velocity_mm_s[body];
+            bodies.heading_rad[body] += time_s * bodies.angular_velocity_rad_s[body];
         }
     };
     float const h_s = dt_s / kSubsteps;

@@ -27,7 +27,7 @@ public:
     /// Takes the contacts whose gap is less than `reach_mm` now.
     void find_contacts(World const& world, NearPairs const& pairs, NearWalls const& walls, float reach_mm);
 
-    /// Moves all bodies that have a contact by one time step: positions and velocities.
+    /// Moves all bodies that have a contact by one time step: poses, but for heading_dir, and velocities.
     void solve(World& world, NearWalls const& walls);
 
     /// Whether find_contacts() has found one for the body.

@@ -92,6 +92,31 @@ TEST_P(Motion, WallThrowsABodyBackByItsRestitution) {
     }
 }
 
+TEST_P(Motion, FrictionOfAWallTurnsARobotThatDrivesAgainstIt) {
+    // Motors ask for v at an angle to the wall and for no rotation, 60 times per second. Each time, the wall takes the
+    // speed against it, v sin(angle), and its friction gives the disk an angular velocity of 2 mu v sin(angle) / r.
+    // With a restitution e, the impulse is 1 + e times as large, but the robot is back at the wall only after
+    // e / (1 + e) of the time between two ticks, so it turns as far.
+    constexpr double seconds = 6.0;
+    for (float const restitution : {0.0F, 0.5F}) {
+        for (float const angle_rad : {0.26F, 0.52F, 1.05F}) {
+            World world = square_world(5000.0F);
+            add_robot(world, {500.0F, 26.6F}, 0.0F, body(restitution, 0.3F));
+            auto const engine = make_engine(world, {.friction = 0.05F, .restitution = restitution});
+            double next_tick_s = 0.0;
+            for (int step = 0; step < 600; ++step) {
+                if (0.01 * step >= next_tick_s - 1e-9) {
+                    world.robots.command[0] = {.velocity_mm_s = 100.0F * direction(-angle_rad), .pending = true};
+                    next_tick_s += 1.0 / 60.0;
+                }
+                engine->advance(world);
+            }
+            double const expected = -2.0 * std::sqrt(0.3 * 0.05) * 100.0 * std::sin(angle_rad) / 26.5 * seconds;
+            EXPECT_NEAR(world.bodies.heading_rad[0] / expected, 1.0, 0.02) << restitution << ", " << angle_rad;
+        }
+    }
+}
+
 TEST_P(Motion, HolesPushOutwards) {
     World world = square_world(1000.0F);
     world.arena.polygons.push_back({{400, 400}, {600, 400}, {600, 600}, {400, 600}});
