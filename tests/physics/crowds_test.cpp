@@ -83,7 +83,7 @@ TEST_P(Crowds, DenseGasDoesNotOverlapNorGainEnergy) {
         double const before = energy(world);
         double highest = 0.0;
         float deepest_mm = 0.0F;
-        for (int step = 0; step < 1000; ++step) {
+        for (int step = 0; step < 500; ++step) {
             engine->advance(world);
             highest = std::max(highest, energy(world));
             deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
@@ -100,7 +100,7 @@ TEST_P(Crowds, RobotsThatAllPushToOneSideStayApart) {
     World world = packed(20, 20, 0.8F, 0.5F);
     auto const engine = make_engine(world, {});
     float deepest_mm = 0.0F;
-    for (int step = 0; step < 1500; ++step) {
+    for (int step = 0; step < 500; ++step) {
         for (VelocityCommand& command : world.robots.command) {
             command = {.velocity_mm_s = {50.0F, 0.0F}, .pending = step % 2 == 0};
         }
