@@ -151,7 +151,14 @@ RunGuard::RunGuard(void const* code, double timeout_s)
       processor_timer(TimerClock::processor, SIGPROF, this),
       wall_timer(TimerClock::wall, SIGALRM, this) {}
 
-UserGuard::UserGuard(void const* code, double timeout_s) : state_(std::make_unique<RunGuard>(code, timeout_s)) {}
+void UserGuard::Destroy::operator()(RunGuard* state) const {
+    std::destroy_at(state);
+}
+
+UserGuard::UserGuard(void const* code, double timeout_s)
+    : memory_(sizeof(RunGuard)), state_(new (memory_.data()) RunGuard(code, timeout_s)) {
+    static_assert(alignof(RunGuard) <= 64, "what FencedMemory gives");
+}
 
 UserGuard::~UserGuard() = default;
 

@@ -21,6 +21,7 @@
 #include <string>
 
 #include "base/memory.hpp"
+#include "robot/fenced_memory.hpp"
 #include "robot/other_threads.hpp"
 
 namespace pogosim {
@@ -59,7 +60,12 @@ public:
 private:
     friend class GuardedThread;
     friend class ProcessRun;
-    std::unique_ptr<RunGuard> state_;
+    struct Destroy {
+        void operator()(RunGuard* state) const;
+    };
+
+    FencedMemory memory_;  // of the state: a program that writes over the heap does not reach it
+    std::unique_ptr<RunGuard, Destroy> state_;
 };
 
 /// As long as this lives, the thread works for a run: crashes in it, and what is below, are that run's, and signal
