@@ -203,15 +203,8 @@ private:
         if (known_.is_of(bodies)) {
             return;
         }
-        std::vector<std::uint32_t> moved;
+        std::vector<std::uint32_t> const moved = known_.find_moved(bodies);
         for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-            if (!is_finite(bodies, i)) {
-                known_.restore(bodies, i);
-                continue;
-            }
-            if (known_.has_other_pose(bodies, i)) {
-                moved.push_back(i);
-            }
             if (known_.has_other_velocity(bodies, i)) {
                 take_over_velocity(world, i);
             }

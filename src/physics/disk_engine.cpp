@@ -132,13 +132,8 @@ private:
         if (known_.is_of(bodies)) {
             return;
         }
-        std::vector<std::uint32_t> moved;
+        std::vector<std::uint32_t> const moved = known_.find_moved(bodies);
         for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-            if (!is_finite(bodies, i)) {
-                known_.restore(bodies, i);
-            } else if (known_.has_other_pose(bodies, i)) {
-                moved.push_back(i);
-            }
             if (bodies.spec[i].fixed) {
                 bodies.velocity_mm_s[i] = {};
                 bodies.angular_velocity_rad_s[i] = 0.0F;

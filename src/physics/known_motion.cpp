@@ -28,6 +28,18 @@ bool KnownMotion::is_of(Bodies const& bodies) const {
            has_same_bytes(angular_velocity_rad_s_, bodies.angular_velocity_rad_s);
 }
 
+std::vector<std::uint32_t> KnownMotion::find_moved(Bodies& bodies) const {
+    std::vector<std::uint32_t> moved;
+    for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+        if (!is_finite(bodies, i)) {
+            restore(bodies, i);
+        } else if (has_other_pose(bodies, i)) {
+            moved.push_back(i);
+        }
+    }
+    return moved;
+}
+
 bool KnownMotion::has_other_pose(Bodies const& bodies, std::uint32_t body) const {
     return position_mm_[body] != bodies.position_mm[body] || heading_rad_[body] != bodies.heading_rad[body];
 }

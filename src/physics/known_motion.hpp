@@ -15,13 +15,15 @@ public:
     /// True when nobody has written anything since copy().
     bool is_of(Bodies const& bodies) const;
 
-    bool has_other_pose(Bodies const& bodies, std::uint32_t body) const;
+    /// Takes back what others have written that is not finite. Returns the bodies with another pose, ascending.
+    std::vector<std::uint32_t> find_moved(Bodies& bodies) const;
+
     bool has_other_velocity(Bodies const& bodies, std::uint32_t body) const;
 
-    /// Takes back what was written to a body.
+private:
+    bool has_other_pose(Bodies const& bodies, std::uint32_t body) const;
     void restore(Bodies& bodies, std::uint32_t body) const;
 
-private:
     std::vector<Vec2> position_mm_;
     std::vector<float> heading_rad_;
     std::vector<Vec2> velocity_mm_s_;
