@@ -4,6 +4,6 @@ from __future__ import annotations
 
 import sys
 
-from pogosim.command.main import main
+from pogosim.command.main import pogosim_command
 
-sys.exit(main())
+sys.exit(pogosim_command())

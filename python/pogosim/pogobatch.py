@@ -16,6 +16,7 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.options import expand_batch_options
 from pogosim.batch.paths import get_by_dotted_path, set_in_dict
 from pogosim.batch.runner import PogobotBatchRunner
+from pogosim.command.main import pogobatch
 
 __all__ = [
     "BatchError",
@@ -102,4 +103,4 @@ class PogobotLauncher:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(pogobatch())

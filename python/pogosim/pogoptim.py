@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 
+from pogosim.command.main import pogoptim
 from pogosim.optimize.command import main
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.objective import fd_fn, objective_fn
@@ -16,4 +17,4 @@ from pogosim.optimize.objective import fd_fn, objective_fn
 __all__ = ["OptimizeError", "fd_fn", "main", "objective_fn"]
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(pogoptim())

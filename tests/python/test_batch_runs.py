@@ -20,6 +20,8 @@ from pogosim.utils import load_dataframe
 LONG: dict[str, object] = {"simulation_time": 1000.0, "save_data_period": 10.0}
 RUNS = ("-r", "3", "-j", "2")
 
+INTERRUPTED = "pogobatch: interrupted; finished runs are kept in tmp: the same command continues"
+
 # A cluster of two workers, whose address is printed.
 DASK = """
 import sys
@@ -118,15 +120,27 @@ def test_batch_that_is_killed_again_and_again_continues(
         killed += 1
         assert process.returncode in (-signal.SIGKILL, 130)
         if process.returncode == 130:
-            assert errors.splitlines()[-1] == (
-                "pogobatch: interrupted; finished runs are kept in tmp: the same command continues"
-            )
+            assert errors.splitlines()[-1] == INTERRUPTED
         assert set(results(tmp_path)) <= set(undisturbed) | {".result.feather.pogobatch-new"}
     assert killed > 0
     final = batch(tmp_path, *RUNS)
     assert (final.code, final.errors) == (0, "")
     assert results(tmp_path) == undisturbed
     assert sorted(path.name for path in tmp_path.iterdir()) == ["many.yaml", "results"]
+
+
+@linux_only
+@pytest.mark.parametrize("delay_s", [0, 0.02, 0.05, 0.1, 0.2])
+def test_batch_that_is_interrupted_after_its_last_line_has_ended_well(delay_s: float, tmp_path: Path) -> None:
+    write(tmp_path)
+    process = start_batch(tmp_path, "-r", "1")
+    assert process.stdout
+    while not process.stdout.readline().startswith(" - "):
+        pass
+    time.sleep(delay_s)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert (process.returncode, errors) in [(0, ""), (130, ""), (130, f"{INTERRUPTED}\n")]
 
 
 def interrupted(folder: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -78,19 +79,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return ended(prog, lambda: run(name, rest))
 
 
+def pogosim_command() -> int:
+    """Run the command `pogosim`."""
+    return last(main())
+
+
 def pogobatch() -> int:
     """Run the command `pogobatch`, which is `pogosim batch`."""
-    return ended("pogobatch", lambda: call("batch", sys.argv[1:], "pogobatch"))
+    return last(ended("pogobatch", lambda: call("batch", sys.argv[1:], "pogobatch")))
 
 
 def pogoptim() -> int:
     """Run the command `pogoptim`, which is `pogosim optimize`."""
-    return ended("pogoptim", lambda: call("optimize", sys.argv[1:], "pogoptim"))
+    return last(ended("pogoptim", lambda: call("optimize", sys.argv[1:], "pogoptim")))
 
 
 def recover() -> int:
     """Run the command `pogosim-recover`, which is `pogosim recover`."""
-    return ended("pogosim-recover", lambda: call("recover", sys.argv[1:], "pogosim-recover"))
+    return last(ended("pogosim-recover", lambda: call("recover", sys.argv[1:], "pogosim-recover")))
 
 
 def ended(prog: str, command: Callable[[], int]) -> int:
@@ -103,6 +109,13 @@ def ended(prog: str, command: Callable[[], int]) -> int:
         return NO_READER
     except OSError as error:
         return complain(prog, f"cannot go on: {error.strerror or error}")
+
+
+def last(code: int) -> int:
+    """Return the exit code of a process whose work is done; signals no longer spoil it while Python puts things away."""
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        signal.signal(number, signal.SIG_IGN)
+    return code
 
 
 def run(name: str, arguments: Sequence[str]) -> int:
@@ -129,4 +142,4 @@ def call(name: str, arguments: Sequence[str], prog: str) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(pogosim_command())
