@@ -29,6 +29,10 @@ public:
     template <class Found>
     bool any_near(Vec2 centre, float radius_mm, Found const& is_found) const;
 
+    /// The same with is_found(first, last) for cells that follow each other in a row, both included.
+    template <class Found>
+    bool any_run_near(Vec2 centre, float radius_mm, Found const& is_found) const;
+
     /// Calls visit(cell) in growing rings of cells around a point in the box, until done(gap_mm): no point nearer than
     /// `gap_mm` is left. Not for periodic ones.
     template <class Visit, class Done>
@@ -156,16 +160,32 @@ private:
 
 template <class Found>
 bool GridCells::any_near(Vec2 centre, float radius_mm, Found const& is_found) const {
+    return any_run_near(centre, radius_mm, [&](std::size_t first, std::size_t last) {
+        for (std::size_t cell = first; cell <= last; ++cell) {
+            if (is_found(cell)) {
+                return true;
+            }
+        }
+        return false;
+    });
+}
+
+template <class Found>
+bool GridCells::any_run_near(Vec2 centre, float radius_mm, Found const& is_found) const {
     Vec2 const low = centre - origin_ - Vec2{radius_mm, radius_mm};
     Vec2 const high = centre - origin_ + Vec2{radius_mm, radius_mm};
     Span const columns = cells(low.x * columns_per_mm_, high.x * columns_per_mm_, columns_, periodic_);
     Span const rows = cells(low.y * rows_per_mm_, high.y * rows_per_mm_, rows_, periodic_);
+    int const first = periodic_ ? remainder(columns.first, columns_) : columns.first;
+    int const last = first + columns.last - columns.first;
     for (int r = rows.first; r <= rows.last; ++r) {
-        int const row = remainder(r, rows_);
-        for (int c = columns.first; c <= columns.last; ++c) {
-            if (is_found(index(remainder(c, columns_), row))) {
-                return true;
-            }
+        int const row = periodic_ ? remainder(r, rows_) : r;
+        if (is_found(index(first, row), index(std::min(last, columns_ - 1), row))) {
+            return true;
+        }
+        // The rest of a run that goes on at the other end of a periodic row.
+        if (last >= columns_ && is_found(index(0, row), index(last - columns_, row))) {
+            return true;
         }
     }
     return false;

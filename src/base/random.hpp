@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "base/exact_math.hpp"
+
 namespace pogosim {
 
 /// Bijective mix of 64 bits.
@@ -57,7 +59,9 @@ public:
     float normal() {
         float const u = 1.0F - uniform();  // in (0, 1]
         float const v = uniform();
-        return std::sqrt(-2.0F * std::log(u)) * std::cos(2.0F * std::numbers::pi_v<float> * v);
+        auto const radius = static_cast<float>(std::sqrt(-2.0 * exact::log(static_cast<double>(u))));
+        constexpr double turn = 2.0 * std::numbers::pi_v<double>;
+        return radius * static_cast<float>(exact::sine_cosine(turn * static_cast<double>(v)).cosine);
     }
 
     friend bool operator==(RandomStream const&, RandomStream const&) = default;

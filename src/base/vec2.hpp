@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/exact_math.hpp"
+
 namespace pogosim {
 
 struct Vec2 {
@@ -36,8 +38,9 @@ inline float length(Vec2 a) {
 }
 
 /// Unit vector at `angle_rad` from +x, clockwise on the screen.
-inline Vec2 direction(float angle_rad) {
-    return {std::cos(angle_rad), std::sin(angle_rad)};
+constexpr Vec2 direction(float angle_rad) {
+    exact::SineCosine const exact = exact::sine_cosine(static_cast<double>(angle_rad));
+    return {static_cast<float>(exact.cosine), static_cast<float>(exact.sine)};
 }
 
 /// `a` turned by the angle whose unit vector is `unit`.

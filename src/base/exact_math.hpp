@@ -1,0 +1,107 @@
+// Elementary functions that give the same bits on every machine and with every compiler: additions, multiplications and
+// divisions of double in a fixed order, and a rounding to float at the end. Those of the C library may differ in the
+// last bit from one library to the next, and a swarm soon makes another run of that.
+//
+// Series of M. Abramowitz and I. A. Stegun, "Handbook of Mathematical Functions" (1964), 4.1.27, 4.2.1, 4.3.65 and
+// 4.3.66, with arguments reduced as in W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980).
+// They need -ffp-contract=off, and no more of IEEE 754 than every processor of today has.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+namespace pogosim::exact {
+
+/// Nearest whole number, for |x| < 2^51.
+constexpr double nearest(double x) {
+    constexpr double shift = 0x1.8p52;
+    return x + shift - shift;
+}
+
+struct SineCosine {
+    double sine;
+    double cosine;
+};
+
+/// For |x| < 10^6 with an error below 10^-11; above, far below the spacing of float.
+constexpr SineCosine sine_cosine(double x) {
+    // pi / 2 in two parts, the first of 33 bits.
+    constexpr double high = 0x1.921fb544p+0;
+    constexpr double low = 0x1.0b4611a626331p-34;
+    double const quarters = nearest(x * 0x1.45f306dc9c883p-1);
+    double const r = x - quarters * high - quarters * low;
+    double const r2 = r * r;
+    double const sine =
+        r + r * r2 * (-1.0 / 6 + r2 * (1.0 / 120 + r2 * (-1.0 / 5040 + r2 * (1.0 / 362880 + r2 * (-1.0 / 39916800)))));
+    double const cosine =
+        1.0 +
+        r2 * (-1.0 / 2 + r2 * (1.0 / 24 + r2 * (-1.0 / 720 +
+                                                r2 * (1.0 / 40320 + r2 * (-1.0 / 3628800 + r2 * (1.0 / 479001600))))));
+    double const quarter = quarters - 4.0 * nearest(0.25 * quarters);  // -2 to 2
+    if (quarter == 0.0) {
+        return {sine, cosine};
+    }
+    if (quarter == 1.0) {
+        return {cosine, -sine};
+    }
+    if (quarter == -1.0) {
+        return {-cosine, sine};
+    }
+    return {-sine, -cosine};
+}
+
+/// Natural logarithm of a positive, finite number that is not subnormal, with a relative error below 10^-13.
+constexpr double log(double x) {
+    // x = 2^exponent * m with m in [sqrt(1/2), sqrt(2)).
+    constexpr std::uint64_t one = std::bit_cast<std::uint64_t>(1.0);
+    constexpr std::uint64_t root_half = std::bit_cast<std::uint64_t>(0x1.6a09e667f3bcdp-1);
+    auto const bits = std::bit_cast<std::uint64_t>(x);
+    auto const exponent = static_cast<std::int64_t>(bits + (one - root_half)) / (std::int64_t{1} << 52) - 1023;
+    double const m = std::bit_cast<double>(bits - static_cast<std::uint64_t>(exponent) * (std::uint64_t{1} << 52));
+    double const s = (m - 1.0) / (m + 1.0);
+    double const s2 = s * s;
+    double const series =
+        1.0 +
+        s2 * (1.0 / 3 +
+              s2 * (1.0 / 5 +
+                    s2 * (1.0 / 7 + s2 * (1.0 / 9 + s2 * (1.0 / 11 + s2 * (1.0 / 13 + s2 * (1.0 / 15 + s2 / 17)))))));
+    constexpr double ln2_high = 0x1.62e42feep-1;  // of 33 bits
+    constexpr double ln2_low = 0x1.a39ef35793c76p-33;
+    auto const e = static_cast<double>(exponent);
+    return e * ln2_high + (e * ln2_low + 2.0 * s * series);
+}
+
+/// e to the power x, with a relative error below 10^-12; 0 and infinity where double ends.
+constexpr double exp(double x) {
+    if (!(x > -700.0)) {
+        return x == x ? 0.0 : x;
+    }
+    if (x > 700.0) {
+        return std::numeric_limits<double>::infinity();
+    }
+    constexpr double ln2_high = 0x1.62e42feep-1;
+    constexpr double ln2_low = 0x1.a39ef35793c76p-33;
+    double const power = nearest(x * 0x1.71547652b82fep+0);
+    double const r = x - power * ln2_high - power * ln2_low;
+    double series = 1.0;
+    for (int n = 13; n > 0; --n) {
+        series = 1.0 + r / n * series;
+    }
+    auto const exponent = static_cast<std::int64_t>(power);
+    return series * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52U);
+}
+
+/// x to the power y, for x >= 0, with a relative error of about 10^-12 where y log(x) is of the order of 10.
+constexpr double pow(double x, double y) {
+    if (y == 0.0) {
+        return 1.0;
+    }
+    if (!(x > 0.0)) {
+        return x == 0.0 ? (y > 0.0 ? 0.0 : std::numeric_limits<double>::infinity())
+                        : std::numeric_limits<double>::quiet_NaN();
+    }
+    return exp(y * log(x));
+}
+
+}  // namespace pogosim::exact
