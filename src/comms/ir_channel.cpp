@@ -4,23 +4,19 @@
 #include <utility>
 
 #include "comms/assert_air.hpp"
-#include "comms/reception.hpp"
 
 namespace pogosim {
 
 namespace {
 
-std::uint8_t faces_of(World const& world, Transmission const& transmission, Receiver const& receiver) {
-    return receiver.faces != 0
-               ? receiver.faces
-               : faces_that_see(world, receiver.robot, -receiver.from_emitter_mm, transmission.range_mm);
-}
+constexpr std::size_t kReceiversAtOnce = 128;  // their mailboxes fill a part of the cache
 
 /// Nobody wants to know: costs nothing.
 struct NoObserver {
     void reached_nobody(std::uint32_t /*transmission*/) const {}
     void reached(std::uint32_t /*transmission*/, std::size_t /*receivers*/, float /*probability*/) const {}
-    void lost(World const& /*world*/, Transmission const& /*transmission*/, Receiver const& /*receiver*/) const {}
+    void lost(World const& /*world*/, Visibility const& /*visibility*/, Transmission const& /*transmission*/,
+              Receiver const& /*receiver*/) const {}
     void received(World const& /*world*/, Receiver const& /*receiver*/, std::uint8_t /*faces*/,
                   std::uint8_t /*queued*/) const {}
 };
@@ -37,8 +33,9 @@ public:
                    .probability = probability};
     }
 
-    void lost(World const& world, Transmission const& transmission, Receiver const& receiver) {
-        add(world, receiver).faces = faces_of(world, transmission, receiver);
+    void lost(World const& world, Visibility const& visibility, Transmission const& transmission,
+              Receiver const& receiver) {
+        add(world, receiver).faces = visibility.faces_of(world, receiver, transmission.range_mm);
     }
 
     void received(World const& world, Receiver const& receiver, std::uint8_t faces, std::uint8_t queued) {
@@ -53,8 +50,7 @@ private:
         Delivery& delivery = deliveries_.emplace_back(common_);
         delivery.receiver = receiver.robot;
         delivery.emitters = receiver.emitters;
-        bool const is_along_outline = receiver.faces != 0;
-        if (!is_along_outline) {
+        if (!receiver.is_along_outline) {
             float const radius_mm = world.bodies.radius_mm[world.robots.body[receiver.robot]];
             delivery.distance_mm = std::max(length(receiver.from_emitter_mm) - radius_mm, 0.0F);
         }
@@ -89,44 +85,56 @@ void IrChannel::deliver_all(World& world, Observer& observer) {
     }
     assert_air(world);
     visibility_.update(world);
-    for (std::uint32_t i = 0; i < world.air.transmissions.size(); ++i) {
-        deliver_one(world, i, observer);
+    reception_.resize(world.categories.size());
+    std::size_t const count = world.air.transmissions.size();
+    for (std::size_t next = 0; next < count;) {
+        // Who is in reach of some transmissions; their mailboxes come into the cache in the meantime.
+        std::size_t const begin = next;
+        found_.clear();
+        reached_.clear();
+        do {
+            Transmission const& transmission = world.air.transmissions[next++];
+            std::size_t const first = found_.size();
+            visibility_.find_receivers(world, transmission.robot, transmission.emitters, transmission.range_mm, found_);
+            reached_.push_back(found_.size());
+            for (std::size_t k = first; k < found_.size(); ++k) {
+                world.mailboxes.expect_push(found_[k].robot);
+            }
+        } while (next < count && found_.size() < kReceiversAtOnce);
+        std::size_t first = 0;
+        for (std::size_t i = begin; i < next; ++i) {
+            std::size_t const end = reached_[i - begin];
+            deliver_one(world, static_cast<std::uint32_t>(i), std::span(found_).subspan(first, end - first), observer);
+            first = end;
+        }
     }
 }
 
 template <class Observer>
-void IrChannel::deliver_one(World& world, std::uint32_t index, Observer& observer) {
+void IrChannel::deliver_one(World& world, std::uint32_t index, std::span<Receiver const> receivers,
+                            Observer& observer) {
     Transmission const& transmission = world.air.transmissions[index];
-    IrSpec const& ir = world.spec_of(transmission.robot).ir;
-    auto const receivers =
-        visibility_.receivers(world, transmission.robot, transmission.emitters, transmission.range_mm);
     if (receivers.empty()) {
         observer.reached_nobody(index);
         return;
     }
-    auto const probability = static_cast<float>(reception_probability(ir.reception, transmission.message_bytes,
-                                                                      transmission.send_probability,
-                                                                      1.0 + static_cast<double>(receivers.size())));
+    std::uint32_t const category = world.robots.category[transmission.robot];
+    float const probability = reception_[category].probability(
+        world.categories[category].spec.robot->ir.reception, transmission.message_bytes, transmission.send_probability,
+        1 + static_cast<std::uint32_t>(receivers.size()));
     observer.reached(index, receivers.size(), probability);
+    std::span<std::byte const> const payload = world.air.payload_of(transmission);
     RandomStream& stream = world.robots.stream[transmission.robot];
     attempts_ += receivers.size();
     for (Receiver const& receiver : receivers) {
         if (stream.uniform() >= probability) {
-            observer.lost(world, transmission, receiver);
+            observer.lost(world, visibility_, transmission, receiver);
             continue;
         }
         ++receptions_;
-        std::uint8_t const faces = faces_of(world, transmission, receiver);
-        std::uint8_t queued = 0;
-        FrameHeader header = transmission.header;
-        for (unsigned face = 0; face < kFaceCount; ++face) {
-            if ((faces >> face & 1U) != 0) {
-                header.receiver_ir_index = static_cast<std::uint8_t>(face);
-                bool const has_room = world.mailboxes.push(receiver.robot, header, world.air.payload_of(transmission));
-                queued = static_cast<std::uint8_t>(queued + (has_room ? 1 : 0));
-            }
-        }
-        observer.received(world, receiver, faces, queued);
+        std::uint8_t const faces = visibility_.faces_of(world, receiver, transmission.range_mm);
+        unsigned const queued = world.mailboxes.push_copies(receiver.robot, transmission.header, payload, faces);
+        observer.received(world, receiver, faces, static_cast<std::uint8_t>(queued));
     }
 }
 

@@ -1,9 +1,13 @@
 // The air between the robots: takes what was sent in a step to the mailboxes of those who receive it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "comms/delivery_log.hpp"
+#include "comms/reception_table.hpp"
 #include "comms/visibility.hpp"
 #include "world/world.hpp"
 
@@ -25,9 +29,12 @@ private:
     template <class Observer>
     void deliver_all(World& world, Observer& observer);
     template <class Observer>
-    void deliver_one(World& world, std::uint32_t transmission, Observer& observer);
+    void deliver_one(World& world, std::uint32_t transmission, std::span<Receiver const> receivers, Observer& observer);
 
     Visibility visibility_;
+    std::vector<ReceptionTable> reception_;  // by category
+    std::vector<Receiver> found_;            // of some transmissions, one after the other
+    std::vector<std::size_t> reached_;       // ends of their receivers in found_
     std::uint64_t attempts_ = 0;
     std::uint64_t receptions_ = 0;
 };

@@ -36,13 +36,33 @@ void OutlineIndex::add(Polygon const& polygon, std::uint32_t outline) {
     box.max = {std::max(box.max.x, around.max.x), std::max(box.max.y, around.max.y)};
 }
 
-void OutlineIndex::update(World const& world) {
+bool OutlineIndex::have_moved(World const& world) {
+    std::size_t count = 0;
+    bool moved = false;
+    for (Outline const& outline : world.outlines) {
+        for (std::uint32_t i = outline.body; i < outline.body + outline.body_count; ++i, ++count) {
+            if (count == dots_.size()) {
+                dots_.emplace_back();
+                moved = true;
+            }
+            moved = moved || dots_[count] != world.bodies.position_mm[i];
+            dots_[count] = world.bodies.position_mm[i];
+        }
+    }
+    return moved;
+}
+
+bool OutlineIndex::update(World const& world) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     constexpr Box nothing{{infinity, infinity}, {-infinity, -infinity}};
     if (world.outlines.empty()) {
-        return;
+        return false;
     }
-    if (boxes_.empty()) {
+    bool const is_first = boxes_.empty();
+    if (!have_moved(world) && !is_first) {
+        return false;
+    }
+    if (is_first) {
         boxes_.assign(world.outlines.size(), nothing);
         for (std::uint32_t i = 0; i < world.outlines.size(); ++i) {
             for (Polygon const& polygon : world.outlines[i].polygons) {
@@ -62,6 +82,7 @@ void OutlineIndex::update(World const& world) {
         }
     }
     grid_.build(middles_, world.arena.bounds, 2.0F * kPieceMm, world.periodic);
+    return true;
 }
 
 std::span<OutlineIndex::Piece const> OutlineIndex::near(World const& world, Vec2 centre, float radius_mm) {

@@ -13,8 +13,8 @@ namespace pogosim {
 
 class OutlineIndex {
 public:
-    /// Takes the outlines as they are now. Call once per step before the queries.
-    void update(World const& world);
+    /// Takes the outlines as they are now. Call once per step before the queries. Returns whether any has changed.
+    bool update(World const& world);
 
     bool empty() const { return pieces_.empty(); }
 
@@ -32,6 +32,7 @@ public:
     std::span<Piece const> near(World const& world, Vec2 centre, float radius_mm);
 
 private:
+    bool have_moved(World const& world);
     void add(Polygon const& polygon, std::uint32_t outline);
 
     std::size_t standing_ = 0;      // pieces of outlines that never move, which come first
@@ -39,6 +40,7 @@ private:
     std::vector<Vec2> middles_;     // of the pieces
     std::vector<Box> boxes_;        // of the outlines
     float longest_half_mm_ = 0.0F;  // of all pieces
+    std::vector<Vec2> dots_;        // bodies of the membranes at the last update
     UniformGrid grid_;
     std::vector<Piece> found_;
 };

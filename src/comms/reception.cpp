@@ -1,7 +1,8 @@
 #include "comms/reception.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "base/exact_math.hpp"
 
 namespace pogosim {
 
@@ -15,13 +16,13 @@ double reception_probability(ReceptionSpec const& spec, double message_bytes, do
         case ReceptionLaw::constant:
             break;
         case ReceptionLaw::article: {
-            double const collisions = spec.beta * std::pow(p, spec.gamma) * std::pow(c, spec.delta);
-            probability = 1.0 / (spec.alpha + collisions * std::exp(spec.zeta * m) + spec.theta * p * c);
+            double const collisions = spec.beta * exact::pow(p, spec.gamma) * exact::pow(c, spec.delta);
+            probability = 1.0 / (spec.alpha + collisions * exact::exp(spec.zeta * m) + spec.theta * p * c);
             break;
         }
         case ReceptionLaw::power:
-            probability =
-                1.0 / (1.0 + spec.alpha * std::pow(m, spec.beta) * std::pow(p, spec.gamma) * std::pow(c, spec.delta));
+            probability = 1.0 / (1.0 + spec.alpha * exact::pow(m, spec.beta) * exact::pow(p, spec.gamma) *
+                                           exact::pow(c, spec.delta));
             break;
     }
     // Fitted parameters may leave the range, or the real numbers.

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include "base/memory.hpp"
 #include "geometry/polygon.hpp"
@@ -22,15 +23,6 @@ constexpr Vec2 in_frame_of(Vec2 v, Vec2 axis) {
     return {dot(axis, v), cross(axis, v)};
 }
 
-/// Grows with the angle of the direction from -180 to 180 degrees as -2 to 2, without trigonometry.
-float diamond_angle(Vec2 direction) {
-    float const side = direction.y / (std::abs(direction.x) + std::abs(direction.y));
-    if (direction.x >= 0.0F) {
-        return side;
-    }
-    return direction.y >= 0.0F ? 2.0F - side : -2.0F - side;
-}
-
 /// Index of the robot's outline. They are in the order of the robots.
 std::uint32_t outline_of(World const& world, std::uint32_t robot) {
     auto const found = std::ranges::lower_bound(world.outlines, robot, {}, &Outline::robot);
@@ -43,125 +35,155 @@ float emitter_radius_mm(World const& world, std::uint32_t robot) {
     return world.spec_of(robot).emitters == Emitters::rim ? world.bodies.radius_mm[world.robots.body[robot]] : 0.0F;
 }
 
-void Visibility::update(World const& world) {
-    Bodies const& bodies = world.bodies;
-    positions_.clear();
-    robots_.clear();
+void Visibility::start(World const& world) {
+    senders_.clear();
     largest_radius_mm_ = 0.0F;
     float longest_range_mm = 0.0F;
     for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
         RobotSpec const& spec = world.spec_of(i);
+        bool const is_outline = spec.emitters == Emitters::outline;
+        std::uint32_t const body = is_outline ? kNone : world.robots.body[i];
+        senders_.push_back({.body = body, .rim_mm = emitter_radius_mm(world, i)});
         longest_range_mm = std::max(longest_range_mm, spec.ir.longest_range_mm());
-        if (spec.emitters != Emitters::outline) {
-            std::uint32_t const body = world.robots.body[i];
-            robots_.push_back(i);
-            positions_.push_back(bodies.position_mm[body]);
-            largest_radius_mm_ = std::max(largest_radius_mm_, bodies.radius_mm[body]);
+        if (!is_outline) {
+            largest_radius_mm_ = std::max(largest_radius_mm_, world.bodies.radius_mm[body]);
         }
     }
-    float const reach_mm = longest_range_mm + 2.0F * largest_radius_mm_;
-    allocate_for([&] { return fmt::format("the neighbour grid of {} robots", positions_.size()); }, std::nullopt,
-                 [&] { grid_.build(positions_, world.arena.bounds, std::max(reach_mm, 1.0F), world.periodic); });
+    cells_.start(world, longest_range_mm + 2.0F * largest_radius_mm_);
+    cache_.clear(world.robots.size());
+    switched_off_ = world.switched_off;
+}
+
+void Visibility::update(World const& world) {
+    Structure const structure{.robots = world.robots.size(),
+                              .bodies = world.bodies.size(),
+                              .outlines = world.outlines.size(),
+                              .periodic = world.periodic,
+                              .ignore_occlusions = world.ignore_occlusions};
+    if (structure != structure_) {
+        structure_ = structure;
+        allocate_for([&] { return fmt::format("the neighbour grid of {} robots", world.robots.size()); }, std::nullopt,
+                     [&] { start(world); });
+    }
+    cells_.update(world);
+    note_switched(world);
     allocate_for([&] { return fmt::format("the outlines of {} walls and membranes", world.outlines.size()); },
-                 std::nullopt, [&] { outlines_.update(world); });
+                 std::nullopt,
+                 [&] {
+                     if (outlines_.update(world)) {
+                         cells_.note_change_everywhere();
+                     }
+                 });
 }
 
-void Visibility::gather_candidates(World const& world, std::uint32_t robot, float range_mm) {
-    std::uint32_t const body = world.robots.body[robot];
-    Vec2 const centre = world.bodies.position_mm[body];
-    Vec2 const axis = world.bodies.heading_dir[body];
-    float const reach_mm = emitter_radius_mm(world, robot) + range_mm;
-    candidates_.clear();
-    float const farthest_mm = reach_mm + largest_radius_mm_;
-    grid_.for_each_near(centre, farthest_mm, [&](std::uint32_t k, Vec2 position) {
-        Vec2 const offset = minimum_image(world, centre, position);
-        float const distance_mm2 = squared_length(offset);
-        std::uint32_t const other = robots_[k];
-        if (distance_mm2 > farthest_mm * farthest_mm || other == robot) {
-            return;
-        }
-        float const radius_mm = world.bodies.radius_mm[world.robots.body[other]];
-        float const limit_mm = reach_mm + radius_mm;
-        if (distance_mm2 <= limit_mm * limit_mm) {
-            candidates_.push_back({.robot = other,
-                                   .offset_mm = in_frame_of(offset, axis),
-                                   .radius_mm = radius_mm,
-                                   .nearest_mm2 = std::numeric_limits<float>::infinity(),
-                                   .from_emitter_mm = {},
-                                   .emitters = 0});
-        }
-    });
-}
-
-bool Visibility::is_covered(Sight const& sight) const {
-    return std::any_of(shadows_.begin(), shadows_.end(),
-                       [&](Interval const& s) { return s.low <= sight.low && sight.high <= s.high; });
-}
-
-void Visibility::cover(Sight const& sight) {
-    // Joins the new shadow with all those it touches; the rest stays.
-    Interval joined{sight.low, sight.high};
-    std::erase_if(shadows_, [&](Interval const& s) {
-        bool const touches = s.low <= joined.high && joined.low <= s.high;
-        if (touches) {
-            joined = {std::min(joined.low, s.low), std::max(joined.high, s.high)};
-        }
-        return touches;
-    });
-    shadows_.push_back(joined);
-}
-
-void Visibility::look(World const& world, std::uint32_t robot, int emitter, float range_mm) {
-    float const rim_mm = emitter_radius_mm(world, robot);
-    Vec2 const normal = kFaceNormals[static_cast<std::size_t>(emitter)];
-
-    // Everything in range, in front of the emitter unless occlusions are ignored.
-    sights_.clear();
-    for (std::uint32_t c = 0; c < candidates_.size(); ++c) {
-        Candidate const& candidate = candidates_[c];
-        Vec2 const seen = in_frame_of(candidate.offset_mm, normal) - Vec2{rim_mm, 0.0F};
-        float const distance_mm2 = squared_length(seen);
-        float const reach_mm = range_mm + candidate.radius_mm;
-        bool const in_front = seen.x >= 0.0F || world.ignore_occlusions;
-        if (in_front && distance_mm2 <= reach_mm * reach_mm) {
-            sights_.push_back(
-                {.distance_mm2 = distance_mm2, .low = 0, .high = 0, .candidate = c, .from_emitter_mm = seen});
-        }
+void Visibility::note_switched(World const& world) {
+    if (world.switched_off == switched_off_) {
+        return;
     }
+    std::vector<std::uint32_t> switched;
+    std::ranges::set_symmetric_difference(world.switched_off, switched_off_, std::back_inserter(switched));
+    for (std::uint32_t const robot : switched) {
+        cells_.note_change(robot);
+    }
+    switched_off_ = world.switched_off;
+}
 
-    // From near to far: what is not wholly in the shadow of visible robots is visible and casts a shadow.
-    if (!world.ignore_occlusions && sights_.size() > 1) {
-        std::sort(sights_.begin(), sights_.end(), [](Sight const& a, Sight const& b) {
-            return a.distance_mm2 != b.distance_mm2 ? a.distance_mm2 < b.distance_mm2 : a.candidate < b.candidate;
-        });
-        shadows_.clear();
-        std::erase_if(sights_, [&](Sight& sight) {
-            float const radius_mm = candidates_[sight.candidate].radius_mm;
-            float const sine2 = std::min(radius_mm * radius_mm / sight.distance_mm2, 1.0F);
-            Vec2 const half_width{std::sqrt(1.0F - sine2), std::sqrt(sine2)};
-            sight.low = diamond_angle(in_frame_of(sight.from_emitter_mm, half_width));
-            sight.high = diamond_angle(rotate(sight.from_emitter_mm, half_width));
-            if (is_covered(sight)) {
-                return true;
+std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_t robot, std::uint8_t emitters,
+                                                float range_mm) {
+    found_.clear();
+    find_receivers(world, robot, emitters, range_mm, found_);
+    return found_;
+}
+
+void Visibility::find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
+                                std::vector<Receiver>& receivers) {
+    if (range_mm <= 0.0F) {
+        return;
+    }
+    Sender const& sender = senders_[robot];
+    ReceiverCache::List const* const known = cache_.find(robot, emitters, range_mm);
+    if (known != nullptr && is_unchanged(world, known->changes, sender, range_mm)) {
+        auto const kept = cache_.receivers(*known);
+        receivers.insert(receivers.end(), kept.begin(), kept.end());
+        return;
+    }
+    std::size_t const first = receivers.size();
+    find_anew(world, robot, emitters, range_mm, receivers);
+    // Worth keeping where nothing moves.
+    if (is_unchanged(world, cells_.changes_before(), sender, range_mm)) {
+        std::span<Receiver> const found = std::span(receivers).subspan(first);
+        for (Receiver& receiver : found) {
+            receiver.faces = faces_of(world, receiver, range_mm);
+        }
+        cache_.store(robot, emitters, range_mm, cells_.changes(), found);
+    }
+}
+
+bool Visibility::is_unchanged(World const& world, std::uint32_t since, Sender const& sender, float range_mm) const {
+    if (sender.body == kNone) {
+        return cells_.is_unchanged(since);
+    }
+    return cells_.is_unchanged_near(since, world.bodies.position_mm[sender.body], farthest_mm(sender, range_mm));
+}
+
+void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
+                           std::vector<Receiver>& receivers) {
+    auto const first = static_cast<std::ptrdiff_t>(receivers.size());
+    if (senders_[robot].body != kNone) {
+        add_robots_in_view(world, robot, emitters, range_mm, receivers);
+        if (!outlines_.empty()) {
+            add_outlines_near(world, robot, emitters, range_mm, receivers);
+        }
+        std::sort(receivers.begin() + first, receivers.end(),
+                  [](Receiver const& a, Receiver const& b) { return a.robot < b.robot; });
+    } else if ((emitters & 1U) != 0) {
+        add_robots_near(world, outline_of(world, robot), range_mm, receivers);
+    }
+    if (!world.switched_off.empty()) {
+        receivers.erase(std::remove_if(receivers.begin() + first, receivers.end(),
+                                       [&](Receiver const& receiver) { return !is_alive(world, receiver.robot); }),
+                        receivers.end());
+    }
+}
+
+void Visibility::add_robots_in_view(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
+                                    std::vector<Receiver>& receivers) {
+    Sender const& sender = senders_[robot];
+    Vec2 const centre = world.bodies.position_mm[sender.body];
+    Vec2 const axis = world.bodies.heading_dir[sender.body];
+    float const reach_mm = sender.rim_mm + range_mm;
+    view_.clear();
+    cells_.for_each_run_near(
+        centre, farthest_mm(sender, range_mm), [&](std::span<NeighbourCells::Neighbour const> neighbours) {
+            view_.expect(neighbours.size());
+            for (NeighbourCells::Neighbour const& other : neighbours) {
+                Vec2 const offset = minimum_image(world, centre, other.position_mm);
+                float const limit_mm = reach_mm + other.radius_mm;
+                bool const is_near = squared_length(offset) <= limit_mm * limit_mm;
+                view_.add_if(is_near & (other.robot != robot), other.robot, in_frame_of(offset, axis), other.radius_mm);
             }
-            cover(sight);
-            return false;
         });
-    }
-
-    for (Sight const& sight : sights_) {
-        Candidate& candidate = candidates_[sight.candidate];
-        candidate.emitters |= 1U << static_cast<unsigned>(emitter);
-        if (sight.distance_mm2 < candidate.nearest_mm2) {
-            candidate.nearest_mm2 = sight.distance_mm2;
-            candidate.from_emitter_mm = rotate(sight.from_emitter_mm, normal);
+    for (EmitterView::Candidate const& seen : view_.look(emitters, sender.rim_mm, range_mm, world.ignore_occlusions)) {
+        if (seen.emitters != 0) {
+            receivers.push_back({.robot = seen.robot,
+                                 .from_emitter_mm = rotate(from_nearest_emitter_mm(seen, sender.rim_mm), axis),
+                                 .emitters = static_cast<std::uint8_t>(seen.emitters)});
         }
     }
 }
 
-void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm) {
-    std::uint32_t const body = world.robots.body[robot];
-    float const rim_mm = emitter_radius_mm(world, robot);
+std::uint8_t Visibility::faces_of(World const& world, Receiver const& receiver, float range_mm) const {
+    if (receiver.faces != 0) {
+        return receiver.faces;
+    }
+    Sender const& disk = senders_[receiver.robot];
+    return faces_that_see(in_frame_of(-receiver.from_emitter_mm, world.bodies.heading_dir[disk.body]), disk.rim_mm,
+                          range_mm);
+}
+
+void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
+                                   std::vector<Receiver>& receivers) {
+    auto const [body, rim_mm] = senders_[robot];
     outline_emitters_.assign(world.outlines.size(), 0);
     auto const pieces = outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm);
     for (unsigned emitter = 0; emitter < kFaceCount; ++emitter) {
@@ -179,10 +201,10 @@ void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std:
     }
     for (std::uint32_t i = 0; i < outline_emitters_.size(); ++i) {
         if (outline_emitters_[i] != 0) {
-            receivers_.push_back({.robot = world.outlines[i].robot,
-                                  .from_emitter_mm = {},
-                                  .faces = 1,
-                                  .emitters = outline_emitters_[i]});
+            receivers.push_back({.robot = world.outlines[i].robot,
+                                 .faces = 1,
+                                 .emitters = outline_emitters_[i],
+                                 .is_along_outline = true});
         }
     }
 }
@@ -218,81 +240,24 @@ std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std
     return static_cast<std::uint8_t>(faces);
 }
 
-void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm) {
+void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm,
+                                 std::vector<Receiver>& receivers) {
     Box const& box = outlines_.box(outline);
     Vec2 const middle = box.centre();
     Vec2 const half = 0.5F * box.size();
-    for (std::size_t k = 0; k < robots_.size(); ++k) {
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+        std::uint32_t const robot = cells_.robot(k);
         // A robot hears an outline no further than it reaches it itself.
-        float const reach_mm = std::min(range_mm, world.spec_of(robots_[k]).ir.range_mm);
+        float const reach_mm = std::min(range_mm, world.spec_of(robot).ir.range_mm);
         float const margin_mm = reach_mm + largest_radius_mm_;
-        Vec2 const offset = minimum_image(world, middle, positions_[k]);
+        Vec2 const offset = minimum_image(world, middle, cells_.position_mm(k));
         if (std::abs(offset.x) > half.x + margin_mm || std::abs(offset.y) > half.y + margin_mm) {
             continue;
         }
-        if (std::uint8_t const faces = faces_near(world, robots_[k], outline, reach_mm); faces != 0) {
-            receivers_.push_back({.robot = robots_[k], .from_emitter_mm = {}, .faces = faces, .emitters = 1});
+        if (std::uint8_t const faces = faces_near(world, robot, outline, reach_mm); faces != 0) {
+            receivers.push_back({.robot = robot, .faces = faces, .emitters = 1, .is_along_outline = true});
         }
     }
-}
-
-std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_t robot, std::uint8_t emitters,
-                                                float range_mm) {
-    receivers_.clear();
-    if (range_mm > 0.0F) {
-        find_receivers(world, robot, emitters, range_mm);
-    }
-    if (!world.switched_off.empty()) {
-        std::erase_if(receivers_, [&](Receiver const& receiver) { return !is_alive(world, receiver.robot); });
-    }
-    return receivers_;
-}
-
-void Visibility::find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm) {
-    if (world.spec_of(robot).emitters == Emitters::outline) {
-        if ((emitters & 1U) != 0) {
-            add_robots_near(world, outline_of(world, robot), range_mm);
-        }
-        return;
-    }
-    gather_candidates(world, robot, range_mm);
-    for (int emitter = 0; emitter < kFaceCount; ++emitter) {
-        if ((emitters >> emitter & 1) != 0) {
-            look(world, robot, emitter, range_mm);
-        }
-    }
-    Vec2 const axis = world.bodies.heading_dir[world.robots.body[robot]];
-    for (Candidate const& candidate : candidates_) {
-        if (std::isfinite(candidate.nearest_mm2)) {
-            receivers_.push_back({.robot = candidate.robot,
-                                  .from_emitter_mm = rotate(candidate.from_emitter_mm, axis),
-                                  .faces = 0,
-                                  .emitters = static_cast<std::uint8_t>(candidate.emitters)});
-        }
-    }
-    if (!outlines_.empty()) {
-        add_outlines_near(world, robot, emitters, range_mm);
-    }
-    std::sort(receivers_.begin(), receivers_.end(), [](auto const& a, auto const& b) { return a.robot < b.robot; });
-}
-
-std::uint8_t faces_that_see(World const& world, std::uint32_t receiver, Vec2 emitter_mm, float range_mm) {
-    std::uint32_t const body = world.robots.body[receiver];
-    float const rim_mm = emitter_radius_mm(world, receiver);
-    Vec2 const emitter = in_frame_of(emitter_mm, world.bodies.heading_dir[body]);
-    std::uint8_t faces = 0;
-    std::size_t best = 0;
-    for (std::size_t face = 0; face < kFaceCount; ++face) {
-        float const ahead = dot(kFaceNormals[face], emitter);
-        if (ahead > dot(kFaceNormals[best], emitter)) {
-            best = face;
-        }
-        Vec2 const from_face = emitter - rim_mm * kFaceNormals[face];
-        if (ahead >= rim_mm && squared_length(from_face) <= range_mm * range_mm) {
-            faces = static_cast<std::uint8_t>(faces | 1U << face);
-        }
-    }
-    return faces != 0 ? faces : static_cast<std::uint8_t>(1U << best);
 }
 
 }  // namespace pogosim

@@ -1,5 +1,6 @@
 #include "world/mailbox.hpp"
 
+#include <bit>
 #include <cassert>
 #include <cstring>
 
@@ -39,55 +40,82 @@ void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::byte
     }
 }
 
-Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes) : queues_(queue_sizes.size()) {
+Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes)
+    : queues_(queue_sizes.size()), far_(queue_sizes.size()), dropped_(queue_sizes.size()) {
     std::size_t total = 0;
     for (std::size_t i = 0; i < queues_.size(); ++i) {
-        Queue& queue = queues_[i];
-        queue.max_count = static_cast<std::uint32_t>(queue_sizes[i]);
-        queue.far_block = total;
-        queue.far_capacity = queue.max_count * (kHeaderBytes + max_payload_bytes);
-        total += queue.far_capacity;
+        queues_[i].max_count = static_cast<std::uint32_t>(queue_sizes[i]);
+        far_[i].block = total;
+        far_[i].capacity = queues_[i].max_count * (kHeaderBytes + max_payload_bytes);
+        total += far_[i].capacity;
     }
     far_blocks_ = std::make_unique_for_overwrite<std::byte[]>(total);
+}
+
+void Mailboxes::append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
+    // Once a message lies far, the next ones do too, so that all near ones are older.
+    bool const all_near = queue.waiting == queue.near.count;
+    if (all_near && queue.near.has_room(kHeaderBytes + payload.size(), kNearBytes)) {
+        queue.near.push(queue.near_block.data(), kNearBytes, header, payload);
+    } else {
+        FarQueue& far = far_[robot];
+        far.fifo.push(far_blocks_.get() + far.block, far.capacity, header, payload);
+    }
+    ++queue.waiting;
 }
 
 bool Mailboxes::push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
     assert(robot < queues_.size() && payload.size() == header.payload_length);
     Queue& queue = queues_[robot];
-    if (queue.near.count + queue.far.count == queue.max_count) {
-        ++queue.dropped;
+    if (queue.waiting == queue.max_count) {
+        ++dropped_[robot];
         return false;
     }
-    // Once a message lies far, the next ones do too, so that all near ones are older.
-    if (queue.far.count == 0 && queue.near.has_room(kHeaderBytes + payload.size(), kNearBytes)) {
-        queue.near.push(queue.near_block.data(), kNearBytes, header, payload);
-    } else {
-        queue.far.push(far_blocks_.get() + queue.far_block, queue.far_capacity, header, payload);
-    }
+    append(queue, robot, header, payload);
     return true;
+}
+
+unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader header, std::span<std::byte const> payload,
+                                unsigned faces) {
+    assert(robot < queues_.size() && payload.size() == header.payload_length);
+    Queue& queue = queues_[robot];
+    unsigned const before = queue.waiting;
+    for (; faces != 0; faces &= faces - 1) {
+        if (queue.waiting == queue.max_count) {
+            dropped_[robot] += static_cast<unsigned>(std::popcount(faces));
+            break;
+        }
+        header.receiver_ir_index = static_cast<std::uint8_t>(std::countr_zero(faces));
+        append(queue, robot, header, payload);
+    }
+    return queue.waiting - before;
 }
 
 bool Mailboxes::pop(std::size_t robot, FrameHeader& header, std::byte* payload) {
     Queue& queue = queues_[robot];
+    if (queue.waiting == 0) {
+        return false;
+    }
+    --queue.waiting;
     if (queue.near.count > 0) {
         queue.near.pop(queue.near_block.data(), header, payload);
-        return true;
+    } else {
+        FarQueue& far = far_[robot];
+        far.fifo.pop(far_blocks_.get() + far.block, header, payload);
     }
-    if (queue.far.count > 0) {
-        queue.far.pop(far_blocks_.get() + queue.far_block, header, payload);
-        return true;
-    }
-    return false;
+    return true;
 }
 
 std::array<std::span<std::byte const>, 2> Mailboxes::waiting(std::size_t robot) const {
     Queue const& queue = queues_[robot];
-    return {queue.near.bytes(queue.near_block.data()), queue.far.bytes(far_blocks_.get() + queue.far_block)};
+    FarQueue const& far = far_[robot];
+    return {queue.near.bytes(queue.near_block.data()), far.fifo.bytes(far_blocks_.get() + far.block)};
 }
 
 void Mailboxes::clear(std::size_t robot) {
+    queues_[robot].waiting = 0;
     queues_[robot].near = {};
-    queues_[robot].far = {};
+    far_[robot].fifo = {};
 }
 
 }  // namespace pogosim

@@ -49,8 +49,8 @@ struct TransmissionQueue {
 };
 
 /// Every robot's FIFO of received messages. Messages are stored one after the other in the robot's near block, a few
-/// cache lines next to its counters; the rest goes to its far block, which has room for a queue of messages of maximum
-/// length and takes no memory before it is used.
+/// cache lines that begin with its counters; the rest goes to its far block, which has room for a queue of messages of
+/// maximum length and takes no memory before it is used.
 class Mailboxes {
 public:
     Mailboxes() = default;
@@ -63,8 +63,15 @@ public:
     /// Appends a message, or counts it as dropped and returns false when the queue is full.
     bool push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
 
-    bool empty(std::size_t robot) const { return queues_[robot].near.count == 0 && queues_[robot].far.count == 0; }
-    int size(std::size_t robot) const { return static_cast<int>(queues_[robot].near.count + queues_[robot].far.count); }
+    /// Appends a copy for each of the faces (bit d: face d), lowest first, which its header then names. Returns how
+    /// many found room; the others count as dropped.
+    unsigned push_copies(std::size_t robot, FrameHeader header, std::span<std::byte const> payload, unsigned faces);
+
+    /// Has the robot's counters and the start of its near block brought into the cache: a push will follow soon.
+    void expect_push(std::size_t robot) const { __builtin_prefetch(&queues_[robot], 1); }
+
+    bool empty(std::size_t robot) const { return queues_[robot].waiting == 0; }
+    int size(std::size_t robot) const { return static_cast<int>(queues_[robot].waiting); }
 
     /// Takes the oldest message out; `payload` receives payload_length bytes. False when there is none.
     bool pop(std::size_t robot, FrameHeader& header, std::byte* payload);
@@ -75,7 +82,7 @@ public:
     void clear(std::size_t robot);
 
     /// Messages lost to full queues since the start.
-    std::uint64_t dropped(std::size_t robot) const { return queues_[robot].dropped; }
+    std::uint64_t dropped(std::size_t robot) const { return dropped_[robot]; }
 
 private:
     /// Messages in a block of bytes.
@@ -91,19 +98,29 @@ private:
         void pop(std::byte const* block, FrameHeader& header, std::byte* payload);
     };
 
-    static constexpr std::size_t kNearBytes = 192;
+    static constexpr std::size_t kCacheLine = 64;
+    static constexpr std::size_t kNearBytes = 4 * kCacheLine - sizeof(Fifo) - 2 * sizeof(std::uint32_t);
 
-    struct Queue {
-        Fifo near;
-        Fifo far;
+    /// All that most messages touch: a short one lies in the same cache line as the counters.
+    struct alignas(kCacheLine) Queue {
+        std::uint32_t waiting = 0;  // messages, near and far ones
         std::uint32_t max_count = 0;
-        std::uint64_t dropped = 0;
-        std::size_t far_block = 0;     // offset in far_blocks_
-        std::size_t far_capacity = 0;  // bytes
+        Fifo near;
         std::array<std::byte, kNearBytes> near_block;
     };
 
+    /// The newer ones of many or long messages.
+    struct FarQueue {
+        Fifo fifo;
+        std::size_t block = 0;     // offset in far_blocks_
+        std::size_t capacity = 0;  // bytes
+    };
+
+    void append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
+
     std::vector<Queue> queues_;
+    std::vector<FarQueue> far_;
+    std::vector<std::uint64_t> dropped_;
     std::unique_ptr<std::byte[]> far_blocks_;
 };
 

@@ -172,27 +172,26 @@ TEST(Visibility, WithoutOcclusionsTheGridFindsWhatAllPairsFind) {
 }
 
 TEST(Faces, EmitterStraightAheadIsSeenByTheFrontFaceOnly) {
-    World world = square_world();
-    add_robot(world, {500, 500});
-    EXPECT_EQ(faces_that_see(world, 0, {60, 0}, 80.0F), kFront);
-    EXPECT_EQ(faces_that_see(world, 0, {0, 60}, 80.0F), kRight);
-    EXPECT_EQ(faces_that_see(world, 0, {-60, 0}, 80.0F), kBack);
-    EXPECT_EQ(faces_that_see(world, 0, {0, -60}, 80.0F), kLeft);
+    EXPECT_EQ(faces_that_see({60, 0}, kRadius, 80.0F), kFront);
+    EXPECT_EQ(faces_that_see({0, 60}, kRadius, 80.0F), kRight);
+    EXPECT_EQ(faces_that_see({-60, 0}, kRadius, 80.0F), kBack);
+    EXPECT_EQ(faces_that_see({0, -60}, kRadius, 80.0F), kLeft);
 }
 
 TEST(Faces, EmitterOnTheDiagonalIsSeenByBothFacesBesideIt) {
     World world = square_world();
     add_robot(world, {500, 500}, kPi / 2.0F);  // front points down the screen, right to the left of it
-    EXPECT_EQ(faces_that_see(world, 0, {-50, 50}, 80.0F), kFront | kRight);
+    Visibility visibility;
+    visibility.update(world);
+    Receiver const receiver{.robot = 0, .from_emitter_mm = {50, -50}};
+    EXPECT_EQ(visibility.faces_of(world, receiver, 80.0F), kFront | kRight);
 }
 
 TEST(Faces, AtLeastOneFaceReceives) {
-    World world = square_world();
-    add_robot(world, {500, 500});
     // Close by on the diagonal, behind the plane of every face.
-    EXPECT_EQ(faces_that_see(world, 0, {20, 19}, 80.0F), kFront);
+    EXPECT_EQ(faces_that_see({20, 19}, kRadius, 80.0F), kFront);
     // Seen by the front face, but out of its reach.
-    EXPECT_EQ(faces_that_see(world, 0, {200, 0}, 80.0F), kFront);
+    EXPECT_EQ(faces_that_see({200, 0}, kRadius, 80.0F), kFront);
 }
 
 }  // namespace

@@ -145,22 +145,16 @@ class MailboxesPrinter:
 
     def __init__(self, value: gdb.Value) -> None:
         self.queues = elements(value["queues_"])
+        self.dropped = sum(int(dropped) for dropped in elements(value["dropped_"]))
 
     def to_string(self) -> str:
-        waiting = sum(self.waiting(queue) for queue in self.queues)
-        dropped = sum(int(queue["dropped"]) for queue in self.queues)
-        return f"{len(self.queues)} mailboxes, {waiting} messages, {dropped} dropped"
+        waiting = sum(int(queue["waiting"]) for queue in self.queues)
+        return f"{len(self.queues)} mailboxes, {waiting} messages, {self.dropped} dropped"
 
     def children(self) -> Children:
         for robot, queue in enumerate(self.queues):
-            if waiting := self.waiting(queue):
+            if waiting := int(queue["waiting"]):
                 yield f"[{robot}]", gdb.Value(waiting)
-
-    @staticmethod
-    def waiting(queue: gdb.Value) -> int:
-        """Messages in a queue: those of all its members that are FIFOs."""
-        fifos = [member for _, member in members(queue) if str(member.type.strip_typedefs()).endswith("::Fifo")]
-        return sum(int(fifo["count"]) for fifo in fifos)
 
 
 PLAIN = {gdb.TYPE_CODE_INT, gdb.TYPE_CODE_FLT, gdb.TYPE_CODE_BOOL, gdb.TYPE_CODE_ENUM}

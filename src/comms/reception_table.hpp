@@ -1,0 +1,41 @@
+// Reception probabilities that were asked for lately: the law's powers and exponentials cost more than all else that a
+// message in a quiet swarm does, and a category sends few kinds of messages to few sizes of clusters.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "comms/reception.hpp"
+
+namespace pogosim {
+
+class ReceptionTable {
+public:
+    /// See reception_probability(), whose values these are.
+    float probability(ReceptionSpec const& spec, std::uint16_t message_bytes, float send_probability,
+                      std::uint32_t cluster_size) {
+        Row& row = rows_[(cluster_size + 31U * message_bytes) % rows_.size()];
+        if (row.cluster_size != cluster_size || row.message_bytes != message_bytes ||
+            row.send_probability != send_probability) {
+            row = {.cluster_size = cluster_size,
+                   .message_bytes = message_bytes,
+                   .send_probability = send_probability,
+                   .probability =
+                       static_cast<float>(reception_probability(spec, message_bytes, send_probability, cluster_size))};
+        }
+        return row.probability;
+    }
+
+private:
+    struct Row {
+        std::uint32_t cluster_size = 0;  // 0: empty
+        std::uint16_t message_bytes = 0;
+        float send_probability = 0.0F;
+        float probability = 0.0F;
+    };
+
+    std::array<Row, 256> rows_;
+};
+
+}  // namespace pogosim
