@@ -2,7 +2,7 @@
 // file. Prints the real-time factor, microseconds per robot and step, the share of each stage, memory per robot, and a
 // hash of the final state, which must not depend on the machine's load. Best of several runs, each after a warm-up.
 //
-//     build/release/bench/bench_run_and_tumble [number of robots ...]
+//     build/release/bench/bench_run_and_tumble [--set KEY=VALUE] ... [number of robots ...]
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -11,7 +11,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
+#include <exception>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -45,15 +45,23 @@ double resident_bytes() {
     return static_cast<double>(pages_resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-Scenario scenario_of(int robots) {
+struct Options {
+    std::vector<int> sizes;              // numbers of robots
+    std::vector<std::string> overrides;  // of the configuration
+};
+
+Scenario scenario_of(int robots, std::vector<std::string> const& overrides) {
     std::string const source = POGOSIM_SOURCE_DIR;
-    return load_scenario(
-        source + "/conf/simple.yaml",
-        {.overrides = {fmt::format("objects.robots.nb={}", robots),
-                       fmt::format("arena_surface={}", robots * kAreaPerRobotMm2),
-                       "arena_file=" + source + "/arenas/square.csv", "initial_formation=random",
-                       "enable_data_logging=false", "enable_console_logging=false", "save_video_period=-1", "seed=1"},
-         .strict = true});
+    std::vector<std::string> all{fmt::format("objects.robots.nb={}", robots),
+                                 fmt::format("arena_surface={}", robots * kAreaPerRobotMm2),
+                                 "arena_file=" + source + "/arenas/square.csv",
+                                 "initial_formation=random",
+                                 "enable_data_logging=false",
+                                 "enable_console_logging=false",
+                                 "save_video_period=-1",
+                                 "seed=1"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    return load_scenario(source + "/conf/simple.yaml", {.overrides = all, .strict = true});
 }
 
 void step_or_die(Simulation& simulation) {
@@ -74,14 +82,15 @@ void warm_up(Simulation& simulation) {
 }
 
 /// A robot alone has all code and libraries loaded, which then counts for nobody's memory.
-void load_code() {
-    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(1), {});
+void load_code(Options const& options) {
+    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(1, options.overrides), {});
     warm_up(simulation);
 }
 
-Result run_once(int robots) {
+Result run_once(int robots, Options const& options) {
     double const bytes_before = resident_bytes();
-    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(robots), {.measure_stages = true});
+    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(robots, options.overrides),
+                          {.measure_stages = true});
     GuardedThread const thread(simulation.guard());  // as of a whole run, not of each step
     warm_up(simulation);
     StageClock const warm = simulation.stages();
@@ -112,34 +121,48 @@ void print(int robots, Result const& best) {
     fmt::print("   {:016x}\n", best.hash);
 }
 
-}  // namespace
+constexpr int kMostRobots = 10'000'000;
 
-int main(int argc, char** argv) {
-    start_logging({.quiet = true, .file = {}});
-    std::vector<int> sizes;
+/// Ends the program when the arguments are wrong.
+Options options_of(int argc, char** argv) {
+    auto const fail = [&](std::string const& what) {
+        fmt::print(stderr, "{}\nUsage: {} [--set KEY=VALUE] ... [number of robots, 1 to {} ...]\n", what, argv[0],
+                   kMostRobots);
+        std::exit(2);
+    };
+    Options options;
     for (int i = 1; i < argc; ++i) {
-        sizes.push_back(std::atoi(argv[i]));
+        std::string const argument = argv[i];
+        if (argument == "--set" && i + 1 < argc) {
+            options.overrides.emplace_back(argv[++i]);
+            continue;
+        }
+        int const robots = std::atoi(argument.c_str());
+        if (robots < 1 || robots > kMostRobots) {
+            fail(fmt::format("'{}' is no number of robots", argument));
+        }
+        options.sizes.push_back(robots);
     }
-    if (std::any_of(sizes.begin(), sizes.end(), [](int n) { return n < 1 || n > 10'000'000; })) {
-        fmt::print(stderr, "Usage: {} [number of robots, 1 to 10000000 ...]\n", argv[0]);
-        return 2;
+    if (options.sizes.empty()) {
+        options.sizes = {100, 1000, 10000};
     }
-    if (sizes.empty()) {
-        sizes = {100, 1000, 10000};
-    }
+    return options;
+}
+
+void measure(Options const& options) {
     fmt::print("{:>7} {:>12} {:>16} {:>12}   ", "robots", "x real time", "us/robot/step", "kB/robot");
     for (auto const name : kStageNames) {
         fmt::print("{:>10}", name);
     }
     fmt::print("   hash\n");
-    load_code();
-    for (int const robots : sizes) {
-        Result best = run_once(robots);
+    load_code(options);
+    for (int const robots : options.sizes) {
+        Result best = run_once(robots, options);
         for (int run = 1; run < kRuns; ++run) {
-            Result const next = run_once(robots);
+            Result const next = run_once(robots, options);
             if (next.hash != best.hash) {
                 fmt::print(stderr, "two runs of {} robots end in different states\n", robots);
-                return EXIT_FAILURE;
+                std::exit(EXIT_FAILURE);
             }
             // The first run says most about memory: later ones find some already there.
             double const bytes = best.bytes_per_robot;
@@ -147,6 +170,18 @@ int main(int argc, char** argv) {
             best.bytes_per_robot = bytes;
         }
         print(robots, best);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    start_logging({.quiet = true, .file = {}});
+    try {
+        measure(options_of(argc, argv));
+    } catch (std::exception const& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 2;
     }
     return EXIT_SUCCESS;
 }
