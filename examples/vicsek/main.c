@@ -16,7 +16,8 @@
 // seam of the arena, the heading follows the gyroscope. With no such light at all it starts from 0: then place the
 // robots in parallel (`aligned_random`).
 //
-// There is no avoidance of walls: the arena is periodic.
+// There is no avoidance of walls: the arena is periodic. Nor of robots: in one run of ten or so, robots of different
+// courses block each other and mill about one point for minutes, instead of flocking.
 //
 //     ./examples/vicsek/vicsek -c conf/vicsek.yaml
 #include <math.h>

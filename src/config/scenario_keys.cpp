@@ -44,8 +44,8 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"simulation_time", &Scenario::simulation_time_s, between(0, 1e9), "s", "Simulated duration of the run."},
         K{"time_step", &Scenario::time_step_s, above(0).up_to(1), "s", "Simulation step."},
         K{"physics_engine", one_of(&Scenario::physics_engine, engines), any(), "",
-          "What moves the objects. auto: the engine that suits most, box2d at present. disk: faster, moves disks "
-          "only."},
+          "What moves the objects. auto: disk where all bodies are disks, else box2d. disk: several times faster, "
+          "moves disks only. box2d: moves everything."},
         K{"seed", &Scenario::seed, any(), "", "Random seed; if omitted, each run draws a new one."},
         K{"user_code_timeout", &Scenario::user_code_timeout_s, between(0, 1e6), "s",
           "Limit on the processor time of one call to user code (excluding other threads of the program), and on its "

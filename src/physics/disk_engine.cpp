@@ -13,7 +13,10 @@
 #include "physics/assert_motion.hpp"
 #include "physics/coinciding_centres.hpp"
 #include "physics/containment.hpp"
-#include "physics/disk_solver.hpp"
+#include "physics/damping.hpp"
+#include "physics/disk_contacts.hpp"
+#include "physics/island_solver.hpp"
+#include "physics/islands.hpp"
 #include "physics/known_motion.hpp"
 #include "physics/near_pairs.hpp"
 #include "physics/near_walls.hpp"
@@ -33,27 +36,33 @@ constexpr float kSweptShare = 0.5F;
 class DiskEngine final : public PhysicsEngine {
 public:
     DiskEngine(World const& world, WallSpec const& walls)
-        : containment_(world), near_walls_(world, containment_.walls()), near_pairs_(world), solver_(world, walls) {
+        : containment_(world),
+          near_walls_(world, containment_.walls()),
+          near_pairs_(world),
+          contacts_(world, walls),
+          damping_(world.bodies),
+          islands_(world),
+          solver_(world) {
         Bodies const& bodies = world.bodies;
         if (bodies.size() > 0) {
             ordinary_mm_ = kSweptShare * std::ranges::min(bodies.radius_mm);
         }
-        is_damped_ = std::ranges::any_of(bodies.spec, [](BodySpec const& spec) {
-            return spec.linear_damping != 0.0F || spec.angular_damping != 0.0F;
-        });
+        for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+            if (!bodies.spec[i].fixed) {
+                movable_.push_back(i);
+            }
+        }
         known_.copy(bodies);
     }
 
     void advance(World& world) override {
         Bodies& bodies = world.bodies;
         take_over(world);
-        impose_commands(world);
+        bool const is_driven = impose_commands(world);
         auto const dt_s = static_cast<float>(world.time_step_s);
-        if (is_damped_) {
-            damp(bodies, dt_s);
-        }
+        damping_.begin_step(bodies, dt_s);
         float const fastest_mm_s = fastest(bodies);
-        if (fastest_mm_s == 0.0F && !turns(bodies) && !solver_.has_overlaps() && !moved_) {
+        if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_) {
             return;  // nothing moves, as in a swarm that only talks
         }
         moved_ = false;
@@ -61,19 +70,15 @@ public:
         if (!near_pairs_.covers(world, reach_mm)) {
             near_pairs_.build(world, reach_mm);
             near_walls_.build(world, containment_.walls(), near_pairs_.skin_mm());
+            contacts_.build(near_pairs_, near_walls_);
         }
-        solver_.find_contacts(world, near_pairs_, near_walls_, reach_mm);
-        starts_.clear();
-        for (std::uint32_t const body : solver_.touched()) {
-            starts_.push_back({body, bodies.position_mm[body]});
+        islands_.find(world, contacts_, reach_mm, kContactToleranceMm);
+        solve_islands(world, is_driven);
+        move_others(world, dt_s);
+        if (!fast_.empty()) {
+            hold_fast(world, dt_s);
         }
-        solver_.solve(world, near_walls_);
-        move_others(bodies, dt_s);
-        std::erase_if(starts_, [&](Start const& start) { return !is_fast(bodies, start.body, dt_s); });
-        if (!starts_.empty()) {
-            stop_at_impacts(world, starts_, dt_s);
-        }
-        hold_in_arena(world, dt_s);
+        damping_.end_step(bodies);
         known_.copy(bodies);
         assert_motion(bodies);
     }
@@ -85,44 +90,49 @@ public:
     }
 
 private:
-    /// Whether a body goes so far in the step that contacts may be too late for it.
-    bool is_fast(Bodies const& bodies, std::size_t body, float dt_s) const {
-        return squared_length(dt_s * bodies.velocity_mm_s[body]) > ordinary_mm_ * ordinary_mm_;
-    }
-
-    /// Bodies without a contact move on a straight line.
-    void move_others(Bodies& bodies, float dt_s) {
-        for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-            if (bodies.spec[i].fixed) {
-                continue;
-            }
-            if (!solver_.has_contact(i)) {
-                if (is_fast(bodies, i, dt_s)) {
-                    starts_.push_back({i, bodies.position_mm[i]});
-                }
-                bodies.position_mm[i] = bodies.position_mm[i] + dt_s * bodies.velocity_mm_s[i];
-                bodies.heading_rad[i] += dt_s * bodies.angular_velocity_rad_s[i];
-            }
-            if (solver_.has_contact(i) || bodies.angular_velocity_rad_s[i] != 0.0F) {
-                bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
+    void solve_islands(World& world, bool is_driven) {
+        has_overlaps_ = false;
+        for (Island const& island : islands_.islands()) {
+            if (island.is_active && solver_.solve(world, contacts_, islands_, island, is_driven)) {
+                has_overlaps_ = true;
             }
         }
     }
 
-    void hold_in_arena(World& world, float dt_s) {
+    /// Bodies without a contact move on a straight line. All are held inside the arena but for the fast ones, whose
+    /// starts are found.
+    void move_others(World& world, float dt_s) {
         Bodies& bodies = world.bodies;
-        for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-            Vec2& place_mm = bodies.position_mm[i];
-            if (bodies.spec[i].fixed) {
-                continue;
+        float const ordinary_mm_s = ordinary_mm_ / dt_s;
+        fast_.clear();
+        for (std::uint32_t const i : movable_) {
+            Vec2 const velocity_mm_s = bodies.velocity_mm_s[i];
+            float const spin_rad_s = bodies.angular_velocity_rad_s[i];
+            Vec2 place_mm = bodies.position_mm[i];
+            bool const has_contact = islands_.has_contact(i);
+            if (!has_contact) {
+                place_mm = place_mm + dt_s * velocity_mm_s;
+                bodies.heading_rad[i] += dt_s * spin_rad_s;
             }
-            if (world.periodic) {
+            if (has_contact || spin_rad_s != 0.0F) {
+                bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
+            }
+            if (squared_length(velocity_mm_s) > ordinary_mm_s * ordinary_mm_s) {
+                fast_.push_back({i, known_.position_mm(i)});
+            } else if (world.periodic) {
                 place_mm = wrapped(world, place_mm);
-            } else if (is_fast(bodies, i, dt_s)) {
-                place_mm = containment_.hold_fast(i, place_mm);
             } else {
                 place_mm = containment_.hold(i, place_mm);
             }
+            bodies.position_mm[i] = place_mm;
+        }
+    }
+
+    void hold_fast(World& world, float dt_s) {
+        stop_at_impacts(world, fast_, dt_s);
+        for (Start const& start : fast_) {
+            Vec2& place_mm = world.bodies.position_mm[start.body];
+            place_mm = world.periodic ? wrapped(world, place_mm) : containment_.hold_fast(start.body, place_mm);
         }
     }
 
@@ -147,30 +157,27 @@ private:
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
             containment_.start_from(i, bodies.position_mm[i]);
         }
+        known_.copy(bodies);
     }
 
-    static void impose_commands(World& world) {
+    /// Returns whether there were some.
+    static bool impose_commands(World& world) {
         Robots& robots = world.robots;
+        bool is_driven = false;
         for (std::size_t i = 0; i < robots.size(); ++i) {
             VelocityCommand& command = robots.command[i];
             if (!command.pending) {
                 continue;
             }
             command.pending = false;
+            is_driven = true;
             std::uint32_t const body = robots.body[i];
             if (!world.bodies.spec[body].fixed) {
                 world.bodies.velocity_mm_s[body] = command.velocity_mm_s;
                 world.bodies.angular_velocity_rad_s[body] = command.angular_velocity_rad_s;
             }
         }
-    }
-
-    static void damp(Bodies& bodies, float dt_s) {
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            BodySpec const& spec = bodies.spec[i];
-            bodies.velocity_mm_s[i] = (1.0F / (1.0F + dt_s * spec.linear_damping)) * bodies.velocity_mm_s[i];
-            bodies.angular_velocity_rad_s[i] /= 1.0F + dt_s * spec.angular_damping;
-        }
+        return is_driven;
     }
 
     static float fastest(Bodies const& bodies) {
@@ -188,12 +195,16 @@ private:
     Containment containment_;
     NearWalls near_walls_;
     NearPairs near_pairs_;
-    DiskSolver solver_;
+    DiskContacts contacts_;
+    Damping damping_;
+    Islands islands_;
+    IslandSolver solver_;
     KnownMotion known_;
-    std::vector<Start> starts_;  // of bodies with contacts or that are fast, in this step
-    float ordinary_mm_ = 1.0F;   // who goes further in a step is fast
-    bool is_damped_ = false;
-    bool moved_ = true;  // somebody was put elsewhere, perhaps into others
+    std::vector<std::uint32_t> movable_;  // bodies that are not fixed
+    std::vector<Start> fast_;             // bodies in this step
+    float ordinary_mm_ = 1.0F;            // who goes further in a step is fast
+    bool has_overlaps_ = false;           // some disks overlapped after the last step
+    bool moved_ = true;                   // somebody was put elsewhere, perhaps into others
 };
 
 }  // namespace

@@ -18,6 +18,8 @@ public:
     /// Takes back what others have written that is not finite. Returns the bodies with another pose, ascending.
     std::vector<std::uint32_t> find_moved(Bodies& bodies) const;
 
+    Vec2 position_mm(std::uint32_t body) const { return position_mm_[body]; }
+
     bool has_other_velocity(Bodies const& bodies, std::uint32_t body) const;
 
 private:

@@ -9,7 +9,7 @@ namespace pogosim {
 namespace {
 
 // Of the largest radius in the cells: a wider skin is built less often, and has more pairs.
-constexpr float kSkinShare = 0.3F;
+constexpr float kSkinShare = 0.6F;
 // Cells are as wide as two of the largest disks in them. Disks that are larger than this share of all are not in cells.
 constexpr double kInCells = 0.98;
 // Not many more cells than bodies.
@@ -69,14 +69,8 @@ bool NearPairs::covers(World const& world, float reach_mm) const {
     }
     float farthest2 = 0.0F;
     std::vector<Vec2> const& position_mm = world.bodies.position_mm;
-    if (world.periodic) {
-        for (std::size_t i = 0; i < position_mm.size(); ++i) {
-            farthest2 = std::max(farthest2, squared_length(minimum_image(world, built_mm_[i], position_mm[i])));
-        }
-    } else {
-        for (std::size_t i = 0; i < position_mm.size(); ++i) {
-            farthest2 = std::max(farthest2, squared_length(position_mm[i] - built_mm_[i]));
-        }
+    for (std::size_t i = 0; i < position_mm.size(); ++i) {
+        farthest2 = std::max(farthest2, squared_length(minimum_image(world, built_mm_[i], position_mm[i])));
     }
     return 2.0F * std::sqrt(farthest2) + reach_mm <= skin_mm_;
 }

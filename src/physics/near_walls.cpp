@@ -21,7 +21,7 @@ float distance(WallSide const& side, Vec2 point_mm) {
 
 }  // namespace
 
-std::optional<WallGap> gap_to(WallSide const& side, Vec2 point_mm) {
+std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm) {
     Vec2 const offset = point_mm - side.from_mm;
     float const t = dot(offset, side.along);
     if (t > side.length_mm) {
@@ -29,13 +29,13 @@ std::optional<WallGap> gap_to(WallSide const& side, Vec2 point_mm) {
     }
     if (t >= 0.0F) {
         float const distance_mm = dot(offset, side.normal);
-        return distance_mm >= 0.0F ? std::optional(WallGap{distance_mm, side.normal}) : std::nullopt;
+        return distance_mm >= 0.0F ? std::optional(Gap{distance_mm, side.normal}) : std::nullopt;
     }
     if (!side.has_corner || dot(offset, side.along_previous) <= 0.0F) {
         return std::nullopt;  // the previous edge's
     }
     float const far = length(offset);
-    return far > 0.0F ? WallGap{far, (1.0F / far) * offset} : WallGap{0.0F, side.normal};
+    return far > 0.0F ? Gap{far, (1.0F / far) * offset} : Gap{0.0F, side.normal};
 }
 
 NearWalls::NearWalls(World const& world, WallIndex const& walls) {

@@ -26,15 +26,15 @@ struct WallSide {
     bool has_corner;      // free space turns around `from_mm` by more than half a turn
 };
 
-/// What a wall is to a point in front of it.
-struct WallGap {
+/// What a thing is to a point outside of it.
+struct Gap {
     float distance_mm;
-    Vec2 normal;  // unit vector from the wall to the point
+    Vec2 normal;  // unit vector from the thing to the point
 };
 
 /// Nothing if another edge or corner of the same wall is nearer, or if the point is behind it: a body whose centre is
 /// on one side of a thin wall has nothing to do with its other side.
-std::optional<WallGap> gap_to(WallSide const& side, Vec2 point_mm);
+std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm);
 
 class NearWalls {
 public:

@@ -15,19 +15,22 @@ struct Engine {
     std::string (*why_unfit)(World const&);
 };
 
-/// The first one is the automatic choice.
+/// The automatic choice is the first one that can move what is in the world. The last one can move everything.
 std::array<Engine, 2> const& engines() {
     static std::array<Engine, 2> const table{{
-        {"box2d", make_box2d_engine, [](World const&) { return std::string(); }},
         {"disk", make_disk_engine, why_unfit_for_disk_engine},
+        {"box2d", make_box2d_engine, [](World const&) { return std::string(); }},
     }};
     return table;
 }
 
-Engine const& engine_named(std::string const& name) {
-    auto const found = std::ranges::find(engines(), name, &Engine::name);
-    assert(found != engines().end() || name == kAutomaticEngine);
-    return found != engines().end() ? *found : engines().front();
+Engine const& engine_for(std::string const& name, World const& world) {
+    auto const suits = [&](Engine const& engine) {
+        return name == kAutomaticEngine ? engine.why_unfit(world).empty() : engine.name == name;
+    };
+    auto const found = std::ranges::find_if(engines(), suits);
+    assert(found != engines().end());
+    return *found;
 }
 
 }  // namespace
@@ -41,16 +44,16 @@ std::vector<std::string> const& physics_engine_names() {
     return names;
 }
 
-std::string const& physics_engine_behind(std::string const& name) {
-    return engine_named(name).name;
+std::string const& physics_engine_behind(std::string const& name, World const& world) {
+    return engine_for(name, world).name;
 }
 
 std::string why_unfit(std::string const& name, World const& world) {
-    return engine_named(name).why_unfit(world);
+    return engine_for(name, world).why_unfit(world);
 }
 
 std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls) {
-    return engine_named(name).make(world, walls);
+    return engine_for(name, world).make(world, walls);
 }
 
 }  // namespace pogosim

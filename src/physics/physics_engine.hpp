@@ -30,14 +30,14 @@ public:
     virtual MotionLimits motion_limits() const = 0;
 };
 
-/// Stands for the engine that suits most.
+/// Stands for the fastest engine that can move what is in the world.
 inline constexpr std::string_view kAutomaticEngine = "auto";
 
 /// What make_physics_engine() knows: kAutomaticEngine, then the engines.
 std::vector<std::string> const& physics_engine_names();
 
-/// The engine that a name stands for: another one than `name` for kAutomaticEngine only.
-std::string const& physics_engine_behind(std::string const& name);
+/// The engine that a name stands for in this world: another one than `name` for kAutomaticEngine only.
+std::string const& physics_engine_behind(std::string const& name, World const& world);
 
 /// Why this engine cannot move what is in the world: "moves disks only, but ...". Empty if it can.
 std::string why_unfit(std::string const& name, World const& world);

@@ -252,7 +252,7 @@ std::optional<UserFailure> Simulation::start() {
     Thread const thread(*this);
     log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s, physics engine {}", seed_,
                 world_.robots.size(), controllers_.user_data_bytes(), step_count(), world_.time_step_s,
-                physics_engine_behind(scenario_.physics_engine));
+                physics_engine_behind(scenario_.physics_engine, world_));
     lighting_.update(world_);
     if (auto failure = call_user_code([this] { controllers_.start(); })) {
         return failure;

@@ -55,11 +55,14 @@ Pose pose_of(World const& world, Object const& object) {
             .heading_rad = is_rigid ? wrap_angle(world.bodies.heading_rad[object.body]) : 0.0F};
 }
 
-Vec2 minimum_image(World const& world, Vec2 a, Vec2 b) {
+Vec2 minimum_image_across(World const& world, Vec2 a, Vec2 b) {
     Vec2 d = b - a;
-    if (world.periodic) {
-        Vec2 const size = world.arena.bounds.size();
+    Vec2 const size = world.arena.bounds.size();
+    // Most points are nearer than half the size: nothing is to be rounded.
+    if (std::abs(d.x) > 0.49F * size.x) {
         d.x -= size.x * std::round(d.x / size.x);
+    }
+    if (std::abs(d.y) > 0.49F * size.y) {
         d.y -= size.y * std::round(d.y / size.y);
     }
     return d;

@@ -223,8 +223,13 @@ struct Pose {
 /// if it is not one rigid body.
 Pose pose_of(World const& world, Object const& object);
 
+/// Vector from `a` to `b` in a periodic world: the shortest one across the seams.
+Vec2 minimum_image_across(World const& world, Vec2 a, Vec2 b);
+
 /// Vector from `a` to `b`; the shortest one across the seam when the world is periodic.
-Vec2 minimum_image(World const& world, Vec2 a, Vec2 b);
+inline Vec2 minimum_image(World const& world, Vec2 a, Vec2 b) {
+    return world.periodic ? minimum_image_across(world, a, b) : b - a;
+}
 
 /// What has to be added to a point of a periodic world to bring it into the arena's bounding box; 0 inside.
 Vec2 offset_into_bounds(World const& world, Vec2 point_mm);

@@ -273,9 +273,9 @@ TEST(BadInput, MoreDotsThanIndicesAreRefused) {
 
 TEST(BadInput, UnknownPhysicsEngineIsRefusedWithTheNearestName) {
     EXPECT_EQ(load_error("physics_engine: box3d\n"),
-              "x.yaml:1: physics_engine: expected one of auto, box2d, disk, found 'box3d'; did you mean 'box2d'?");
+              "x.yaml:1: physics_engine: expected one of auto, disk, box2d, found 'box3d'; did you mean 'box2d'?");
     EXPECT_EQ(load_error("physics_engine: [box2d]\n"),
-              "x.yaml:1: physics_engine: expected one of auto, box2d, disk, found a list");
+              "x.yaml:1: physics_engine: expected one of auto, disk, box2d, found a list");
     EXPECT_EQ(load_error("physics_engine: box2d\n"), "no error");
     EXPECT_EQ(load_error("physics_engine: auto\n"), "no error");
 }

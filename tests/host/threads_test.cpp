@@ -1,5 +1,6 @@
 // Runs inside another process, by way of pogosim/host.h: on threads at once, each gives what it gives alone.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdint>
 #include <fstream>
@@ -28,7 +29,7 @@ struct Result {
 constexpr std::int64_t kSteps = 150;
 
 std::string written(std::string const& name, std::string const& text) {
-    std::string path = ::testing::TempDir() + name;
+    std::string path = ::testing::TempDir() + std::to_string(getpid()) + name;  // tests run side by side
     std::ofstream(path) << text;
     return path;
 }

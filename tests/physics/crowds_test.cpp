@@ -107,7 +107,7 @@ TEST_P(Crowds, RobotsThatAllPushToOneSideStayApart) {
         engine->advance(world);
         deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
     }
-    EXPECT_LT(deepest_mm, is_disk_engine() ? 1.0F : 6.0F);
+    EXPECT_LT(deepest_mm, is_disk_engine() ? 0.5F : 6.0F);
 }
 
 POGOSIM_FOR_EACH_ENGINE(Crowds);

@@ -51,11 +51,12 @@ TEST_P(Motion, DampedBodySlowsDownExponentially) {
     world.bodies.velocity_mm_s[0] = {100, 0};
     world.bodies.angular_velocity_rad_s[0] = 2.0F;
     run(world, 5.0);
-    // The engine's implicit step differs from the exponential by a factor of 1 - damping * time step / 2.
+    // Box2D's implicit step differs from the exponential by a factor of 1 - damping * time step / 2.
+    float const error = GetParam() == "disk" ? 1e-4F : 2e-3F;
     float const left = std::exp(-0.3F * 5.0F);
-    EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * left, 0.2F);
-    EXPECT_NEAR(world.bodies.angular_velocity_rad_s[0], 2.0F * left, 0.005F);
-    EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 100.0F / 0.3F * (1.0F - left), 1.0F);
+    EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * left, 100.0F * error);
+    EXPECT_NEAR(world.bodies.angular_velocity_rad_s[0], 2.0F * left, 2.5F * error);
+    EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 100.0F / 0.3F * (1.0F - left), 500.0F * error);
 }
 
 TEST_P(Motion, ElasticHeadOnCollisionSwapsTheVelocities) {

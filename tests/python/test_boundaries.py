@@ -98,11 +98,12 @@ def test_nobody_leaves_however_small_and_fast(tmp_path: Path, radius: float, spe
         assert not Outline(hole).contains_points(points).any()
 
 
-def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that_it_can(
+def test_speeds_that_box2d_cannot_follow_are_refused_with_the_largest_that_it_can(
     tmp_path: Path,
 ) -> None:
+    box2d = {"physics_engine": "box2d"}
     spin = "objects.robots.max_angular_speed"
-    result = run(example("run_and_tumble"), tmp_path, {spin: 1e4})
+    result = run(example("run_and_tumble"), tmp_path, {**box2d, spin: 1e4})
     assert result.code == 2
     assert (
         "objects.robots.max_angular_speed: at 10000 rad/s, robots turn up to 400 rad in a time_step of 0.01 s, more "
@@ -114,13 +115,14 @@ def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that
             run(
                 example("run_and_tumble"),
                 tmp_path,
-                {**accepted, "simulation_time": 0.1},
+                {**box2d, **accepted, "simulation_time": 0.1},
             ).code
             == 0
         )
 
     # A program of 5 Hz may have steps of 0.2 s.
     slow = {
+        **box2d,
         "objects.robots.max_linear_speed": 1e6,
         "time_step": 0.2,
         "parameters.loop_dt": 0.2,
@@ -130,6 +132,16 @@ def test_speeds_that_the_physics_cannot_follow_are_refused_with_the_largest_that
     assert "scene.yaml:" in result.errors
     assert "objects.robots.max_linear_speed: at 1000000 mm/s, robots move up to 200000 mm in a" in result.errors
     assert "Use at most 99000 mm/s, or a time_step of at most 0.0198 s" in result.errors
+
+
+def test_disk_engine_follows_any_speed(tmp_path: Path) -> None:
+    speeds = {"objects.robots.max_linear_speed": 1e6, "objects.robots.max_angular_speed": 1e4}
+    result = run(example("run_and_tumble"), tmp_path, {**speeds, "simulation_time": 5})
+    assert result.code == 0, result.text
+    places = result.frame()[["x", "y"]].to_numpy(dtype=np.float64)
+    outer, *_ = polygons(result)
+    assert len(places) > 0
+    assert Outline(outer).contains_points(places).all()
 
 
 def test_speeds_that_a_membrane_cannot_hold_back_are_refused_with_the_largest_that_it_can(tmp_path: Path) -> None:

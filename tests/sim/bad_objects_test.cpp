@@ -185,7 +185,8 @@ TEST(BadArenas, TooSmallForWalls) {
     Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
     Folder::write(
         "x.yaml",
-        "arena_file: square.csv\narena_surface: 0.5\nobjects:\n  lamp: {type: static_light, geometry: global}\n");
+        "arena_file: square.csv\narena_surface: 0.5\nphysics_engine: box2d\nobjects:\n  lamp: {type: static_light, "
+        "geometry: global}\n");
     EXPECT_EQ(error_of([] { Simulation const simulation(testing::test_program(), load_scenario("x.yaml", {}), {}); }),
               "x.yaml:2: arena_surface: the arena is too small to build walls: its corners lie less than 1 mm apart; "
               "enlarge it");

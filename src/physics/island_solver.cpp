@@ -1,0 +1,336 @@
+#include "physics/island_solver.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace pogosim {
+
+namespace {
+
+constexpr int kSubsteps = 4;
+// Passes through the contacts of an island end when none of them changes a gap at the end of the sub-step by more.
+constexpr float kConvergedMm = 0.005F;
+constexpr int kMostPasses = 8;
+// Slower impacts are inelastic.
+constexpr float kRestitutionThresholdMmS = 5.0F;
+// Soft constraint: natural frequency in parts of the rate of sub-steps, and damping ratio, see Catto, "Solver2D".
+constexpr float kStiffness = 0.25F;
+constexpr float kDampingRatio = 3.0F;
+constexpr float kFastestPushMmS = 500.0F;
+// Impacts may be this late.
+constexpr float kMostLateMm = 0.5F;
+
+// Smaller ones need no first guess of their impulses: a pass or two are enough.
+constexpr std::uint32_t kLargeIsland = 32;
+
+constexpr float kNever = std::numeric_limits<float>::max();
+constexpr std::uint32_t kMostBlocks = 64;
+
+float push_rate(float h_s) {
+    float const omega = 2.0F * std::numbers::pi_v<float> * kStiffness / h_s;
+    return omega / (2.0F * kDampingRatio + h_s * omega);
+}
+
+}  // namespace
+
+IslandSolver::IslandSolver(World const& world) : movers_(1), mover_(world.bodies.size()) {}
+
+std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body) {
+    std::uint32_t const known = mover_[body];
+    if (known < movers_.size() && movers_[known].body == body) {
+        return known;
+    }
+    auto const mover = static_cast<std::uint32_t>(movers_.size());
+    Bodies const& bodies = world.bodies;
+    Disk const& disk = contacts.disk(body);
+    mover_[body] = mover;
+    movers_.push_back({.position_mm = bodies.position_mm[body],
+                       .velocity_mm_s = bodies.velocity_mm_s[body],
+                       .heading_rad = bodies.heading_rad[body],
+                       .angular_velocity_rad_s = bodies.angular_velocity_rad_s[body],
+                       .radius_mm = disk.radius_mm,
+                       .inverse_mass = disk.inverse_mass,
+                       .inverse_inertia = disk.inverse_inertia,
+                       .body = body});
+    return mover;
+}
+
+void IslandSolver::gather(World const& world, DiskContacts const& contacts, Islands const& islands,
+                          Island const& island) {
+    block_shift_ = 0;
+    while ((island.contact_count - 1) >> block_shift_ >= kMostBlocks) {
+        ++block_shift_;
+    }
+    movers_.resize(1);
+    contacts_.clear();
+    pair_count_ = 0;
+    for (std::uint32_t link = island.first; link != kNone; link = islands.links()[link].next) {
+        std::uint32_t const index = islands.links()[link].contact;
+        NearContact const& near = contacts.near()[index];
+        bool const is_pair = index < contacts.pair_count();
+        std::uint32_t const a = mover_of(world, contacts, near.a);
+        std::uint32_t const b = is_pair ? mover_of(world, contacts, near.b) : kStill;
+        Vec2 seam_mm;
+        if (is_pair) {
+            ++pair_count_;
+            if (world.periodic) {
+                Vec2 const from_mm = movers_[b].position_mm;
+                Vec2 const to_mm = movers_[a].position_mm;
+                seam_mm = minimum_image(world, from_mm, to_mm) - (to_mm - from_mm);
+            }
+        }
+        std::uint64_t const block = std::uint64_t{1} << (contacts_.size() >> block_shift_);
+        movers_[a].blocks |= block;
+        movers_[b].blocks |= block;
+        contacts_.push_back({.a = a, .b = b, .near = index, .law = near.law, .seam_mm = seam_mm});
+    }
+    movers_[kStill].blocks = 0;
+}
+
+void IslandSolver::scatter(World& world) const {
+    Bodies& bodies = world.bodies;
+    for (std::size_t i = 1; i < movers_.size(); ++i) {
+        Mover const& mover = movers_[i];
+        bodies.position_mm[mover.body] = mover.position_mm;
+        bodies.velocity_mm_s[mover.body] = mover.velocity_mm_s;
+        bodies.heading_rad[mover.body] = mover.heading_rad;
+        bodies.angular_velocity_rad_s[mover.body] = mover.angular_velocity_rad_s;
+    }
+}
+
+/// What a contact demands in a sub-step: bodies that meet within it bounce at once, others come as near as they can,
+/// and those that overlap are pushed apart.
+void IslandSolver::demand(Contact& contact, float speed_mm_s, Times const& times) {
+    float const restitution = contact.law.restitution;
+    bool const bounces =
+        speed_mm_s < -kRestitutionThresholdMmS && restitution > 0.0F && contact.gap_mm + speed_mm_s * times.h_s <= 0.0F;
+    contact.normal_impulse = contact.tangent_impulse = 0.0F;
+    contact.latest_mm_s = kNever;
+    if (bounces) {
+        contact.least_mm_s = contact.relaxed_mm_s = -restitution * speed_mm_s;
+    } else if (contact.gap_mm > 0.0F) {
+        contact.least_mm_s = contact.relaxed_mm_s = -contact.gap_mm * times.per_h;
+        // Who is thrown here in this sub-step bounces in the next one, unless that were deep in the other body.
+        contact.latest_mm_s = restitution > 0.0F ? -(contact.gap_mm + kMostLateMm) * times.per_h : kNever;
+    } else {
+        contact.least_mm_s = std::min(-times.push_rate * contact.gap_mm, kFastestPushMmS);
+        contact.relaxed_mm_s = 0.0F;
+    }
+    contact.solved = 0;
+    if (speed_mm_s < contact.least_mm_s) {
+        mark(contact);
+    }
+}
+
+/// It has to be solved.
+void IslandSolver::mark(Contact& contact) {
+    contact.solved = -1;
+    dirty_ |= std::uint64_t{1} << (static_cast<std::size_t>(&contact - contacts_.data()) >> block_shift_);
+}
+
+/// Where the contacts are at the start of a sub-step, and what they demand.
+IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts const& contacts, Times const& times) {
+    Survey survey;
+    dirty_ = 0;
+    auto const add = [&](Contact& contact, Vec2 velocity_mm_s) {
+        float const speed_mm_s = dot(velocity_mm_s, contact.normal);
+        demand(contact, speed_mm_s, times);
+        survey.overlaps |= contact.gap_mm < -kContactToleranceMm;
+        survey.meets |= contact.gap_mm + kContactToleranceMm < -speed_mm_s * times.rest_s;
+    };
+    for (std::uint32_t i = 0; i < pair_count_; ++i) {
+        Contact& contact = contacts_[i];
+        Mover const& a = movers_[contact.a];
+        Mover const& b = movers_[contact.b];
+        Gap const gap = gap_to_centre(a.position_mm - b.position_mm + contact.seam_mm);
+        contact.normal = gap.normal;
+        contact.gap_mm = gap.distance_mm - contact.law.radius_mm;
+        add(contact, a.velocity_mm_s - b.velocity_mm_s);
+    }
+    for (std::uint32_t i = pair_count_; i < contacts_.size(); ++i) {
+        Contact& contact = contacts_[i];
+        Mover const& a = movers_[contact.a];
+        std::optional<Gap> const gap = contacts.gap_to_fixed(world, contact.near, a.position_mm);
+        // Without a gap, the disk is before another edge of the wall.
+        contact.normal = gap ? gap->normal : Vec2{};
+        contact.gap_mm = gap ? gap->distance_mm - contact.law.radius_mm : kNever;
+        add(contact, a.velocity_mm_s);
+    }
+    return survey;
+}
+
+/// Returns the change of the speed of separation.
+float IslandSolver::solve_contact(Contact& contact, float demanded_mm_s) {
+    Mover& a = movers_[contact.a];
+    Mover& b = movers_[contact.b];
+    Vec2 const normal = contact.normal;
+    Vec2 const velocity = a.velocity_mm_s - b.velocity_mm_s;
+    float const speed_mm_s = dot(velocity, normal);
+    bool const waits = speed_mm_s > contact.latest_mm_s && speed_mm_s < -kRestitutionThresholdMmS;
+    float const change_mm_s = waits ? 0.0F : demanded_mm_s - speed_mm_s;
+    float const normal_before = contact.normal_impulse;
+    contact.normal_impulse = std::max(normal_before + contact.law.normal_mass * change_mm_s, 0.0F);
+    float const push = contact.normal_impulse - normal_before;
+    if (push == 0.0F && contact.normal_impulse == 0.0F) {
+        return 0.0F;
+    }
+
+    // Coulomb friction turns the disks. The tangent is clockwise of the normal.
+    Vec2 const tangent{-normal.y, normal.x};
+    float const slip_mm_s =
+        dot(velocity, tangent) - a.radius_mm * a.angular_velocity_rad_s - b.radius_mm * b.angular_velocity_rad_s;
+    float const most = contact.law.friction * contact.normal_impulse;
+    float const tangent_before = contact.tangent_impulse;
+    contact.tangent_impulse = std::clamp(tangent_before - contact.law.tangent_mass * slip_mm_s, -most, most);
+    float const rub = contact.tangent_impulse - tangent_before;
+
+    Vec2 const impulse = push * normal + rub * tangent;
+    a.velocity_mm_s = a.velocity_mm_s + a.inverse_mass * impulse;
+    b.velocity_mm_s = b.velocity_mm_s - b.inverse_mass * impulse;
+    a.angular_velocity_rad_s -= a.inverse_inertia * a.radius_mm * rub;
+    b.angular_velocity_rad_s -= b.inverse_inertia * b.radius_mm * rub;
+    return std::abs(push) * contact.law.inverse_normal_mass;
+}
+
+/// `clean_block`: that of the contact if it has no others.
+void IslandSolver::solve_if_changed(Contact& contact, std::uint64_t clean_block, float h_s, bool pushes) {
+    Mover& a = movers_[contact.a];
+    Mover& b = movers_[contact.b];
+    if (std::max(a.changed, b.changed) <= contact.solved) {
+        return;
+    }
+    contact.solved = ++clock_;
+    if (h_s * solve_contact(contact, pushes ? contact.least_mm_s : contact.relaxed_mm_s) > kConvergedMm) {
+        a.changed = clock_;
+        b.changed = contact.b != kStill ? clock_ : 0;
+        dirty_ |= (a.blocks | b.blocks) & ~clean_block;
+    }
+}
+
+/// In both directions by turns: contacts are in the order of their places, walls last, so that the resistance of a wall
+/// reaches the crowd before it.
+void IslandSolver::solve_velocities(float h_s, bool pushes) {
+    for (int pass = 0; pass < kMostPasses && dirty_ != 0; ++pass) {
+        if (pass % 2 == 0) {
+            for (std::uint64_t due = dirty_; due != 0;) {
+                auto const block = static_cast<std::uint32_t>(std::bit_width(due)) - 1;
+                solve_block(block, /*backwards=*/true, h_s, pushes);
+                due = dirty_ & ((std::uint64_t{1} << block) - 1);
+            }
+        } else {
+            for (std::uint64_t due = dirty_; due != 0;) {
+                auto const block = static_cast<std::uint32_t>(std::countr_zero(due));
+                solve_block(block, /*backwards=*/false, h_s, pushes);
+                due = dirty_ & (~std::uint64_t{1} << block);
+            }
+        }
+    }
+}
+
+void IslandSolver::solve_block(std::uint32_t block, bool backwards, float h_s, bool pushes) {
+    std::uint64_t const bit = std::uint64_t{1} << block;
+    dirty_ &= ~bit;
+    if (block_shift_ == 0) {
+        solve_if_changed(contacts_[block], bit, h_s, pushes);
+        return;
+    }
+    // A contact leaves its block dirty for the others in it.
+    auto const count = static_cast<std::uint32_t>(contacts_.size());
+    std::uint32_t const first = block << block_shift_;
+    std::uint32_t const last = std::min(first + (1U << block_shift_), count);
+    for (std::uint32_t i = 0; i < last - first; ++i) {
+        solve_if_changed(contacts_[backwards ? last - 1 - i : first + i], 0, h_s, pushes);
+    }
+}
+
+void IslandSolver::move(float time_s) {
+    for (Mover& mover : movers_) {
+        mover.position_mm = mover.position_mm + time_s * mover.velocity_mm_s;
+        mover.heading_rad += time_s * mover.angular_velocity_rad_s;
+    }
+}
+
+/// Number of sub-steps before the one in which the first two meet, if nobody has to change its velocity before.
+int IslandSolver::substeps_to_impact(Times const& times) const {
+    float earliest_s = times.rest_s;
+    for (Contact const& contact : contacts_) {
+        float const speed_mm_s =
+            dot(movers_[contact.a].velocity_mm_s - movers_[contact.b].velocity_mm_s, contact.normal);
+        if (speed_mm_s < 0.0F && contact.gap_mm < -speed_mm_s * earliest_s) {
+            earliest_s = contact.gap_mm / -speed_mm_s;
+        }
+    }
+    return std::max(static_cast<int>(earliest_s * times.per_h), 1);
+}
+
+/// Warm starting. What has changed since is found by the passes.
+void IslandSolver::push_as_before(std::vector<float> const& driven_impulse) {
+    for (Contact& contact : contacts_) {
+        mark(contact);
+        contact.normal_impulse = driven_impulse[contact.near];
+        Mover& a = movers_[contact.a];
+        Mover& b = movers_[contact.b];
+        Vec2 const impulse = contact.normal_impulse * contact.normal;
+        a.velocity_mm_s = a.velocity_mm_s + a.inverse_mass * impulse;
+        b.velocity_mm_s = b.velocity_mm_s - b.inverse_mass * impulse;
+    }
+}
+
+void IslandSolver::keep_impulses(std::vector<float>& driven_impulse) const {
+    for (Contact const& contact : contacts_) {
+        driven_impulse[contact.near] = contact.normal_impulse;
+    }
+}
+
+bool IslandSolver::solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island,
+                         bool is_driven) {
+    gather(world, contacts, islands, island);
+    float const h_s = static_cast<float>(world.time_step_s) / kSubsteps;
+    Times times{.h_s = h_s, .rest_s = 0.0F, .per_h = 1.0F / h_s, .push_rate = push_rate(h_s)};
+    bool overlaps = false;
+    for (int substep = 0; substep < kSubsteps;) {
+        times.rest_s = static_cast<float>(kSubsteps - substep) * h_s;
+        Survey const survey = measure(world, contacts, times);
+        if (!survey.overlaps && !survey.meets) {
+            move(times.rest_s);
+            break;
+        }
+        if (dirty_ == 0) {
+            int const free = std::min(substeps_to_impact(times), kSubsteps - substep);
+            move(static_cast<float>(free) * h_s);
+            substep += free;
+            continue;
+        }
+        clock_ = 0;
+        for (Mover& mover : movers_) {
+            mover.changed = 0;
+        }
+        bool const has_guess = is_driven && substep == 0 && island.contact_count >= kLargeIsland;
+        if (has_guess) {
+            push_as_before(contacts.driven_impulse());
+        }
+        solve_velocities(h_s, /*pushes=*/true);
+        if (has_guess) {
+            keep_impulses(contacts.driven_impulse());
+        }
+        move(h_s);
+        if (survey.overlaps) {
+            for (Contact& contact : contacts_) {
+                if (contact.gap_mm < 0.0F) {
+                    mark(contact);
+                }
+            }
+            solve_velocities(h_s, /*pushes=*/false);
+            overlaps = overlaps || substep + 1 == kSubsteps;
+        }
+        ++substep;
+    }
+    scatter(world);
+    return overlaps;
+}
+
+}  // namespace pogosim

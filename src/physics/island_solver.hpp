@@ -1,0 +1,105 @@
+// Moves the bodies of one island of contacts by a time step, in sub-steps.
+//
+// Sequential impulses with accumulated clamping: E. Catto, "Iterative dynamics with temporal coherence", Game
+// Developers Conference 2005. Sub-steps: M. Macklin et al., "Small steps in physics simulation", Symposium on Computer
+// Animation 2019. Overlaps are pushed apart by soft constraints, whose speed is taken back after the positions have
+// moved ("relaxation"), so that they add no energy: E. Catto, "Solver2D" (2024).
+//
+// The solver works on a copy, in which the bodies and contacts of the island lie side by side, and looks again only at
+// contacts whose bodies have changed their velocities since it looked last.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/disk_contacts.hpp"
+#include "physics/islands.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Smaller overlaps, mm, may stay.
+inline constexpr float kContactToleranceMm = 0.05F;
+
+class IslandSolver {
+public:
+    explicit IslandSolver(World const& world);
+
+    /// Moves the bodies of an island by one time step: poses, but for heading_dir, and velocities. Returns whether some
+    /// of them overlap in the end. `is_driven`: motors have just changed velocities.
+    bool solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island, bool is_driven);
+
+private:
+    struct Mover {
+        Vec2 position_mm;
+        Vec2 velocity_mm_s;
+        float heading_rad = 0.0F;
+        float angular_velocity_rad_s = 0.0F;
+        float radius_mm = 0.0F;
+        float inverse_mass = 0.0F;
+        float inverse_inertia = 0.0F;
+        std::uint32_t body = kNone;
+        std::uint64_t blocks = 0;  // that have a contact of it, see dirty_
+        std::int32_t changed = 0;  // when a contact last changed its velocity, on the clock of the sub-step
+    };
+
+    struct Contact {
+        std::uint32_t a;     // into movers_
+        std::uint32_t b;     // the same; kStill: something fixed
+        std::uint32_t near;  // into DiskContacts::near()
+        ContactLaw law;
+        Vec2 seam_mm;   // to be added to the way from `b` to `a` in a periodic world
+        Vec2 normal{};  // to `a`, from `b`
+        float gap_mm = 0.0F;
+        float least_mm_s = 0.0F;    // speed of separation that it demands in this sub-step
+        float relaxed_mm_s = 0.0F;  // the same once overlaps have been pushed apart
+        float latest_mm_s = 0.0F;   // faster impacts than this, which is negative, cannot wait for the next sub-step
+        float normal_impulse = 0.0F;
+        float tangent_impulse = 0.0F;
+        std::int32_t solved = 0;  // when, on the clock of the sub-step; -1: never, and it demands something
+    };
+
+    /// Of a sub-step, and what follows from it.
+    struct Times {
+        float h_s;
+        float rest_s;     // of the whole step
+        float per_h;      // 1/s
+        float push_rate;  // speed, per mm of overlap, with which a soft constraint pushes, 1/s
+    };
+
+    /// What the contacts say at the start of a sub-step.
+    struct Survey {
+        bool overlaps = false;
+        bool meets = false;  // before the end of the step, if nobody turns
+    };
+
+    static constexpr std::uint32_t kStill = 0;
+
+    std::uint32_t mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body);
+    void gather(World const& world, DiskContacts const& contacts, Islands const& islands, Island const& island);
+    void scatter(World& world) const;
+    Survey measure(World const& world, DiskContacts const& contacts, Times const& times);
+    void demand(Contact& contact, float speed_mm_s, Times const& times);
+    int substeps_to_impact(Times const& times) const;
+    void move(float time_s);
+    void push_as_before(std::vector<float> const& driven_impulse);
+    void keep_impulses(std::vector<float>& driven_impulse) const;
+    void mark(Contact& contact);
+    void solve_velocities(float h_s, bool pushes);
+    void solve_block(std::uint32_t block, bool backwards, float h_s, bool pushes);
+    void solve_if_changed(Contact& contact, std::uint64_t clean_block, float h_s, bool pushes);
+    float solve_contact(Contact& contact, float demanded_mm_s);
+
+    std::vector<Mover> movers_;  // the first one stands for all that is fixed
+    std::vector<Contact> contacts_;
+    std::uint32_t pair_count_ = 0;  // contacts of two movers, which come first
+
+    // Contacts lie in up to 64 blocks of 2^block_shift_. A dirty block has contacts to look at again.
+    std::uint64_t dirty_ = 0;
+    std::uint32_t block_shift_ = 0;
+    std::int32_t clock_ = 0;  // counts solved contacts in a sub-step
+
+    std::vector<std::uint32_t> mover_;  // of each body; true if movers_ has it there
+};
+
+}  // namespace pogosim

@@ -1,0 +1,59 @@
+// Bodies that touch, directly or through others, are an island: D. Baraff, "Rigid body simulation", SIGGRAPH course
+// notes 1997. What happens in one island has nothing to do with the others within a time step. Walls and fixed bodies
+// do not connect those that touch them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/disk_contacts.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Contacts of one island: a list in Islands::links().
+struct Island {
+    std::uint32_t first = kNone;
+    std::uint32_t last = kNone;
+    std::uint32_t contact_count = 0;
+    bool is_active = false;  // somebody touches within this step
+};
+
+struct IslandLink {
+    std::uint32_t contact;  // into DiskContacts::near()
+    std::uint32_t next;     // into Islands::links(); kNone: the last one
+};
+
+class Islands {
+public:
+    explicit Islands(World const& world);
+
+    /// Finds the islands of bodies whose gaps are less than `reach_mm` now. `tolerance_mm`: who overlaps by less at the
+    /// end of the step does not touch.
+    void find(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm);
+
+    /// In the order of their first contacts. Contacts of each are in the order of DiskContacts::near().
+    std::span<Island const> islands() const { return islands_; }
+    std::span<IslandLink const> links() const { return links_; }
+
+    /// Whether the body is in an active island.
+    bool has_contact(std::uint32_t body) const { return has_contact_[body] != 0; }
+
+private:
+    std::uint32_t root_of(std::uint32_t body);
+    void find_pairs(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm);
+    void find_fixed(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm);
+    void link(DiskContacts const& contacts);
+    void mark_bodies(DiskContacts const& contacts);
+
+    std::vector<std::uint32_t> alone_;   // 0, 1, 2 ...
+    std::vector<std::uint32_t> parent_;  // of each body, in the forest of islands
+    std::vector<std::uint32_t> island_;  // of each root; kNone: none
+    std::vector<std::uint8_t> has_contact_;
+    std::vector<IslandLink> links_;    // in the order of DiskContacts::near()
+    std::vector<std::uint8_t> meets_;  // of each link: they touch within this step
+    std::vector<Island> islands_;
+};
+
+}  // namespace pogosim
