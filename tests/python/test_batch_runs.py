@@ -16,8 +16,8 @@ from batches import batch, ended, results, script, simulators_in, start_batch, w
 from batches import write_options as write
 from pogosim.utils import load_dataframe
 
-# Long enough to be killed on the way: some tenths of a second of wall-clock time.
-LONG: dict[str, object] = {"simulation_time": 1000.0, "save_data_period": 10.0}
+# Long enough to be killed on the way: a second of wall-clock time.
+LONG: dict[str, object] = {"simulation_time": 4000.0, "save_data_period": 40.0}
 RUNS = ("-r", "3", "-j", "2")
 
 INTERRUPTED = "pogobatch: interrupted; finished runs are kept in tmp: the same command continues"
