@@ -10,7 +10,7 @@ namespace pogosim {
 
 namespace {
 
-thread_local bool is_background_thread = false;
+thread_local char const* activity_of_thread = nullptr;
 std::atomic<bool> has_crashed = false;
 
 /// As long as this lives, the thread takes no signals, and neither do those it starts.
@@ -34,16 +34,16 @@ private:
 
 }  // namespace
 
-std::thread start_background_thread(std::function<void()> body) {
+std::thread start_background_thread(char const* activity, std::function<void()> body) {
     BlockedSignals const during_the_start;  // threads inherit the mask
-    return std::thread([body = std::move(body)] {
-        is_background_thread = true;
+    return std::thread([activity, body = std::move(body)] {
+        activity_of_thread = activity;
         body();
     });
 }
 
-bool on_background_thread() {
-    return is_background_thread;
+char const* background_activity() {
+    return activity_of_thread;
 }
 
 void note_crash_of_background_thread() {

@@ -7,11 +7,12 @@
 namespace pogosim {
 
 /// Runs `body`, which must not throw, in a thread that takes no signals from outside: Ctrl-C and timers are for the
-/// thread that runs the robots. Crashes are still reported. Throws std::system_error if the system has no thread left.
-std::thread start_background_thread(std::function<void()> body);
+/// thread that runs the robots. Crashes are still reported. `activity`, a literal: what the thread does, for messages,
+/// "drawing pictures". Throws std::system_error if the system has no thread left.
+std::thread start_background_thread(char const* activity, std::function<void()> body);
 
-/// True in a thread that was started so.
-bool on_background_thread();
+/// What a thread that was started so does; null in all others.
+char const* background_activity();
 
 /// A thread that was started so has crashed, and has been stopped where it was: nobody must wait for it. For signal
 /// handlers.

@@ -24,7 +24,8 @@ void set(Node& map, std::string_view key, Node value) {
 }  // namespace
 
 ConfigurationText configuration_text(Scenario const& scenario, RunValues const& run) {
-    // Nothing from the command line but the seed: with or without window or progress bar, the bytes are the same.
+    // Nothing from the command line but the seed: with or without window or progress bar, and with any number of
+    // threads, the bytes are the same.
     Node written = source_of(scenario).tree;
     Node resolved = source_of(scenario).values;
     for (Node* const configuration : {&written, &resolved}) {
@@ -33,6 +34,7 @@ ConfigurationText configuration_text(Scenario const& scenario, RunValues const& 
         set(*configuration, "GUI", value_node(scenario.view.gui));
         set(*configuration, "progress_bar", value_node(false));
         set(*configuration, "mm_to_pixels", plain_node(fmt::format("{}", run.mm_to_pixels)));
+        std::erase_if(configuration->entries, [](auto const& entry) { return entry.key == "threads"; });
     }
     set(resolved, "time_step", plain_node(fmt::format("{}", run.time_step_s)));
     set(resolved, "physics_engine", plain_node(run.physics_engine));

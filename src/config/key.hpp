@@ -56,9 +56,9 @@ Choice<T> one_of(E T::*member, NamedValues<E> const& named, ChoiceRule const& ru
 }
 
 /// A member that takes a number, or a word in place of one.
-template <class T>
+template <class T, class Number = double>
 struct NumberOr {
-    std::optional<double> T::*member;  // empty: the word stands there
+    std::optional<Number> T::*member;  // empty: the word stands there
     std::string_view word;
 };
 
@@ -71,7 +71,7 @@ template <class T>
 using Field = std::variant<bool T::*, int T::*, std::int64_t T::*, float T::*, double T::*, std::string T::*, Vec2 T::*,
                            IntRange T::*, std::optional<float> T::*, std::optional<std::uint32_t> T::*,
                            std::optional<std::array<float, 3>> T::*, std::optional<std::vector<std::string>> T::*,
-                           Choice<T>, NumberOr<T>, Elsewhere>;
+                           Choice<T>, NumberOr<T>, NumberOr<T, int>, Elsewhere>;
 
 /// One line of a table.
 template <class T>
@@ -136,8 +136,8 @@ KeyDescription describe(Key<T> const& key, T const& defaults) {
                        description.expected = names_text(choice.names);
                        description.default_text = key.required ? "" : choice.current(defaults);
                    },
-                   [&](NumberOr<T> const& field) {
-                       description.expected = expected_text(Limits{key.range, key.unit}, double{}) + ", or '" +
+                   [&]<class Number>(NumberOr<T, Number> const& field) {
+                       description.expected = expected_text(Limits{key.range, key.unit}, Number{}) + ", or '" +
                                               std::string(field.word) + "'";
                        auto const& number = defaults.*field.member;
                        description.default_text = number ? value_text(*number) : std::string(field.word);

@@ -143,10 +143,11 @@ void MapReader::read_one(Key<T> const& key, bool is_used, T& into) {
                            choice.set(into, *index);
                        }
                    },
-                   [&](NumberOr<T> const& field) {
+                   [&]<class Number>(NumberOr<T, Number> const& field) {
                        if (value->kind != Node::Kind::null) {
-                           into.*field.member = number_or_word(place, limits, field.word, known_.back().expected);
-                           warn_of_slips(place, limits, /*is_integer=*/false);
+                           auto const number = number_or_word(place, limits, field.word, known_.back().expected);
+                           into.*field.member = number ? std::optional(static_cast<Number>(*number)) : std::nullopt;
+                           warn_of_slips(place, limits, kReadsIntegers<Number>);
                        }
                    },
                    [](Elsewhere const&) {},
@@ -178,7 +179,7 @@ Node MapReader::value_of(Key<T> const& key, T const& from) const {
                               std::string const name = choice.current(from);
                               return name.empty() ? Node() : plain_node(name);
                           },
-                          [&](NumberOr<T> const& field) {
+                          [&]<class Number>(NumberOr<T, Number> const& field) {
                               auto const& number = from.*field.member;
                               return number ? value_node(*number) : plain_node(std::string(field.word));
                           },

@@ -84,6 +84,9 @@ struct OutputConfig {
     LogFormat log_format = LogFormat::dated;
 };
 
+/// Threads of a run.
+inline constexpr int kMostThreads = 256;
+
 struct Scenario {
     std::filesystem::path file;                       // the configuration; relative names are also looked for beside it
     std::string arena_file;                           // needed
@@ -96,6 +99,7 @@ struct Scenario {
     double simulation_time_s = 100.0;
     double time_step_s = 0.01;
     std::string physics_engine = "auto";  // one of physics_engine_names()
+    std::optional<int> threads = 1;       // absent: as many as the number of objects is worth
     std::optional<std::uint32_t> seed;    // absent: drawn from the system
     double user_code_timeout_s = 10.0;    // processor time one call of user code may take; 0: no limit
     int light_map_columns = 100;

@@ -46,6 +46,9 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"physics_engine", one_of(&Scenario::physics_engine, engines), any(), "",
           "What moves the objects. auto: disk where all bodies are disks, else box2d. disk: several times faster, "
           "moves disks only. box2d: moves everything."},
+        K{"threads", NumberOr<Scenario, int>{&Scenario::threads, "auto"}, between(1, kMostThreads), "",
+          "Threads that share the work of a run; results are the same with any number. auto: one for every 2000 "
+          "objects, up to the number of processors. Many runs at a time are faster with one thread each."},
         K{"seed", &Scenario::seed, any(), "", "Random seed; if omitted, each run draws a new one."},
         K{"user_code_timeout", &Scenario::user_code_timeout_s, between(0, 1e6), "s",
           "Limit on the processor time of one call to user code (excluding other threads of the program), and on its "

@@ -422,7 +422,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls) {
+std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls, WorkerPool& /*workers*/) {
     return std::make_unique<Box2dEngine>(world, walls);
 }
 

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/worker_pool.hpp"
 #include "physics/assert_motion.hpp"
 #include "physics/coinciding_centres.hpp"
 #include "physics/containment.hpp"
@@ -32,17 +35,21 @@ constexpr float kReserve = 1.5F;
 constexpr float kLeastReachMm = 0.5F;
 // Who moves further than this share of the smallest radius in a step is swept.
 constexpr float kSweptShare = 0.5F;
+// Of a range that one worker takes.
+constexpr std::uint32_t kLeastIslands = 64;
+constexpr std::uint32_t kLeastBodies = 1024;
 
 class DiskEngine final : public PhysicsEngine {
 public:
-    DiskEngine(World const& world, WallSpec const& walls)
-        : containment_(world),
+    DiskEngine(World const& world, WallSpec const& walls, WorkerPool& workers)
+        : workers_(workers),
+          containment_(world),
           near_walls_(world, containment_.walls()),
           near_pairs_(world),
           contacts_(world, walls),
           damping_(world.bodies),
           islands_(world),
-          solver_(world) {
+          solvers_(workers.size(), IslandSolver(world)) {
         Bodies const& bodies = world.bodies;
         if (bodies.size() > 0) {
             ordinary_mm_ = kSweptShare * std::ranges::min(bodies.radius_mm);
@@ -67,12 +74,12 @@ public:
         }
         moved_ = false;
         float const reach_mm = 2.0F * std::min(std::max(kReserve * fastest_mm_s * dt_s, kLeastReachMm), ordinary_mm_);
-        if (!near_pairs_.covers(world, reach_mm)) {
-            near_pairs_.build(world, reach_mm);
+        if (!near_pairs_.covers(world, reach_mm, workers_)) {
+            near_pairs_.build(world, reach_mm, workers_);
             near_walls_.build(world, containment_.walls(), near_pairs_.skin_mm());
             contacts_.build(near_pairs_, near_walls_);
         }
-        islands_.find(world, contacts_, reach_mm, kContactToleranceMm);
+        islands_.find(world, contacts_, {.reach_mm = reach_mm, .tolerance_mm = kContactToleranceMm}, workers_);
         solve_islands(world, is_driven);
         move_others(world, dt_s);
         if (!fast_.empty()) {
@@ -90,46 +97,64 @@ public:
     }
 
 private:
+    /// Islands have nothing to do with each other, so that nobody knows who solved which.
     void solve_islands(World& world, bool is_driven) {
-        has_overlaps_ = false;
-        for (Island const& island : islands_.islands()) {
-            if (island.is_active && solver_.solve(world, contacts_, islands_, island, is_driven)) {
-                has_overlaps_ = true;
+        std::span<Island const> const islands = islands_.islands();
+        auto const count = static_cast<std::uint32_t>(islands.size());
+        std::atomic<bool> has_overlaps = false;
+        workers_.run_ranges(count, kLeastIslands, [&](WorkRange range) {
+            for (Island const& island : islands.subspan(range.first, range.last - range.first)) {
+                if (island.is_active && solvers_[range.worker].solve(world, contacts_, islands_, island, is_driven)) {
+                    has_overlaps = true;
+                }
             }
+        });
+        has_overlaps_ = has_overlaps;
+    }
+
+    void move_others(World& world, float dt_s) {
+        auto const count = static_cast<std::uint32_t>(movable_.size());
+        fast_in_range_.resize(workers_.range_count(count, kLeastBodies));
+        workers_.run_ranges(count, kLeastBodies, [&](WorkRange range) {
+            std::vector<Start>& fast = fast_in_range_[range.part];
+            fast.clear();
+            for (std::uint32_t const i : std::span(movable_).subspan(range.first, range.last - range.first)) {
+                move_other(world, i, dt_s, fast);
+            }
+        });
+        fast_.clear();
+        for (std::vector<Start> const& fast : fast_in_range_) {
+            fast_.insert(fast_.end(), fast.begin(), fast.end());
         }
     }
 
-    /// Bodies without a contact move on a straight line. All are held inside the arena but for the fast ones, whose
+    /// A body without a contact moves on a straight line. All are held inside the arena but for the fast ones, whose
     /// starts are found.
-    void move_others(World& world, float dt_s) {
+    void move_other(World& world, std::uint32_t i, float dt_s, std::vector<Start>& fast) {
         Bodies& bodies = world.bodies;
-        float const ordinary_mm_s = ordinary_mm_ / dt_s;
-        fast_.clear();
-        for (std::uint32_t const i : movable_) {
-            Vec2 const velocity_mm_s = bodies.velocity_mm_s[i];
-            float const spin_rad_s = bodies.angular_velocity_rad_s[i];
-            Vec2 place_mm = bodies.position_mm[i];
-            bool const has_contact = islands_.has_contact(i);
-            if (!has_contact) {
-                place_mm = place_mm + dt_s * velocity_mm_s;
-                bodies.heading_rad[i] += dt_s * spin_rad_s;
-            }
-            if (has_contact || spin_rad_s != 0.0F) {
-                bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
-            }
-            if (squared_length(velocity_mm_s) > ordinary_mm_s * ordinary_mm_s) {
-                fast_.push_back({i, known_.position_mm(i)});
-            } else if (world.periodic) {
-                place_mm = wrapped(world, place_mm);
-            } else {
-                place_mm = containment_.hold(i, place_mm);
-            }
-            bodies.position_mm[i] = place_mm;
+        Vec2 const velocity_mm_s = bodies.velocity_mm_s[i];
+        float const spin_rad_s = bodies.angular_velocity_rad_s[i];
+        Vec2 place_mm = bodies.position_mm[i];
+        bool const has_contact = islands_.has_contact(i);
+        if (!has_contact) {
+            place_mm = place_mm + dt_s * velocity_mm_s;
+            bodies.heading_rad[i] += dt_s * spin_rad_s;
         }
+        if (has_contact || spin_rad_s != 0.0F) {
+            bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
+        }
+        if (squared_length(dt_s * velocity_mm_s) > ordinary_mm_ * ordinary_mm_) {
+            fast.push_back({i, known_.position_mm(i)});
+        } else if (world.periodic) {
+            place_mm = wrapped(world, place_mm);
+        } else {
+            place_mm = containment_.hold(i, place_mm);
+        }
+        bodies.position_mm[i] = place_mm;
     }
 
     void hold_fast(World& world, float dt_s) {
-        stop_at_impacts(world, fast_, dt_s);
+        sweep_.stop_at_impacts(world, fast_, dt_s);
         for (Start const& start : fast_) {
             Vec2& place_mm = world.bodies.position_mm[start.body];
             place_mm = world.periodic ? wrapped(world, place_mm) : containment_.hold_fast(start.body, place_mm);
@@ -192,19 +217,22 @@ private:
         return std::ranges::any_of(bodies.angular_velocity_rad_s, [](float spin) { return spin != 0.0F; });
     }
 
+    WorkerPool& workers_;
     Containment containment_;
     NearWalls near_walls_;
     NearPairs near_pairs_;
     DiskContacts contacts_;
     Damping damping_;
     Islands islands_;
-    IslandSolver solver_;
+    std::vector<IslandSolver> solvers_;  // of each worker
+    Sweep sweep_;
     KnownMotion known_;
     std::vector<std::uint32_t> movable_;  // bodies that are not fixed
     std::vector<Start> fast_;             // bodies in this step
-    float ordinary_mm_ = 1.0F;            // who goes further in a step is fast
-    bool has_overlaps_ = false;           // some disks overlapped after the last step
-    bool moved_ = true;                   // somebody was put elsewhere, perhaps into others
+    std::vector<std::vector<Start>> fast_in_range_;
+    float ordinary_mm_ = 1.0F;   // who goes further in a step is fast
+    bool has_overlaps_ = false;  // some disks overlapped after the last step
+    bool moved_ = true;          // somebody was put elsewhere, perhaps into others
 };
 
 }  // namespace
@@ -222,8 +250,8 @@ std::string why_unfit_for_disk_engine(World const& world) {
     return "";
 }
 
-std::unique_ptr<PhysicsEngine> make_disk_engine(World const& world, WallSpec const& walls) {
-    return std::make_unique<DiskEngine>(world, walls);
+std::unique_ptr<PhysicsEngine> make_disk_engine(World const& world, WallSpec const& walls, WorkerPool& workers) {
+    return std::make_unique<DiskEngine>(world, walls, workers);
 }
 
 }  // namespace pogosim

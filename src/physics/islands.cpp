@@ -6,6 +6,12 @@
 
 namespace pogosim {
 
+namespace {
+
+constexpr std::uint32_t kLeastRange = 2048;  // contacts
+
+}  // namespace
+
 Islands::Islands(World const& world) : alone_(world.bodies.size()) {
     std::iota(alone_.begin(), alone_.end(), 0U);
 }
@@ -19,41 +25,55 @@ std::uint32_t Islands::root_of(std::uint32_t body) {
     return body;
 }
 
-void Islands::find_pairs(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm) {
+void Islands::find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
+                         std::vector<Close>& found) {
     std::vector<Vec2> const& position_mm = world.bodies.position_mm;
     std::vector<Vec2> const& velocity_mm_s = world.bodies.velocity_mm_s;
     auto const dt_s = static_cast<float>(world.time_step_s);
-    for (std::uint32_t i = 0; i < contacts.pair_count(); ++i) {
+    for (std::uint32_t i = pairs.first; i < pairs.last; ++i) {
         auto const& [a, b, law] = contacts.near()[i];
         Vec2 const way = minimum_image(world, position_mm[b], position_mm[a]);
-        float const far_mm = law.radius_mm + reach_mm;
+        float const far_mm = law.radius_mm + reach.reach_mm;
         float const distance_mm2 = squared_length(way);
         if (distance_mm2 >= far_mm * far_mm) {
             continue;
         }
         // gap + tolerance < time * closing speed, times the distance
         float const separation_mm2 = dt_s * dot(velocity_mm_s[a] - velocity_mm_s[b], way);
-        float const free_mm = law.radius_mm - tolerance_mm;
-        meets_.push_back(distance_mm2 + std::min(separation_mm2, 0.0F) < free_mm * std::sqrt(distance_mm2) ? 1 : 0);
-        links_.push_back({.contact = i, .next = kNone});
-        std::uint32_t const root_a = root_of(a);
-        std::uint32_t const root_b = root_of(b);
-        parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+        float const free_mm = law.radius_mm - reach.tolerance_mm;
+        bool const meets = distance_mm2 + std::min(separation_mm2, 0.0F) < free_mm * std::sqrt(distance_mm2);
+        found.push_back({.contact = i, .meets = meets});
     }
 }
 
-void Islands::find_fixed(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm) {
+void Islands::find_fixed(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange fixed,
+                         std::vector<Close>& found) {
     auto const dt_s = static_cast<float>(world.time_step_s);
-    for (std::uint32_t i = contacts.pair_count(); i < contacts.near().size(); ++i) {
+    for (std::uint32_t i = fixed.first; i < fixed.last; ++i) {
         NearContact const& near = contacts.near()[i];
         std::optional<Gap> const gap = contacts.gap_to_fixed(world, i, world.bodies.position_mm[near.a]);
-        if (!gap || gap->distance_mm >= near.law.radius_mm + reach_mm) {
+        if (!gap || gap->distance_mm >= near.law.radius_mm + reach.reach_mm) {
             continue;
         }
         float const separation_mm = dt_s * dot(world.bodies.velocity_mm_s[near.a], gap->normal);
         float const gap_mm = gap->distance_mm - near.law.radius_mm;
-        meets_.push_back(gap_mm + tolerance_mm + std::min(separation_mm, 0.0F) < 0.0F ? 1 : 0);
-        links_.push_back({.contact = i, .next = kNone});
+        bool const meets = gap_mm + reach.tolerance_mm + std::min(separation_mm, 0.0F) < 0.0F;
+        found.push_back({.contact = i, .meets = meets});
+    }
+}
+
+/// Makes links of what was found, and trees of bodies that are close to each other.
+void Islands::unite(DiskContacts const& contacts) {
+    for (std::vector<Close> const& found : close_) {
+        for (Close const& close : found) {
+            links_.push_back({.contact = close.contact, .next = kNone});
+            meets_.push_back(close.meets ? 1 : 0);
+            if (close.contact < contacts.pair_count()) {
+                std::uint32_t const root_a = root_of(contacts.near()[close.contact].a);
+                std::uint32_t const root_b = root_of(contacts.near()[close.contact].b);
+                parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+            }
+        }
     }
 }
 
@@ -89,14 +109,24 @@ void Islands::mark_bodies(DiskContacts const& contacts) {
     }
 }
 
-void Islands::find(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm) {
+void Islands::find(World const& world, DiskContacts const& contacts, Reach const& reach, WorkerPool& workers) {
     parent_ = alone_;
     island_.assign(alone_.size(), kNone);
     has_contact_.assign(alone_.size(), 0);
     links_.clear();
     meets_.clear();
-    find_pairs(world, contacts, reach_mm, tolerance_mm);
-    find_fixed(world, contacts, reach_mm, tolerance_mm);
+    auto const count = static_cast<std::uint32_t>(contacts.near().size());
+    close_.resize(workers.range_count(count, kLeastRange));
+    workers.run_ranges(count, kLeastRange, [&](WorkRange range) {
+        std::vector<Close>& found = close_[range.part];
+        found.clear();
+        WorkRange pairs = range;
+        WorkRange fixed = range;
+        pairs.last = fixed.first = std::clamp(contacts.pair_count(), range.first, range.last);
+        find_pairs(world, contacts, reach, pairs, found);
+        find_fixed(world, contacts, reach, fixed, found);
+    });
+    unite(contacts);
     link(contacts);
     mark_bodies(contacts);
 }

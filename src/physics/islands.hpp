@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/worker_pool.hpp"
 #include "physics/disk_contacts.hpp"
 #include "world/world.hpp"
 
@@ -25,13 +26,18 @@ struct IslandLink {
     std::uint32_t next;     // into Islands::links(); kNone: the last one
 };
 
+/// How near is near enough.
+struct Reach {
+    float reach_mm;      // bodies with smaller gaps are of one island
+    float tolerance_mm;  // who overlaps by less at the end of the step does not touch
+};
+
 class Islands {
 public:
     explicit Islands(World const& world);
 
-    /// Finds the islands of bodies whose gaps are less than `reach_mm` now. `tolerance_mm`: who overlaps by less at the
-    /// end of the step does not touch.
-    void find(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm);
+    /// Finds the islands of bodies as they are now.
+    void find(World const& world, DiskContacts const& contacts, Reach const& reach, WorkerPool& workers);
 
     /// In the order of their first contacts. Contacts of each are in the order of DiskContacts::near().
     std::span<Island const> islands() const { return islands_; }
@@ -41,9 +47,18 @@ public:
     bool has_contact(std::uint32_t body) const { return has_contact_[body] != 0; }
 
 private:
+    /// A contact whose gap is less than the reach.
+    struct Close {
+        std::uint32_t contact;  // into DiskContacts::near()
+        bool meets;             // they touch within this step
+    };
+
     std::uint32_t root_of(std::uint32_t body);
-    void find_pairs(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm);
-    void find_fixed(World const& world, DiskContacts const& contacts, float reach_mm, float tolerance_mm);
+    static void find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
+                           std::vector<Close>& found);
+    static void find_fixed(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange fixed,
+                           std::vector<Close>& found);
+    void unite(DiskContacts const& contacts);
     void link(DiskContacts const& contacts);
     void mark_bodies(DiskContacts const& contacts);
 
@@ -51,8 +66,9 @@ private:
     std::vector<std::uint32_t> parent_;  // of each body, in the forest of islands
     std::vector<std::uint32_t> island_;  // of each root; kNone: none
     std::vector<std::uint8_t> has_contact_;
-    std::vector<IslandLink> links_;    // in the order of DiskContacts::near()
-    std::vector<std::uint8_t> meets_;  // of each link: they touch within this step
+    std::vector<std::vector<Close>> close_;  // of each range of contacts, while they are looked for
+    std::vector<IslandLink> links_;          // in the order of DiskContacts::near()
+    std::vector<std::uint8_t> meets_;        // of each link: they touch within this step
     std::vector<Island> islands_;
 };
 

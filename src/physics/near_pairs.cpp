@@ -14,6 +14,9 @@ constexpr float kSkinShare = 0.6F;
 constexpr double kInCells = 0.98;
 // Not many more cells than bodies.
 constexpr double kCellsPerBody = 2.0;
+// Of a range that one worker takes.
+constexpr std::uint32_t kLeastBodies = 8192;
+constexpr std::uint32_t kLeastCells = 256;
 
 float radius_in_cells(Bodies const& bodies) {
     std::vector<float> radii = bodies.radius_mm;
@@ -63,15 +66,19 @@ void NearPairs::lay_cells(World const& world) {
     items_.resize(bodies.size() - large_.size());
 }
 
-bool NearPairs::covers(World const& world, float reach_mm) const {
+bool NearPairs::covers(World const& world, float reach_mm, WorkerPool& workers) const {
     if (!is_built_ || reach_mm > skin_mm_) {
         return false;
     }
-    float farthest2 = 0.0F;
     std::vector<Vec2> const& position_mm = world.bodies.position_mm;
-    for (std::size_t i = 0; i < position_mm.size(); ++i) {
-        farthest2 = std::max(farthest2, squared_length(minimum_image(world, built_mm_[i], position_mm[i])));
-    }
+    auto const count = static_cast<std::uint32_t>(position_mm.size());
+    float const farthest2 = workers.max_of_ranges(count, kLeastBodies, [&](WorkRange range) {
+        float farthest2 = 0.0F;
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            farthest2 = std::max(farthest2, squared_length(minimum_image(world, built_mm_[i], position_mm[i])));
+        }
+        return farthest2;
+    });
     return 2.0F * std::sqrt(farthest2) + reach_mm <= skin_mm_;
 }
 
@@ -102,16 +109,16 @@ void NearPairs::sort_into_cells(World const& world) {
     start_.back() = static_cast<std::uint32_t>(items_.size());
 }
 
-void NearPairs::add_if_near(Item const& a, Item const& b, Vec2 shift_mm) {
+void NearPairs::add_if_near(Item const& a, Item const& b, Vec2 shift_mm, std::vector<NearPair>& pairs) const {
     float const reach_mm = a.radius_mm + b.radius_mm + skin_mm_;
     if (squared_length(b.position_mm + shift_mm - a.position_mm) < reach_mm * reach_mm &&
         (is_fixed_[a.body] & is_fixed_[b.body]) == 0) {
-        pairs_.push_back({a.body, b.body});
+        pairs.push_back({a.body, b.body});
     }
 }
 
 /// Pairs of a cell with itself, its right neighbour and the three below: those of each item are in two rows of cells.
-void NearPairs::find_among(std::uint32_t cell) {
+void NearPairs::find_around(std::uint32_t cell, std::vector<NearPair>& pairs) const {
     auto const columns = static_cast<std::uint32_t>(columns_);
     std::uint32_t const column = cell % columns;
     bool const has_right = column + 1 < columns;
@@ -125,10 +132,10 @@ void NearPairs::find_among(std::uint32_t cell) {
     for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
         Item const& item = items_[i];
         for (std::uint32_t k = i + 1; k < end; ++k) {
-            add_if_near(item, items_[k], {});
+            add_if_near(item, items_[k], {}, pairs);
         }
         for (std::uint32_t k = below; k < below_end; ++k) {
-            add_if_near(item, items_[k], {});
+            add_if_near(item, items_[k], {}, pairs);
         }
     }
 }
@@ -136,7 +143,7 @@ void NearPairs::find_among(std::uint32_t cell) {
 void NearPairs::find_between(std::uint32_t cell, std::uint32_t other, Vec2 shift_mm) {
     for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
         for (std::uint32_t k = start_[other]; k < start_[other + 1]; ++k) {
-            add_if_near(items_[i], items_[k], shift_mm);
+            add_if_near(items_[i], items_[k], shift_mm, pairs_);
         }
     }
 }
@@ -178,7 +185,7 @@ void NearPairs::find_of_large(World const& world) {
     auto const item_of = [&](std::uint32_t i) { return Item{bodies.position_mm[i], bodies.radius_mm[i], i}; };
     auto const add = [&](Item const& a, Item const& b) {
         Vec2 const way = b.position_mm - a.position_mm;
-        add_if_near(a, b, minimum_image(world, a.position_mm, b.position_mm) - way);
+        add_if_near(a, b, minimum_image(world, a.position_mm, b.position_mm) - way, pairs_);
     };
     for (std::size_t k = 0; k < large_.size(); ++k) {
         Item const disk = item_of(large_[k]);
@@ -197,14 +204,27 @@ void NearPairs::find_of_large(World const& world) {
     }
 }
 
-void NearPairs::build(World const& world, float reach_mm) {
+/// In the order of the cells, whoever looks at which.
+void NearPairs::find_in_cells(WorkerPool& workers) {
+    auto const cells = static_cast<std::uint32_t>(start_.size() - 1);
+    more_.resize(workers.range_count(cells, kLeastCells) - 1);
+    workers.run_ranges(cells, kLeastCells, [&](WorkRange range) {
+        std::vector<NearPair>& pairs = range.part == 0 ? pairs_ : more_[range.part - 1];
+        pairs.clear();
+        for (std::uint32_t cell = range.first; cell < range.last; ++cell) {
+            find_around(cell, pairs);
+        }
+    });
+    for (std::vector<NearPair> const& pairs : more_) {
+        pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
+    }
+}
+
+void NearPairs::build(World const& world, float reach_mm, WorkerPool& workers) {
     skin_mm_ = reach_mm + kSkinShare * largest_mm_;
-    pairs_.clear();
     lay_cells(world);
     sort_into_cells(world);
-    for (std::uint32_t cell = 0; cell + 1 < start_.size(); ++cell) {
-        find_among(cell);
-    }
+    find_in_cells(workers);
     if (world.periodic) {
         find_across_seams(world.arena.bounds.size());
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/vec2.hpp"
+#include "base/worker_pool.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -25,10 +26,10 @@ public:
     explicit NearPairs(World const& world);
 
     /// Whether pairs() has all pairs whose disks are less than `reach_mm` apart now.
-    bool covers(World const& world, float reach_mm) const;
+    bool covers(World const& world, float reach_mm, WorkerPool& workers) const;
 
     /// Looks for the pairs that are less than skin_mm() apart, which is more than `reach_mm`.
-    void build(World const& world, float reach_mm);
+    void build(World const& world, float reach_mm, WorkerPool& workers);
 
     std::span<NearPair const> pairs() const { return pairs_; }
     float skin_mm() const { return skin_mm_; }
@@ -46,11 +47,12 @@ private:
     void sort_into_cells(World const& world);
     template <class Visit>
     void for_each_row_near(World const& world, Item const& disk, Visit const& visit) const;
-    void find_among(std::uint32_t cell);
+    void find_in_cells(WorkerPool& workers);
+    void find_around(std::uint32_t cell, std::vector<NearPair>& pairs) const;
     void find_between(std::uint32_t cell, std::uint32_t other, Vec2 shift_mm);
     void find_across_seams(Vec2 size_mm);
     void find_of_large(World const& world);
-    void add_if_near(Item const& a, Item const& b, Vec2 shift_mm);
+    void add_if_near(Item const& a, Item const& b, Vec2 shift_mm, std::vector<NearPair>& pairs) const;
 
     float skin_mm_ = 0.0F;
     float largest_mm_;                    // radius of those in the cells
@@ -68,6 +70,7 @@ private:
 
     std::vector<Vec2> built_mm_;  // positions at build()
     std::vector<NearPair> pairs_;
+    std::vector<std::vector<NearPair>> more_;  // of the second and further ranges of cells, while they are looked for
     bool is_built_ = false;
 };
 

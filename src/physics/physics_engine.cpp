@@ -11,7 +11,7 @@ namespace {
 
 struct Engine {
     std::string name;
-    std::unique_ptr<PhysicsEngine> (*make)(World const&, WallSpec const&);
+    std::unique_ptr<PhysicsEngine> (*make)(World const&, WallSpec const&, WorkerPool&);
     std::string (*why_unfit)(World const&);
 };
 
@@ -52,8 +52,9 @@ std::string why_unfit(std::string const& name, World const& world) {
     return engine_for(name, world).why_unfit(world);
 }
 
-std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls) {
-    return engine_for(name, world).make(world, walls);
+std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls,
+                                                   WorkerPool& workers) {
+    return engine_for(name, world).make(world, walls, workers);
 }
 
 }  // namespace pogosim

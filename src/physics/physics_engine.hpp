@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/worker_pool.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -42,13 +43,15 @@ std::string const& physics_engine_behind(std::string const& name, World const& w
 /// Why this engine cannot move what is in the world: "moves disks only, but ...". Empty if it can.
 std::string why_unfit(std::string const& name, World const& world);
 
-/// An engine for the arena and the bodies as they are in the world now. `name`: one of the known ones. Throws
-/// ConfigError when the arena is too small to build walls.
-std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls);
+/// An engine for the arena and the bodies as they are in the world now. `name`: one of the known ones. `workers`, which
+/// must outlive the engine, share its work where they can; results do not depend on them. Throws ConfigError when the
+/// arena is too small to build walls.
+std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls,
+                                                   WorkerPool& workers);
 
 // The engines.
-std::unique_ptr<PhysicsEngine> make_disk_engine(World const& world, WallSpec const& walls);
+std::unique_ptr<PhysicsEngine> make_disk_engine(World const& world, WallSpec const& walls, WorkerPool& workers);
 std::string why_unfit_for_disk_engine(World const& world);
-std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls);
+std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls, WorkerPool& workers);
 
 }  // namespace pogosim

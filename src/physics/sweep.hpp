@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
+#include "base/grid.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -14,9 +16,16 @@ struct Start {
     Vec2 position_mm;
 };
 
-/// Stops fast disks where they meet another one on their straight way through the step; the next step makes the impact.
-/// `fast`: those that go further than others, with the places they come from. All positions are those at the end of the
-/// step, `dt_s` after the start.
-void stop_at_impacts(World& world, std::span<Start const> fast, float dt_s);
+class Sweep {
+public:
+    /// Stops fast disks where they meet another one on their straight way through the step; the next step makes the
+    /// impact. `fast`: those that go further than others, with the places they come from. All positions are those at
+    /// the end of the step, `dt_s` after the start.
+    void stop_at_impacts(World& world, std::span<Start const> fast, float dt_s);
+
+private:
+    std::vector<Vec2> starts_mm_;  // of all bodies
+    UniformGrid grid_;             // of these
+};
 
 }  // namespace pogosim

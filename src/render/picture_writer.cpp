@@ -50,7 +50,7 @@ void PictureWriter::start(unsigned threads) {
     threads_.reserve(threads);
     for (unsigned i = 0; i < threads; ++i) {
         try {
-            threads_.push_back(start_background_thread([this, i] { work(canvases_[i]); }));
+            threads_.push_back(start_background_thread("drawing pictures", [this, i] { work(canvases_[i]); }));
         } catch (std::system_error const& error) {
             if (threads_.empty()) {
                 throw OutputError(fmt::format("no thread can be started to draw pictures: {}", error.code().message()));

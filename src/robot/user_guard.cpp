@@ -55,7 +55,7 @@ CaughtSignals caught_signals;
 [[noreturn]] void end_run_from_background_thread(RunGuard& run, char const* crash) {
     note_crash_of_background_thread();
     SignalText<512> what;
-    what << "the simulator crashed while it was drawing pictures (" << crash << ")" << kOwnMemoryAdvice;
+    what << "the simulator crashed while it was " << background_activity() << " (" << crash << ")" << kOwnMemoryAdvice;
     request_end(run, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
     stop_this_thread();
 }
@@ -69,7 +69,7 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
     }
     CrashText const what = crash_name(signal, *info, signal_context);
     if (is_others) {
-        if (on_background_thread()) {
+        if (background_activity() != nullptr) {
             end_run_from_background_thread(*process_run, what.c_str());
         }
         end_run_from_thread(what.c_str(), ExitCode::user_program);

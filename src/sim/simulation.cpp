@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <new>
 #include <optional>
 #include <random>
 #include <string>
+#include <thread>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -28,7 +30,14 @@ std::uint32_t seed_of(Scenario const& scenario) {
     return scenario.seed ? *scenario.seed : static_cast<std::uint32_t>(std::random_device{}());
 }
 
-std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world) {
+std::uint32_t thread_count(Scenario const& scenario, World const& world) {
+    constexpr std::size_t kObjectsPerThread = 2000;
+    std::size_t const processors = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
+    std::size_t const worthwhile = std::clamp<std::size_t>(world.objects.size() / kObjectsPerThread, 1, processors);
+    return scenario.threads ? static_cast<std::uint32_t>(*scenario.threads) : static_cast<std::uint32_t>(worthwhile);
+}
+
+std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world, WorkerPool& workers) {
     std::string const& engine = scenario.physics_engine;
     if (std::string const reason = why_unfit(engine, world); !reason.empty()) {
         throw ConfigError(fmt::format("{}: {} {}; use {} or box2d", place_of(scenario, Setting::physics_engine), engine,
@@ -36,7 +45,8 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     }
     auto const purpose = [&] { return fmt::format("the physics of {} bodies", world.bodies.size()); };
     try {
-        return allocate_for(purpose, std::nullopt, [&] { return make_physics_engine(engine, world, scenario.walls); });
+        return allocate_for(purpose, std::nullopt,
+                            [&] { return make_physics_engine(engine, world, scenario.walls, workers); });
     } catch (ConfigError const& error) {
         throw ConfigError(fmt::format("{}: {}", place_of(scenario, Setting::arena_surface), error.what()));
     }
@@ -60,7 +70,8 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       controllers_(std::move(program), world_, services_, seed_),
       lighting_(make_lighting(scenario_, world_)),
-      physics_(make_physics(scenario_, world_)),
+      workers_(thread_count(scenario_, world_)),
+      physics_(make_physics(scenario_, world_, workers_)),
       recorder_(scenario_, world_, controllers_, services_.data, seed_),
       pictures_(Pictures::make(scenario_, world_, controllers_, lighting_, options_.film)),
       stages_(options_.measure_stages) {
@@ -117,6 +128,7 @@ Outcome Simulation::attempt(std::function<std::optional<UserFailure>()> const& p
             outcome.shortage = error.what();
         } catch (std::bad_alloc const&) {
             outcome.shortage = kOutOfMemory;
+        } catch (WorkerCrashed const&) {  // what it said ends the run
         }
     });
     if (crash) {
@@ -250,9 +262,9 @@ void Simulation::save_while_waiting() {
 
 std::optional<UserFailure> Simulation::start() {
     Thread const thread(*this);
-    log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s, physics engine {}", seed_,
-                world_.robots.size(), controllers_.user_data_bytes(), step_count(), world_.time_step_s,
-                physics_engine_behind(scenario_.physics_engine, world_));
+    log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s, physics engine {}, threads: {}",
+                seed_, world_.robots.size(), controllers_.user_data_bytes(), step_count(), world_.time_step_s,
+                physics_engine_behind(scenario_.physics_engine, world_), workers_.size());
     lighting_.update(world_);
     if (auto failure = call_user_code([this] { controllers_.start(); })) {
         return failure;

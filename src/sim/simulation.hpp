@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/log.hpp"
+#include "base/worker_pool.hpp"
 #include "comms/ir_channel.hpp"
 #include "config/scenario.hpp"
 #include "config/user_parameters.hpp"
@@ -186,6 +187,7 @@ private:
     Controllers controllers_;
     Lighting lighting_;
     IrChannel channel_;
+    WorkerPool workers_;
     std::unique_ptr<PhysicsEngine> physics_;
     SavedColumns saved_columns_;
     Recorder recorder_;

@@ -54,7 +54,8 @@ OpenWindow::OpenWindow(WindowSetup const& setup) : exchange_(std::make_shared<Ex
     check_display();
     ShowWindow const show = load_module();
     // The thread may outlive this object.
-    thread_ = start_background_thread([show, setup, exchange = exchange_] { show(setup, *exchange); });
+    thread_ =
+        start_background_thread("drawing the window", [show, setup, exchange = exchange_] { show(setup, *exchange); });
     auto const error = exchange_->wait_until_opened(kLongestOpening);
     if (error && error->empty()) {
         return;

@@ -31,12 +31,14 @@ struct Finder {
     }
 
     void build(World const& world) {
-        pairs.build(world, kReachMm);
+        pairs.build(world, kReachMm, workers);
         near_walls.build(world, walls, pairs.skin_mm());
         contacts.build(pairs, near_walls);
     }
 
-    void find(World const& world) { islands.find(world, contacts, kReachMm, kToleranceMm); }
+    void find(World const& world) {
+        islands.find(world, contacts, {.reach_mm = kReachMm, .tolerance_mm = kToleranceMm}, workers);
+    }
 
     Group bodies_of(Island const& island) const {
         Group bodies;
@@ -50,6 +52,7 @@ struct Finder {
         return bodies;
     }
 
+    WorkerPool workers;
     WallIndex walls;
     NearPairs pairs;
     NearWalls near_walls;

@@ -59,11 +59,12 @@ Pairs listed(NearPairs const& near) {
 class NearPairsOf : public ::testing::TestWithParam<bool> {};
 
 TEST_P(NearPairsOf, AreAllThatAreNearEachOnce) {
+    WorkerPool workers;
     RandomStream random(7, 0);
     for (int scene = 0; scene < 60; ++scene) {
         World const world = random_world(random, random.uniform(100.0F, 3000.0F), GetParam());
         NearPairs near(world);
-        near.build(world, random.uniform(0.1F, 20.0F));
+        near.build(world, random.uniform(0.1F, 20.0F), workers);
         Pairs const pairs = listed(near);
         EXPECT_TRUE(std::ranges::adjacent_find(pairs) == pairs.end());
         // Up to the rounding of a distance.
@@ -75,15 +76,16 @@ TEST_P(NearPairsOf, AreAllThatAreNearEachOnce) {
 }
 
 TEST_P(NearPairsOf, AreValidUntilSomebodyHasGoneHalfTheSkin) {
+    WorkerPool workers;
     RandomStream random(8, 0);
     for (int scene = 0; scene < 30; ++scene) {
         World world = random_world(random, 1000.0F, GetParam());
         NearPairs near(world);
         constexpr float reach_mm = 2.0F;
-        EXPECT_FALSE(near.covers(world, reach_mm));
-        near.build(world, reach_mm);
+        EXPECT_FALSE(near.covers(world, reach_mm, workers));
+        near.build(world, reach_mm, workers);
         int steps = 0;
-        for (; near.covers(world, reach_mm); ++steps) {
+        for (; near.covers(world, reach_mm, workers); ++steps) {
             Pairs const pairs = listed(near);
             EXPECT_TRUE(std::ranges::includes(pairs, all_nearer_than(world, reach_mm))) << scene;
             for (Vec2& place : world.bodies.position_mm) {

@@ -34,30 +34,6 @@ void user_step(void) { if (pogobot_helper_getid() == 0 && pogobot_ticks == 60) {
 int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
 """
 
-CRASH_OF_OTHER_THREADS = """
-#define _GNU_SOURCE
-#include "pogobase.h"
-#include <dirent.h>
-#include <signal.h>
-#include <stdlib.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-typedef struct { int unused; } USERDATA;
-DECLARE_USERDATA(USERDATA);
-REGISTER_USERDATA(USERDATA);
-void user_init(void) {}
-void user_step(void) {
-    if (pogobot_helper_getid() != 0 || pogobot_ticks != 30) { return; }
-    DIR* tasks = opendir("/proc/self/task");
-    for (struct dirent* task = readdir(tasks); task != NULL; task = readdir(tasks)) {
-        int const thread = atoi(task->d_name);
-        if (thread != 0 && thread != getpid()) { syscall(SYS_tgkill, getpid(), thread, SIGSEGV); }
-    }
-    closedir(tasks);
-}
-int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
-"""
-
 
 def names(folder: Path, pattern: str = "*.png") -> list[str]:
     return sorted(path.name for path in folder.glob(pattern))
@@ -384,13 +360,12 @@ def test_child_processes_of_the_program_make_no_frames_of_their_own(tmp_path: Pa
 
 @pytest.mark.skipif(sys.platform != "linux", reason="finds its threads in /proc")
 @pytest.mark.parametrize("size", [50, 500])  # the thread waits for the run, or the run for the thread
-def test_crash_of_a_thread_that_draws_ends_the_run_soon_with_its_data(tmp_path: Path, size: int) -> None:
-    source = tmp_path / "main.c"
-    source.write_text(CRASH_OF_OTHER_THREADS)
-    program = compile_program(tmp_path / "main", source)
+def test_crash_of_a_thread_that_draws_ends_the_run_soon_with_its_data(
+    program: Compile, tmp_path: Path, size: int
+) -> None:
     scene = {"save_video_period": 0.01, "window_width": size, "window_height": size}
     began_s = time.monotonic()
-    result = run(program, tmp_path, scene)
+    result = run(program("crash_of_other_threads.c"), tmp_path, scene)
     assert time.monotonic() - began_s < 8.0
     assert result.code == 3
     (line,) = result.errors.splitlines()

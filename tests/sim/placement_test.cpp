@@ -230,7 +230,8 @@ TEST(FixedBody, StaysWhereItIsWhateverHitsIt) {
         "  light: {type: pogobject, geometry: disk, radius: 30, x: 800, y: 500, body_fixed: true}\n");
     ASSERT_EQ(built.error, "no error");
     World& world = built.world;
-    auto const engine = make_box2d_engine(world, {});
+    WorkerPool workers;
+    auto const engine = make_box2d_engine(world, {}, workers);
     for (int step = 0; step < 300; ++step) {
         for (Object const& robot : built.of("robots")) {
             Vec2 const way = Vec2{500, 500} - built.place(robot);

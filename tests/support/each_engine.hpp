@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "base/worker_pool.hpp"
 #include "physics/physics_engine.hpp"
 
 namespace pogosim::testing {
@@ -13,8 +14,14 @@ namespace pogosim::testing {
 /// Of the test that runs.
 inline std::string engine_name = "box2d";
 
+/// For all tests.
+inline WorkerPool& one_worker() {
+    static WorkerPool pool(1);
+    return pool;
+}
+
 inline std::unique_ptr<PhysicsEngine> make_engine(World const& world, WallSpec const& walls) {
-    return make_physics_engine(engine_name, world, walls);
+    return make_physics_engine(engine_name, world, walls, one_worker());
 }
 
 class EachEngine : public ::testing::TestWithParam<std::string> {

@@ -27,6 +27,19 @@ inline ObjectSpec pogobot_spec() {
     return spec;
 }
 
+/// Adds a body and returns its index.
+inline std::uint32_t add_body(World& world, Vec2 position_mm, float heading_rad, ObjectSpec const& spec) {
+    world.bodies.position_mm.push_back(position_mm);
+    world.bodies.heading_rad.push_back(heading_rad);
+    world.bodies.heading_dir.push_back(direction(heading_rad));
+    world.bodies.velocity_mm_s.push_back({});
+    world.bodies.angular_velocity_rad_s.push_back(0.0F);
+    world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
+    world.bodies.shape.push_back(spec.shape);
+    world.bodies.spec.push_back(*spec.body);
+    return static_cast<std::uint32_t>(world.bodies.size()) - 1;
+}
+
 /// Adds a robot of the world's only category (made on the first call) and returns its index.
 inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad = 0.0F,
                                ObjectSpec const& spec = pogobot_spec()) {
@@ -40,14 +53,7 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
     world.robots.led.push_back({});
     world.robots.command.push_back({});
     world.robots.stream.emplace_back(1, index);
-    world.bodies.position_mm.push_back(position_mm);
-    world.bodies.heading_rad.push_back(heading_rad);
-    world.bodies.heading_dir.push_back(direction(heading_rad));
-    world.bodies.velocity_mm_s.push_back({});
-    world.bodies.angular_velocity_rad_s.push_back(0.0F);
-    world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
-    world.bodies.shape.push_back(spec.shape);
-    world.bodies.spec.push_back(*spec.body);
+    add_body(world, position_mm, heading_rad, spec);
     world.objects.push_back({.id = index, .robot = index, .body = index, .body_count = 1});
     std::vector<int> const sizes(world.robots.size(), spec.robot->ir.queue_size);
     world.mailboxes = Mailboxes(sizes, 382);

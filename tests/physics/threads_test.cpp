@@ -1,0 +1,68 @@
+// The disk engine moves a world to the same bits, however many threads share the work.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "base/random.hpp"
+#include "base/worker_pool.hpp"
+#include "physics/physics_engine.hpp"
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+template <class T>
+bool has_same_bytes(std::vector<T> const& a, std::vector<T> const& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+/// Disks of several sizes, some fixed, some so fast that they are swept, at random places.
+World crowd(std::uint32_t count, float side_mm, bool is_periodic) {
+    RandomStream random(5, 0);
+    World world = testing::square_world(side_mm);
+    world.periodic = is_periodic;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        ObjectSpec spec = testing::pogobot_spec();
+        spec.shape.radius_mm = i % 100 == 0 ? 60.0F : 26.5F;
+        spec.body = BodySpec{.linear_damping = 0.1F, .friction = 0.3F, .restitution = 0.4F, .fixed = i % 50 == 1};
+        Vec2 const place_mm{random.uniform(60.0F, side_mm - 60.0F), random.uniform(60.0F, side_mm - 60.0F)};
+        testing::add_body(world, place_mm, random.uniform(0.0F, 6.0F), spec);
+        float const speed_mm_s = i % 30 == 0 ? 5000.0F : 100.0F;
+        world.bodies.velocity_mm_s[i] = speed_mm_s * direction(world.bodies.heading_rad[i]);
+    }
+    return world;
+}
+
+class Threads : public ::testing::TestWithParam<bool> {};
+
+Bodies moved_by(std::uint32_t threads, int steps, bool is_periodic) {
+    World world = crowd(20000, 12000.0F, is_periodic);  // enough for several ranges of everything
+    WorkerPool workers(threads);
+    auto const engine = make_physics_engine("disk", world, {}, workers);
+    for (int step = 0; step < steps; ++step) {
+        engine->advance(world);
+    }
+    return world.bodies;
+}
+
+TEST_P(Threads, MoveAWorldToTheSameBits) {
+    constexpr int kSteps = 10;
+    Bodies const expected = moved_by(1, kSteps, GetParam());
+    EXPECT_FALSE(has_same_bytes(moved_by(1, kSteps - 1, GetParam()).position_mm, expected.position_mm));
+    for (std::uint32_t const threads : {2U, 3U, 8U}) {
+        Bodies const bodies = moved_by(threads, kSteps, GetParam());
+        EXPECT_TRUE(has_same_bytes(bodies.position_mm, expected.position_mm)) << threads;
+        EXPECT_TRUE(has_same_bytes(bodies.heading_rad, expected.heading_rad)) << threads;
+        EXPECT_TRUE(has_same_bytes(bodies.heading_dir, expected.heading_dir)) << threads;
+        EXPECT_TRUE(has_same_bytes(bodies.velocity_mm_s, expected.velocity_mm_s)) << threads;
+        EXPECT_TRUE(has_same_bytes(bodies.angular_velocity_rad_s, expected.angular_velocity_rad_s)) << threads;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arena, Threads, ::testing::Bool(),
+                         [](::testing::TestParamInfo<bool> const& info) { return info.param ? "periodic" : "solid"; });
+
+}  // namespace
+}  // namespace pogosim
