@@ -112,7 +112,7 @@ def ended(prog: str, command: Callable[[], int]) -> int:
 
 
 def last(code: int) -> int:
-    """Return the exit code of a process whose work is done; signals no longer spoil it while Python puts things away."""
+    """Return the exit code of a process whose work is done; signals do not spoil it while Python puts things away."""
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         signal.signal(number, signal.SIG_IGN)
     return code
