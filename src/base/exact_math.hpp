@@ -1,15 +1,18 @@
-// Elementary functions that give the same bits on every machine and with every compiler: additions, multiplications and
-// divisions of double in a fixed order, and a rounding to float at the end. Those of the C library may differ in the
-// last bit from one library to the next, and a swarm soon makes another run of that.
+// Elementary functions that give the same bits on every machine and with every compiler: additions, multiplications,
+// divisions and square roots of double in a fixed order, and a rounding to float at the end. Those of the C library may
+// differ in the last bit from one library to the next, and a swarm soon makes another run of that.
 //
-// Series of M. Abramowitz and I. A. Stegun, "Handbook of Mathematical Functions" (1964), 4.1.27, 4.2.1, 4.3.65 and
-// 4.3.66, with arguments reduced as in W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980).
+// Series of M. Abramowitz and I. A. Stegun, "Handbook of Mathematical Functions" (1964), 4.1.27, 4.2.1, 4.3.65, 4.3.66
+// and 4.4.42, arguments reduced as in W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980).
 // They need -ffp-contract=off, and no more of IEEE 754 than every processor of today has.
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 namespace pogosim::exact {
 
@@ -102,6 +105,44 @@ constexpr double pow(double x, double y) {
                         : std::numeric_limits<double>::quiet_NaN();
     }
     return exp(y * log(x));
+}
+
+/// Angle of the point (x, y) from +x, in [-pi, pi], as std::atan2, with a relative error below 10^-15 or so. NaN if one
+/// of both is.
+inline double atan2(double y, double x) {
+    double const along_x = std::abs(x);
+    double const along_y = std::abs(y);
+    if (std::isnan(x) || std::isnan(y)) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    double const least = std::min(along_x, along_y);
+    double const most = std::max(along_x, along_y);
+    double const tangent = least == most ? (most == 0.0 ? 0.0 : 1.0) : least / most;
+    // The arc tangent by a series (4.4.42), for a quarter of the angle: tan(a / 2) = t / (1 + sqrt(1 + t^2)).
+    double const half = tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
+    double const quarter = half / (1.0 + std::sqrt(1.0 + half * half));
+    double const q2 = quarter * quarter;
+    double series = 0.0;
+    for (int n = 23; n > 0; n -= 2) {
+        series = 1.0 / n - q2 * series;
+    }
+    double const acute = 4.0 * quarter * series;
+    constexpr double pi = std::numbers::pi;
+    double const from_x = along_y > along_x ? pi / 2.0 - acute : acute;
+    double const upper = std::signbit(x) ? pi - from_x : from_x;
+    return std::copysign(upper, y);
+}
+
+/// For |x| <= 1, in [-pi / 2, pi / 2]; NaN for others.
+inline double asin(double x) {
+    return atan2(x, std::sqrt((1.0 - x) * (1.0 + x)));
+}
+
+/// sqrt(x^2 + y^2), also where the squares are no longer float.
+inline float hypot(float x, float y) {
+    auto const wide_x = static_cast<double>(x);
+    auto const wide_y = static_cast<double>(y);
+    return static_cast<float>(std::sqrt(wide_x * wide_x + wide_y * wide_y));
 }
 
 }  // namespace pogosim::exact

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/exact_math.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -24,7 +26,7 @@ float bounding_radius(Shape const& shape) {
         case ShapeKind::disk:
             return shape.radius_mm;
         case ShapeKind::rectangle:
-            return 0.5F * std::hypot(shape.width_mm, shape.height_mm);
+            return 0.5F * exact::hypot(shape.width_mm, shape.height_mm);
         case ShapeKind::triangle:
             return shape.side_length_mm / kSqrt3;
         case ShapeKind::global:

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/exact_math.hpp"
 #include "light/bearing_order.hpp"
 #include "light/lamp.hpp"
 #include "light/lit_area.hpp"
@@ -52,7 +53,7 @@ Lighthouse lighthouse_at(Vec2 corner_mm, Vec2 centre_mm, std::vector<std::uint32
     Vec2 const to_centre = centre_mm - corner_mm;
     return {.corner_mm = corner_mm,
             .cells = BearingOrder(std::move(cells), map, corner_mm),
-            .to_centre_rad = std::atan2(static_cast<double>(to_centre.y), static_cast<double>(to_centre.x))};
+            .to_centre_rad = exact::atan2(static_cast<double>(to_centre.y), static_cast<double>(to_centre.x))};
 }
 
 class AlternatingRaysLamp : public Lamp {

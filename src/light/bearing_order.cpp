@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/exact_math.hpp"
 #include "light/lit_area.hpp"
 
 namespace pogosim {
@@ -15,7 +16,8 @@ BearingOrder::BearingOrder(std::vector<std::uint32_t> cells, LightMap const& map
     seen.reserve(cells_.size());
     for (std::uint32_t const cell : cells_) {
         Vec2 const offset = cell_centre_mm(map, cell) - apex_mm;
-        seen.emplace_back(std::atan2(offset.y, offset.x), cell);
+        double const bearing_rad = exact::atan2(static_cast<double>(offset.y), static_cast<double>(offset.x));
+        seen.emplace_back(static_cast<float>(bearing_rad), cell);
     }
     std::ranges::sort(seen);
     bearing_rad_.reserve(seen.size());

@@ -1,12 +1,12 @@
 #include "physics/box2d_shapes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/exact_math.hpp"
 #include "physics/box2d_units.hpp"
 
 namespace pogosim {
@@ -65,7 +65,7 @@ void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef fixture) 
     for (std::size_t i = 0; i < corners_mm.size(); ++i) {
         Vec2 const edge = corners_mm[(i + 1) % corners_mm.size()] - corners_mm[i];
         polygon.m_vertices[i] = to_box2d(corners_mm[i]);
-        float const edge_mm = std::hypot(edge.x, edge.y);  // squares of specks would be 0
+        float const edge_mm = exact::hypot(edge.x, edge.y);  // squares of specks would be 0
         polygon.m_normals[i] = {edge.y / edge_mm, -edge.x / edge_mm};
     }
     polygon.m_radius = kSkin;

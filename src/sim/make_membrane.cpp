@@ -1,8 +1,9 @@
 #include "sim/make_membrane.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+
+#include "base/exact_math.hpp"
 
 namespace pogosim {
 
@@ -24,7 +25,7 @@ Shape line_of_centres(ObjectSpec const& spec) {
 MembraneBody segment_between(Vec2 from, Vec2 to, float thickness_mm) {
     Vec2 const along = to - from;
     return {.position_mm = 0.5F * (from + to),
-            .heading_rad = std::atan2(along.y, along.x),
+            .heading_rad = static_cast<float>(exact::atan2(static_cast<double>(along.y), static_cast<double>(along.x))),
             .shape = {.kind = ShapeKind::rectangle, .width_mm = length(along), .height_mm = thickness_mm}};
 }
 

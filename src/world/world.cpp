@@ -7,8 +7,12 @@ namespace pogosim {
 
 std::int16_t LightMap::at(Vec2 point_mm) const {
     Vec2 const offset = point_mm - origin_mm;
-    int const column = std::clamp(static_cast<int>(offset.x / cell_mm.x), 0, columns - 1);
-    int const row = std::clamp(static_cast<int>(offset.y / cell_mm.y), 0, rows - 1);
+    // First clamped: integers from floats that are too large for them differ between processors.
+    auto const cell = [](float place, int count) {
+        return static_cast<int>(std::clamp(place, 0.0F, static_cast<float>(count - 1)));
+    };
+    int const column = cell(offset.x / cell_mm.x, columns);
+    int const row = cell(offset.y / cell_mm.y, rows);
     return level[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
 }
 

@@ -80,6 +80,49 @@ TEST(ExactMath, PowersAreThoseOfTheCLibrary) {
     EXPECT_TRUE(std::isnan(exact::pow(-1.0, 2.0)));
 }
 
+TEST(ExactMath, AnglesAreThoseOfTheCLibrary) {
+    RandomStream random(1, 4);
+    for (int i = 0; i < 200000; ++i) {
+        double const x = std::ldexp(static_cast<double>(random.uniform(-1.0F, 1.0F)), i % 40 - 20);
+        double const y = std::ldexp(static_cast<double>(random.uniform(-1.0F, 1.0F)), i / 40 % 40 - 20);
+        double const expected = std::atan2(y, x);
+        EXPECT_NEAR(exact::atan2(y, x), expected, 2e-15 * std::abs(expected)) << y << " " << x;
+    }
+}
+
+TEST(ExactMath, AnglesOfAxesDiagonalsAndInfinitePoints) {
+    for (double const x : {-kInfinity, -2.0, -0.0, 0.0, 2.0, kInfinity}) {
+        for (double const y : {-kInfinity, -2.0, -0.0, 0.0, 2.0, kInfinity}) {
+            EXPECT_NEAR(exact::atan2(y, x), std::atan2(y, x), 1e-15) << y << " " << x;
+            EXPECT_EQ(std::signbit(exact::atan2(y, x)), std::signbit(y)) << y << " " << x;
+        }
+    }
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(std::isnan(exact::atan2(nan, 1.0)));
+    EXPECT_TRUE(std::isnan(exact::atan2(1.0, nan)));
+}
+
+TEST(ExactMath, ArcSineIsThatOfTheCLibrary) {
+    for (double x = -1.0; x <= 1.0; x += 1e-5) {
+        EXPECT_NEAR(exact::asin(x), std::asin(x), 1e-15 + 1e-15 * std::abs(std::asin(x))) << x;
+    }
+    EXPECT_DOUBLE_EQ(exact::asin(1.0), std::numbers::pi / 2.0);
+    EXPECT_EQ(exact::asin(0.0), 0.0);
+    EXPECT_TRUE(std::isnan(exact::asin(1.5)));
+}
+
+TEST(ExactMath, HypotenuseIsTheNearestFloat) {
+    RandomStream random(1, 5);
+    for (int i = 0; i < 100000; ++i) {
+        float const x = std::ldexp(random.uniform(-1.0F, 1.0F), i % 200 - 100);
+        float const y = std::ldexp(random.uniform(-1.0F, 1.0F), i % 200 - 100);
+        EXPECT_FLOAT_EQ(exact::hypot(x, y), std::hypot(x, y)) << x << " " << y;
+    }
+    EXPECT_EQ(exact::hypot(3e-30F, 4e-30F), 5e-30F);
+    EXPECT_EQ(exact::hypot(-3e30F, 4e30F), 5e30F);
+    EXPECT_EQ(exact::hypot(0.0F, -2.0F), 2.0F);
+}
+
 /// The bits themselves: what a compiler or processor that rounds otherwise changes.
 TEST(ExactMath, GivesTheSameBitsEverywhere) {
     std::uint64_t hash = 0;
@@ -93,8 +136,11 @@ TEST(ExactMath, GivesTheSameBitsEverywhere) {
         add(exact::exp(x - 25.0));
         add(exact::pow(x, 1.7));
         add(static_cast<double>(random.normal()));
+        add(exact::atan2(x - 25.0, x - 10.0));
+        add(exact::asin(0.02 * x));
+        add(static_cast<double>(exact::hypot(static_cast<float>(x), 0.7F)));
     }
-    EXPECT_EQ(hash, 618968956547947651U);
+    EXPECT_EQ(hash, 15950298054183256345U);
 }
 
 }  // namespace

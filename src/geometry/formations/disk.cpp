@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/exact_math.hpp"
 #include "geometry/formations/ring_placement.hpp"
 
 namespace pogosim {
@@ -16,8 +17,8 @@ constexpr float kContactMargin = 1.0005F;  // rounding must not turn contact int
 
 /// How many disks fit side by side on a circle of `ring` times their radius.
 int count_on_circle(int ring) {
-    constexpr float rounding = 1.0e-3F;
-    return ring == 0 ? 1 : static_cast<int>(kPi / std::asin(1.0F / static_cast<float>(ring)) + rounding);
+    constexpr double rounding = 1.0e-3;
+    return ring == 0 ? 1 : static_cast<int>(std::numbers::pi / exact::asin(1.0 / ring) + rounding);
 }
 
 /// Circles one radius apart.

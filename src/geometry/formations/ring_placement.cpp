@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <span>
 
+#include "base/exact_math.hpp"
 #include "geometry/formations/disk_field.hpp"
 
 namespace pogosim {
@@ -19,8 +19,8 @@ constexpr std::int64_t kMostNodesPerObject = 20;
 
 /// Distance from the centre to the farthest corner of the bounding box.
 float farthest_corner_mm(Box box, Vec2 centre) {
-    return std::hypot(std::max(centre.x - box.min.x, box.max.x - centre.x),
-                      std::max(centre.y - box.min.y, box.max.y - centre.y));
+    return exact::hypot(std::max(centre.x - box.min.x, box.max.x - centre.x),
+                        std::max(centre.y - box.min.y, box.max.y - centre.y));
 }
 
 class RingPlacement {
