@@ -17,7 +17,7 @@ apt_packages="build-essential cmake ninja-build ccache pkg-config
 # gdb, valgrind: what docs/debugging.md shows. slurm*, munge: a cluster of one node to test batches on, see tests/slurm.
 apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg chromium
     gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf
-    gdb valgrind slurmctld slurmd slurm-client munge"
+    g++-aarch64-linux-gnu qemu-user gdb valgrind slurmctld slurmd slurm-client munge"
 apt_tidy_packages="clang-tidy"
 brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark sdl2 imgui libpng
     python3"

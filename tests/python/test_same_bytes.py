@@ -1,0 +1,44 @@
+"""Worlds develop to the same bits whatever compiler, level of optimisation and processor the simulator is built for.
+
+The project's own builds run the program same_bytes as a test, with gcc at -O3 and with clang at -O1 and sanitizers.
+Here are others.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from running import ROOT
+
+SOURCES = ROOT / "tests" / "same_bytes"
+
+# Compiler, its flags, and what runs the program.
+BUILDS = {
+    "clang for this processor": (["clang++"], "-O2 -march=native", []),
+    "ARM64": (["aarch64-linux-gnu-g++"], "-O2 -static", ["qemu-aarch64"]),
+}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs a cross compiler of Linux")
+@pytest.mark.parametrize("name", BUILDS)
+def test_worlds_develop_to_the_same_bits(name: str, tmp_path: Path) -> None:
+    compiler, flags, runner = BUILDS[name]
+    for tool in (*compiler, *runner):
+        assert shutil.which(tool), f"{tool} is missing: scripts/bootstrap.sh installs it"
+    generator = ["-G", "Ninja"] if shutil.which("ninja") else []
+    if shutil.which("ccache"):
+        generator.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
+    configure = ["cmake", "-S", str(SOURCES), "-B", str(tmp_path), *generator]
+    configure += [f"-DCMAKE_CXX_COMPILER={compiler[0]}", f"-DCMAKE_CXX_FLAGS={flags}"]
+    for command in (configure, ["cmake", "--build", str(tmp_path), "--parallel", "2"]):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    result = subprocess.run(
+        [*runner, str(tmp_path / "same_bytes")], capture_output=True, text=True, check=False, timeout=600
+    )
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout == (SOURCES / "expected.txt").read_text()

@@ -1,0 +1,13 @@
+// Box2D is not ours, and nobody promises its bytes.
+#include <stdexcept>
+
+#include "physics/physics_engine.hpp"
+
+namespace pogosim {
+
+std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& /*world*/, WallSpec const& /*walls*/,
+                                                 WorkerPool& /*workers*/) {
+    throw std::logic_error("built without Box2D");
+}
+
+}  // namespace pogosim
