@@ -19,9 +19,12 @@ POGO_PER_ROBOT uint32_t _error_code_initial_time = 0;  // 0: no error is shown
 
 uint32_t current_time_milliseconds(void) {
     // Moves the origin by whole milliseconds, so that the rest is not lost and the stopwatch never overflows.
-    int32_t const ms = pogobot_stopwatch_get_elapsed_microseconds(&_global_timer) / 1000;
-    pogobot_stopwatch_offset_origin_microseconds(&_global_timer, ms * 1000);
-    _current_time_milliseconds += (uint32_t)ms;
+    int32_t const us = pogobot_stopwatch_get_elapsed_microseconds(&_global_timer);
+    if (us >= 1000 || us <= -1000) {
+        int32_t const ms = us / 1000;
+        pogobot_stopwatch_offset_origin_microseconds(&_global_timer, ms * 1000);
+        _current_time_milliseconds += (uint32_t)ms;
+    }
     return _current_time_milliseconds;
 }
 

@@ -1,6 +1,5 @@
 // pogolib/infrared.h: messages sent by user code are put on the air; comms delivers them after every robot has run.
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -200,8 +199,8 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
     require_argument(message, "pogobot_infrared_recover_next_message", "message");
     context.controller->program.reads_messages = true;
     FrameHeader header;
-    std::array<std::byte, MAX_PAYLOAD_SIZE_BYTES> payload;
-    if (!context.has_robot() || !context.world->mailboxes.pop(context.robot, header, payload.data())) {
+    std::span const payload = std::as_writable_bytes(std::span(message->payload, max_payload_bytes));
+    if (!context.has_robot() || !context.world->mailboxes.pop(context.robot, header, payload)) {
         context.services->warn_once(
             "pogobot_infrared_recover_next_message was called with no message waiting: check "
             "pogobot_infrared_message_available() first");
@@ -212,8 +211,7 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
     std::size_t const size = std::min<std::size_t>(header.payload_length, max_payload_bytes);
     header.payload_length = static_cast<std::uint16_t>(size);
     std::memcpy(&message->header, &header, sizeof(header));
-    std::memcpy(message->payload, payload.data(), size);
-    std::memset(message->payload + size, 0, max_payload_bytes - size);
+    std::ranges::fill(payload.subspan(size), std::byte{0});
 }
 
 void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t /*ir_index*/) {

@@ -1,5 +1,6 @@
 #include "world/mailbox.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstring>
@@ -30,10 +31,11 @@ void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader c
     ++count;
 }
 
-void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::byte* payload) {
+void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::span<std::byte> payload) {
     assert(count > 0 && head + kHeaderBytes <= tail);
     std::memcpy(&header, block + head, kHeaderBytes);
-    std::memcpy(payload, block + head + kHeaderBytes, header.payload_length);
+    std::size_t const size = std::min<std::size_t>(header.payload_length, payload.size());
+    std::memcpy(payload.data(), block + head + kHeaderBytes, size);
     head += static_cast<std::uint32_t>(kHeaderBytes + header.payload_length);
     if (--count == 0) {
         head = tail = 0;
@@ -91,7 +93,7 @@ unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader header, std::span
     return queue.waiting - before;
 }
 
-bool Mailboxes::pop(std::size_t robot, FrameHeader& header, std::byte* payload) {
+bool Mailboxes::pop(std::size_t robot, FrameHeader& header, std::span<std::byte> payload) {
     Queue& queue = queues_[robot];
     if (queue.waiting == 0) {
         return false;

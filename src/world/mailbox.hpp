@@ -73,8 +73,8 @@ public:
     bool empty(std::size_t robot) const { return queues_[robot].waiting == 0; }
     int size(std::size_t robot) const { return static_cast<int>(queues_[robot].waiting); }
 
-    /// Takes the oldest message out; `payload` receives payload_length bytes. False when there is none.
-    bool pop(std::size_t robot, FrameHeader& header, std::byte* payload);
+    /// Takes the oldest message out; `payload` gets what fits of its payload_length bytes. False when there is none.
+    bool pop(std::size_t robot, FrameHeader& header, std::span<std::byte> payload);
 
     /// Headers and payloads of the waiting messages: the oldest ones, then the others.
     std::array<std::span<std::byte const>, 2> waiting(std::size_t robot) const;
@@ -95,7 +95,7 @@ private:
         std::span<std::byte const> bytes(std::byte const* block) const { return {block + head, block + tail}; }
         void push(std::byte* block, std::size_t capacity, FrameHeader const& header,
                   std::span<std::byte const> payload);
-        void pop(std::byte const* block, FrameHeader& header, std::byte* payload);
+        void pop(std::byte const* block, FrameHeader& header, std::span<std::byte> payload);
     };
 
     static constexpr std::size_t kCacheLine = 64;

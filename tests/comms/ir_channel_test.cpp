@@ -47,7 +47,7 @@ struct Received {
 std::vector<Received> take_all(World& world, std::uint32_t robot) {
     std::vector<Received> messages;
     Received next{};
-    while (world.mailboxes.pop(robot, next.header, next.payload.data())) {
+    while (world.mailboxes.pop(robot, next.header, next.payload)) {
         messages.push_back(next);
     }
     return messages;

@@ -52,14 +52,14 @@ TEST(Mailbox, GivesMessagesBackFirstInFirstOut) {
     EXPECT_EQ(boxes.size(0), 3);
     FrameHeader header;
     std::array<std::byte, kMaxPayload> payload{};
-    ASSERT_TRUE(boxes.pop(0, header, payload.data()));
+    ASSERT_TRUE(boxes.pop(0, header, payload));
     EXPECT_EQ(header.payload_length, 2);
     EXPECT_EQ(payload[1], std::byte{1});
-    ASSERT_TRUE(boxes.pop(0, header, payload.data()));
+    ASSERT_TRUE(boxes.pop(0, header, payload));
     EXPECT_EQ(header.payload_length, 0);
-    ASSERT_TRUE(boxes.pop(0, header, payload.data()));
+    ASSERT_TRUE(boxes.pop(0, header, payload));
     EXPECT_EQ(payload[381], std::byte{3});
-    EXPECT_FALSE(boxes.pop(0, header, payload.data()));
+    EXPECT_FALSE(boxes.pop(0, header, payload));
 }
 
 TEST(Mailbox, BehavesAsAPlainQueueForAnySequenceOfMessages) {
@@ -79,7 +79,7 @@ TEST(Mailbox, BehavesAsAPlainQueueForAnySequenceOfMessages) {
         } else {
             FrameHeader header;
             std::array<std::byte, kMaxPayload> payload{};
-            ASSERT_EQ(boxes.pop(robot, header, payload.data()), !expected[robot].empty());
+            ASSERT_EQ(boxes.pop(robot, header, payload), !expected[robot].empty());
             if (!expected[robot].empty()) {
                 auto const& message = expected[robot].front();
                 ASSERT_EQ(header.payload_length, message.size());
