@@ -2,7 +2,9 @@
 // file. Prints the real-time factor, microseconds per robot and step, the share of each stage, memory per robot, and a
 // hash of the final state, which must not depend on the machine's load. Best of several runs, each after a warm-up.
 //
-//     build/release/bench/bench_run_and_tumble [--set KEY=VALUE] ... [number of robots ...]
+//     build/release/bench/bench_run_and_tumble [--json] [--runs N] [--set KEY=VALUE] ... [number of robots ...]
+//
+// --json prints an object for each number of robots, in a line of its own, for bench/table.py.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,10 +12,12 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/log.hpp"
@@ -27,7 +31,9 @@ using namespace pogosim;
 constexpr double kAreaPerRobotMm2 = 1e4;
 constexpr double kWarmUpS = 8.0;                 // simulated: the flash of light and the boot of hanabi are over
 constexpr std::int64_t kRobotSteps = 2'000'000;  // measured in each run
-constexpr int kRuns = 3;
+constexpr std::string_view kConfiguration = POGOSIM_BENCH_CONFIGURATION;  // conf/....yaml
+constexpr bool kHasMembranes = kConfiguration == "walls_and_membranes";
+constexpr int kRobotsPerMembrane = 100;
 
 struct Result {
     double seconds = 0.0;  // wall clock
@@ -46,6 +52,8 @@ double resident_bytes() {
 }
 
 struct Options {
+    bool json = false;
+    int runs = 3;                        // of which the best one counts
     std::vector<int> sizes;              // numbers of robots
     std::vector<std::string> overrides;  // of the configuration
 };
@@ -60,8 +68,12 @@ Scenario scenario_of(int robots, std::vector<std::string> const& overrides) {
                                  "enable_console_logging=false",
                                  "save_video_period=-1",
                                  "seed=1"};
+    if (kHasMembranes) {
+        all.push_back(fmt::format("objects.membranes.nb={}", std::max(robots / kRobotsPerMembrane, 1)));
+        all.push_back("initial_formation=power_lloyd");
+    }
     all.insert(all.end(), overrides.begin(), overrides.end());
-    return load_scenario(source + "/conf/simple.yaml", {.overrides = all, .strict = true});
+    return load_scenario(fmt::format("{}/conf/{}.yaml", source, kConfiguration), {.overrides = all, .strict = true});
 }
 
 void step_or_die(Simulation& simulation) {
@@ -81,9 +93,10 @@ void warm_up(Simulation& simulation) {
     }
 }
 
-/// A robot alone has all code and libraries loaded, which then counts for nobody's memory.
+/// The smallest swarm has all code and libraries loaded, which then counts for nobody's memory.
 void load_code(Options const& options) {
-    Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(1, options.overrides), {});
+    Simulation simulation(linked_program(pogosim_this_program, "bench"),
+                          scenario_of(kHasMembranes ? kRobotsPerMembrane : 1, options.overrides), {});
     warm_up(simulation);
 }
 
@@ -110,9 +123,18 @@ Result run_once(int robots, Options const& options) {
     return result;
 }
 
+constexpr double kTimeStepS = 0.01;
+
+void print_header() {
+    fmt::print("{:>7} {:>12} {:>16} {:>12}   ", "robots", "x real time", "us/robot/step", "kB/robot");
+    for (auto const name : kStageNames) {
+        fmt::print("{:>10}", name);
+    }
+    fmt::print("   hash\n");
+}
+
 void print(int robots, Result const& best) {
     double const step_s = best.seconds / static_cast<double>(best.steps);
-    constexpr double kTimeStepS = 0.01;
     fmt::print("{:>7} {:>12.1f} {:>16.3f} {:>12.2f}   ", robots, kTimeStepS / step_s, 1e6 * step_s / robots,
                best.bytes_per_robot / 1000.0);
     for (double const stage_s : best.stage_s) {
@@ -121,13 +143,25 @@ void print(int robots, Result const& best) {
     fmt::print("   {:016x}\n", best.hash);
 }
 
+void print_json(int robots, Result const& best) {
+    double const step_s = best.seconds / static_cast<double>(best.steps);
+    fmt::print(
+        R"({{"robots": {}, "times_real_time": {}, "us_per_robot_and_step": {}, "kb_per_robot": {}, "hash": "{:016x}")",
+        robots, kTimeStepS / step_s, 1e6 * step_s / robots, best.bytes_per_robot / 1000.0, best.hash);
+    for (std::size_t s = 0; s < kStageNames.size(); ++s) {
+        fmt::print(R"(, "share_of_{}": {})", kStageNames[s], best.stage_s[s] / best.seconds);
+    }
+    fmt::print("}}\n");
+    std::fflush(stdout);
+}
+
 constexpr int kMostRobots = 10'000'000;
 
 /// Ends the program when the arguments are wrong.
 Options options_of(int argc, char** argv) {
     auto const fail = [&](std::string const& what) {
-        fmt::print(stderr, "{}\nUsage: {} [--set KEY=VALUE] ... [number of robots, 1 to {} ...]\n", what, argv[0],
-                   kMostRobots);
+        fmt::print(stderr, "{}\nUsage: {} [--json] [--runs N] [--set KEY=VALUE] ... [number of robots, 1 to {} ...]\n",
+                   what, argv[0], kMostRobots);
         std::exit(2);
     };
     Options options;
@@ -135,6 +169,17 @@ Options options_of(int argc, char** argv) {
         std::string const argument = argv[i];
         if (argument == "--set" && i + 1 < argc) {
             options.overrides.emplace_back(argv[++i]);
+            continue;
+        }
+        if (argument == "--json") {
+            options.json = true;
+            continue;
+        }
+        if (argument == "--runs" && i + 1 < argc) {
+            options.runs = std::atoi(argv[++i]);
+            if (options.runs < 1) {
+                fail(fmt::format("'{}' is no number of runs", argv[i]));
+            }
             continue;
         }
         int const robots = std::atoi(argument.c_str());
@@ -150,15 +195,13 @@ Options options_of(int argc, char** argv) {
 }
 
 void measure(Options const& options) {
-    fmt::print("{:>7} {:>12} {:>16} {:>12}   ", "robots", "x real time", "us/robot/step", "kB/robot");
-    for (auto const name : kStageNames) {
-        fmt::print("{:>10}", name);
+    if (!options.json) {
+        print_header();
     }
-    fmt::print("   hash\n");
     load_code(options);
     for (int const robots : options.sizes) {
         Result best = run_once(robots, options);
-        for (int run = 1; run < kRuns; ++run) {
+        for (int run = 1; run < options.runs; ++run) {
             Result const next = run_once(robots, options);
             if (next.hash != best.hash) {
                 fmt::print(stderr, "two runs of {} robots end in different states\n", robots);
@@ -169,7 +212,7 @@ void measure(Options const& options) {
             best = next.seconds < best.seconds ? next : best;
             best.bytes_per_robot = bytes;
         }
-        print(robots, best);
+        options.json ? print_json(robots, best) : print(robots, best);
     }
 }
 
