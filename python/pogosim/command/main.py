@@ -81,22 +81,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def pogosim_command() -> int:
     """Run the command `pogosim`."""
-    return last(main())
+    return process("pogosim", main)
 
 
 def pogobatch() -> int:
     """Run the command `pogobatch`, which is `pogosim batch`."""
-    return last(ended("pogobatch", lambda: call("batch", sys.argv[1:], "pogobatch")))
+    return process("pogobatch", lambda: call("batch", sys.argv[1:], "pogobatch"))
 
 
 def pogoptim() -> int:
     """Run the command `pogoptim`, which is `pogosim optimize`."""
-    return last(ended("pogoptim", lambda: call("optimize", sys.argv[1:], "pogoptim")))
+    return process("pogoptim", lambda: call("optimize", sys.argv[1:], "pogoptim"))
 
 
 def recover() -> int:
     """Run the command `pogosim-recover`, which is `pogosim recover`."""
-    return last(ended("pogosim-recover", lambda: call("recover", sys.argv[1:], "pogosim-recover")))
+    return process("pogosim-recover", lambda: call("recover", sys.argv[1:], "pogosim-recover"))
 
 
 def ended(prog: str, command: Callable[[], int]) -> int:
@@ -109,6 +109,11 @@ def ended(prog: str, command: Callable[[], int]) -> int:
         return NO_READER
     except OSError as error:
         return complain(prog, f"cannot go on: {error.strerror or error}")
+
+
+def process(prog: str, command: Callable[[], int]) -> int:
+    """Run a command that is all of this process: what signals do to it is told once, and not after its end."""
+    return last(ended(prog, lambda: last(command())))
 
 
 def last(code: int) -> int:
