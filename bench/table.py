@@ -22,7 +22,6 @@ import pandas as pd
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAMS = ("run_and_tumble", "hanabi", "push_sum", "moving_oscillators", "phototaxis", "walls_and_membranes")
-ONLY_BOX2D = ("walls_and_membranes",)  # its membranes are no disks
 LARGE = 50_000  # robots of which one run is enough
 COST = "us_per_robot_and_step"
 
@@ -52,8 +51,7 @@ def asked(options: argparse.Namespace) -> list[tuple[str, str, int, int]]:
         for engine in ("disk", "box2d")
         for threads in options.threads
         for robots in options.robots
-        if not (engine == "disk" and program in ONLY_BOX2D)
-        and not (engine == "box2d" and (threads > 1 or robots > options.most_box2d))
+        if not (engine == "box2d" and (threads > 1 or robots > options.most_box2d))
     ]
 
 

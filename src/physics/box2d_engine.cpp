@@ -6,10 +6,10 @@
 #include <new>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/random.hpp"
-#include "geometry/shape.hpp"
 #include "physics/assert_motion.hpp"
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
@@ -18,7 +18,9 @@
 #include "physics/known_motion.hpp"
 #include "physics/membrane_area.hpp"
 #include "physics/membrane_filter.hpp"
+#include "physics/membrane_mass.hpp"
 #include "physics/membrane_sides.hpp"
+#include "physics/membrane_steps.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/wrap_objects.hpp"
 
@@ -36,25 +38,13 @@ constexpr Iterations kJointIterations{12, 6};  // a pull has to go round a membr
 // sub-steps in which no two robots at full speed approach by more than this, as long as that is not too many.
 constexpr float kApproachMm = 1.0F;
 constexpr int kMaxSubsteps = 8;
-// Box2D cuts off what a body moves or turns beyond these in one step. Speeds that need more sub-steps get them, up to
-// as many as these.
-constexpr int kMostSubsteps = 100;
+// Box2D cuts off what a body moves or turns beyond these in one step.
 constexpr float kMostMotionMm = 0.99F * b2_maxTranslation * kMmPerUnit;
 constexpr float kMostTurnRad = 0.99F * b2_maxRotation;
-// The joints of a membrane yield to bodies that hit it hard. It holds those that move by up to this share of half its
-// thickness per sub-step (found by trial with robots of 5 to 40 mm), or as far as in the sub-steps of slow robots.
-constexpr float kMembraneShare = 0.2F;
-constexpr float kLeastMembraneMotionMm = 0.5F * kApproachMm;
 // Bodies that get their shapes in the order of the bodies, at most: see order_of_shapes().
 constexpr std::size_t kMostInOrder = 65536;
 // Box2D calls slower collisions inelastic; its own limit of 1 unit/s is the full speed of a robot.
 constexpr float kRestitutionThreshold = 0.05F;  // units/s
-// A spring that swings more often than this per step cannot be followed and would shake; it is taken for one that
-// swings just so often.
-constexpr float kMostSwingsPerStep = 0.5F;
-// The solver cannot hold back a heavy body by a chain of light ones. A robot with wheels weighs so many times as much
-// as a body of a membrane at most; lighter ones get more mass.
-constexpr float kMostMassRatio = 30.0F;
 // A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
 constexpr float kSweptShare = 0.5F;
 
@@ -68,16 +58,6 @@ std::vector<std::uint32_t> order_of_shapes(std::size_t count) {
         std::ranges::sort(order, {}, [](std::uint32_t body) { return mix64(body); });
     }
     return order;
-}
-
-/// What a body may move in a sub-step: see kMostMotionMm and kMembraneShare.
-float most_motion_mm(World const& world) {
-    float most_mm = kMostMotionMm;
-    for (Membrane const& membrane : world.membranes) {
-        float const half_thickness_mm = inner_radius(world.bodies.shape[membrane.body]);
-        most_mm = std::min(most_mm, std::max(kMembraneShare * half_thickness_mm, kLeastMembraneMotionMm));
-    }
-    return most_mm;
 }
 
 struct Fastest {
@@ -119,10 +99,42 @@ bool is_finite(b2Body const& body) {
     return body.GetPosition().IsValid() && std::isfinite(body.GetAngle());
 }
 
+/// A fixture's user data is the index of its body, kNone for walls.
+class Filter final : public b2ContactFilter {
+public:
+    explicit Filter(World const& world) : membranes_(world), body_count_(world.bodies.size()) {}
+
+    bool ShouldCollide(b2Fixture* a, b2Fixture* b) override {
+        std::uintptr_t const body_a = a->GetUserData().pointer;
+        std::uintptr_t const body_b = b->GetUserData().pointer;
+        return body_a >= body_count_ || body_b >= body_count_ ||
+               membranes_.may_collide(static_cast<std::uint32_t>(body_a), static_cast<std::uint32_t>(body_b));
+    }
+
+private:
+    MembraneFilter membranes_;
+    std::size_t body_count_;
+};
+
+/// A membrane, in the units of Box2D.
+struct Line {
+    std::span<b2Body* const> bodies;
+
+    std::size_t size() const { return bodies.size(); }
+    Vec2 position(std::size_t i) const { return {bodies[i]->GetWorldCenter().x, bodies[i]->GetWorldCenter().y}; }
+    Vec2 velocity(std::size_t i) const { return {bodies[i]->GetLinearVelocity().x, bodies[i]->GetLinearVelocity().y}; }
+    float inverse_mass(std::size_t i) const { return 1.0F / bodies[i]->GetMass(); }
+    void push(std::size_t i, Vec2 change) const {
+        bodies[i]->SetLinearVelocity(bodies[i]->GetLinearVelocity() + b2Vec2{change.x, change.y});
+    }
+};
+
 class Box2dEngine final : public PhysicsEngine {
 public:
     Box2dEngine(World const& world, WallSpec const& walls)
-        : filter_(world), engine_(std::make_unique<b2World>(b2Vec2_zero)), most_motion_mm_(most_motion_mm(world)) {
+        : filter_(world),
+          engine_(std::make_unique<b2World>(b2Vec2_zero)),
+          most_motion_mm_(most_motion_mm(world, kMostMotionMm)) {
         engine_->SetContinuousPhysics(false);
         engine_->SetAutoClearForces(false);  // there are none
         engine_->SetContactFilter(&filter_);
@@ -139,15 +151,15 @@ public:
         for (std::uint32_t const i : order_of_shapes(world.bodies.size())) {
             add_shape_of(world.bodies, i);
         }
-        add_mass_to_membranes(world);
+        scale_masses(world);
         for (Joint const& joint : world.joints) {
             add_joint(joint, kMostSwingsPerStep / static_cast<float>(world.time_step_s));
         }
         for (Membrane const& membrane : world.membranes) {
-            areas_.emplace_back(membrane, bodies_);
+            areas_.emplace_back(line_of(membrane));
         }
         if (!world.membranes.empty()) {
-            sides_.emplace(world, bodies_);
+            sides_.emplace(world);
         }
         known_.copy(world.bodies);
     }
@@ -163,27 +175,25 @@ public:
         Iterations const iterations = world.joints.empty() ? kContactIterations : kJointIterations;
         auto const dt_s = static_cast<float>(world.time_step_s / substeps);
         for (int i = 0; i < substeps; ++i) {
-            for (MembraneArea const& area : areas_) {
-                area.push(dt_s);
-            }
+            push_areas(world, dt_s);
             step(dt_s, iterations);
         }
         if (containment_) {
             hold_in_walls();
         }
-        if (sides_ && sides_->hold(bodies_) && containment_) {
-            contain_from_here();
-        }
-        if (world.periodic) {
-            wrap_objects(world, bodies_);
-            if (sides_) {
-                sides_->look_again(bodies_);
-            }
-        }
         any_awake_ = false;
         for (Object const& object : world.objects) {
             for (std::uint32_t k = 0; k < object.body_count; ++k) {
                 read_back(world.bodies, object.body + k);
+            }
+        }
+        if (sides_) {
+            hold_on_their_sides(world);
+        }
+        if (world.periodic) {
+            set_poses(world.bodies, wrap_objects(world));
+            if (sides_) {
+                sides_->look_again(world);
             }
         }
         known_.copy(world.bodies);
@@ -210,7 +220,7 @@ private:
             }
         }
         if (!moved.empty()) {
-            take_over_poses(bodies, moved);
+            take_over_poses(world, moved);
         }
         known_.copy(bodies);
     }
@@ -225,7 +235,39 @@ private:
         }
     }
 
-    void take_over_poses(Bodies& bodies, std::vector<std::uint32_t> const& moved) {
+    Line line_of(Membrane const& membrane) const {
+        return {std::span(bodies_).subspan(membrane.body, membrane.body_count)};
+    }
+
+    void push_areas(World const& world, float dt_s) const {
+        for (std::size_t i = 0; i < areas_.size(); ++i) {
+            Line const line = line_of(world.membranes[i]);
+            if (line.bodies.front()->IsAwake()) {  // joints let all of them sleep together
+                areas_[i].push(line, dt_s);
+            }
+        }
+    }
+
+    void hold_on_their_sides(World& world) {
+        std::vector<std::uint32_t> const& put_back = sides_->hold(world);
+        set_poses(world.bodies, put_back);
+        for (std::uint32_t const i : put_back) {
+            bodies_[i]->SetLinearVelocity(b2Vec2_zero);
+            bodies_[i]->SetAngularVelocity(0.0F);
+            if (containment_) {
+                containment_->start_from(i, world.bodies.position_mm[i]);
+            }
+        }
+    }
+
+    void set_poses(Bodies const& bodies, std::span<std::uint32_t const> of) {
+        for (std::uint32_t const i : of) {
+            bodies_[i]->SetTransform(to_box2d(bodies.position_mm[i]), bodies.heading_rad[i]);
+        }
+    }
+
+    void take_over_poses(World& world, std::vector<std::uint32_t> const& moved) {
+        Bodies& bodies = world.bodies;
         part_coinciding_centres(bodies.position_mm, moved);
         for (std::uint32_t const i : moved) {
             b2Body& body = *bodies_[i];
@@ -242,7 +284,7 @@ private:
             contain_from_here();
         }
         if (sides_) {
-            sides_->look_again(bodies_);
+            sides_->look_again(world);
         }
     }
 
@@ -324,21 +366,16 @@ private:
         add_shape(*bodies_[i], bodies.shape[i], fixture);
     }
 
-    /// Mass scaling: see kMostMassRatio.
-    void add_mass_to_membranes(World const& world) {
-        float heaviest = 0.0F;
-        for (std::size_t i = 0; i < world.robots.size(); ++i) {
-            if (world.spec_of(i).has_wheels) {
-                heaviest = std::max(heaviest, bodies_[world.robots.body[i]]->GetMass());
-            }
+    void scale_masses(World const& world) {
+        std::vector<float> mass;
+        for (b2Body const* const body : bodies_) {
+            mass.push_back(body->GetMass());
         }
-        for (Membrane const& membrane : world.membranes) {
-            for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
-                b2Body& body = *bodies_[membrane.body + k];
-                float const factor = heaviest / (kMostMassRatio * body.GetMass());
-                if (factor > 1.0F) {
-                    set_mass(body, factor * body.GetMass(), body.GetInertia() / body.GetMass());
-                }
+        add_mass_to_membranes(world, mass);
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            b2Body& body = *bodies_[i];
+            if (mass[i] > body.GetMass()) {
+                set_mass(body, mass[i], body.GetInertia() / body.GetMass());
             }
         }
     }
@@ -408,7 +445,7 @@ private:
         bodies.angular_velocity_rad_s[i] = body.GetAngularVelocity();
     }
 
-    MembraneFilter filter_;
+    Filter filter_;
     std::unique_ptr<b2World> engine_;
     float most_motion_mm_;                    // in a sub-step
     std::optional<Containment> containment_;  // nobody leaves a periodic world

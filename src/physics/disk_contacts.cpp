@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/membrane_mass.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -23,37 +25,55 @@ ContactLaw law_between(Disk const& a, Disk const& b) {
 }  // namespace
 
 DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
-    : wall_{.radius_mm = 0.0F,
+    : membranes_(world),
+      polygons_(world),
+      wall_{.radius_mm = 0.0F,
             .inverse_mass = 0.0F,
             .inverse_inertia = 0.0F,
             .friction = walls.friction,
-            .restitution = walls.restitution} {
+            .restitution = walls.restitution},
+      spring_impulse_(world.joints.size()) {
     Bodies const& bodies = world.bodies;
+    std::vector<float> mass;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        float const radius_mm = bodies.radius_mm[i];
+        mass.push_back(bodies.spec[i].density * std::numbers::pi_v<float> * radius_mm * radius_mm);
+    }
+    add_mass_to_membranes(world, mass);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         BodySpec const& spec = bodies.spec[i];
         float const radius_mm = bodies.radius_mm[i];
-        float const mass = spec.density * std::numbers::pi_v<float> * radius_mm * radius_mm;
-        disks_.push_back({.radius_mm = radius_mm,
-                          .inverse_mass = spec.fixed ? 0.0F : 1.0F / mass,
-                          .inverse_inertia = spec.fixed ? 0.0F : 2.0F / (mass * radius_mm * radius_mm),
+        disks_.push_back({.radius_mm = polygons_.is_one(static_cast<std::uint32_t>(i)) ? 0.0F : radius_mm,
+                          .inverse_mass = spec.fixed ? 0.0F : 1.0F / mass[i],
+                          .inverse_inertia = spec.fixed ? 0.0F : 2.0F / (mass[i] * radius_mm * radius_mm),
                           .friction = spec.friction,
                           .restitution = spec.restitution});
     }
 }
 
-void DiskContacts::build(NearPairs const& pairs, NearWalls const& walls) {
+/// The disk around a polygon may be much larger than it.
+void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm) {
+    if (!polygons_.is_one(fixed) ||
+        polygons_.gap_to(world, fixed, world.bodies.position_mm[disk]).distance_mm < disks_[disk].radius_mm + skin_mm) {
+        with_fixed_.push_back({.a = disk, .b = fixed, .law = law_between(disks_[disk], disks_[fixed])});
+    }
+}
+
+void DiskContacts::build(World const& world, NearPairs const& pairs, NearWalls const& walls) {
     walls_ = &walls;
     keep_impulses();
     near_.clear();
     with_fixed_.clear();
     for (auto const [a, b] : pairs.pairs()) {
-        ContactLaw const law = law_between(disks_[a], disks_[b]);
+        if (!membranes_.may_collide(a, b)) {
+            continue;
+        }
         if (is_fixed(a)) {
-            with_fixed_.push_back({.a = b, .b = a, .law = law});
+            add_fixed(world, b, a, pairs.skin_mm());
         } else if (is_fixed(b)) {
-            with_fixed_.push_back({.a = a, .b = b, .law = law});
+            add_fixed(world, a, b, pairs.skin_mm());
         } else {
-            near_.push_back({.a = a, .b = b, .law = law});
+            near_.push_back({.a = a, .b = b, .law = law_between(disks_[a], disks_[b])});
         }
     }
     pair_count_ = static_cast<std::uint32_t>(near_.size());
@@ -98,6 +118,9 @@ std::optional<Gap> DiskContacts::gap_to_fixed(World const& world, std::uint32_t 
     std::uint32_t const fixed = near_[contact].b;
     if (contact >= first_wall_) {
         return gap_to(walls_->side(fixed), point_mm);
+    }
+    if (polygons_.is_one(fixed)) {
+        return polygons_.gap_to(world, fixed, point_mm);
     }
     return gap_to_centre(minimum_image(world, world.bodies.position_mm[fixed], point_mm));
 }

@@ -5,8 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "physics/fixed_polygons.hpp"
+#include "physics/membrane_filter.hpp"
 #include "physics/near_pairs.hpp"
 #include "physics/near_walls.hpp"
+#include "physics/soft_membranes.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -24,13 +27,13 @@ struct ContactLaw {
 /// A disk that moves and what it may touch.
 struct NearContact {
     std::uint32_t a;
-    std::uint32_t b;  // another disk that moves, a fixed disk, or an edge of a wall: see DiskContacts
+    std::uint32_t b;  // another disk that moves, a fixed body, or an edge of a wall: see DiskContacts
     ContactLaw law;
 };
 
 /// What a body is to the contacts, for the whole run.
 struct Disk {
-    float radius_mm;
+    float radius_mm;        // 0 for a polygon
     float inverse_mass;     // 0: fixed
     float inverse_inertia;  // 1 / (mass mm^2)
     float friction;
@@ -48,9 +51,9 @@ public:
     DiskContacts(World const& world, WallSpec const& walls);
 
     /// Takes over what is near. The walls are used later, too.
-    void build(NearPairs const& pairs, NearWalls const& walls);
+    void build(World const& world, NearPairs const& pairs, NearWalls const& walls);
 
-    /// Pairs of disks that move, then disks with fixed ones, then disks with walls.
+    /// Pairs of disks that move, then disks with fixed bodies, then disks with walls.
     std::vector<NearContact> const& near() const { return near_; }
 
     /// Number of pairs of disks that move.
@@ -58,6 +61,12 @@ public:
 
     /// Impulse of each contact when motors drove it last, 0 if it is new: a first guess for the next time.
     std::vector<float>& driven_impulse() { return driven_impulse_; }
+
+    /// The same of each joint of the world, a spring.
+    std::vector<SpringImpulse>& spring_impulse() { return spring_impulse_; }
+    std::vector<SpringImpulse> const& spring_impulse() const { return spring_impulse_; }
+
+    FixedPolygons const& polygons() const { return polygons_; }
 
     Disk const& disk(std::uint32_t body) const { return disks_[body]; }
 
@@ -74,15 +83,19 @@ private:
         float impulse;
     };
 
+    void add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm);
     std::uint64_t things_of(std::uint32_t contact) const;
     void keep_impulses();
     void give_impulses();
 
+    MembraneFilter membranes_;
+    FixedPolygons polygons_;
     std::vector<Disk> disks_;
     Disk wall_;
     std::vector<NearContact> near_;
     std::vector<NearContact> with_fixed_;  // while near_ is built anew
     std::vector<float> driven_impulse_;
+    std::vector<SpringImpulse> spring_impulse_;
     std::vector<Pushing> pushing_;  // while near_ is built anew
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_

@@ -1,5 +1,6 @@
 // Rigid disks, ours: a structure of arrays, a list of near pairs that is kept while nobody has moved far, and a solver
 // that sub-steps only bodies in contact. All others move on a straight line, at the cost of reading and writing them.
+// Soft membranes are disks that springs hold together. Obstacles, which never move, may have corners.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,10 +23,13 @@
 #include "physics/island_solver.hpp"
 #include "physics/islands.hpp"
 #include "physics/known_motion.hpp"
+#include "physics/membrane_sides.hpp"
+#include "physics/membrane_steps.hpp"
 #include "physics/near_pairs.hpp"
 #include "physics/near_walls.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/sweep.hpp"
+#include "physics/wrap_objects.hpp"
 
 namespace pogosim {
 
@@ -33,11 +38,26 @@ namespace {
 // Contacts are looked for as far as bodies can come together in a step, if an impact makes them so much faster.
 constexpr float kReserve = 1.5F;
 constexpr float kLeastReachMm = 0.5F;
-// Who moves further than this share of the smallest radius in a step is swept.
+// Who moves further than this share of the smallest radius in a step is swept. Membranes are not looked at for that:
+// what passes one goes back.
 constexpr float kSweptShare = 0.5F;
 // Of a range that one worker takes.
 constexpr std::uint32_t kLeastIslands = 64;
 constexpr std::uint32_t kLeastBodies = 1024;
+// A membrane that has been slower than this for so long comes to rest; a robot's full speed is a hundred times as much.
+constexpr float kCalmMmS = 1.0F;
+constexpr double kCalmAfterS = 0.5;
+
+/// The smallest of what is not part of a membrane, if there is something.
+float smallest_radius_mm(World const& world) {
+    float smallest_mm = std::numeric_limits<float>::max();
+    for (Object const& object : world.objects) {
+        if (object.body_count == 1) {
+            smallest_mm = std::min(smallest_mm, world.bodies.radius_mm[object.body]);
+        }
+    }
+    return smallest_mm < std::numeric_limits<float>::max() ? smallest_mm : std::ranges::min(world.bodies.radius_mm);
+}
 
 class DiskEngine final : public PhysicsEngine {
 public:
@@ -52,12 +72,17 @@ public:
           solvers_(workers.size(), IslandSolver(world)) {
         Bodies const& bodies = world.bodies;
         if (bodies.size() > 0) {
-            ordinary_mm_ = kSweptShare * std::ranges::min(bodies.radius_mm);
+            ordinary_mm_ = kSweptShare * smallest_radius_mm(world);
         }
         for (std::uint32_t i = 0; i < bodies.size(); ++i) {
             if (!bodies.spec[i].fixed) {
                 movable_.push_back(i);
             }
+        }
+        if (!world.membranes.empty()) {
+            sides_.emplace(world);
+            calm_s_.resize(world.membranes.size());
+            most_motion_mm_ = kMostSubsteps * most_motion_mm(world, most_motion_mm_);
         }
         known_.copy(bodies);
     }
@@ -72,18 +97,22 @@ public:
         if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_) {
             return;  // nothing moves, as in a swarm that only talks
         }
-        moved_ = false;
         float const reach_mm = 2.0F * std::min(std::max(kReserve * fastest_mm_s * dt_s, kLeastReachMm), ordinary_mm_);
-        if (!near_pairs_.covers(world, reach_mm, workers_)) {
+        if (moved_ || !near_pairs_.covers(world, reach_mm, workers_)) {
             near_pairs_.build(world, reach_mm, workers_);
             near_walls_.build(world, containment_.walls(), near_pairs_.skin_mm());
-            contacts_.build(near_pairs_, near_walls_);
+            contacts_.build(world, near_pairs_, near_walls_);
         }
-        islands_.find(world, contacts_, {.reach_mm = reach_mm, .tolerance_mm = kContactToleranceMm}, workers_);
+        islands_.find(world, contacts_,
+                      {.reach_mm = reach_mm, .tolerance_mm = kContactToleranceMm, .wakes_membranes = moved_}, workers_);
+        moved_ = false;
         solve_islands(world, is_driven);
         move_others(world, dt_s);
         if (!fast_.empty()) {
             hold_fast(world, dt_s);
+        }
+        if (sides_) {
+            hold_by_membranes(world);
         }
         damping_.end_step(bodies);
         known_.copy(bodies);
@@ -91,9 +120,9 @@ public:
     }
 
     MotionLimits motion_limits() const override {
-        return {.motion_mm = std::numeric_limits<float>::max(),
+        return {.motion_mm = most_motion_mm_,
                 .turn_rad = std::numeric_limits<float>::max(),
-                .is_of_membranes = false};
+                .is_of_membranes = sides_.has_value()};
     }
 
 private:
@@ -146,7 +175,7 @@ private:
         if (squared_length(dt_s * velocity_mm_s) > ordinary_mm_ * ordinary_mm_) {
             fast.push_back({i, known_.position_mm(i)});
         } else if (world.periodic) {
-            place_mm = wrapped(world, place_mm);
+            place_mm = wrapped_alone(world, place_mm);
         } else {
             place_mm = containment_.hold(i, place_mm);
         }
@@ -154,10 +183,39 @@ private:
     }
 
     void hold_fast(World& world, float dt_s) {
-        sweep_.stop_at_impacts(world, fast_, dt_s);
+        sweep_.stop_at_impacts(world, contacts_.polygons(), fast_, dt_s);
         for (Start const& start : fast_) {
             Vec2& place_mm = world.bodies.position_mm[start.body];
-            place_mm = world.periodic ? wrapped(world, place_mm) : containment_.hold_fast(start.body, place_mm);
+            place_mm = world.periodic ? wrapped_alone(world, place_mm) : containment_.hold_fast(start.body, place_mm);
+        }
+    }
+
+    /// Where there are membranes, who is in one comes back at the other side together with it: see wrap_objects().
+    Vec2 wrapped_alone(World const& world, Vec2 place_mm) const { return sides_ ? place_mm : wrapped(world, place_mm); }
+
+    void hold_by_membranes(World& world) {
+        for (std::uint32_t const i : sides_->hold(world)) {
+            containment_.start_from(i, world.bodies.position_mm[i]);
+        }
+        if (world.periodic) {
+            wrap_objects(world);
+            sides_->look_again(world);
+        }
+        for (std::size_t i = 0; i < calm_s_.size(); ++i) {
+            calm_down(world, world.membranes[i], calm_s_[i]);
+        }
+    }
+
+    static void calm_down(World& world, Membrane const& membrane, double& calm_s) {
+        std::span const velocity_mm_s =
+            std::span(world.bodies.velocity_mm_s).subspan(membrane.body, membrane.body_count);
+        bool const is_calm = std::ranges::all_of(
+            velocity_mm_s, [](Vec2 velocity) { return squared_length(velocity) < kCalmMmS * kCalmMmS; });
+        calm_s = is_calm ? calm_s + world.time_step_s : 0.0;
+        if (calm_s >= kCalmAfterS) {
+            std::ranges::fill(velocity_mm_s, Vec2{});
+            std::ranges::fill(
+                std::span(world.bodies.angular_velocity_rad_s).subspan(membrane.body, membrane.body_count), 0.0F);
         }
     }
 
@@ -181,6 +239,9 @@ private:
         for (std::uint32_t const i : moved) {
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
             containment_.start_from(i, bodies.position_mm[i]);
+        }
+        if (sides_ && !moved.empty()) {
+            sides_->look_again(world);
         }
         known_.copy(bodies);
     }
@@ -227,12 +288,15 @@ private:
     std::vector<IslandSolver> solvers_;  // of each worker
     Sweep sweep_;
     KnownMotion known_;
+    std::optional<MembraneSides> sides_;  // when there are membranes
+    std::vector<double> calm_s_;          // of each membrane: how long it has been slow
     std::vector<std::uint32_t> movable_;  // bodies that are not fixed
     std::vector<Start> fast_;             // bodies in this step
     std::vector<std::vector<Start>> fast_in_range_;
-    float ordinary_mm_ = 1.0F;   // who goes further in a step is fast
-    bool has_overlaps_ = false;  // some disks overlapped after the last step
-    bool moved_ = true;          // somebody was put elsewhere, perhaps into others
+    float most_motion_mm_ = std::numeric_limits<float>::max();  // in a step
+    float ordinary_mm_ = 1.0F;                                  // who goes further in a step is fast
+    bool has_overlaps_ = false;                                 // some disks overlapped after the last step
+    bool moved_ = true;                                         // somebody was put elsewhere, perhaps into others
 };
 
 }  // namespace
@@ -240,11 +304,10 @@ private:
 std::string why_unfit_for_disk_engine(World const& world) {
     for (Object const& object : world.objects) {
         std::string const& name = world.categories[object.category].name;
-        if (object.body_count > 1) {
-            return fmt::format("moves disks only, but '{}' is a membrane", name);
-        }
-        if (object.body != kNone && world.bodies.shape[object.body].kind != ShapeKind::disk) {
-            return fmt::format("moves disks only, but '{}' has another shape", name);
+        bool const is_disk = object.body == kNone || world.bodies.shape[object.body].kind == ShapeKind::disk;
+        if (!is_disk && !world.bodies.spec[object.body].fixed) {
+            return fmt::format("moves disks only, but '{}' {}", name,
+                               object.body_count > 1 ? "is a membrane of segments" : "has another shape and can move");
         }
     }
     return "";

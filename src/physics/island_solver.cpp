@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include "physics/membrane_steps.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -15,12 +17,16 @@ constexpr int kSubsteps = 4;
 // Passes through the contacts of an island end when none of them changes a gap at the end of the sub-step by more.
 constexpr float kConvergedMm = 0.005F;
 constexpr int kMostPasses = 8;
+constexpr int kMostSoftPasses = 6;  // a pull has to go round a membrane
 // Slower impacts are inelastic.
 constexpr float kRestitutionThresholdMmS = 5.0F;
 // Soft constraint: natural frequency in parts of the rate of sub-steps, and damping ratio, see Catto, "Solver2D".
 constexpr float kStiffness = 0.25F;
 constexpr float kDampingRatio = 3.0F;
 constexpr float kFastestPushMmS = 500.0F;
+// What soft membranes throw is at most so many times as fast as the fastest before, and never faster than sub-steps can
+// follow: crushed ones would go wild.
+constexpr float kMostThrown = 4.0F;
 // Impacts may be this late.
 constexpr float kMostLateMm = 0.5F;
 
@@ -37,7 +43,11 @@ float push_rate(float h_s) {
 
 }  // namespace
 
-IslandSolver::IslandSolver(World const& world) : movers_(1), mover_(world.bodies.size()) {}
+IslandSolver::IslandSolver(World const& world)
+    : movers_(1),
+      membranes_(world),
+      most_motion_mm_(most_motion_mm(world, std::numeric_limits<float>::max())),
+      mover_(world.bodies.size()) {}
 
 std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body) {
     std::uint32_t const known = mover_[body];
@@ -62,12 +72,21 @@ std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts const& con
 void IslandSolver::gather(World const& world, DiskContacts const& contacts, Islands const& islands,
                           Island const& island) {
     block_shift_ = 0;
-    while ((island.contact_count - 1) >> block_shift_ >= kMostBlocks) {
+    while (island.contact_count > kMostBlocks << block_shift_) {
         ++block_shift_;
     }
     movers_.resize(1);
     contacts_.clear();
     pair_count_ = 0;
+    membranes_.clear();
+    for (std::uint32_t i = island.first_membrane; i != kNone; i = islands.next_membranes()[i]) {
+        Membrane const& membrane = world.membranes[i];
+        auto const first = static_cast<std::uint32_t>(movers_.size());
+        for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
+            mover_of(world, contacts, membrane.body + k);
+        }
+        membranes_.add(world, i, movers_, first, contacts.spring_impulse());
+    }
     for (std::uint32_t link = island.first; link != kNone; link = islands.links()[link].next) {
         std::uint32_t const index = islands.links()[link].contact;
         NearContact const& near = contacts.near()[index];
@@ -130,6 +149,14 @@ void IslandSolver::demand(Contact& contact, float speed_mm_s, Times const& times
 void IslandSolver::mark(Contact& contact) {
     contact.solved = -1;
     dirty_ |= std::uint64_t{1} << (static_cast<std::size_t>(&contact - contacts_.data()) >> block_shift_);
+}
+
+void IslandSolver::mark_overlaps() {
+    for (Contact& contact : contacts_) {
+        if (contact.gap_mm < 0.0F) {
+            mark(contact);
+        }
+    }
 }
 
 /// Where the contacts are at the start of a sub-step, and what they demand.
@@ -286,9 +313,81 @@ void IslandSolver::keep_impulses(std::vector<float>& driven_impulse) const {
     }
 }
 
+float IslandSolver::fastest_mm_s() const {
+    float fastest2 = 0.0F;
+    for (Mover const& mover : movers_) {
+        fastest2 = std::max(fastest2, squared_length(mover.velocity_mm_s));
+    }
+    return std::sqrt(fastest2);
+}
+
+/// Returns whether somebody was faster.
+bool IslandSolver::limit_speeds(float most_mm_s) {
+    bool is_limited = false;
+    for (Mover& mover : movers_) {
+        float const speed_mm_s = length(mover.velocity_mm_s);
+        if (speed_mm_s > most_mm_s) {
+            mover.velocity_mm_s = (most_mm_s / speed_mm_s) * mover.velocity_mm_s;
+            is_limited = true;
+        }
+    }
+    return is_limited;
+}
+
+/// Springs first: contacts, which must hold, have the last word.
+void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
+    for (int pass = 0; pass < kMostSoftPasses; ++pass) {
+        bool const backwards = pass % 2 == 0;
+        float change_mm_s = membranes_.solve(movers_, backwards, !pushes);
+        for (std::size_t i = 0; i < contacts_.size(); ++i) {
+            Contact& contact = contacts_[backwards ? contacts_.size() - 1 - i : i];
+            float const demanded_mm_s = pushes ? contact.least_mm_s : contact.relaxed_mm_s;
+            change_mm_s = std::max(change_mm_s, solve_contact(contact, demanded_mm_s));
+        }
+        if (h_s * change_mm_s <= kConvergedMm) {
+            return;
+        }
+    }
+}
+
+/// Returns whether some bodies overlap in the end.
+bool IslandSolver::solve_soft(World const& world, DiskContacts const& contacts) {
+    auto const dt_s = static_cast<float>(world.time_step_s);
+    float const fastest_mm_s = this->fastest_mm_s();
+    // Nobody goes further in a sub-step than membranes can hold back, see membrane_steps.hpp.
+    float const needed = std::ceil(fastest_mm_s * dt_s / most_motion_mm_);
+    auto const substeps =
+        static_cast<int>(std::clamp(needed, static_cast<float>(kSubsteps), static_cast<float>(kMostSubsteps)));
+    float const most_mm_s = std::min(kMostThrown * std::max(fastest_mm_s, kFastestPushMmS),
+                                     static_cast<float>(kMostSubsteps) * most_motion_mm_ / dt_s);
+    float const h_s = dt_s / static_cast<float>(substeps);
+    Times times{.h_s = h_s, .rest_s = 0.0F, .per_h = 1.0F / h_s, .push_rate = push_rate(h_s)};
+    bool overlaps = false;
+    for (int substep = 0; substep < substeps; ++substep) {
+        times.rest_s = static_cast<float>(substeps - substep) * h_s;
+        bool const is_too_long = membranes_.begin_substep(movers_, h_s, times.push_rate);
+        overlaps = measure(world, contacts, times).overlaps;
+        solve_velocities_softly(h_s, /*pushes=*/true);
+        bool const is_limited = limit_speeds(most_mm_s);
+        move(h_s);
+        if (is_limited) {
+            membranes_.forget_impulses();  // guesses that fail grow with each sub-step
+        } else if (overlaps || is_too_long) {
+            solve_velocities_softly(h_s, /*pushes=*/false);
+        }
+    }
+    return overlaps;
+}
+
 bool IslandSolver::solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island,
                          bool is_driven) {
     gather(world, contacts, islands, island);
+    if (!membranes_.empty()) {
+        bool const overlaps = solve_soft(world, contacts);
+        membranes_.keep_impulses(contacts.spring_impulse());
+        scatter(world);
+        return overlaps;
+    }
     float const h_s = static_cast<float>(world.time_step_s) / kSubsteps;
     Times times{.h_s = h_s, .rest_s = 0.0F, .per_h = 1.0F / h_s, .push_rate = push_rate(h_s)};
     bool overlaps = false;
@@ -319,11 +418,7 @@ bool IslandSolver::solve(World& world, DiskContacts& contacts, Islands const& is
         }
         move(h_s);
         if (survey.overlaps) {
-            for (Contact& contact : contacts_) {
-                if (contact.gap_mm < 0.0F) {
-                    mark(contact);
-                }
-            }
+            mark_overlaps();
             solve_velocities(h_s, /*pushes=*/false);
             overlaps = overlaps || substep + 1 == kSubsteps;
         }

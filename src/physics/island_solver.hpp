@@ -6,7 +6,8 @@
 // moved ("relaxation"), so that they add no energy: E. Catto, "Solver2D" (2024).
 //
 // The solver works on a copy, in which the bodies and contacts of the island lie side by side, and looks again only at
-// contacts whose bodies have changed their velocities since it looked last.
+// contacts whose bodies have changed their velocities since it looked last. In an island with soft membranes, it looks
+// at all contacts and springs in each pass, and fast bodies have more sub-steps.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,8 @@
 
 #include "physics/disk_contacts.hpp"
 #include "physics/islands.hpp"
+#include "physics/mover.hpp"
+#include "physics/soft_membranes.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -30,19 +33,6 @@ public:
     bool solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island, bool is_driven);
 
 private:
-    struct Mover {
-        Vec2 position_mm;
-        Vec2 velocity_mm_s;
-        float heading_rad = 0.0F;
-        float angular_velocity_rad_s = 0.0F;
-        float radius_mm = 0.0F;
-        float inverse_mass = 0.0F;
-        float inverse_inertia = 0.0F;
-        std::uint32_t body = kNone;
-        std::uint64_t blocks = 0;  // that have a contact of it, see dirty_
-        std::int32_t changed = 0;  // when a contact last changed its velocity, on the clock of the sub-step
-    };
-
     struct Contact {
         std::uint32_t a;     // into movers_
         std::uint32_t b;     // the same; kStill: something fixed
@@ -75,6 +65,10 @@ private:
 
     static constexpr std::uint32_t kStill = 0;
 
+    bool solve_soft(World const& world, DiskContacts const& contacts);
+    void solve_velocities_softly(float h_s, bool pushes);
+    float fastest_mm_s() const;
+    bool limit_speeds(float most_mm_s);
     std::uint32_t mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body);
     void gather(World const& world, DiskContacts const& contacts, Islands const& islands, Island const& island);
     void scatter(World& world) const;
@@ -85,6 +79,7 @@ private:
     void push_as_before(std::vector<float> const& driven_impulse);
     void keep_impulses(std::vector<float>& driven_impulse) const;
     void mark(Contact& contact);
+    void mark_overlaps();
     void solve_velocities(float h_s, bool pushes);
     void solve_block(std::uint32_t block, bool backwards, float h_s, bool pushes);
     void solve_if_changed(Contact& contact, std::uint64_t clean_block, float h_s, bool pushes);
@@ -93,6 +88,8 @@ private:
     std::vector<Mover> movers_;  // the first one stands for all that is fixed
     std::vector<Contact> contacts_;
     std::uint32_t pair_count_ = 0;  // contacts of two movers, which come first
+    SoftMembranes membranes_;
+    float most_motion_mm_;  // in a sub-step, where there are membranes
 
     // Contacts lie in up to 64 blocks of 2^block_shift_. A dirty block has contacts to look at again.
     std::uint64_t dirty_ = 0;

@@ -14,6 +14,9 @@ constexpr std::uint32_t kLeastRange = 2048;  // contacts
 
 Islands::Islands(World const& world) : alone_(world.bodies.size()) {
     std::iota(alone_.begin(), alone_.end(), 0U);
+    for (Membrane const& membrane : world.membranes) {
+        std::fill_n(alone_.begin() + membrane.body, membrane.body_count, membrane.body);
+    }
 }
 
 /// Of a forest whose ways are made shorter as they are walked: R. E. Tarjan, "Efficiency of a good but not linear set
@@ -97,6 +100,28 @@ void Islands::link(DiskContacts const& contacts) {
     }
 }
 
+/// Puts each soft membrane on the list of its island. One that moves keeps its island active, or becomes one.
+void Islands::link_membranes(World const& world, Reach const& reach) {
+    next_membrane_.assign(world.membranes.size(), kNone);
+    for (std::uint32_t i = 0; i < world.membranes.size(); ++i) {
+        Membrane const& membrane = world.membranes[i];
+        auto const first = world.bodies.velocity_mm_s.begin() + membrane.body;
+        bool const moves =
+            reach.wakes_membranes ||
+            std::any_of(first, first + membrane.body_count, [](Vec2 velocity_mm_s) { return velocity_mm_s != Vec2{}; });
+        std::uint32_t& island = island_[root_of(membrane.body)];
+        if (island == kNone && moves) {
+            island = static_cast<std::uint32_t>(islands_.size());
+            islands_.emplace_back();
+        }
+        if (island != kNone) {
+            next_membrane_[i] = islands_[island].first_membrane;
+            islands_[island].first_membrane = i;
+            islands_[island].is_active = islands_[island].is_active || moves;
+        }
+    }
+}
+
 void Islands::mark_bodies(DiskContacts const& contacts) {
     for (std::uint32_t i = 0; i < links_.size(); ++i) {
         NearContact const& near = contacts.near()[links_[i].contact];
@@ -105,6 +130,15 @@ void Islands::mark_bodies(DiskContacts const& contacts) {
             if (links_[i].contact < contacts.pair_count()) {
                 has_contact_[near.b] = 1;
             }
+        }
+    }
+}
+
+void Islands::mark_membranes(World const& world) {
+    for (Island const& island : islands_) {
+        for (std::uint32_t i = island.first_membrane; island.is_active && i != kNone; i = next_membrane_[i]) {
+            Membrane const& membrane = world.membranes[i];
+            std::fill_n(has_contact_.begin() + membrane.body, membrane.body_count, std::uint8_t{1});
         }
     }
 }
@@ -128,7 +162,9 @@ void Islands::find(World const& world, DiskContacts const& contacts, Reach const
     });
     unite(contacts);
     link(contacts);
+    link_membranes(world, reach);
     mark_bodies(contacts);
+    mark_membranes(world);
 }
 
 }  // namespace pogosim

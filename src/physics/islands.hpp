@@ -1,6 +1,6 @@
 // Bodies that touch, directly or through others, are an island: D. Baraff, "Rigid body simulation", SIGGRAPH course
 // notes 1997. What happens in one island has nothing to do with the others within a time step. Walls and fixed bodies
-// do not connect those that touch them.
+// do not connect those that touch them; the bodies of a soft membrane are always of one island.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@
 
 namespace pogosim {
 
-/// Contacts of one island: a list in Islands::links().
+/// Contacts of one island: a list in Islands::links(). Its membranes: a list in Islands::next_membranes().
 struct Island {
-    std::uint32_t first = kNone;
+    std::uint32_t first = kNone;  // no contacts: a membrane that is on its way
     std::uint32_t last = kNone;
     std::uint32_t contact_count = 0;
-    bool is_active = false;  // somebody touches within this step
+    std::uint32_t first_membrane = kNone;
+    bool is_active = false;  // somebody touches within this step, or a membrane is on its way
 };
 
 struct IslandLink {
@@ -28,8 +29,9 @@ struct IslandLink {
 
 /// How near is near enough.
 struct Reach {
-    float reach_mm;      // bodies with smaller gaps are of one island
-    float tolerance_mm;  // who overlaps by less at the end of the step does not touch
+    float reach_mm;                // bodies with smaller gaps are of one island
+    float tolerance_mm;            // who overlaps by less at the end of the step does not touch
+    bool wakes_membranes = false;  // those at rest, too, are on their way
 };
 
 class Islands {
@@ -39,9 +41,13 @@ public:
     /// Finds the islands of bodies as they are now.
     void find(World const& world, DiskContacts const& contacts, Reach const& reach, WorkerPool& workers);
 
-    /// In the order of their first contacts. Contacts of each are in the order of DiskContacts::near().
+    /// In the order of their first contacts, then those of a membrane alone. Contacts of each are in the order of
+    /// DiskContacts::near().
     std::span<Island const> islands() const { return islands_; }
     std::span<IslandLink const> links() const { return links_; }
+
+    /// Of each membrane of the world, the next one in its island; kNone: the last one.
+    std::span<std::uint32_t const> next_membranes() const { return next_membrane_; }
 
     /// Whether the body is in an active island.
     bool has_contact(std::uint32_t body) const { return has_contact_[body] != 0; }
@@ -60,15 +66,18 @@ private:
                            std::vector<Close>& found);
     void unite(DiskContacts const& contacts);
     void link(DiskContacts const& contacts);
+    void link_membranes(World const& world, Reach const& reach);
     void mark_bodies(DiskContacts const& contacts);
+    void mark_membranes(World const& world);
 
-    std::vector<std::uint32_t> alone_;   // 0, 1, 2 ...
+    std::vector<std::uint32_t> alone_;   // of each body: itself, or the first body of its soft membrane
     std::vector<std::uint32_t> parent_;  // of each body, in the forest of islands
     std::vector<std::uint32_t> island_;  // of each root; kNone: none
     std::vector<std::uint8_t> has_contact_;
     std::vector<std::vector<Close>> close_;  // of each range of contacts, while they are looked for
     std::vector<IslandLink> links_;          // in the order of DiskContacts::near()
     std::vector<std::uint8_t> meets_;        // of each link: they touch within this step
+    std::vector<std::uint32_t> next_membrane_;
     std::vector<Island> islands_;
 };
 

@@ -1,27 +1,87 @@
 // What a soft membrane encloses: it resists changes of its area like a cushion of water.
 #pragma once
 
-#include <vector>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <numbers>
 
-#include "physics/box2d_units.hpp"
-#include "world/world.hpp"
+#include "base/vec2.hpp"
 
 namespace pogosim {
 
+/// The bodies of a membrane, in their order, whatever engine has them.
+template <class T>
+concept MembraneLine = requires(T line, std::size_t i, Vec2 change) {
+    { line.size() } -> std::same_as<std::size_t>;
+    { line.position(i) } -> std::same_as<Vec2>;
+    { line.velocity(i) } -> std::same_as<Vec2>;
+    { line.inverse_mass(i) } -> std::same_as<float>;
+    line.push(i, change);  // adds to the velocity
+};
+
 /// A spring between the present and the initial area of a membrane, with the membrane's own mass, critically damped.
 /// Solved as one soft constraint per step, which is stable at every stiffness: E. Catto, "Soft Constraints", Game
-/// Developers Conference, 2011.
+/// Developers Conference, 2011. Lengths in any unit.
 class MembraneArea {
 public:
-    /// `bodies` are all of the world; the membrane's are at rest.
-    MembraneArea(Membrane const& membrane, std::vector<b2Body*> const& bodies);
+    /// The membrane is at rest.
+    template <MembraneLine Line>
+    explicit MembraneArea(Line const& line) : area_(enclosed(line)) {}
 
     /// Changes the velocities for a step of `dt_s`.
-    void push(float dt_s) const;
+    template <MembraneLine Line>
+    void push(Line const& line, float dt_s) const;
 
 private:
-    std::vector<b2Body*> bodies_;
-    float area_;  // at rest, units^2
+    // As stiff as the time step allows: a lost area is back within a few steps.
+    static constexpr float kSwingsPerStep = 0.25F;
+    // A membrane whose area is and stays as right as this is left alone: a push, even of nothing, would keep it moving.
+    static constexpr float kTolerance = 1e-4F;  // of the area
+
+    /// Signed, positive when the bodies run clockwise on the screen.
+    template <MembraneLine Line>
+    static float enclosed(Line const& line) {
+        float twice = 0.0F;
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            twice += cross(line.position(i), line.position((i + 1) % line.size()));
+        }
+        return 0.5F * twice;
+    }
+
+    /// How the area grows when body i moves.
+    template <MembraneLine Line>
+    static Vec2 gradient(Line const& line, std::size_t i) {
+        std::size_t const count = line.size();
+        Vec2 const across = line.position((i + 1) % count) - line.position((i + count - 1) % count);
+        return {0.5F * across.y, -0.5F * across.x};
+    }
+
+    float area_;  // at rest
 };
+
+template <MembraneLine Line>
+void MembraneArea::push(Line const& line, float dt_s) const {
+    float inverse_mass = 0.0F;  // of the area as a coordinate
+    float growth = 0.0F;        // of the area, per second
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        Vec2 const way = gradient(line, i);
+        inverse_mass += dot(way, way) * line.inverse_mass(i);
+        growth += dot(way, line.velocity(i));
+    }
+    float const excess = enclosed(line) - area_;
+    if (inverse_mass <= 0.0F || std::abs(excess) + std::abs(growth) * dt_s < kTolerance * std::abs(area_)) {
+        return;
+    }
+    float const omega = 2.0F * std::numbers::pi_v<float> * kSwingsPerStep / dt_s;
+    float const stiffness = omega * omega / inverse_mass;
+    float const damping = 2.0F * omega / inverse_mass;
+    float const softness = 1.0F / (dt_s * (damping + dt_s * stiffness));
+    float const bias = excess * dt_s * stiffness * softness;
+    float const impulse = -(growth + bias) / (inverse_mass + softness);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        line.push(i, impulse * line.inverse_mass(i) * gradient(line, i));
+    }
+}
 
 }  // namespace pogosim

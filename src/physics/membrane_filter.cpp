@@ -40,11 +40,9 @@ MembraneFilter::MembraneFilter(World const& world) : places_(world.membranes.emp
     }
 }
 
-bool MembraneFilter::ShouldCollide(b2Fixture* a, b2Fixture* b) {
-    std::uintptr_t const body_a = a->GetUserData().pointer;
-    std::uintptr_t const body_b = b->GetUserData().pointer;
-    if (body_a >= places_.size() || body_b >= places_.size()) {
-        return true;  // a wall, or there are no membranes
+bool MembraneFilter::may_collide(std::uint32_t body_a, std::uint32_t body_b) const {
+    if (places_.empty()) {
+        return true;
     }
     PlaceInRing const& one = places_[body_a];
     PlaceInRing const& other = places_[body_b];

@@ -4,19 +4,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "physics/box2d_units.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
 /// Bodies that overlap at rest, as close neighbours in a membrane and those around a sharp corner do, must not push
-/// each other away; the others of a membrane collide, so that it does not cross itself. A fixture's user data is the
-/// index of its body, kNone for walls.
-class MembraneFilter final : public b2ContactFilter {
+/// each other away; the others of a membrane collide, so that it does not cross itself.
+class MembraneFilter {
 public:
+    /// The membranes are at rest.
     explicit MembraneFilter(World const& world);
 
-    bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
+    /// Whether two bodies, members of membranes or not, may collide.
+    bool may_collide(std::uint32_t body_a, std::uint32_t body_b) const;
 
 private:
     struct PlaceInRing {

@@ -1,6 +1,9 @@
 #include "physics/membrane_sides.hpp"
 
 #include <algorithm>
+#include <iterator>
+
+#include "base/grid.hpp"
 
 namespace pogosim {
 
@@ -24,83 +27,100 @@ float widest_gap_mm(World const& world, Membrane const& membrane) {
 
 }  // namespace
 
-MembraneSides::MembraneSides(World const& world, std::vector<b2Body*> const& bodies) {
+MembraneSides::MembraneSides(World const& world) {
     for (Membrane const& membrane : world.membranes) {
-        Side& side = sides_.emplace_back();
-        side.membrane = membrane;
-        float const gap_mm = widest_gap_mm(world, membrane);
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            if (!is_part(membrane, i) && 2.0F * world.bodies.radius_mm[i] >= gap_mm) {
-                side.others.push_back(static_cast<std::uint32_t>(i));
-            }
-        }
+        sides_.push_back({.membrane = membrane, .least_radius_mm = 0.5F * widest_gap_mm(world, membrane)});
     }
-    look_again(bodies);
+    look_again(world);
 }
 
-bool MembraneSides::hold(std::vector<b2Body*> const& bodies) {
-    bool const crossed = somebody_crossed(bodies);
-    if (crossed) {
+std::vector<std::uint32_t> const& MembraneSides::hold(World& world) {
+    put_back_.clear();
+    if (somebody_crossed(world)) {
         for (Side const& side : sides_) {
-            for (std::size_t k = 0; k < side.others.size(); ++k) {
-                if (side.is_inside[k] != side.was_inside[k]) {
-                    put_back(bodies, side.others[k]);
-                }
+            crossed_.clear();
+            std::ranges::set_symmetric_difference(side.was_inside, side.is_inside, std::back_inserter(crossed_));
+            for (std::uint32_t const i : crossed_) {
+                put_back(world.bodies, i);
             }
         }
-        if (somebody_crossed(bodies)) {
-            for (std::size_t i = 0; i < bodies.size(); ++i) {
-                put_back(bodies, i);
+        if (somebody_crossed(world)) {
+            for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
+                put_back(world.bodies, i);
             }
         }
     }
-    remember_poses(bodies);
-    return crossed;
+    remember_poses(world.bodies);
+    return put_back_;
 }
 
-void MembraneSides::look_again(std::vector<b2Body*> const& bodies) {
+void MembraneSides::look_again(World const& world) {
+    find_sides(world);
     for (Side& side : sides_) {
-        find_sides(bodies, side);
         side.was_inside = side.is_inside;
     }
-    remember_poses(bodies);
+    remember_poses(world.bodies);
 }
 
-bool MembraneSides::somebody_crossed(std::vector<b2Body*> const& bodies) {
-    bool crossed = false;
+bool MembraneSides::somebody_crossed(World const& world) {
+    find_sides(world);
+    return std::ranges::any_of(sides_, [](Side const& side) { return side.is_inside != side.was_inside; });
+}
+
+void MembraneSides::find_lines(World const& world) {
     for (Side& side : sides_) {
-        find_sides(bodies, side);
-        crossed = crossed || side.is_inside != side.was_inside;
+        auto const first = world.bodies.position_mm.begin() + side.membrane.body;
+        side.line.assign(first, first + side.membrane.body_count);
+        side.box = bounding_box(side.line);
+        side.is_inside.clear();
     }
-    return crossed;
 }
 
-void MembraneSides::find_sides(std::vector<b2Body*> const& bodies, Side& side) {
-    line_.clear();
-    for (std::uint32_t k = 0; k < side.membrane.body_count; ++k) {
-        line_.push_back(from_box2d(bodies[side.membrane.body + k]->GetPosition()));
+/// Bodies are asked for those membranes only whose boxes are where they are.
+void MembraneSides::find_sides(World const& world) {
+    find_lines(world);
+    float widest_mm = 0.0F;
+    for (Side const& side : sides_) {
+        widest_mm = std::max({widest_mm, side.box.size().x, side.box.size().y});
     }
-    Box const box = bounding_box(line_);
-    side.is_inside.assign(side.others.size(), 0);
-    for (std::size_t k = 0; k < side.others.size(); ++k) {
-        Vec2 const place_mm = from_box2d(bodies[side.others[k]]->GetPosition());
-        if (box.contains(place_mm) && contains(line_, place_mm)) {
-            side.is_inside[k] = 1;
+    GridCells const cells(world.arena.bounds, widest_mm, world.bodies.size(), /*periodic=*/false);
+    sides_in_cell_.resize(cells.size());
+    for (std::vector<std::uint32_t>& sides : sides_in_cell_) {
+        sides.clear();
+    }
+    for (std::uint32_t k = 0; k < sides_.size(); ++k) {
+        Box const& box = sides_[k].box;
+        float const half_mm = 0.5F * std::max(box.size().x, box.size().y);
+        cells.any_near(0.5F * (box.min + box.max), half_mm, [&](std::size_t cell) {
+            sides_in_cell_[cell].push_back(k);
+            return false;
+        });
+    }
+    for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
+        Vec2 const place_mm = world.bodies.position_mm[i];
+        for (std::uint32_t const k : sides_in_cell_[cells.cell_of(place_mm)]) {
+            Side& side = sides_[k];
+            if (side.box.contains(place_mm) && !is_part(side.membrane, i) &&
+                world.bodies.radius_mm[i] >= side.least_radius_mm && contains(side.line, place_mm)) {
+                side.is_inside.push_back(i);
+            }
         }
     }
 }
 
-void MembraneSides::put_back(std::vector<b2Body*> const& bodies, std::size_t i) const {
-    b2Body& body = *bodies[i];
-    body.SetTransform(poses_[i].position, poses_[i].angle_rad);
-    body.SetLinearVelocity(b2Vec2_zero);
-    body.SetAngularVelocity(0.0F);
+void MembraneSides::put_back(Bodies& bodies, std::uint32_t i) {
+    bodies.position_mm[i] = poses_[i].position_mm;
+    bodies.heading_rad[i] = poses_[i].heading_rad;
+    bodies.heading_dir[i] = poses_[i].heading_dir;
+    bodies.velocity_mm_s[i] = {};
+    bodies.angular_velocity_rad_s[i] = 0.0F;
+    put_back_.push_back(i);
 }
 
-void MembraneSides::remember_poses(std::vector<b2Body*> const& bodies) {
+void MembraneSides::remember_poses(Bodies const& bodies) {
     poses_.clear();
-    for (b2Body const* body : bodies) {
-        poses_.push_back({body->GetPosition(), body->GetAngle()});
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        poses_.push_back({bodies.position_mm[i], bodies.heading_rad[i], bodies.heading_dir[i]});
     }
 }
 

@@ -5,48 +5,53 @@
 #include <vector>
 
 #include "geometry/polygon.hpp"
-#include "physics/box2d_units.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
-/// The engine's contacts and joints give way under blows and crowds that are too strong for its few iterations, and a
+/// An engine's contacts and joints give way under blows and crowds that are too strong for its few iterations, and a
 /// body whose centre is past the middle of a membrane is pushed on to the wrong side. So the sides are compared after
 /// each step: a body that has changed sides goes back to where it was before the step, at rest. When somebody is on the
 /// wrong side of a membrane even so, because the membrane moved over him, the step does not take place for anybody.
 /// Bodies that fit through the gaps between those of a membrane may pass.
 class MembraneSides {
 public:
-    /// Takes sides and poses as they are now. `bodies`: all of the world.
-    MembraneSides(World const& world, std::vector<b2Body*> const& bodies);
+    /// Takes sides and poses as they are now.
+    explicit MembraneSides(World const& world);
 
-    /// To be called after a step of the engine. Returns whether bodies were put back.
-    bool hold(std::vector<b2Body*> const& bodies);
+    /// To be called after a step of the engine. Returns the bodies that were put back, some of them twice.
+    std::vector<std::uint32_t> const& hold(World& world);
 
-    /// Takes sides and poses anew: in a periodic world, after objects went over the seam.
-    void look_again(std::vector<b2Body*> const& bodies);
+    /// Takes sides and poses anew: when objects were put elsewhere.
+    void look_again(World const& world);
 
 private:
     struct Pose {
-        b2Vec2 position;
-        float angle_rad = 0.0F;
+        Vec2 position_mm;
+        float heading_rad = 0.0F;
+        Vec2 heading_dir;
     };
-    /// A membrane and the bodies that cannot pass it.
+    /// A membrane, and who that cannot pass it is inside: indices into World::bodies, ascending.
     struct Side {
         Membrane membrane;
-        std::vector<std::uint32_t> others;     // indices into World::bodies
-        std::vector<std::uint8_t> was_inside;  // each of them, before the step
-        std::vector<std::uint8_t> is_inside;   // and now
+        float least_radius_mm = 0.0F;             // who is smaller may pass
+        Polygon line{};                           // the middle of the membrane now
+        Box box{};                                // around it
+        std::vector<std::uint32_t> was_inside{};  // before the step
+        std::vector<std::uint32_t> is_inside{};   // and now
     };
 
-    bool somebody_crossed(std::vector<b2Body*> const& bodies);
-    void find_sides(std::vector<b2Body*> const& bodies, Side& side);
-    void put_back(std::vector<b2Body*> const& bodies, std::size_t i) const;
-    void remember_poses(std::vector<b2Body*> const& bodies);
+    bool somebody_crossed(World const& world);
+    void find_lines(World const& world);
+    void find_sides(World const& world);
+    void put_back(Bodies& bodies, std::uint32_t i);
+    void remember_poses(Bodies const& bodies);
 
     std::vector<Side> sides_;
-    std::vector<Pose> poses_;  // of all bodies, before the step
-    Polygon line_;             // scratch: the middle of a membrane
+    std::vector<std::vector<std::uint32_t>> sides_in_cell_;  // whose boxes touch a cell of a grid
+    std::vector<Pose> poses_;                                // of all bodies, before the step
+    std::vector<std::uint32_t> crossed_;                     // scratch
+    std::vector<std::uint32_t> put_back_;
 };
 
 }  // namespace pogosim

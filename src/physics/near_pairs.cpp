@@ -95,13 +95,13 @@ void NearPairs::sort_into_cells(World const& world) {
     Bodies const& bodies = world.bodies;
     // Counting sort by cell.
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        cell_[i] = cell_at(world, bodies.position_mm[i]);
+        cell_[i] = cell_at(world, wrapped(world, bodies.position_mm[i]));
         start_[cell_[i] + 1] += is_large_[i] == 0 ? 1U : 0U;
     }
     std::partial_sum(start_.begin(), start_.end(), start_.begin());
     for (std::uint32_t i = static_cast<std::uint32_t>(bodies.size()); i-- > 0;) {
         if (is_large_[i] == 0) {
-            items_[--start_[cell_[i] + 1]] = {bodies.position_mm[i], bodies.radius_mm[i], i};
+            items_[--start_[cell_[i] + 1]] = {wrapped(world, bodies.position_mm[i]), bodies.radius_mm[i], i};
         }
     }
     // Filling from the back has moved each cell's end to its start.
@@ -182,7 +182,9 @@ void NearPairs::for_each_row_near(World const& world, Item const& disk, Visit co
 /// Disks that are too large for the cells, with all others.
 void NearPairs::find_of_large(World const& world) {
     Bodies const& bodies = world.bodies;
-    auto const item_of = [&](std::uint32_t i) { return Item{bodies.position_mm[i], bodies.radius_mm[i], i}; };
+    auto const item_of = [&](std::uint32_t i) {
+        return Item{wrapped(world, bodies.position_mm[i]), bodies.radius_mm[i], i};
+    };
     auto const add = [&](Item const& a, Item const& b) {
         Vec2 const way = b.position_mm - a.position_mm;
         add_if_near(a, b, minimum_image(world, a.position_mm, b.position_mm) - way, pairs_);

@@ -24,7 +24,7 @@ float fraction_to_touch(Vec2 way_mm, Vec2 motion_mm, float radius_mm) {
 
 }  // namespace
 
-void Sweep::stop_at_impacts(World& world, std::span<Start const> fast, float dt_s) {
+void Sweep::stop_at_impacts(World& world, FixedPolygons const& polygons, std::span<Start const> fast, float dt_s) {
     Bodies& bodies = world.bodies;
     starts_mm_.resize(bodies.size());
     float fastest_mm_s = 0.0F;
@@ -46,7 +46,10 @@ void Sweep::stop_at_impacts(World& world, std::span<Start const> fast, float dt_
             dt_s * (length(velocity_mm_s) + fastest_mm_s) + bodies.radius_mm[i] + largest_mm + kRoundingMm;
         float fraction = 1.0F;
         grid_.for_each_near(start.position_mm, reach_mm, [&](std::uint32_t k, Vec2 from_mm) {
-            if (k != i) {
+            if (polygons.is_one(k)) {
+                fraction = std::min(fraction, polygons.fraction_to_touch(world, k, start.position_mm,
+                                                                         dt_s * velocity_mm_s, bodies.radius_mm[i]));
+            } else if (k != i) {
                 Vec2 const way = minimum_image(world, start.position_mm, from_mm);
                 Vec2 const motion = dt_s * (bodies.velocity_mm_s[k] - velocity_mm_s);
                 fraction =

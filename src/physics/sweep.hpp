@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/grid.hpp"
+#include "physics/fixed_polygons.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -18,10 +19,10 @@ struct Start {
 
 class Sweep {
 public:
-    /// Stops fast disks where they meet another one on their straight way through the step; the next step makes the
+    /// Stops fast disks where they meet another body on their straight way through the step; the next step makes the
     /// impact. `fast`: those that go further than others, with the places they come from. All positions are those at
     /// the end of the step, `dt_s` after the start.
-    void stop_at_impacts(World& world, std::span<Start const> fast, float dt_s);
+    void stop_at_impacts(World& world, FixedPolygons const& polygons, std::span<Start const> fast, float dt_s);
 
 private:
     std::vector<Vec2> starts_mm_;  // of all bodies

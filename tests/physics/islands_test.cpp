@@ -33,7 +33,7 @@ struct Finder {
     void build(World const& world) {
         pairs.build(world, kReachMm, workers);
         near_walls.build(world, walls, pairs.skin_mm());
-        contacts.build(pairs, near_walls);
+        contacts.build(world, pairs, near_walls);
     }
 
     void find(World const& world) {
@@ -169,6 +169,42 @@ TEST(Islands, AreActiveWhenTwoMeetWithinTheStep) {
         EXPECT_EQ(finder.islands.islands()[0].is_active, is_active) << first_gap_mm << " " << second_gap_mm;
         EXPECT_EQ(finder.bodies_of(finder.islands.islands()[0]), (Group{0, 1, 2}));
     }
+}
+
+TEST(Islands, HoldTogetherWhatASoftMembraneJoins) {
+    World world = testing::square_world(kSideMm);
+    testing::add_robot(world, {500.0F - 242.0F, 500.0F});  // 5.5 mm from its dots
+    testing::add_robot(world, {500.0F + 238.0F, 500.0F});  // 1.5 mm
+    testing::add_robot(world, {500.0F, 500.0F + 238.0F});  // the same, on another side
+    Membrane const membrane = testing::add_ring(world, {});
+    Finder at_rest(world);
+    at_rest.find(world);
+    ASSERT_EQ(at_rest.islands.islands().size(), 1U);
+    Island const& island = at_rest.islands.islands()[0];
+    EXPECT_FALSE(island.is_active);
+    EXPECT_EQ(island.first_membrane, 0U);
+    EXPECT_TRUE(at_rest.bodies_of(island).contains(1));
+    EXPECT_TRUE(at_rest.bodies_of(island).contains(2));
+    EXPECT_FALSE(at_rest.bodies_of(island).contains(0));
+
+    world.bodies.velocity_mm_s[membrane.body + 7] = {0.0F, 1.0F};
+    at_rest.find(world);
+    EXPECT_TRUE(at_rest.islands.islands()[0].is_active);
+    EXPECT_TRUE(at_rest.islands.has_contact(membrane.body + 50));
+}
+
+TEST(Islands, HaveAMembraneThatFliesAlone) {
+    World world = testing::square_world(kSideMm);
+    Membrane const membrane = testing::add_ring(world, {});
+    Finder finder(world);
+    finder.find(world);
+    EXPECT_TRUE(finder.islands.islands().empty());
+    world.bodies.velocity_mm_s.assign(world.bodies.size(), {10.0F, 0.0F});
+    finder.find(world);
+    ASSERT_EQ(finder.islands.islands().size(), 1U);
+    EXPECT_TRUE(finder.islands.islands()[0].is_active);
+    EXPECT_EQ(finder.islands.islands()[0].contact_count, 0U);
+    EXPECT_TRUE(finder.islands.has_contact(membrane.body + 3));
 }
 
 TEST(DiskContacts, KeepTheirImpulsesWhenTheyAreListedAnew) {

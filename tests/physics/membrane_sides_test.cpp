@@ -10,7 +10,7 @@
 namespace pogosim {
 namespace {
 
-/// A robot in the middle of a membrane of 4 or more disks, another one outside; the engine's bodies are moved by hand.
+/// A robot in the middle of a membrane of 4 or more disks, another one outside, moved by hand.
 class MembraneOfDisks : public ::testing::Test {
 protected:
     void make(int count, float radius_mm, float spring_mm = 0.0F) {
@@ -31,26 +31,24 @@ protected:
         inside_ = testing::add_robot(world_, centre_mm_);
         outside_ = testing::add_robot(world_, {900, 500});
         world_.membranes.push_back(membrane_);
-        for (Vec2 const position_mm : world_.bodies.position_mm) {
-            b2BodyDef definition;
-            definition.type = b2_dynamicBody;
-            definition.position = to_box2d(position_mm);
-            definition.linearVelocity = {1.0F, 2.0F};
-            bodies_.push_back(engine_.CreateBody(&definition));
-        }
-        sides_.emplace(world_, bodies_);
+        bodies().velocity_mm_s.assign(bodies().size(), {1.0F, 2.0F});
+        sides_.emplace(world_);
     }
 
-    void move(std::uint32_t body, Vec2 to_mm) { bodies_[body]->SetTransform(to_box2d(to_mm), 0.5F); }
-    Vec2 place(std::uint32_t body) const { return from_box2d(bodies_[body]->GetPosition()); }
+    Bodies& bodies() { return world_.bodies; }
+    void move(std::uint32_t body, Vec2 to_mm) {
+        Vec2 const velocity_mm_s = bodies().velocity_mm_s[body];
+        set_pose(bodies(), body, to_mm, 0.5F);
+        bodies().velocity_mm_s[body] = velocity_mm_s;
+    }
+    Vec2 place(std::uint32_t body) const { return world_.bodies.position_mm[body]; }
+    bool holds() { return !sides_->hold(world_).empty(); }
 
     Vec2 centre_mm_{500, 500};
     Membrane membrane_;
     World world_ = testing::square_world();
     std::uint32_t inside_ = 0;
     std::uint32_t outside_ = 0;
-    b2World engine_{b2Vec2_zero};
-    std::vector<b2Body*> bodies_;
     std::optional<MembraneSides> sides_;
 };
 
@@ -58,56 +56,58 @@ TEST_F(MembraneOfDisks, LeavesThoseAloneWhoStayOnTheirSide) {
     make(12, 10.0F);
     move(inside_, {550, 520});
     move(outside_, {620, 500});
-    EXPECT_FALSE(sides_->hold(bodies_));
+    EXPECT_FALSE(holds());
     EXPECT_EQ(place(inside_), (Vec2{550, 520}));
     EXPECT_EQ(place(outside_), (Vec2{620, 500}));
-    EXPECT_EQ(bodies_[inside_]->GetLinearVelocity().y, 2.0F);
+    EXPECT_EQ(bodies().velocity_mm_s[inside_].y, 2.0F);
 }
 
 TEST_F(MembraneOfDisks, PutsBackAtRestWhoeverJumpsOutOrIn) {
     make(12, 10.0F);
     move(inside_, {560, 500});
     move(outside_, {700, 500});
-    ASSERT_FALSE(sides_->hold(bodies_));
+    ASSERT_FALSE(holds());
     move(inside_, {650, 500});
     move(outside_, {690, 500});
-    EXPECT_TRUE(sides_->hold(bodies_));
+    EXPECT_TRUE(holds());
     EXPECT_EQ(place(inside_), (Vec2{560, 500}));
-    EXPECT_EQ(bodies_[inside_]->GetLinearVelocity().Length(), 0.0F);
+    EXPECT_EQ(bodies().velocity_mm_s[inside_], Vec2{});
     // The other one goes on.
     EXPECT_EQ(place(outside_), (Vec2{690, 500}));
-    EXPECT_EQ(bodies_[outside_]->GetLinearVelocity().y, 2.0F);
+    EXPECT_EQ(bodies().velocity_mm_s[outside_].y, 2.0F);
 
     move(outside_, {520, 500});
-    EXPECT_TRUE(sides_->hold(bodies_));
+    EXPECT_TRUE(holds());
     EXPECT_EQ(place(outside_), (Vec2{690, 500}));
 }
 
 TEST_F(MembraneOfDisks, ComesBackWithEverybodyWhenItMovedOverSomebody) {
     make(12, 10.0F);
+    std::vector<Vec2> const before_mm = bodies().position_mm;
     for (std::uint32_t i = 0; i < membrane_.body_count; ++i) {
         move(i, place(i) + Vec2{200, 0});
     }
     move(outside_, {910, 500});
-    EXPECT_TRUE(sides_->hold(bodies_));
-    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-        EXPECT_EQ(place(i), from_box2d(to_box2d(world_.bodies.position_mm[i])));
-        EXPECT_EQ(bodies_[i]->GetAngle(), 0.0F);
-        EXPECT_EQ(bodies_[i]->GetLinearVelocity().Length(), 0.0F);
+    EXPECT_TRUE(holds());
+    EXPECT_EQ(bodies().position_mm, before_mm);
+    for (std::uint32_t i = 0; i < bodies().size(); ++i) {
+        EXPECT_EQ(bodies().heading_rad[i], 0.0F);
+        EXPECT_EQ(bodies().heading_dir[i], (Vec2{1.0F, 0.0F}));
+        EXPECT_EQ(bodies().velocity_mm_s[i], Vec2{});
     }
 }
 
 TEST_F(MembraneOfDisks, LetsThroughWhatFitsBetweenItsDisks) {
     make(6, 10.0F, /*spring_mm=*/80.0F);  // 64 mm remain when it is stretched
     move(inside_, {700, 500});
-    EXPECT_FALSE(sides_->hold(bodies_));
+    EXPECT_FALSE(holds());
     EXPECT_EQ(place(inside_), (Vec2{700, 500}));
 }
 
 TEST_F(MembraneOfDisks, StopsWhatDoesNotFitBetweenItsDisks) {
     make(6, 10.0F, /*spring_mm=*/65.0F);  // 48 mm
     move(inside_, {700, 500});
-    EXPECT_TRUE(sides_->hold(bodies_));
+    EXPECT_TRUE(holds());
     EXPECT_EQ(place(inside_), centre_mm_);
 }
 

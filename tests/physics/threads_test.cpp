@@ -18,7 +18,7 @@ bool has_same_bytes(std::vector<T> const& a, std::vector<T> const& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/// Disks of several sizes, some fixed, some so fast that they are swept, at random places.
+/// Disks of several sizes, some fixed, some so fast that they are swept, at random places, and soft membranes.
 World crowd(std::uint32_t count, float side_mm, bool is_periodic) {
     RandomStream random(5, 0);
     World world = testing::square_world(side_mm);
@@ -29,8 +29,13 @@ World crowd(std::uint32_t count, float side_mm, bool is_periodic) {
         spec.body = BodySpec{.linear_damping = 0.1F, .friction = 0.3F, .restitution = 0.4F, .fixed = i % 50 == 1};
         Vec2 const place_mm{random.uniform(60.0F, side_mm - 60.0F), random.uniform(60.0F, side_mm - 60.0F)};
         testing::add_body(world, place_mm, random.uniform(0.0F, 6.0F), spec);
-        float const speed_mm_s = i % 30 == 0 ? 5000.0F : 100.0F;
-        world.bodies.velocity_mm_s[i] = speed_mm_s * direction(world.bodies.heading_rad[i]);
+        if (!spec.body->fixed) {
+            float const speed_mm_s = i % 30 == 0 ? 5000.0F : 100.0F;
+            world.bodies.velocity_mm_s[i] = speed_mm_s * direction(world.bodies.heading_rad[i]);
+        }
+    }
+    for (float x_mm = 1000.0F; x_mm < side_mm; x_mm += 2500.0F) {
+        testing::add_ring(world, {.centre_mm = {x_mm, 0.5F * side_mm}, .radius_mm = 300.0F, .dots = 100});
     }
     return world;
 }

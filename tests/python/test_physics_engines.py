@@ -41,9 +41,9 @@ def test_crowd_of_the_disk_engine_keeps_apart_and_in_its_arena_with_equal_bytes(
     ("settings", "reason"),
     [
         ({"objects.bars": {"type": "passive_object", "nb": 1, "geometry": "rectangle", "body_width": 50,
-                           "body_height": 20, "x": 300, "y": 300}}, "'bars' has another shape"),
-        ({"objects.rings": {"type": "membrane", "nb": 1, "geometry": "disk", "radius": 200, "x": 500, "y": 500}},
-         "'rings' is a membrane"),
+                           "body_height": 20, "x": 300, "y": 300}}, "'bars' has another shape and can move"),
+        ({"objects.rings": {"type": "rectmembrane", "nb": 1, "geometry": "disk", "radius": 200, "x": 500, "y": 500}},
+         "'rings' is a membrane of segments"),
     ],
 )  # fmt: skip
 def test_disk_engine_refuses_what_is_no_disk(tmp_path: Path, settings: dict[str, object], reason: str) -> None:

@@ -110,6 +110,19 @@ World crowd(Arena const& arena, std::size_t count) {
     return world;
 }
 
+/// Robots in soft membranes that push each other.
+World membranes() {
+    World world = testing::square_world();
+    for (std::uint32_t i = 0; i < 24; ++i) {
+        Vec2 const centre_mm{250.0F + 500.0F * static_cast<float>(i % 2), 500.0F};
+        float const turn_rad = 0.26F * static_cast<float>(i);
+        testing::add_robot(world, centre_mm + 140.0F * direction(turn_rad), 3.0F * turn_rad);
+    }
+    testing::add_ring(world, {.centre_mm = {250, 500}, .radius_mm = 220.0F});
+    testing::add_ring(world, {.centre_mm = {750, 500}, .radius_mm = 220.0F});
+    return world;
+}
+
 /// Motors as programs drive them, with noise: everybody wanders, and every third one goes to the middle.
 void drive(World& world) {
     Vec2 const middle_mm = world.arena.bounds.centre();
@@ -238,6 +251,7 @@ int main(int count, char** arguments) {
     World torus = crowd(arena_of("square", 1.2e6), 250);
     torus.periodic = true;
     move("crowd periodic", std::move(torus));
+    move("membranes", membranes());
     talk("messages article", {.law = ReceptionLaw::article}, false);
     talk("messages power", four_parameter_law(), true);
     talk("messages constant", {.law = ReceptionLaw::constant, .rate = 0.7}, false);

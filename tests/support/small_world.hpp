@@ -93,4 +93,45 @@ inline std::uint32_t add_membrane(World& world, Polygon const& dots, float range
         range_mm);
 }
 
+struct RingSpec {
+    Vec2 centre_mm{500, 500};
+    float radius_mm = 200.0F;
+    std::uint32_t dots = 80;
+    float dot_radius_mm = 10.0F;
+    float damping_per_s = 0.0F;
+};
+
+/// A round membrane that springs hold together, without a robot: a body, as add_body() makes it, for each dot. Each is
+/// joined to the next one, and to the third one on.
+inline Membrane add_ring(World& world, RingSpec const& ring) {
+    ObjectSpec spec = pogobot_spec();
+    spec.shape.radius_mm = ring.dot_radius_mm;
+    spec.body = BodySpec{.linear_damping = ring.damping_per_s, .density = 10.0F, .friction = 0.3F, .restitution = 0.5F};
+    Membrane const membrane{.body = static_cast<std::uint32_t>(world.bodies.size()), .body_count = ring.dots};
+    auto const place_mm = [&](std::uint32_t k) {
+        return ring.centre_mm +
+               ring.radius_mm * direction(6.2831853F * static_cast<float>(k) / static_cast<float>(ring.dots));
+    };
+    for (std::uint32_t k = 0; k < ring.dots; ++k) {
+        add_body(world, place_mm(k), 0.0F, spec);
+    }
+    for (std::uint32_t k = 0; k < ring.dots; ++k) {
+        for (std::uint32_t const span : {1U, 3U}) {
+            world.joints.push_back({.a = membrane.body + k,
+                                    .b = membrane.body + (k + span) % ring.dots,
+                                    .anchor_a_mm = {},
+                                    .anchor_b_mm = {},
+                                    .length_mm = length(place_mm(k + span) - place_mm(k)),
+                                    .stiffness_hz = span == 1 ? 30.0F : 24.0F,
+                                    .damping_ratio = 0.3F,
+                                    .max_stretch = span == 1 ? 0.05F : 0.0F});
+        }
+    }
+    world.membranes.push_back(membrane);
+    world.objects.push_back({.id = static_cast<std::uint32_t>(world.objects.size()),
+                             .body = membrane.body,
+                             .body_count = membrane.body_count});
+    return membrane;
+}
+
 }  // namespace pogosim::testing

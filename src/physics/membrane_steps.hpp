@@ -1,0 +1,31 @@
+// How far bodies may move in a sub-step, and springs swing, for soft membranes to hold them back.
+#pragma once
+
+#include <algorithm>
+
+#include "geometry/shape.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// The joints of a membrane yield to bodies that hit it hard. It holds those that move by up to this share of half its
+/// thickness per sub-step (found by trial with robots of 5 to 40 mm), or as far as in the sub-steps of slow robots.
+inline constexpr float kMembraneShare = 0.2F;
+inline constexpr float kLeastMembraneMotionMm = 0.5F;
+/// A spring that swings more often than this per step cannot be followed and would shake; it is taken for one that
+/// swings just so often.
+inline constexpr float kMostSwingsPerStep = 0.5F;
+/// Speeds that need more sub-steps get them, up to as many as these.
+inline constexpr int kMostSubsteps = 100;
+
+/// What a body may move in a sub-step with these membranes in the world; `without_mm` if there are none.
+inline float most_motion_mm(World const& world, float without_mm) {
+    float most_mm = without_mm;
+    for (Membrane const& membrane : world.membranes) {
+        float const half_thickness_mm = inner_radius(world.bodies.shape[membrane.body]);
+        most_mm = std::min(most_mm, std::max(kMembraneShare * half_thickness_mm, kLeastMembraneMotionMm));
+    }
+    return most_mm;
+}
+
+}  // namespace pogosim
