@@ -49,7 +49,7 @@ WorkerPool::WorkerPool(std::uint32_t size) {
     threads_.reserve(size - 1);
     for (std::uint32_t worker = 1; worker < size; ++worker) {
         try {
-            threads_.push_back(start_background_thread("moving the world", [this, worker] { serve(worker); }));
+            threads_.push_back(start_background_thread("working on a step", [this, worker] { serve(worker); }));
         } catch (std::system_error const&) {
             return;  // fewer also do
         }

@@ -10,6 +10,10 @@ namespace pogosim {
 namespace {
 
 constexpr std::size_t kReceiversAtOnce = 128;  // their mailboxes fill a part of the cache
+// Of a part that one worker takes.
+constexpr std::uint32_t kLeastTransmissions = 64;
+constexpr std::uint32_t kLeastReceivers = 256;
+constexpr std::size_t kAhead = 8;  // so many arrivals earlier, a mailbox is brought into the cache
 
 /// Nobody wants to know: costs nothing.
 struct NoObserver {
@@ -61,12 +65,28 @@ private:
     Delivery common_;  // to all receivers of a transmission
 };
 
+/// That each of `receivers` robots receives it. `tables`: by category.
+float probability_of(World const& world, Transmission const& transmission, std::size_t receivers,
+                     std::vector<ReceptionTable>& tables) {
+    std::uint32_t const category = world.robots.category[transmission.robot];
+    return tables[category].probability(world.categories[category].spec.robot->ir.reception, transmission.message_bytes,
+                                        transmission.send_probability, 1 + static_cast<std::uint32_t>(receivers));
+}
+
 }  // namespace
 
-void IrChannel::deliver(World& world, DeliveryLog* log) {
+void IrChannel::deliver(World& world, DeliveryLog* log, WorkerPool* workers) {
     if (log == nullptr) {
-        NoObserver nobody;
-        deliver_all(world, nobody);
+        // Robots draw from their streams in the order of their transmissions, so each needs one worker for all of them.
+        bool const is_shared = workers != nullptr && workers->size() > 1 &&
+                               world.air.transmissions.size() >= 2 * kLeastTransmissions &&
+                               std::ranges::is_sorted(world.air.transmissions, {}, &Transmission::robot);
+        if (is_shared) {
+            deliver_shared(world, *workers);
+        } else {
+            NoObserver nobody;
+            deliver_all(world, nobody);
+        }
         world.air.clear();
         return;
     }
@@ -110,6 +130,102 @@ void IrChannel::deliver_all(World& world, Observer& observer) {
     }
 }
 
+/// First all are sent, by parts of the senders; then all arrive, by blocks of the receivers, whose mailboxes have one
+/// worker each.
+void IrChannel::deliver_shared(World& world, WorkerPool& workers) {
+    assert_air(world);
+    visibility_.update(world);
+    desks_.resize(workers.size());
+    for (Desk& desk : desks_) {
+        desk.reception.resize(world.categories.size());
+    }
+    part_transmissions(world, workers);
+    workers.run(static_cast<std::uint32_t>(parts_.size()),
+                [&](std::uint32_t part, std::uint32_t worker) { send(world, parts_[part], desks_[worker]); });
+    for (Part const& part : parts_) {
+        attempts_ += part.attempts;
+        receptions_ += part.receptions;
+        for (Kept const& kept : part.kept) {
+            Transmission const& transmission = world.air.transmissions[kept.transmission];
+            visibility_.keep(transmission.robot, transmission.emitters, transmission.range_mm,
+                             std::span(part.kept_receivers).subspan(kept.first, kept.count));
+        }
+    }
+    auto const blocks = static_cast<std::uint32_t>(parts_.front().arrivals.size());
+    workers.run(blocks, [&](std::uint32_t block, std::uint32_t /*worker*/) {
+        for (Part const& part : parts_) {
+            std::vector<Arrival> const& arrivals = part.arrivals[block];
+            for (std::size_t k = 0; k < arrivals.size(); ++k) {
+                Arrival const& arrival = arrivals[k];
+                world.mailboxes.expect_push(arrivals[std::min(k + kAhead, arrivals.size() - 1)].receiver);
+                Transmission const& transmission = world.air.transmissions[arrival.transmission];
+                world.mailboxes.push_copies(arrival.receiver, transmission.header, world.air.payload_of(transmission),
+                                            arrival.faces);
+            }
+        }
+    });
+}
+
+void IrChannel::part_transmissions(World const& world, WorkerPool const& workers) {
+    std::vector<Transmission> const& transmissions = world.air.transmissions;
+    auto const count = static_cast<std::uint32_t>(transmissions.size());
+    std::uint32_t const blocks = workers.range_count(static_cast<std::uint32_t>(world.robots.size()), kLeastReceivers);
+    parts_.resize(workers.range_count(count, kLeastTransmissions));
+    std::uint32_t first = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        auto last = static_cast<std::uint32_t>(std::uint64_t{count} * (i + 1) / parts_.size());
+        while (last < count && last > 0 && transmissions[last].robot == transmissions[last - 1].robot) {
+            ++last;
+        }
+        Part& part = parts_[i];
+        part.first = first;
+        part.last = first = std::max(first, last);
+        part.arrivals.resize(blocks);
+    }
+}
+
+void IrChannel::send(World& world, Part& part, Desk& desk) const {
+    part.attempts = part.receptions = 0;
+    part.kept.clear();
+    part.kept_receivers.clear();
+    for (std::vector<Arrival>& arrivals : part.arrivals) {
+        arrivals.clear();
+    }
+    for (std::uint32_t i = part.first; i < part.last; ++i) {
+        send_one(world, i, part, desk);
+    }
+}
+
+/// Appends to the part who receives the transmission: see deliver_one().
+void IrChannel::send_one(World& world, std::uint32_t index, Part& part, Desk& desk) const {
+    Transmission const& transmission = world.air.transmissions[index];
+    std::vector<Receiver>& found = desk.found;
+    found.clear();
+    if (visibility_.find(world, transmission.robot, transmission.emitters, transmission.range_mm, desk.search, found)) {
+        part.kept.push_back({.transmission = index,
+                             .first = static_cast<std::uint32_t>(part.kept_receivers.size()),
+                             .count = static_cast<std::uint32_t>(found.size())});
+        part.kept_receivers.insert(part.kept_receivers.end(), found.begin(), found.end());
+    }
+    if (found.empty()) {
+        return;
+    }
+    float const probability = probability_of(world, transmission, found.size(), desk.reception);
+    RandomStream& stream = world.robots.stream[transmission.robot];
+    part.attempts += found.size();
+    std::uint64_t const blocks = part.arrivals.size();
+    for (Receiver const& receiver : found) {
+        if (stream.uniform() >= probability) {
+            continue;
+        }
+        ++part.receptions;
+        part.arrivals[receiver.robot * blocks / world.robots.size()].push_back(
+            {.receiver = receiver.robot,
+             .transmission = index,
+             .faces = visibility_.faces_of(world, receiver, transmission.range_mm)});
+    }
+}
+
 template <class Observer>
 void IrChannel::deliver_one(World& world, std::uint32_t index, std::span<Receiver const> receivers,
                             Observer& observer) {
@@ -118,10 +234,7 @@ void IrChannel::deliver_one(World& world, std::uint32_t index, std::span<Receive
         observer.reached_nobody(index);
         return;
     }
-    std::uint32_t const category = world.robots.category[transmission.robot];
-    float const probability = reception_[category].probability(
-        world.categories[category].spec.robot->ir.reception, transmission.message_bytes, transmission.send_probability,
-        1 + static_cast<std::uint32_t>(receivers.size()));
+    float const probability = probability_of(world, transmission, receivers.size(), reception_);
     observer.reached(index, receivers.size(), probability);
     std::span<std::byte const> const payload = world.air.payload_of(transmission);
     RandomStream& stream = world.robots.stream[transmission.robot];

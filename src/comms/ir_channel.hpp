@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/worker_pool.hpp"
 #include "comms/delivery_log.hpp"
 #include "comms/reception_table.hpp"
 #include "comms/visibility.hpp"
@@ -18,8 +19,9 @@ public:
     /// Delivers every transmission on the air, in the order in which they were made, and clears the air. Each robot in
     /// reach gets the message with the sender's reception probability, drawn from the sender's stream: one copy for
     /// each of its faces that sees the emitter. `log`, if there is one, gets what became of each, in place of what it
-    /// had.
-    void deliver(World& world, DeliveryLog* log = nullptr);
+    /// had. `workers`, if there are several, share the work of many transmissions, unless there is a log; what becomes
+    /// of the transmissions does not depend on that.
+    void deliver(World& world, DeliveryLog* log = nullptr, WorkerPool* workers = nullptr);
 
     /// (Message, receiver) pairs in reach, and those of them that were received, since the start.
     std::uint64_t attempts() const { return attempts_; }
@@ -30,6 +32,46 @@ private:
     void deliver_all(World& world, Observer& observer);
     template <class Observer>
     void deliver_one(World& world, std::uint32_t transmission, std::span<Receiver const> receivers, Observer& observer);
+
+    /// A message that a robot receives.
+    struct Arrival {
+        std::uint32_t receiver;
+        std::uint32_t transmission;
+        std::uint8_t faces;
+    };
+
+    /// Receivers that the visibility should keep.
+    struct Kept {
+        std::uint32_t transmission;
+        std::uint32_t first;  // in Part::kept_receivers
+        std::uint32_t count;
+    };
+
+    /// Transmissions of some robots that follow each other, which one worker sends.
+    struct Part {
+        std::uint32_t first = 0;
+        std::uint32_t last = 0;
+        std::vector<std::vector<Arrival>> arrivals;  // by block of receivers
+        std::vector<Kept> kept;
+        std::vector<Receiver> kept_receivers;
+        std::uint64_t attempts = 0;
+        std::uint64_t receptions = 0;
+    };
+
+    /// Memory of a worker.
+    struct Desk {
+        Visibility::Search search;
+        std::vector<ReceptionTable> reception;  // by category
+        std::vector<Receiver> found;
+    };
+
+    void deliver_shared(World& world, WorkerPool& workers);
+    void part_transmissions(World const& world, WorkerPool const& workers);
+    void send(World& world, Part& part, Desk& desk) const;
+    void send_one(World& world, std::uint32_t transmission, Part& part, Desk& desk) const;
+
+    std::vector<Part> parts_;
+    std::vector<Desk> desks_;
 
     Visibility visibility_;
     std::vector<ReceptionTable> reception_;  // by category

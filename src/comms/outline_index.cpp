@@ -85,17 +85,16 @@ bool OutlineIndex::update(World const& world) {
     return true;
 }
 
-std::span<OutlineIndex::Piece const> OutlineIndex::near(World const& world, Vec2 centre, float radius_mm) {
-    found_.clear();
+void OutlineIndex::find_near(World const& world, Vec2 centre, float radius_mm, std::vector<Piece>& found) const {
+    found.clear();
     float const reach_mm = radius_mm + longest_half_mm_;
     grid_.for_each_near(centre, reach_mm, [&](std::uint32_t i, Vec2 middle) {
         Vec2 const offset = minimum_image(world, centre, middle);
         if (squared_length(offset) <= reach_mm * reach_mm) {
             Piece const& piece = pieces_[i];
-            found_.push_back({offset + (piece.from - middle), offset + (piece.to - middle), piece.outline});
+            found.push_back({offset + (piece.from - middle), offset + (piece.to - middle), piece.outline});
         }
     });
-    return found_;
 }
 
 }  // namespace pogosim

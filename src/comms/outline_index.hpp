@@ -28,8 +28,8 @@ public:
         std::uint32_t outline;  // index into World::outlines
     };
 
-    /// Pieces within `radius_mm` of the centre, and some others. Valid until the next call.
-    std::span<Piece const> near(World const& world, Vec2 centre, float radius_mm);
+    /// Pieces within `radius_mm` of the centre, and some others, in place of what `found` held.
+    void find_near(World const& world, Vec2 centre, float radius_mm, std::vector<Piece>& found) const;
 
 private:
     bool have_moved(World const& world);
@@ -42,7 +42,6 @@ private:
     float longest_half_mm_ = 0.0F;  // of all pieces
     std::vector<Vec2> dots_;        // bodies of the membranes at the last update
     UniformGrid grid_;
-    std::vector<Piece> found_;
 };
 
 /// Distance from a point to a piece, squared.

@@ -97,26 +97,34 @@ std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_
 
 void Visibility::find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                                 std::vector<Receiver>& receivers) {
+    std::size_t const first = receivers.size();
+    if (find(world, robot, emitters, range_mm, search_, receivers)) {
+        keep(robot, emitters, range_mm, std::span(receivers).subspan(first));
+    }
+}
+
+bool Visibility::find(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search,
+                      std::vector<Receiver>& receivers) const {
     if (range_mm <= 0.0F) {
-        return;
+        return false;
     }
     Sender const& sender = senders_[robot];
     ReceiverCache::List const* const known = cache_.find(robot, emitters, range_mm);
     if (known != nullptr && is_unchanged(world, known->changes, sender, range_mm)) {
         auto const kept = cache_.receivers(*known);
         receivers.insert(receivers.end(), kept.begin(), kept.end());
-        return;
+        return false;
     }
     std::size_t const first = receivers.size();
-    find_anew(world, robot, emitters, range_mm, receivers);
+    find_anew(world, robot, emitters, range_mm, search, receivers);
     // Worth keeping where nothing moves.
-    if (is_unchanged(world, cells_.changes_before(), sender, range_mm)) {
-        std::span<Receiver> const found = std::span(receivers).subspan(first);
-        for (Receiver& receiver : found) {
-            receiver.faces = faces_of(world, receiver, range_mm);
-        }
-        cache_.store(robot, emitters, range_mm, cells_.changes(), found);
+    if (!is_unchanged(world, cells_.changes_before(), sender, range_mm)) {
+        return false;
     }
+    for (Receiver& receiver : std::span(receivers).subspan(first)) {
+        receiver.faces = faces_of(world, receiver, range_mm);
+    }
+    return true;
 }
 
 bool Visibility::is_unchanged(World const& world, std::uint32_t since, Sender const& sender, float range_mm) const {
@@ -127,17 +135,17 @@ bool Visibility::is_unchanged(World const& world, std::uint32_t since, Sender co
 }
 
 void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                           std::vector<Receiver>& receivers) {
+                           Search& search, std::vector<Receiver>& receivers) const {
     auto const first = static_cast<std::ptrdiff_t>(receivers.size());
     if (senders_[robot].body != kNone) {
-        add_robots_in_view(world, robot, emitters, range_mm, receivers);
+        add_robots_in_view(world, robot, emitters, range_mm, search.view, receivers);
         if (!outlines_.empty()) {
-            add_outlines_near(world, robot, emitters, range_mm, receivers);
+            add_outlines_near(world, robot, emitters, range_mm, search, receivers);
         }
         std::sort(receivers.begin() + first, receivers.end(),
                   [](Receiver const& a, Receiver const& b) { return a.robot < b.robot; });
     } else if ((emitters & 1U) != 0) {
-        add_robots_near(world, outline_of(world, robot), range_mm, receivers);
+        add_robots_near(world, outline_of(world, robot), range_mm, search.pieces, receivers);
     }
     if (!world.switched_off.empty()) {
         receivers.erase(std::remove_if(receivers.begin() + first, receivers.end(),
@@ -147,23 +155,23 @@ void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t
 }
 
 void Visibility::add_robots_in_view(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                                    std::vector<Receiver>& receivers) {
+                                    EmitterView& view, std::vector<Receiver>& receivers) const {
     Sender const& sender = senders_[robot];
     Vec2 const centre = world.bodies.position_mm[sender.body];
     Vec2 const axis = world.bodies.heading_dir[sender.body];
     float const reach_mm = sender.rim_mm + range_mm;
-    view_.clear();
+    view.clear();
     cells_.for_each_run_near(
         centre, farthest_mm(sender, range_mm), [&](std::span<NeighbourCells::Neighbour const> neighbours) {
-            view_.expect(neighbours.size());
+            view.expect(neighbours.size());
             for (NeighbourCells::Neighbour const& other : neighbours) {
                 Vec2 const offset = minimum_image(world, centre, other.position_mm);
                 float const limit_mm = reach_mm + other.radius_mm;
                 bool const is_near = squared_length(offset) <= limit_mm * limit_mm;
-                view_.add_if(is_near & (other.robot != robot), other.robot, in_frame_of(offset, axis), other.radius_mm);
+                view.add_if(is_near & (other.robot != robot), other.robot, in_frame_of(offset, axis), other.radius_mm);
             }
         });
-    for (EmitterView::Candidate const& seen : view_.look(emitters, sender.rim_mm, range_mm, world.ignore_occlusions)) {
+    for (EmitterView::Candidate const& seen : view.look(emitters, sender.rim_mm, range_mm, world.ignore_occlusions)) {
         if (seen.emitters != 0) {
             receivers.push_back({.robot = seen.robot,
                                  .from_emitter_mm = rotate(from_nearest_emitter_mm(seen, sender.rim_mm), axis),
@@ -182,28 +190,28 @@ std::uint8_t Visibility::faces_of(World const& world, Receiver const& receiver, 
 }
 
 void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                                   std::vector<Receiver>& receivers) {
+                                   Search& search, std::vector<Receiver>& receivers) const {
     auto const [body, rim_mm] = senders_[robot];
-    outline_emitters_.assign(world.outlines.size(), 0);
-    auto const pieces = outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm);
+    search.outline_emitters.assign(world.outlines.size(), 0);
+    outlines_.find_near(world, world.bodies.position_mm[body], rim_mm + range_mm, search.pieces);
     for (unsigned emitter = 0; emitter < kFaceCount; ++emitter) {
         unsigned const bit = 1U << emitter;
         if ((emitters & bit) == 0) {
             continue;
         }
         Vec2 const place = rotate(rim_mm * kFaceNormals[emitter], world.bodies.heading_dir[body]);
-        for (OutlineIndex::Piece const& piece : pieces) {
-            std::uint8_t& reached = outline_emitters_[piece.outline];
+        for (OutlineIndex::Piece const& piece : search.pieces) {
+            std::uint8_t& reached = search.outline_emitters[piece.outline];
             if ((reached & bit) == 0 && squared_distance(piece, place) <= range_mm * range_mm) {
                 reached = static_cast<std::uint8_t>(reached | bit);
             }
         }
     }
-    for (std::uint32_t i = 0; i < outline_emitters_.size(); ++i) {
-        if (outline_emitters_[i] != 0) {
+    for (std::uint32_t i = 0; i < search.outline_emitters.size(); ++i) {
+        if (search.outline_emitters[i] != 0) {
             receivers.push_back({.robot = world.outlines[i].robot,
                                  .faces = 1,
-                                 .emitters = outline_emitters_[i],
+                                 .emitters = search.outline_emitters[i],
                                  .is_along_outline = true});
         }
     }
@@ -213,8 +221,8 @@ std::optional<Vec2> Visibility::to_outline(World const& world, std::uint32_t rob
                                            float radius_mm) {
     std::uint32_t const outline = outline_of(world, outline_robot);
     std::optional<Vec2> nearest;
-    for (OutlineIndex::Piece const& piece :
-         outlines_.near(world, world.bodies.position_mm[world.robots.body[robot]], radius_mm)) {
+    outlines_.find_near(world, world.bodies.position_mm[world.robots.body[robot]], radius_mm, search_.pieces);
+    for (OutlineIndex::Piece const& piece : search_.pieces) {
         Vec2 const point = nearest_on_segment(piece.from, piece.to, {});
         bool const is_nearest = piece.outline == outline && squared_length(point) <= radius_mm * radius_mm &&
                                 (!nearest || squared_length(point) < squared_length(*nearest));
@@ -225,11 +233,13 @@ std::optional<Vec2> Visibility::to_outline(World const& world, std::uint32_t rob
     return nearest;
 }
 
-std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm) {
+std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm,
+                                    std::vector<OutlineIndex::Piece>& pieces) const {
     std::uint32_t const body = world.robots.body[robot];
     float const rim_mm = emitter_radius_mm(world, robot);
     unsigned faces = 0;
-    for (OutlineIndex::Piece const& piece : outlines_.near(world, world.bodies.position_mm[body], rim_mm + range_mm)) {
+    outlines_.find_near(world, world.bodies.position_mm[body], rim_mm + range_mm, pieces);
+    for (OutlineIndex::Piece const& piece : pieces) {
         for (unsigned face = 0; piece.outline == outline && face < kFaceCount; ++face) {
             Vec2 const place = rotate(rim_mm * kFaceNormals[face], world.bodies.heading_dir[body]);
             if (squared_distance(piece, place) <= range_mm * range_mm) {
@@ -241,7 +251,7 @@ std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std
 }
 
 void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm,
-                                 std::vector<Receiver>& receivers) {
+                                 std::vector<OutlineIndex::Piece>& pieces, std::vector<Receiver>& receivers) const {
     Box const& box = outlines_.box(outline);
     Vec2 const middle = box.centre();
     Vec2 const half = 0.5F * box.size();
@@ -254,7 +264,7 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
         if (std::abs(offset.x) > half.x + margin_mm || std::abs(offset.y) > half.y + margin_mm) {
             continue;
         }
-        if (std::uint8_t const faces = faces_near(world, robot, outline, reach_mm); faces != 0) {
+        if (std::uint8_t const faces = faces_near(world, robot, outline, reach_mm, pieces); faces != 0) {
             receivers.push_back({.robot = robot, .faces = faces, .emitters = 1, .is_along_outline = true});
         }
     }

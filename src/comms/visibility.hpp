@@ -21,6 +21,13 @@ namespace pogosim {
 
 class Visibility {
 public:
+    /// Memory for one who searches.
+    struct Search {
+        EmitterView view;
+        std::vector<OutlineIndex::Piece> pieces;
+        std::vector<std::uint8_t> outline_emitters;  // by outline: bit d: emitter d reaches it
+    };
+
     /// Takes the robots and outlines as they are now. Call before the queries, with the same world each time.
     void update(World const& world);
 
@@ -30,7 +37,16 @@ public:
     void find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                         std::vector<Receiver>& receivers);
 
-    /// The same. Valid until the next call.
+    /// The same; several may search at once. Returns whether keep() should be told what was appended.
+    bool find(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search,
+              std::vector<Receiver>& receivers) const;
+
+    /// Keeps the receivers for as long as nothing moves in reach.
+    void keep(std::uint32_t robot, std::uint8_t emitters, float range_mm, std::span<Receiver const> receivers) {
+        cache_.store(robot, emitters, range_mm, cells_.changes(), receivers);
+    }
+
+    /// As find_receivers(). Valid until the next call.
     std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
 
     /// Faces of a receiver of a transmission of this range at which the message arrives: bit d for face d.
@@ -62,14 +78,16 @@ private:
     void start(World const& world);
     void note_switched(World const& world);
     bool is_unchanged(World const& world, std::uint32_t since, Sender const& sender, float range_mm) const;
-    void find_anew(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                   std::vector<Receiver>& receivers);
+    void find_anew(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search,
+                   std::vector<Receiver>& receivers) const;
     void add_robots_in_view(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                            std::vector<Receiver>& receivers);
+                            EmitterView& view, std::vector<Receiver>& receivers) const;
     void add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                           std::vector<Receiver>& receivers);
-    void add_robots_near(World const& world, std::uint32_t outline, float range_mm, std::vector<Receiver>& receivers);
-    std::uint8_t faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm);
+                           Search& search, std::vector<Receiver>& receivers) const;
+    void add_robots_near(World const& world, std::uint32_t outline, float range_mm,
+                         std::vector<OutlineIndex::Piece>& pieces, std::vector<Receiver>& receivers) const;
+    std::uint8_t faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm,
+                            std::vector<OutlineIndex::Piece>& pieces) const;
     /// Radius around a sender's centre within which all have their centres that it may reach.
     float farthest_mm(Sender const& sender, float range_mm) const {
         return sender.rim_mm + range_mm + largest_radius_mm_;
@@ -82,8 +100,7 @@ private:
     ReceiverCache cache_;
     std::vector<std::uint32_t> switched_off_;  // robots, at the last update
     OutlineIndex outlines_;
-    std::vector<std::uint8_t> outline_emitters_;  // by outline: bit d: emitter d reaches it
-    EmitterView view_;
+    Search search_;
     std::vector<Receiver> found_;
 };
 

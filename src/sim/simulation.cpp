@@ -290,7 +290,7 @@ std::optional<UserFailure> Simulation::step() {
         return failure;
     }
     stages_.end(Stage::robots);
-    channel_.deliver(world_, recorder_.deliveries());
+    channel_.deliver(world_, recorder_.deliveries(), &workers_);
     stages_.end(Stage::messages);
     physics_->advance(world_);
     stages_.end(Stage::physics);

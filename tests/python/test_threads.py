@@ -14,6 +14,7 @@ Compile = Callable[[str], Path]
 
 SWARMS: dict[str, dict[str, object]] = {
     "run_and_tumble": {"physics_engine": "disk"},
+    "moving_oscillators": {},
     "push_sum": {"message_log": "messages.feather"},
     "phototaxis": {"boundary_condition": "periodic"},
 }
@@ -49,6 +50,6 @@ def test_crash_of_a_worker_ends_the_run_soon_with_its_data(program: Compile, tmp
     assert time.monotonic() - began_s < 20.0
     assert result.code == 3
     (line,) = result.errors.splitlines()
-    assert "the simulator crashed while it was moving the world (segmentation fault" in line
+    assert "the simulator crashed while it was working on a step (segmentation fault" in line
     assert line.endswith("The data file 'data.feather' contains all rows up to that point")
     assert 0.4 < float(result.frame()["time"].max()) < 1.5

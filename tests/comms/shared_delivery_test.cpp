@@ -1,0 +1,138 @@
+// Messages that several workers deliver: what becomes of each is the same as with one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "base/random.hpp"
+#include "base/worker_pool.hpp"
+#include "comms/ir_channel.hpp"
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+struct Swarm {
+    bool is_periodic = false;
+    bool moves = false;
+    bool has_outlines = false;
+    float range_mm = 80.0F;
+};
+
+/// What became of all messages.
+struct Outcome {
+    std::vector<std::byte> waiting;
+    std::vector<std::uint64_t> dropped;
+    std::vector<float> next_draws;
+    std::uint64_t attempts = 0;
+    std::uint64_t receptions = 0;
+
+    friend bool operator==(Outcome const&, Outcome const&) = default;
+};
+
+World make_world(Swarm const& swarm) {
+    constexpr float kSideMm = 2500.0F;
+    RandomStream random(9, 0);
+    World world = testing::square_world(kSideMm);
+    world.periodic = swarm.is_periodic;
+    ObjectSpec spec = testing::pogobot_spec();
+    spec.robot->ir.queue_size = 5;  // some are full
+    for (std::uint32_t i = 0; i < 800; ++i) {
+        testing::add_robot(world, {random.uniform(30.0F, kSideMm - 30.0F), random.uniform(30.0F, kSideMm - 30.0F)},
+                           random.uniform(0.0F, 6.0F), spec);
+    }
+    if (swarm.has_outlines) {
+        testing::add_wall(world, world.arena.polygons);
+    }
+    return world;
+}
+
+void send(World& world, std::uint32_t robot, float range_mm) {
+    std::array<std::byte, 6> const payload{std::byte(robot), std::byte(world.step)};
+    Transmission transmission;
+    transmission.robot = robot;
+    transmission.emitters = robot % 3 == 0 ? std::uint8_t{4} : kAllFaces;
+    transmission.send_probability = 0.4F;
+    transmission.range_mm = range_mm;
+    transmission.header.sender_id = static_cast<std::uint16_t>(robot);
+    transmission.header.payload_length = static_cast<std::uint16_t>(payload.size());
+    transmission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);
+    transmission.payload_offset = world.air.payloads.size();
+    world.air.payloads.insert(world.air.payloads.end(), payload.begin(), payload.end());
+    world.air.transmissions.push_back(transmission);
+}
+
+Outcome outcome_of(World& world, IrChannel const& channel) {
+    Outcome outcome{.waiting = {},
+                    .dropped = {},
+                    .next_draws = {},
+                    .attempts = channel.attempts(),
+                    .receptions = channel.receptions()};
+    for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
+        for (std::span<std::byte const> const messages : world.mailboxes.waiting(i)) {
+            outcome.waiting.insert(outcome.waiting.end(), messages.begin(), messages.end());
+        }
+        outcome.dropped.push_back(world.mailboxes.dropped(i));
+        outcome.next_draws.push_back(world.robots.stream[i].uniform());
+    }
+    return outcome;
+}
+
+Outcome delivered_by(std::uint32_t threads, Swarm const& swarm) {
+    World world = make_world(swarm);
+    WorkerPool workers(threads);
+    IrChannel channel;
+    RandomStream random(10, 0);
+    for (world.step = 0; world.step < 30; ++world.step) {
+        for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
+            if (swarm.moves && world.robots.body[i] != kNone) {
+                world.bodies.position_mm[i] =
+                    wrapped(world, world.bodies.position_mm[i] + Vec2{random.normal(), random.normal()});
+            }
+            // Up to three each, so that parts end among those of one robot.
+            for (std::uint32_t k = random.below(4); k > 0; --k) {
+                send(world, i, swarm.range_mm);
+            }
+        }
+        channel.deliver(world, nullptr, &workers);
+        if (world.step % 10 == 9) {
+            for (std::uint32_t i = 0; i < world.robots.size(); i += 2) {
+                world.mailboxes.clear(i);
+            }
+        }
+    }
+    return outcome_of(world, channel);
+}
+
+TEST(SharedDelivery, GivesEverybodyTheSameMessagesWithAnyNumberOfWorkers) {
+    for (Swarm const& swarm : {Swarm{}, Swarm{.moves = true}, Swarm{.is_periodic = true, .moves = true},
+                               Swarm{.moves = true, .has_outlines = true}, Swarm{.range_mm = 900.0F}}) {
+        Outcome const expected = delivered_by(1, swarm);
+        ASSERT_GT(expected.receptions, 1000U);
+        EXPECT_GT(std::ranges::max(expected.dropped), 0U);
+        for (std::uint32_t const threads : {2U, 3U, 8U}) {
+            EXPECT_EQ(delivered_by(threads, swarm), expected) << threads << " threads, moves: " << swarm.moves;
+        }
+    }
+}
+
+TEST(SharedDelivery, KeepsTheOrderOfTransmissionsThatAreNotInTheOrderOfRobots) {
+    auto const deliver = [](std::uint32_t threads) {
+        World world = make_world({});
+        WorkerPool workers(threads);
+        IrChannel channel;
+        for (int round = 0; round < 2; ++round) {  // two ticks in a step
+            for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
+                send(world, i, 80.0F);
+            }
+        }
+        channel.deliver(world, nullptr, &workers);
+        return outcome_of(world, channel);
+    };
+    EXPECT_EQ(deliver(4), deliver(1));
+}
+
+}  // namespace
+}  // namespace pogosim
