@@ -35,19 +35,19 @@ void Damping::begin_step(Bodies& bodies, float dt_s) {
             angular_.push_back(decay(spec.angular_damping, dt_s));
         }
     }
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        bodies.velocity_mm_s[i] = linear_[i].mean * bodies.velocity_mm_s[i];
-        bodies.angular_velocity_rad_s[i] *= angular_[i].mean;
-    }
+    multiply(bodies, &Decay::mean);
 }
 
 void Damping::end_step(Bodies& bodies) const {
-    if (!is_damped_) {
-        return;
+    if (is_damped_) {
+        multiply(bodies, &Decay::rest);
     }
+}
+
+void Damping::multiply(Bodies& bodies, float Decay::*by) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        bodies.velocity_mm_s[i] = linear_[i].rest * bodies.velocity_mm_s[i];
-        bodies.angular_velocity_rad_s[i] *= angular_[i].rest;
+        bodies.velocity_mm_s[i] = linear_[i].*by * bodies.velocity_mm_s[i];
+        bodies.angular_velocity_rad_s[i] *= angular_[i].*by;
     }
 }
 

@@ -26,6 +26,7 @@ private:
     };
 
     static Decay decay(float damping_per_s, float dt_s);
+    void multiply(Bodies& bodies, float Decay::*by) const;
 
     bool is_damped_;  // some body
     float dt_s_ = 0.0F;

@@ -14,6 +14,9 @@
 
 namespace pogosim {
 
+/// Smaller overlaps, mm, may stay: who overlaps by less does not touch.
+inline constexpr float kContactToleranceMm = 0.05F;
+
 /// What two things are to each other when they touch.
 struct ContactLaw {
     float radius_mm;    // the sum of both

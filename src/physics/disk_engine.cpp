@@ -103,8 +103,7 @@ public:
             near_walls_.build(world, containment_.walls(), near_pairs_.skin_mm());
             contacts_.build(world, near_pairs_, near_walls_);
         }
-        islands_.find(world, contacts_,
-                      {.reach_mm = reach_mm, .tolerance_mm = kContactToleranceMm, .wakes_membranes = moved_}, workers_);
+        islands_.find(world, contacts_, {.reach_mm = reach_mm, .wakes_membranes = moved_}, workers_);
         moved_ = false;
         solve_islands(world, is_driven);
         move_others(world, dt_s);

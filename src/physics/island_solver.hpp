@@ -21,9 +21,6 @@
 
 namespace pogosim {
 
-/// Smaller overlaps, mm, may stay.
-inline constexpr float kContactToleranceMm = 0.05F;
-
 class IslandSolver {
 public:
     explicit IslandSolver(World const& world);

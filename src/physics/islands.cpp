@@ -43,7 +43,7 @@ void Islands::find_pairs(World const& world, DiskContacts const& contacts, Reach
         }
         // gap + tolerance < time * closing speed, times the distance
         float const separation_mm2 = dt_s * dot(velocity_mm_s[a] - velocity_mm_s[b], way);
-        float const free_mm = law.radius_mm - reach.tolerance_mm;
+        float const free_mm = law.radius_mm - kContactToleranceMm;
         bool const meets = distance_mm2 + std::min(separation_mm2, 0.0F) < free_mm * std::sqrt(distance_mm2);
         found.push_back({.contact = i, .meets = meets});
     }
@@ -60,7 +60,7 @@ void Islands::find_fixed(World const& world, DiskContacts const& contacts, Reach
         }
         float const separation_mm = dt_s * dot(world.bodies.velocity_mm_s[near.a], gap->normal);
         float const gap_mm = gap->distance_mm - near.law.radius_mm;
-        bool const meets = gap_mm + reach.tolerance_mm + std::min(separation_mm, 0.0F) < 0.0F;
+        bool const meets = gap_mm + kContactToleranceMm + std::min(separation_mm, 0.0F) < 0.0F;
         found.push_back({.contact = i, .meets = meets});
     }
 }

@@ -27,10 +27,8 @@ struct IslandLink {
     std::uint32_t next;     // into Islands::links(); kNone: the last one
 };
 
-/// How near is near enough.
 struct Reach {
     float reach_mm;                // bodies with smaller gaps are of one island
-    float tolerance_mm;            // who overlaps by less at the end of the step does not touch
     bool wakes_membranes = false;  // those at rest, too, are on their way
 };
 

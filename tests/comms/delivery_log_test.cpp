@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <vector>
@@ -26,17 +28,8 @@ ObjectSpec link_with_rate(double rate) {
 }
 
 void send(World& world, std::uint32_t robot, std::uint8_t emitters = kAllFaces) {
-    Transmission transmission;
-    transmission.robot = robot;
-    transmission.emitters = emitters;
-    transmission.send_probability = 1.0F;
-    transmission.range_mm = world.spec_of(robot).ir.range_mm;
-    transmission.header.payload_length = 2;
-    transmission.message_bytes = 5;
-    transmission.payload_offset = static_cast<std::uint32_t>(world.air.payloads.size());
-    world.air.payloads.push_back(std::byte{7});
-    world.air.payloads.push_back(std::byte{static_cast<std::uint8_t>(robot)});
-    world.air.transmissions.push_back(transmission);
+    std::array const payload{std::byte{7}, static_cast<std::byte>(robot)};
+    testing::send(world, robot, payload, {.emitters = emitters});
 }
 
 TEST(DeliveryLog, FacesAndDistanceAreThoseOfRobotsPlacedByHand) {

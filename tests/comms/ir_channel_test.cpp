@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "comms/reception.hpp"
@@ -24,19 +25,7 @@ ObjectSpec perfect_link() {
 
 void send(World& world, std::uint32_t robot, std::vector<std::uint8_t> const& payload,
           std::uint8_t emitters = kAllFaces) {
-    Transmission transmission;
-    transmission.robot = robot;
-    transmission.emitters = emitters;
-    transmission.send_probability = 1.0F;
-    transmission.range_mm = world.spec_of(robot).ir.range_mm;
-    transmission.header.sender_id = static_cast<std::uint16_t>(robot);
-    transmission.header.payload_length = static_cast<std::uint16_t>(payload.size());
-    transmission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);
-    transmission.payload_offset = static_cast<std::uint32_t>(world.air.payloads.size());
-    for (std::uint8_t const byte : payload) {
-        world.air.payloads.push_back(std::byte{byte});
-    }
-    world.air.transmissions.push_back(transmission);
+    testing::send(world, robot, std::as_bytes(std::span(payload)), {.emitters = emitters});
 }
 
 struct Received {

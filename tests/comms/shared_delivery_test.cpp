@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -51,17 +53,8 @@ World make_world(Swarm const& swarm) {
 
 void send(World& world, std::uint32_t robot, float range_mm) {
     std::array<std::byte, 6> const payload{std::byte(robot), std::byte(world.step)};
-    Transmission transmission;
-    transmission.robot = robot;
-    transmission.emitters = robot % 3 == 0 ? std::uint8_t{4} : kAllFaces;
-    transmission.send_probability = 0.4F;
-    transmission.range_mm = range_mm;
-    transmission.header.sender_id = static_cast<std::uint16_t>(robot);
-    transmission.header.payload_length = static_cast<std::uint16_t>(payload.size());
-    transmission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);
-    transmission.payload_offset = world.air.payloads.size();
-    world.air.payloads.insert(world.air.payloads.end(), payload.begin(), payload.end());
-    world.air.transmissions.push_back(transmission);
+    std::uint8_t const emitters = robot % 3 == 0 ? std::uint8_t{4} : kAllFaces;
+    testing::send(world, robot, payload, {.emitters = emitters, .send_probability = 0.4F, .range_mm = range_mm});
 }
 
 Outcome outcome_of(World& world, IrChannel const& channel) {

@@ -19,7 +19,6 @@ namespace {
 
 constexpr float kSideMm = 1000.0F;
 constexpr float kReachMm = 3.0F;
-constexpr float kToleranceMm = 0.05F;
 
 using Group = std::set<std::uint32_t>;
 
@@ -36,9 +35,7 @@ struct Finder {
         contacts.build(world, pairs, near_walls);
     }
 
-    void find(World const& world) {
-        islands.find(world, contacts, {.reach_mm = kReachMm, .tolerance_mm = kToleranceMm}, workers);
-    }
+    void find(World const& world) { islands.find(world, contacts, {.reach_mm = kReachMm}, workers); }
 
     Group bodies_of(Island const& island) const {
         Group bodies;

@@ -154,17 +154,8 @@ void move(std::string const& what, World world) {
 
 void send(World& world, std::uint32_t robot) {
     std::array<std::byte, 8> const payload{std::byte(robot), std::byte(world.step)};
-    Transmission transmission;
-    transmission.robot = robot;
-    transmission.emitters = robot % 4 == 0 ? std::uint8_t{1} : kAllFaces;
-    transmission.send_probability = 0.4F;
-    transmission.range_mm = world.spec_of(robot).ir.range_mm;
-    transmission.header.sender_id = static_cast<std::uint16_t>(robot);
-    transmission.header.payload_length = static_cast<std::uint16_t>(payload.size());
-    transmission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);
-    transmission.payload_offset = world.air.payloads.size();
-    world.air.payloads.insert(world.air.payloads.end(), payload.begin(), payload.end());
-    world.air.transmissions.push_back(transmission);
+    std::uint8_t const emitters = robot % 4 == 0 ? std::uint8_t{1} : kAllFaces;
+    testing::send(world, robot, payload, {.emitters = emitters, .send_probability = 0.4F});
 }
 
 /// Robots that move and talk, with each law of reception.

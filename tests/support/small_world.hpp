@@ -1,7 +1,9 @@
 // Worlds made by hand, for tests of single stages.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -91,6 +93,27 @@ inline std::uint32_t add_membrane(World& world, Polygon const& dots, float range
     return add_outline(
         world, {.robot = 0, .polygons = {}, .body = first, .body_count = static_cast<std::uint32_t>(dots.size())},
         range_mm);
+}
+
+struct Sending {
+    std::uint8_t emitters = kAllFaces;
+    float send_probability = 1.0F;
+    float range_mm = -1.0F;  // negative: the robot's own
+};
+
+/// Puts a message of a robot on the air.
+inline void send(World& world, std::uint32_t robot, std::span<std::byte const> payload, Sending const& sending = {}) {
+    Transmission transmission;
+    transmission.robot = robot;
+    transmission.emitters = sending.emitters;
+    transmission.send_probability = sending.send_probability;
+    transmission.range_mm = sending.range_mm < 0.0F ? world.spec_of(robot).ir.range_mm : sending.range_mm;
+    transmission.header.sender_id = static_cast<std::uint16_t>(robot);
+    transmission.header.payload_length = static_cast<std::uint16_t>(payload.size());
+    transmission.message_bytes = static_cast<std::uint16_t>(payload.size() + 3);
+    transmission.payload_offset = world.air.payloads.size();
+    world.air.payloads.insert(world.air.payloads.end(), payload.begin(), payload.end());
+    world.air.transmissions.push_back(transmission);
 }
 
 struct RingSpec {
