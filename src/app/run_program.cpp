@@ -7,6 +7,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -40,6 +41,16 @@ struct Ended {
     ExitCode code = ExitCode::usage;
     std::optional<Restart> restart{};
     bool user_code_was_aborted = false;
+};
+
+/// When user code was aborted, memory may be corrupted, or a lock of the heap held for ever by a thread that crashed:
+/// destructors could crash, or never return.
+struct DestroyIfIntact {
+    void operator()(Simulation* simulation) const {
+        if (!simulation->guard().was_left_by_force()) {
+            std::default_delete<Simulation>()(simulation);
+        }
+    }
 };
 
 /// By which the program was started.
@@ -96,19 +107,20 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
         log().info("restarted with seed {}", restarted->seed);
     }
     bool const window = scenario.view.gui && !options.no_gui;
-    Simulation simulation(linked_program(program, process_name()), std::move(scenario),
-                          {.progress_bar = options.progress_bar,
-                           .measure_stages = false,
-                           .strict = options.strict,
-                           .hash_period_steps = options.hash_period_steps,
-                           .film = options.video,
-                           .window = window,
-                           .program_name = options.program_name,
-                           .restarted = restarted,
-                           .restart_problem = [&] { return restart_problem(options, folder); }});
-    ProcessRun const scope(simulation.guard());
-    ExitCode const code = simulation.run();
-    return {code, simulation.restart(), simulation.guard().was_left_by_force()};
+    std::unique_ptr<Simulation, DestroyIfIntact> const simulation(
+        new Simulation(linked_program(program, process_name()), std::move(scenario),
+                       {.progress_bar = options.progress_bar,
+                        .measure_stages = false,
+                        .strict = options.strict,
+                        .hash_period_steps = options.hash_period_steps,
+                        .film = options.video,
+                        .window = window,
+                        .program_name = options.program_name,
+                        .restarted = restarted,
+                        .restart_problem = [&] { return restart_problem(options, folder); }}));
+    ProcessRun const scope(simulation->guard());
+    ExitCode const code = simulation->run();
+    return {code, simulation->restart(), simulation->guard().was_left_by_force()};
 }
 
 /// Prints an error. Returns the exit code of a run that would otherwise have ended with `code`.

@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import Compile
-from running import Run, compile_program, run, run_command, start
+from running import Run, compile_program, run, run_command, start, write_scene
 
 # Robot 1 misbehaves in tick 10, which begins at 0.16 s: ticks last 16 ms.
 WHERE = "in user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s"
@@ -76,6 +77,20 @@ def test_destroyed_heap_is_said_whatever_is_left_of_it(program: Compile, tmp_pat
     assert result.code == 3
     assert "the user program failed in user_step" in result.errors
     assert "tick 10, t = 0.1600 s: " in result.errors
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="replaces free() of the GNU C library")
+def test_heap_that_is_locked_for_ever_after_a_crash_does_not_keep_the_run_from_its_end(
+    program: Compile, tmp_path: Path
+) -> None:
+    write_scene(tmp_path, {})
+    command = [str(program("stuck_heap.c")), "-c", "scene.yaml", "-g"]
+    with (tmp_path / "errors.txt").open("w+", encoding="utf-8") as errors:
+        ended = subprocess.run(command, cwd=tmp_path, stderr=errors, timeout=60, check=False)
+        errors.seek(0)
+        (line,) = errors.read().splitlines()
+    assert ended.returncode == 3
+    assert line.endswith("The data file 'data.feather' contains all rows up to that point")
 
 
 def test_text_without_end_of_line_is_printed_after_a_crash(program: Compile, tmp_path: Path) -> None:
