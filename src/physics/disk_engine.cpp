@@ -168,7 +168,7 @@ private:
             place_mm = place_mm + dt_s * velocity_mm_s;
             bodies.heading_rad[i] += dt_s * spin_rad_s;
         }
-        if (has_contact || spin_rad_s != 0.0F) {
+        if (bodies.heading_rad[i] != known_.heading_rad(i)) {
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
         }
         if (squared_length(dt_s * velocity_mm_s) > ordinary_mm_ * ordinary_mm_) {

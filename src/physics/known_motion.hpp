@@ -19,6 +19,7 @@ public:
     std::vector<std::uint32_t> find_moved(Bodies& bodies) const;
 
     Vec2 position_mm(std::uint32_t body) const { return position_mm_[body]; }
+    float heading_rad(std::uint32_t body) const { return heading_rad_[body]; }
 
     bool has_other_velocity(Bodies const& bodies, std::uint32_t body) const;
 
