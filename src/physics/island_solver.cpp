@@ -1,6 +1,7 @@
 #include "physics/island_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -121,30 +122,6 @@ void IslandSolver::scatter(World& world) const {
     }
 }
 
-/// What a contact demands in a sub-step: bodies that meet within it bounce at once, others come as near as they can,
-/// and those that overlap are pushed apart.
-void IslandSolver::demand(Contact& contact, float speed_mm_s, Times const& times) {
-    float const restitution = contact.law.restitution;
-    bool const bounces =
-        speed_mm_s < -kRestitutionThresholdMmS && restitution > 0.0F && contact.gap_mm + speed_mm_s * times.h_s <= 0.0F;
-    contact.normal_impulse = contact.tangent_impulse = 0.0F;
-    contact.latest_mm_s = kNever;
-    if (bounces) {
-        contact.least_mm_s = contact.relaxed_mm_s = -restitution * speed_mm_s;
-    } else if (contact.gap_mm > 0.0F) {
-        contact.least_mm_s = contact.relaxed_mm_s = -contact.gap_mm * times.per_h;
-        // Who is thrown here in this sub-step bounces in the next one, unless that were deep in the other body.
-        contact.latest_mm_s = restitution > 0.0F ? -(contact.gap_mm + kMostLateMm) * times.per_h : kNever;
-    } else {
-        contact.least_mm_s = std::min(-times.push_rate * contact.gap_mm, kFastestPushMmS);
-        contact.relaxed_mm_s = 0.0F;
-    }
-    contact.solved = 0;
-    if (speed_mm_s < contact.least_mm_s) {
-        mark(contact);
-    }
-}
-
 /// It has to be solved.
 void IslandSolver::mark(Contact& contact) {
     contact.solved = -1;
@@ -159,35 +136,85 @@ void IslandSolver::mark_overlaps() {
     }
 }
 
-/// Where the contacts are at the start of a sub-step, and what they demand.
+/// Where the contacts are at the start of a sub-step, and what they demand: bodies that meet within it bounce at once,
+/// others come as near as they can, and those that overlap are pushed apart.
 IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts const& contacts, Times const& times) {
-    Survey survey;
+    Four least_gap_mm = all_four(kNever);
+    FourInts meets = {};
     dirty_ = 0;
-    auto const add = [&](Contact& contact, Vec2 velocity_mm_s) {
-        float const speed_mm_s = dot(velocity_mm_s, contact.normal);
-        demand(contact, speed_mm_s, times);
-        survey.overlaps |= contact.gap_mm < -kContactToleranceMm;
-        survey.meets |= contact.gap_mm + kContactToleranceMm < -speed_mm_s * times.rest_s;
-    };
-    for (std::uint32_t i = 0; i < pair_count_; ++i) {
-        Contact& contact = contacts_[i];
+    auto const count = static_cast<std::uint32_t>(contacts_.size());
+    for (std::uint32_t first = 0; first < count; first += kLanes) {
+        std::span const four = std::span(contacts_).subspan(first, std::min(kLanes, count - first));
+        Places const places = find_places(world, contacts, four, first);
+        Four const speed_mm_s = places.speed_mm_s;
+        Four const gap_mm = places.gap_mm;
+        Four const bouncing_mm_s = -places.restitution * speed_mm_s;
+        Four const meeting_mm_s = -gap_mm * times.per_h;
+        Four const pushed_mm_s = smaller(-times.push_rate * gap_mm, all_four(kFastestPushMmS));
+        FourInts const is_elastic = places.restitution > 0.0F;
+        FourInts const is_free = gap_mm > 0.0F;
+        FourInts const bounces =
+            (speed_mm_s < -kRestitutionThresholdMmS) & is_elastic & (gap_mm + speed_mm_s * times.h_s <= 0.0F);
+        Four const least_mm_s = bounces ? bouncing_mm_s : is_free ? meeting_mm_s : pushed_mm_s;
+        Four const relaxed_mm_s = bounces ? bouncing_mm_s : is_free ? meeting_mm_s : Four{};
+        // Who is thrown here in this sub-step bounces in the next one, unless that were deep in the other body.
+        Four const late_mm_s = -(gap_mm + kMostLateMm) * times.per_h;
+        Four const latest_mm_s = (is_elastic & is_free & ~bounces) ? late_mm_s : all_four(kNever);
+        FourInts const demands = speed_mm_s < least_mm_s;
+        least_gap_mm = smaller(least_gap_mm, gap_mm);
+        meets |= gap_mm + kContactToleranceMm < -speed_mm_s * times.rest_s;
+        for (std::uint32_t i = 0; i < four.size(); ++i) {
+            Contact& contact = four[i];
+            contact.normal = {places.normal_x[i], places.normal_y[i]};
+            contact.gap_mm = gap_mm[i];
+            contact.least_mm_s = least_mm_s[i];
+            contact.relaxed_mm_s = relaxed_mm_s[i];
+            contact.latest_mm_s = latest_mm_s[i];
+            contact.normal_impulse = contact.tangent_impulse = 0.0F;
+            contact.solved = demands[i];
+            dirty_ |= static_cast<std::uint64_t>(-demands[i]) << ((first + i) >> block_shift_);
+        }
+    }
+    return {.overlaps = is_any(least_gap_mm < -kContactToleranceMm), .meets = is_any(meets)};
+}
+
+/// Of up to four contacts, of which `first` is the first. Lanes without a contact are far away.
+IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts const& contacts,
+                                               std::span<Contact const> four, std::uint32_t first) const {
+    std::array<Four, kLanes> motion;
+    Places places = {};
+    Four radius_mm = {};
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+        Contact const& contact = four[std::min<std::size_t>(i, four.size() - 1)];
         Mover const& a = movers_[contact.a];
         Mover const& b = movers_[contact.b];
-        Gap const gap = gap_to_centre(a.position_mm - b.position_mm + contact.seam_mm);
-        contact.normal = gap.normal;
-        contact.gap_mm = gap.distance_mm - contact.law.radius_mm;
-        add(contact, a.velocity_mm_s - b.velocity_mm_s);
+        motion[i] = Four{a.position_mm.x, a.position_mm.y, a.velocity_mm_s.x, a.velocity_mm_s.y} -
+                    Four{b.position_mm.x, b.position_mm.y, b.velocity_mm_s.x, b.velocity_mm_s.y} +
+                    Four{contact.seam_mm.x, contact.seam_mm.y, 0.0F, 0.0F};
+        radius_mm[i] = contact.law.radius_mm;
+        places.restitution[i] = contact.law.restitution;
     }
-    for (std::uint32_t i = pair_count_; i < contacts_.size(); ++i) {
-        Contact& contact = contacts_[i];
-        Mover const& a = movers_[contact.a];
-        std::optional<Gap> const gap = contacts.gap_to_fixed(world, contact.near, a.position_mm);
+    auto const [x_mm, y_mm, velocity_x_mm_s, velocity_y_mm_s] =
+        transposed({motion[0], motion[1], motion[2], motion[3]});
+    Four const distance_mm = square_root(x_mm * x_mm + y_mm * y_mm);
+    FourInts const is_apart = distance_mm > 0.0F;  // disks at the same place are parted along x
+    Four const per_mm = 1.0F / distance_mm;
+    places.normal_x = is_apart ? per_mm * x_mm : all_four(1.0F);
+    places.normal_y = is_apart ? per_mm * y_mm : Four{};
+    places.gap_mm = distance_mm - radius_mm;
+    for (std::uint32_t i = pair_count_ - std::min(first, pair_count_); i < four.size(); ++i) {
+        Contact const& contact = four[i];
+        std::optional<Gap> const gap = contacts.gap_to_fixed(world, contact.near, movers_[contact.a].position_mm);
         // Without a gap, the disk is before another edge of the wall.
-        contact.normal = gap ? gap->normal : Vec2{};
-        contact.gap_mm = gap ? gap->distance_mm - contact.law.radius_mm : kNever;
-        add(contact, a.velocity_mm_s);
+        places.normal_x[i] = gap ? gap->normal.x : 0.0F;
+        places.normal_y[i] = gap ? gap->normal.y : 0.0F;
+        places.gap_mm[i] = gap ? gap->distance_mm - contact.law.radius_mm : kNever;
     }
-    return survey;
+    for (auto i = static_cast<std::uint32_t>(four.size()); i < kLanes; ++i) {
+        places.gap_mm[i] = kNever;
+    }
+    places.speed_mm_s = velocity_x_mm_s * places.normal_x + velocity_y_mm_s * places.normal_y;
+    return places;
 }
 
 /// Returns the change of the speed of separation.
@@ -197,9 +224,12 @@ float IslandSolver::solve_contact(Contact& contact, float demanded_mm_s) {
     Vec2 const normal = contact.normal;
     Vec2 const velocity = a.velocity_mm_s - b.velocity_mm_s;
     float const speed_mm_s = dot(velocity, normal);
+    float const normal_before = contact.normal_impulse;
+    if (normal_before == 0.0F && speed_mm_s >= demanded_mm_s) {
+        return 0.0F;  // most are only near
+    }
     bool const waits = speed_mm_s > contact.latest_mm_s && speed_mm_s < -kRestitutionThresholdMmS;
     float const change_mm_s = waits ? 0.0F : demanded_mm_s - speed_mm_s;
-    float const normal_before = contact.normal_impulse;
     contact.normal_impulse = std::max(normal_before + contact.law.normal_mass * change_mm_s, 0.0F);
     float const push = contact.normal_impulse - normal_before;
     if (push == 0.0F && contact.normal_impulse == 0.0F) {

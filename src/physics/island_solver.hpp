@@ -11,8 +11,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "base/four.hpp"
 #include "physics/disk_contacts.hpp"
 #include "physics/islands.hpp"
 #include "physics/mover.hpp"
@@ -60,6 +62,15 @@ private:
         bool meets = false;  // before the end of the step, if nobody turns
     };
 
+    /// Where the things of four contacts are, and how fast they part.
+    struct Places {
+        Four normal_x;
+        Four normal_y;
+        Four gap_mm;
+        Four speed_mm_s;
+        Four restitution;
+    };
+
     static constexpr std::uint32_t kStill = 0;
 
     bool solve_soft(World const& world, DiskContacts const& contacts);
@@ -70,7 +81,8 @@ private:
     void gather(World const& world, DiskContacts const& contacts, Islands const& islands, Island const& island);
     void scatter(World& world) const;
     Survey measure(World const& world, DiskContacts const& contacts, Times const& times);
-    void demand(Contact& contact, float speed_mm_s, Times const& times);
+    Places find_places(World const& world, DiskContacts const& contacts, std::span<Contact const> four,
+                       std::uint32_t first) const;
     int substeps_to_impact(Times const& times) const;
     void move(float time_s);
     void push_as_before(std::vector<float> const& driven_impulse);

@@ -1,8 +1,11 @@
 #include "physics/islands.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+
+#include "base/four.hpp"
 
 namespace pogosim {
 
@@ -28,25 +31,37 @@ std::uint32_t Islands::root_of(std::uint32_t body) {
     return body;
 }
 
+/// Without branches: whether bodies are close can hardly be predicted.
 void Islands::find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
                          std::vector<Close>& found) {
-    std::vector<Vec2> const& position_mm = world.bodies.position_mm;
-    std::vector<Vec2> const& velocity_mm_s = world.bodies.velocity_mm_s;
     auto const dt_s = static_cast<float>(world.time_step_s);
-    for (std::uint32_t i = pairs.first; i < pairs.last; ++i) {
-        auto const& [a, b, law] = contacts.near()[i];
-        Vec2 const way = minimum_image(world, position_mm[b], position_mm[a]);
-        float const far_mm = law.radius_mm + reach.reach_mm;
-        float const distance_mm2 = squared_length(way);
-        if (distance_mm2 >= far_mm * far_mm) {
-            continue;
+    found.resize(pairs.last - pairs.first);
+    std::size_t count = 0;
+    for (std::uint32_t first = pairs.first; first < pairs.last; first += kLanes) {
+        std::array<Four, kLanes> motion;
+        Four radius_mm = {};
+        for (std::uint32_t i = 0; i < kLanes; ++i) {
+            auto const& [a, b, law] = contacts.near()[std::min(first + i, pairs.last - 1)];
+            Vec2 const way_mm = minimum_image(world, world.bodies.position_mm[b], world.bodies.position_mm[a]);
+            Vec2 const velocity_mm_s = world.bodies.velocity_mm_s[a] - world.bodies.velocity_mm_s[b];
+            motion[i] = Four{way_mm.x, way_mm.y, velocity_mm_s.x, velocity_mm_s.y};
+            radius_mm[i] = law.radius_mm;
         }
+        auto const [x_mm, y_mm, velocity_x_mm_s, velocity_y_mm_s] =
+            transposed({motion[0], motion[1], motion[2], motion[3]});
+        Four const far_mm = radius_mm + reach.reach_mm;
+        Four const distance_mm2 = x_mm * x_mm + y_mm * y_mm;
         // gap + tolerance < time * closing speed, times the distance
-        float const separation_mm2 = dt_s * dot(velocity_mm_s[a] - velocity_mm_s[b], way);
-        float const free_mm = law.radius_mm - kContactToleranceMm;
-        bool const meets = distance_mm2 + std::min(separation_mm2, 0.0F) < free_mm * std::sqrt(distance_mm2);
-        found.push_back({.contact = i, .meets = meets});
+        Four const separation_mm2 = dt_s * (velocity_x_mm_s * x_mm + velocity_y_mm_s * y_mm);
+        Four const free_mm = radius_mm - kContactToleranceMm;
+        FourInts const is_close = distance_mm2 < far_mm * far_mm;
+        FourInts const meets = distance_mm2 + smaller(separation_mm2, Four{}) < free_mm * square_root(distance_mm2);
+        for (std::uint32_t i = 0; i < std::min(kLanes, pairs.last - first); ++i) {
+            found[count] = {.contact = first + i, .meets = meets[i] != 0};
+            count += is_close[i] != 0 ? 1 : 0;
+        }
     }
+    found.resize(count);
 }
 
 void Islands::find_fixed(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange fixed,

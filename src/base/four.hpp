@@ -1,0 +1,50 @@
+// Four numbers in one register, of SSE or NEON: vector types that gcc and clang share. Each lane gets the bits that the
+// same operations give on single numbers, so that worlds develop to the same bytes with every compiler.
+//
+// Comparisons give all bits, -1, in the lanes in which they hold; `mask ? a : b` chooses by lanes.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace pogosim {
+
+inline constexpr std::uint32_t kLanes = 4;
+
+using Four = float __attribute__((vector_size(16)));
+using FourInts = std::int32_t __attribute__((vector_size(16)));
+
+inline Four all_four(float x) {
+    return Four{x, x, x, x};
+}
+
+inline Four square_root(Four x) {
+    return Four{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
+
+inline Four smaller(Four a, Four b) {
+    return b < a ? b : a;
+}
+
+inline bool is_any(FourInts mask) {
+    return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+/// Rows become columns.
+struct FourRows {
+    Four x;
+    Four y;
+    Four z;
+    Four w;
+};
+inline FourRows transposed(FourRows const& rows) {
+    Four const low_xy = __builtin_shufflevector(rows.x, rows.y, 0, 4, 1, 5);
+    Four const low_zw = __builtin_shufflevector(rows.z, rows.w, 0, 4, 1, 5);
+    Four const high_xy = __builtin_shufflevector(rows.x, rows.y, 2, 6, 3, 7);
+    Four const high_zw = __builtin_shufflevector(rows.z, rows.w, 2, 6, 3, 7);
+    return {__builtin_shufflevector(low_xy, low_zw, 0, 1, 4, 5), __builtin_shufflevector(low_xy, low_zw, 2, 3, 6, 7),
+            __builtin_shufflevector(high_xy, high_zw, 0, 1, 4, 5),
+            __builtin_shufflevector(high_xy, high_zw, 2, 3, 6, 7)};
+}
+
+}  // namespace pogosim
