@@ -87,6 +87,11 @@ struct Pieces {
         row_count += batch->num_rows();
     }
 
+    void drop_first() {
+        row_count -= batches.front()->num_rows();
+        batches.erase(batches.begin());
+    }
+
     /// All rows in one batch.
     arrow::Result<std::shared_ptr<arrow::RecordBatch>> joined() const {
         if (batches.size() == 1) {
@@ -141,6 +146,9 @@ private:
 
 constexpr std::uint64_t kBytesPerCell = 8;
 constexpr std::int64_t kMostUnsavedRows = 1 << 20;  // a bound on memory
+// Rows of whole moments become a piece when there are so many: cells that grow further double their memory, which the
+// system has to clear each time.
+constexpr std::int64_t kMostBufferedRows = 4096;
 
 }  // namespace
 
@@ -226,16 +234,24 @@ struct TableFile::Impl {
             return Status::OK();
         }
         auto const begin = SaveClock::Clock::now();
-        ARROW_ASSIGN_OR_RAISE(auto const batch, unsaved.joined());
-        ARROW_RETURN_NOT_OK(unfinished->append(*batch));
-        unsaved = {};
-        note_saved(unsaved_moments.back());
-        unsaved_moments.clear();
+        while (!unsaved.batches.empty()) {
+            auto const piece = unsaved.batches.front();
+            ARROW_RETURN_NOT_OK(unfinished->append(*piece));
+            unsaved.drop_first();
+            note_saved_until(saved_rows + piece->num_rows());
+        }
         if (clock.run_is_long()) {
             unfinished->sync();
         }
         clock.saved(begin);
         return Status::OK();
+    }
+
+    void note_saved_until(std::int64_t row_end) {
+        auto const is_saved = [row_end](Moment const& moment) { return moment.row_end <= row_end; };
+        auto const left = std::ranges::find_if_not(unsaved_moments, is_saved);
+        note_saved({left != unsaved_moments.begin() ? std::prev(left)->time_s : saved_time_s, row_end});
+        unsaved_moments.erase(unsaved_moments.begin(), left);
     }
 
     void note_saved(Moment const& last) {
@@ -387,6 +403,8 @@ void TableFile::save_if_due() {
     bool const has_new_rows = impl_->buffered_rows + impl_->unsaved.row_count > 0;
     if (has_new_rows && impl_->clock.is_due()) {
         save();
+    } else if (impl_->buffered_rows >= kMostBufferedRows && impl_->is_writable()) {
+        impl_->check([&] { return impl_->cut(); });
     }
 }
 

@@ -164,30 +164,33 @@ std::optional<UserFailure> Recorder::record_rows() {
 
 std::optional<UserFailure> Recorder::fill_table() {
     table_.clear();
-    for (std::uint32_t i = 0; i < world_.objects.size(); ++i) {
-        Object const& object = world_.objects[i];
-        if (!category_is_recorded_[object.category]) {
-            continue;
-        }
-        bool has_row = true;
-        if (object.robot != kNone) {
-            if (auto failure = call_user_code([this, &object, i] { controllers_.export_row(object.robot, i); })) {
-                return failure;
+    table_.object.reserve(world_.objects.size());
+    table_.cells.reserve(world_.objects.size() * export_.columns.size());
+    return call_user_code([this] {
+        for (std::uint32_t i = 0; i < world_.objects.size(); ++i) {
+            if (category_is_recorded_[world_.objects[i].category]) {
+                add_to_table(i);
             }
-            has_row = export_.row.exported;
         }
-        if (has_row) {
-            table_.object.push_back(i);
-            table_.cells.resize(table_.object.size() * export_.columns.size());
-            std::span const cells = std::span(table_.cells).last(export_.columns.size());
-            if (object.robot != kNone) {
-                std::ranges::copy(export_.row.values, cells.begin());
-            } else {
-                export_.held.fill(i, cells);
-            }
+    });
+}
+
+void Recorder::add_to_table(std::uint32_t object) {
+    std::uint32_t const robot = world_.objects[object].robot;
+    if (robot != kNone) {
+        controllers_.export_row(robot, object);
+        if (!export_.row.exported) {
+            return;
         }
     }
-    return std::nullopt;
+    table_.cells.resize((table_.object.size() + 1) * export_.columns.size());
+    std::span const cells = std::span(table_.cells).last(export_.columns.size());
+    if (robot != kNone) {
+        std::ranges::copy(export_.row.values, cells.begin());
+    } else {
+        export_.held.fill(object, cells);
+    }
+    table_.object.push_back(object);
 }
 
 void Recorder::write_row(Object const& object, std::span<CellValue const> user) {

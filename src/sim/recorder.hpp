@@ -78,6 +78,7 @@ private:
     std::optional<UserFailure> record_rows();
     /// All user code of a save. After a failure the table has the rows until then.
     std::optional<UserFailure> fill_table();
+    void add_to_table(std::uint32_t object);
     void write_row(Object const& object, std::span<CellValue const> user);
     void record_subparts(Object const& object);
 

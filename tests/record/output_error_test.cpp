@@ -253,7 +253,7 @@ TEST_F(OutputFailure, FileThatAnotherRunWritesIsRefusedUntilThatOneHasEnded) {
 
 #if defined(__linux__) && !defined(POGOSIM_SANITIZED)
 
-TEST_F(OutputFailure, RowsThatFindNoMemoryTogetherAreSavedInParts) {
+TEST_F(OutputFailure, RowsThatFindNoMemoryTogetherAreSavedPieceByPiece) {
     constexpr int kRows = 3 * 100000;
     DataFileOptions options{.path = path("a.feather"), .flush_row_count = kRows / 3};
     for (int i = 0; i < 40; ++i) {
@@ -264,12 +264,10 @@ TEST_F(OutputFailure, RowsThatFindNoMemoryTogetherAreSavedInParts) {
     for (int i = 0; i < kRows; ++i) {
         file.append({.time_s = static_cast<float>(i), .category = "robots", .id = i}, cells);
     }
-    std::string message;
     {
         AddressSpaceLimit const limit(30U << 20U);
-        message = output_error([&file] { file.save(); });
+        file.save();
     }
-    expect_says(message, {"there is not enough memory for its rows", "up to t = 299999.0000 s"});
     EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), kRows);
 }
 
