@@ -26,8 +26,28 @@ inline Four smaller(Four a, Four b) {
     return b < a ? b : a;
 }
 
+/// The smallest lane, in all lanes.
+inline Four smallest(Four x) {
+    Four const pairs = smaller(x, __builtin_shufflevector(x, x, 2, 3, 0, 1));
+    return smaller(pairs, __builtin_shufflevector(pairs, pairs, 1, 0, 3, 2));
+}
+
 inline bool is_any(FourInts mask) {
     return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+inline constexpr FourInts kLaneBits{1, 2, 4, 8};
+
+/// Bit d for lane d of a mask.
+inline unsigned bits_of(FourInts mask) {
+    FourInts const bits = mask & kLaneBits;
+    return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
+}
+
+/// The mask back.
+inline FourInts mask_of(unsigned bits) {
+    auto const all = static_cast<std::int32_t>(bits);
+    return (FourInts{all, all, all, all} & kLaneBits) != 0;
 }
 
 /// Rows become columns.

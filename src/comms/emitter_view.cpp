@@ -1,6 +1,7 @@
 #include "comms/emitter_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <iterator>
@@ -9,25 +10,6 @@
 namespace pogosim {
 
 namespace {
-
-/// `v` in the frame of face d: x along its outward normal. Face 0 looks along x, face 1 along y, and so on.
-constexpr Vec2 in_frame_of_face(Vec2 v, unsigned face) {
-    switch (face) {
-        case 0:
-            return v;
-        case 1:
-            return {v.y, -v.x};
-        case 2:
-            return {-v.x, -v.y};
-        default:
-            return {-v.y, v.x};
-    }
-}
-
-/// The same back.
-constexpr Vec2 from_frame_of_face(Vec2 v, unsigned face) {
-    return in_frame_of_face(v, (kFaceCount - face) % kFaceCount);
-}
 
 /// `v` in the frame whose x axis is the unit vector `axis`.
 constexpr Vec2 in_frame_of(Vec2 v, Vec2 axis) {
@@ -43,9 +25,28 @@ float diamond_angle(Vec2 direction) {
     return direction.y >= 0.0F ? 2.0F - side : -2.0F - side;
 }
 
-/// The candidate's centre as an emitter sees it: x along the outward normal.
-Vec2 seen_from(EmitterView::Candidate const& candidate, unsigned emitter, float rim_mm) {
-    return in_frame_of_face(candidate.offset_mm, emitter) - Vec2{rim_mm, 0.0F};
+constexpr std::array<Vec2, kFaceCount> kFaceNormals{Vec2{1.0F, 0.0F}, Vec2{0.0F, 1.0F}, Vec2{-1.0F, 0.0F},
+                                                    Vec2{0.0F, -1.0F}};
+static_assert(kFaceCount == kLanes);
+
+/// A vector in the frames of all faces.
+struct FourVectors {
+    Four x;
+    Four y;
+};
+FourVectors in_frames_of_faces(Vec2 v) {
+    return {Four{v.x, v.y, -v.x, -v.y}, Four{v.y, -v.x, -v.y, v.x}};
+}
+
+Four squared_length(FourVectors const& v) {
+    return v.x * v.x + v.y * v.y;
+}
+
+/// The candidate's centre as the emitters see it: x along the outward normals.
+FourVectors seen_from_emitters(EmitterView::Candidate const& candidate, float rim_mm) {
+    FourVectors seen = in_frames_of_faces(candidate.offset_mm);
+    seen.x -= all_four(rim_mm);
+    return seen;
 }
 
 }  // namespace
@@ -53,44 +54,61 @@ Vec2 seen_from(EmitterView::Candidate const& candidate, unsigned emitter, float 
 std::span<EmitterView::Candidate const> EmitterView::look(unsigned emitters, float rim_mm, float range_mm,
                                                           bool ignore_occlusions) {
     std::span<Candidate> const candidates = std::span(candidates_).first(count_);
-    unsigned in_view = 0;
+    FourInts const also_behind = ignore_occlusions ? ~FourInts{} : FourInts{};
+    views_.clear();
     for (Candidate& candidate : candidates) {
+        FourVectors const seen = seen_from_emitters(candidate, rim_mm);
+        Four const distance_mm2 = squared_length(seen);
         float const reach_mm = range_mm + candidate.radius_mm;
-        unsigned seen_by = 0;
-        for (unsigned emitter = 0; emitter < kFaceCount; ++emitter) {
-            Vec2 const seen = seen_from(candidate, emitter, rim_mm);
-            bool const in_front = static_cast<int>(seen.x >= 0.0F) | static_cast<int>(ignore_occlusions);
-            bool const in_reach = squared_length(seen) <= reach_mm * reach_mm;
-            seen_by |= static_cast<unsigned>(in_front & in_reach) << emitter;
-        }
-        candidate.emitters = seen_by & emitters;
-        in_view |= candidate.emitters;
+        FourInts const is_in_view = ((seen.x >= 0.0F) | also_behind) & (distance_mm2 <= all_four(reach_mm * reach_mm));
+        candidate.emitters = bits_of(is_in_view) & emitters;
+        // A disk of radius r at distance d hides the directions at angles a from its centre with sin a <= r / d, which
+        // rounding changes a little. Shadows of nearly 180 degrees are left to the full calculation.
+        Four const radius_mm2 = all_four(candidate.radius_mm * candidate.radius_mm);
+        Four const shadow_mm2 = radius_mm2 > 0.9F * distance_mm2 ? all_four(std::numeric_limits<float>::max())
+                                                                 : 1.01F * radius_mm2 + 1e-4F * distance_mm2;
+        views_.push_back({is_in_view, seen.x, seen.y, distance_mm2, shadow_mm2});
     }
-    for (unsigned emitter = 0; emitter < kFaceCount && !ignore_occlusions; ++emitter) {
-        if ((in_view >> emitter & 1U) != 0) {
-            look_ahead(emitter, rim_mm);
+    if (!ignore_occlusions) {
+        for (unsigned left = emitters_with_shadows() & emitters; left != 0; left &= left - 1) {
+            look_ahead(static_cast<unsigned>(std::countr_zero(left)));
         }
     }
     return candidates;
 }
 
-void EmitterView::look_ahead(unsigned emitter, float rim_mm) {
+/// Emitters before which a robot may hide another one: nobody is hidden whose centre lies outside of the shadow of each
+/// other one.
+unsigned EmitterView::emitters_with_shadows() const {
+    FourInts has_shadows{};
+    for (std::size_t i = 1; i < views_.size() && bits_of(has_shadows) != kAllFaces; ++i) {
+        Views const& view = views_[i];
+        for (Views const& other : std::span(views_).first(i)) {
+            Four const across = view.x * other.y - view.y * other.x;
+            Four const across2 = across * across;
+            has_shadows |=
+                view.is_in_view & other.is_in_view &
+                ((across2 <= view.shadow_mm2 * other.distance_mm2) | (across2 <= other.shadow_mm2 * view.distance_mm2));
+        }
+    }
+    return bits_of(has_shadows);
+}
+
+void EmitterView::look_ahead(unsigned emitter) {
     sights_.clear();
     for (std::uint32_t c = 0; c < count_; ++c) {
         if ((candidates_[c].emitters >> emitter & 1U) == 0) {
             continue;
         }
-        Vec2 const seen = seen_from(candidates_[c], emitter, rim_mm);
-        Sight const sight{.distance_mm2 = squared_length(seen), .candidate = c, .seen_mm = seen};
+        Views const& view = views_[c];
+        Vec2 const seen{view.x[emitter], view.y[emitter]};
+        Sight const sight{.distance_mm2 = view.distance_mm2[emitter], .candidate = c, .seen_mm = seen};
         // Behind those that are as near: few of them, so inserting is fastest.
         auto place = sights_.end();
         while (place != sights_.begin() && sight.distance_mm2 < std::prev(place)->distance_mm2) {
             --place;
         }
         sights_.insert(place, sight);
-    }
-    if (!may_hide_each_other()) {
-        return;
     }
     // From near to far: what is not wholly in the shadow of visible robots is visible and casts a shadow.
     shadows_.clear();
@@ -106,28 +124,6 @@ void EmitterView::look_ahead(unsigned emitter, float rim_mm) {
             cover(shadow);
         }
     }
-}
-
-bool EmitterView::may_hide_each_other() const {
-    // Nobody is covered whose centre lies outside of the shadow of each nearer one, by more than rounding does. That of
-    // a disk of radius r at distance d spans the directions at angles a from its centre with sin a <= r / d. Shadows
-    // of nearly 180 degrees are left to the full calculation.
-    for (std::size_t i = 0; i < sights_.size(); ++i) {
-        Sight const& sight = sights_[i];
-        float const radius_mm = candidates_[sight.candidate].radius_mm;
-        float const radius2_mm2 = radius_mm * radius_mm;
-        if (sights_.size() > 1 && radius2_mm2 > 0.9F * sight.distance_mm2) {
-            return true;
-        }
-        float const reach_mm2 = 1.01F * radius2_mm2 + 1e-4F * sight.distance_mm2;
-        for (std::size_t k = i + 1; k < sights_.size(); ++k) {
-            float const across = cross(sight.seen_mm, sights_[k].seen_mm);
-            if (across * across <= reach_mm2 * sights_[k].distance_mm2) {
-                return true;
-            }
-        }
-    }
-    return false;
 }
 
 bool EmitterView::is_covered(Interval const& sight) const {
@@ -149,36 +145,26 @@ void EmitterView::cover(Interval const& sight) {
 }
 
 Vec2 from_nearest_emitter_mm(EmitterView::Candidate const& candidate, float rim_mm) {
-    float nearest_mm2 = std::numeric_limits<float>::infinity();
-    Vec2 nearest;
-    for (unsigned emitters = candidate.emitters; emitters != 0; emitters &= emitters - 1) {
-        auto const emitter = static_cast<unsigned>(std::countr_zero(emitters));
-        Vec2 const seen = seen_from(candidate, emitter, rim_mm);
-        float const distance_mm2 = squared_length(seen);
-        if (distance_mm2 < nearest_mm2) {
-            nearest_mm2 = distance_mm2;
-            nearest = from_frame_of_face(seen, emitter);
-        }
-    }
-    return nearest;
+    FourInts const sees = mask_of(candidate.emitters);
+    Four const distance_mm2 =
+        sees ? squared_length(seen_from_emitters(candidate, rim_mm)) : all_four(std::numeric_limits<float>::infinity());
+    auto const nearest = static_cast<unsigned>(std::countr_zero(bits_of(distance_mm2 == smallest(distance_mm2))));
+    return candidate.offset_mm - rim_mm * kFaceNormals[nearest];
 }
 
 std::uint8_t faces_that_see(Vec2 emitter_mm, float rim_mm, float range_mm) {
-    unsigned faces = 0;
-    unsigned best = 0;
-    float most_ahead = emitter_mm.x;
-    for (unsigned face = 0; face < kFaceCount; ++face) {
-        Vec2 const seen = in_frame_of_face(emitter_mm, face);
-        if (seen.x > most_ahead) {
-            most_ahead = seen.x;
-            best = face;
-        }
-        Vec2 const from_face = seen - Vec2{rim_mm, 0.0F};
-        if (seen.x >= rim_mm && squared_length(from_face) <= range_mm * range_mm) {
-            faces |= 1U << face;
-        }
+    FourVectors const seen = in_frames_of_faces(emitter_mm);
+    Four const rim = all_four(rim_mm);
+    Four const distance_mm2 = squared_length(FourVectors{seen.x - rim, seen.y});
+    unsigned const faces = bits_of((seen.x >= rim) & (distance_mm2 <= all_four(range_mm * range_mm)));
+    if (faces != 0) {
+        return static_cast<std::uint8_t>(faces);
     }
-    return static_cast<std::uint8_t>(faces != 0 ? faces : 1U << best);
+    unsigned most_ahead = 0;
+    for (unsigned face = 1; face < kFaceCount; ++face) {
+        most_ahead = seen.x[face] > seen.x[most_ahead] ? face : most_ahead;
+    }
+    return static_cast<std::uint8_t>(1U << most_ahead);
 }
 
 }  // namespace pogosim

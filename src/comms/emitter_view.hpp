@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "base/four.hpp"
 #include "base/vec2.hpp"
 #include "world/mailbox.hpp"
 
@@ -58,19 +59,29 @@ private:
         Vec2 seen_mm;  // x along the emitter's outward normal
     };
 
+    /// What the four emitters see of a candidate.
+    struct Views {
+        FourInts is_in_view;
+        Four x;  // of its centre, along the emitter's outward normal
+        Four y;
+        Four distance_mm2;
+        Four shadow_mm2;  // square of the half width of its shadow at the candidate, rather too wide
+    };
+
     /// Edges of a shadow, see diamond_angle().
     struct Interval {
         float low;
         float high;
     };
 
-    void look_ahead(unsigned emitter, float rim_mm);
-    bool may_hide_each_other() const;
+    void look_ahead(unsigned emitter);
+    unsigned emitters_with_shadows() const;
     bool is_covered(Interval const& sight) const;
     void cover(Interval const& sight);
 
     std::vector<Candidate> candidates_;  // the first count_ of these
     std::size_t count_ = 0;
+    std::vector<Views> views_;       // of the candidates
     std::vector<Sight> sights_;      // of one emitter, from near to far
     std::vector<Interval> shadows_;  // disjoint, in no order
 };

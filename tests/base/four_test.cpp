@@ -55,6 +55,20 @@ TEST(Four, MasksChooseByLanes) {
     EXPECT_FALSE(is_any(numbers > 2.0F));
 }
 
+TEST(Four, MasksAreBits) {
+    for (unsigned bits = 0; bits < 16; ++bits) {
+        EXPECT_EQ(bits_of(mask_of(bits)), bits);
+    }
+    EXPECT_EQ(bits_of(Four{1.0F, -1.0F, -1.0F, 1.0F} > 0.0F), 0b1001U);
+}
+
+TEST(Four, SmallestIsInAllLanes) {
+    for (Four const numbers : {Four{1.0F, 2.0F, 3.0F, 4.0F}, Four{2.0F, 1.0F, 3.0F, 4.0F}, Four{4.0F, 3.0F, 1.0F, 2.0F},
+                               Four{4.0F, 3.0F, 2.0F, 1.0F}}) {
+        EXPECT_EQ(bits_of(smallest(numbers) == all_four(1.0F)), 0xFU);
+    }
+}
+
 TEST(Four, RowsBecomeColumns) {
     auto const [x, y, z, w] = transposed({.x = Four{0.0F, 1.0F, 2.0F, 3.0F},
                                           .y = Four{10.0F, 11.0F, 12.0F, 13.0F},
