@@ -17,6 +17,7 @@
 #include "base/nearest_name.hpp"
 #include "base/utf8.hpp"
 #include "record/half.hpp"
+#include "record/table_memory.hpp"
 
 namespace pogosim {
 
@@ -24,34 +25,70 @@ using arrow::ArrayBuilder;
 using arrow::Status;
 using MakeType = std::shared_ptr<arrow::DataType> const& (*)();
 
+/// The cells of one user column: every `width`-th from the first on.
+struct UserCells {
+    std::span<CellValue const> cells;
+    std::size_t width;
+
+    std::size_t size() const { return (cells.size() + width - 1) / width; }
+    CellValue const& operator[](std::size_t row) const { return cells[row * width]; }
+};
+
 struct BuiltInColumn {
     char const* name;
     MakeType type;
-    Status (*append)(ArrayBuilder& builder, ObjectRow const& row);
+    Status (*append)(ArrayBuilder& builder, std::span<ObjectRow const> rows);
     bool DataFileOptions::*enabled;  // nullptr: always there
 };
 
 struct UserColumnType {
     ColumnType type;
     MakeType make;
-    Status (*append)(ArrayBuilder& builder, CellValue const& cell);  // not null
+    Status (*append)(ArrayBuilder& builder, UserCells const& cells);
 };
 
 namespace {
 
 template <class Builder, auto Member>
-Status append_member(ArrayBuilder& builder, ObjectRow const& row) {
-    return static_cast<Builder&>(builder).Append(row.*Member);
+Status append_member(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
+    auto& numbers = static_cast<Builder&>(builder);
+    ARROW_RETURN_NOT_OK(numbers.Reserve(std::ssize(rows)));
+    for (ObjectRow const& row : rows) {
+        numbers.UnsafeAppend(row.*Member);
+    }
+    return Status::OK();
 }
 
-Status append_ticks(ArrayBuilder& builder, ObjectRow const& row) {
+Status append_category(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
+    auto& names = static_cast<arrow::StringBuilder&>(builder);
+    std::size_t bytes = 0;
+    for (ObjectRow const& row : rows) {
+        bytes += row.category.size();
+    }
+    ARROW_RETURN_NOT_OK(names.Reserve(std::ssize(rows)));
+    ARROW_RETURN_NOT_OK(names.ReserveData(static_cast<std::int64_t>(bytes)));
+    for (ObjectRow const& row : rows) {
+        names.UnsafeAppend(row.category);
+    }
+    return Status::OK();
+}
+
+Status append_ticks(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
     auto& ticks = static_cast<arrow::Int64Builder&>(builder);
-    return row.ticks ? ticks.Append(*row.ticks) : ticks.AppendNull();
+    ARROW_RETURN_NOT_OK(ticks.Reserve(std::ssize(rows)));
+    for (ObjectRow const& row : rows) {
+        if (row.ticks) {
+            ticks.UnsafeAppend(*row.ticks);
+        } else {
+            ticks.UnsafeAppendNull();
+        }
+    }
+    return Status::OK();
 }
 
 constexpr std::array<BuiltInColumn, 9> kBuiltInColumns{{
     {"time", arrow::float32, append_member<arrow::FloatBuilder, &ObjectRow::time_s>, nullptr},
-    {"robot_category", arrow::utf8, append_member<arrow::StringBuilder, &ObjectRow::category>, nullptr},
+    {"robot_category", arrow::utf8, append_category, nullptr},
     {"robot_id", arrow::int32, append_member<arrow::Int32Builder, &ObjectRow::id>, nullptr},
     {"pogobot_ticks", arrow::int64, append_ticks, nullptr},
     {"x", arrow::float32, append_member<arrow::FloatBuilder, &ObjectRow::x_mm>, nullptr},
@@ -62,36 +99,60 @@ constexpr std::array<BuiltInColumn, 9> kBuiltInColumns{{
     {"led_rgb", arrow::int32, append_member<arrow::Int32Builder, &ObjectRow::led_rgb>, &DataFileOptions::led_column},
 }};
 
-template <class Builder, class Value>
-Status append_cell(ArrayBuilder& builder, CellValue const& cell) {
-    using Stored = typename Builder::value_type;
-    return static_cast<Builder&>(builder).Append(static_cast<Stored>(std::get<Value>(cell)));
+bool is_null(CellValue const& cell) {
+    return std::holds_alternative<std::monostate>(cell);
 }
 
-Status append_half(ArrayBuilder& builder, CellValue const& cell) {
-    return static_cast<arrow::HalfFloatBuilder&>(builder).Append(to_half(std::get<double>(cell)));
+template <class Value, class Stored>
+Stored stored(CellValue const& cell) {
+    return static_cast<Stored>(std::get<Value>(cell));
 }
 
-Status append_bool(ArrayBuilder& builder, CellValue const& cell) {
-    return static_cast<arrow::BooleanBuilder&>(builder).Append(std::get<bool>(cell));
+std::uint16_t stored_half(CellValue const& cell) {
+    return to_half(std::get<double>(cell));
 }
 
-Status append_text(ArrayBuilder& builder, CellValue const& cell) {
+template <class Builder, auto Stored>
+Status append_numbers(ArrayBuilder& builder, UserCells const& cells) {
+    auto& numbers = static_cast<Builder&>(builder);
+    ARROW_RETURN_NOT_OK(numbers.Reserve(static_cast<std::int64_t>(cells.size())));
+    for (std::size_t row = 0; row < cells.size(); ++row) {
+        if (is_null(cells[row])) {
+            numbers.UnsafeAppendNull();
+        } else {
+            numbers.UnsafeAppend(Stored(cells[row]));
+        }
+    }
+    return Status::OK();
+}
+
+Status append_texts(ArrayBuilder& builder, UserCells const& cells) {
     auto& texts = static_cast<arrow::StringBuilder&>(builder);
-    auto const& text = std::get<std::string>(cell);
-    return well_formed_prefix(text) == text.size() ? texts.Append(text) : texts.Append(replace_malformed(text));
+    for (std::size_t row = 0; row < cells.size(); ++row) {
+        if (is_null(cells[row])) {
+            ARROW_RETURN_NOT_OK(texts.AppendNull());
+            continue;
+        }
+        auto const& text = std::get<std::string>(cells[row]);
+        bool const is_well_formed = well_formed_prefix(text) == text.size();
+        ARROW_RETURN_NOT_OK(is_well_formed ? texts.Append(text) : texts.Append(replace_malformed(text)));
+    }
+    return Status::OK();
 }
+
+template <class Builder, class Value>
+constexpr auto kAppend = append_numbers<Builder, stored<Value, typename Builder::value_type>>;
 
 constexpr std::array<UserColumnType, 9> kUserColumnTypes{{
-    {ColumnType::int8, arrow::int8, append_cell<arrow::Int8Builder, std::int64_t>},
-    {ColumnType::int16, arrow::int16, append_cell<arrow::Int16Builder, std::int64_t>},
-    {ColumnType::int32, arrow::int32, append_cell<arrow::Int32Builder, std::int64_t>},
-    {ColumnType::int64, arrow::int64, append_cell<arrow::Int64Builder, std::int64_t>},
-    {ColumnType::float64, arrow::float64, append_cell<arrow::DoubleBuilder, double>},
-    {ColumnType::text, arrow::utf8, append_text},
-    {ColumnType::boolean, arrow::boolean, append_bool},
-    {ColumnType::float16, arrow::float16, append_half},
-    {ColumnType::float32, arrow::float32, append_cell<arrow::FloatBuilder, double>},
+    {ColumnType::int8, arrow::int8, kAppend<arrow::Int8Builder, std::int64_t>},
+    {ColumnType::int16, arrow::int16, kAppend<arrow::Int16Builder, std::int64_t>},
+    {ColumnType::int32, arrow::int32, kAppend<arrow::Int32Builder, std::int64_t>},
+    {ColumnType::int64, arrow::int64, kAppend<arrow::Int64Builder, std::int64_t>},
+    {ColumnType::float64, arrow::float64, kAppend<arrow::DoubleBuilder, double>},
+    {ColumnType::text, arrow::utf8, append_texts},
+    {ColumnType::boolean, arrow::boolean, append_numbers<arrow::BooleanBuilder, stored<bool, bool>>},
+    {ColumnType::float16, arrow::float16, append_numbers<arrow::HalfFloatBuilder, stored_half>},
+    {ColumnType::float32, arrow::float32, kAppend<arrow::FloatBuilder, double>},
 }};
 
 UserColumnType const& user_column_type(ColumnType type) {
@@ -179,7 +240,7 @@ Columns::Columns(DataFileOptions const& options) : user_column_count_(options.us
     };
     auto const new_cells = [this](std::string const& name, std::shared_ptr<arrow::DataType> const& type) {
         fields_.push_back(arrow::field(replace_malformed(name), type));
-        return arrow::MakeBuilder(type).ValueOrDie();  // can fail for unknown types only
+        return arrow::MakeBuilder(type, table_memory()).ValueOrDie();  // can fail for unknown types only
     };
 
     for (auto const* column : available) {
@@ -196,14 +257,13 @@ Columns::Columns(DataFileOptions const& options) : user_column_count_(options.us
     }
 }
 
-Status Columns::append(ObjectRow const& row, std::span<CellValue const> user) {
-    assert(user.size() == user_column_count_);
+Status Columns::append(std::span<ObjectRow const> rows, std::span<CellValue const> user) {
+    assert(user.size() == rows.size() * user_column_count_);
     for (auto& [column, cells] : built_ins_) {
-        ARROW_RETURN_NOT_OK(column->append(*cells, row));
+        ARROW_RETURN_NOT_OK(column->append(*cells, rows));
     }
     for (auto& [type, index, cells] : users_) {
-        bool const null = std::holds_alternative<std::monostate>(user[index]);
-        ARROW_RETURN_NOT_OK(null ? cells->AppendNull() : type->append(*cells, user[index]));
+        ARROW_RETURN_NOT_OK(type->append(*cells, {.cells = user.subspan(index), .width = user_column_count_}));
     }
     return Status::OK();
 }

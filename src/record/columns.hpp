@@ -1,5 +1,5 @@
 // The columns of the data file, and their cells that are not yet written. Tables in columns.cpp list all columns; those
-// of a file are chosen once, so that a row costs one indirect call per column.
+// of a file are chosen once, so that the rows of a moment cost one indirect call per column.
 #pragma once
 
 #include <arrow/builder.h>
@@ -15,7 +15,7 @@
 
 namespace pogosim {
 
-struct BuiltInColumn;   // filled from the built-in part of a row
+struct BuiltInColumn;   // filled from the built-in part of rows
 struct UserColumnType;  // how cells of a user column are stored
 
 class Columns {
@@ -26,8 +26,8 @@ public:
 
     arrow::FieldVector const& fields() const { return fields_; }
 
-    /// Adds one cell to each column; `user` as in DataFile::append.
-    arrow::Status append(ObjectRow const& row, std::span<CellValue const> user);
+    /// Adds a cell of each row to each column; as DataFile::append.
+    arrow::Status append(std::span<ObjectRow const> rows, std::span<CellValue const> user);
 
     /// The cells added since the last call, one array per column.
     arrow::Result<arrow::ArrayVector> take();

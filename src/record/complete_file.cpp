@@ -18,6 +18,7 @@
 
 #include "base/scratch_file.hpp"
 #include "record/leftover.hpp"
+#include "record/table_memory.hpp"
 
 namespace pogosim {
 
@@ -110,6 +111,7 @@ arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::start(LockedFile cons
     ARROW_ASSIGN_OR_RAISE(auto file, make(unfinished));
     auto options = arrow::ipc::IpcWriteOptions::Defaults();
     ARROW_ASSIGN_OR_RAISE(options.codec, arrow::util::Codec::Create(arrow::Compression::ZSTD));
+    options.memory_pool = table_memory();
     options.use_threads = false;  // the process stays single-threaded
     ARROW_ASSIGN_OR_RAISE(file->writer_, arrow::ipc::MakeFileWriter(file->stream_, schema, options));
     return file;

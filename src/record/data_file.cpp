@@ -1,5 +1,6 @@
 #include "record/data_file.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "record/columns.hpp"
@@ -41,8 +42,19 @@ DataFile::DataFile(DataFileOptions const& options, LockedFile file)
 
 DataFile::~DataFile() = default;
 
-void DataFile::append(ObjectRow const& row, std::span<CellValue const> user) {
-    impl_->table.count_row(row.time_s, status_of([&] { return impl_->columns.append(row, user); }));
+void DataFile::append(std::span<ObjectRow const> rows, std::span<CellValue const> user) {
+    if (rows.empty()) {
+        return;
+    }
+    std::size_t const width = user.size() / rows.size();
+    while (!rows.empty()) {
+        std::size_t const count = std::min<std::size_t>(rows.size(), impl_->table.room());
+        impl_->table.count_rows(rows.front().time_s, count, status_of([&] {
+                                    return impl_->columns.append(rows.first(count), user.first(count * width));
+                                }));
+        rows = rows.subspan(count);
+        user = user.subspan(count * width);
+    }
 }
 
 void DataFile::save_if_due() {

@@ -66,8 +66,9 @@ public:
     DataFile(DataFile const&) = delete;
     DataFile& operator=(DataFile const&) = delete;
 
-    /// Adds a row. `user` holds one value per user column, in their order (monostate: null).
-    void append(ObjectRow const& row, std::span<CellValue const> user);
+    /// Adds rows of one time. `user` holds, row after row, one value per user column, in their order (monostate: null).
+    void append(std::span<ObjectRow const> rows, std::span<CellValue const> user);
+    void append(ObjectRow const& row, std::span<CellValue const> user) { append(std::span(&row, 1), user); }
     void append(ObjectRow const& row, std::initializer_list<CellValue> user) {
         append(row, std::span(user.begin(), user.size()));
     }

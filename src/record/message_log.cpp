@@ -6,6 +6,7 @@
 
 #include "record/complete_file.hpp"
 #include "record/table_file.hpp"
+#include "record/table_memory.hpp"
 
 namespace pogosim {
 
@@ -20,9 +21,9 @@ constexpr std::string_view kNobodyInReach = "nobody_in_reach";
 
 /// The cells of a robot, or nulls.
 struct RobotCells {
-    arrow::Int32Builder index;
-    arrow::Int32Builder id;
-    arrow::StringBuilder category;
+    arrow::Int32Builder index{table_memory()};
+    arrow::Int32Builder id{table_memory()};
+    arrow::StringBuilder category{table_memory()};
 
     Status append(LoggedRobot const& robot) {
         ARROW_RETURN_NOT_OK(index.Append(robot.index));
@@ -38,23 +39,23 @@ struct RobotCells {
 };
 
 struct Cells {
-    arrow::FloatBuilder time;
-    arrow::Int64Builder step;
-    arrow::Int64Builder message;
+    arrow::FloatBuilder time{table_memory()};
+    arrow::Int64Builder step{table_memory()};
+    arrow::Int64Builder message{table_memory()};
     RobotCells sender;
-    arrow::Int8Builder sender_faces;
-    arrow::StringBuilder kind;
-    arrow::BinaryBuilder payload;
-    arrow::Int32Builder message_bytes;
-    arrow::FloatBuilder send_probability;
-    arrow::Int32Builder cluster_size;
+    arrow::Int8Builder sender_faces{table_memory()};
+    arrow::StringBuilder kind{table_memory()};
+    arrow::BinaryBuilder payload{table_memory()};
+    arrow::Int32Builder message_bytes{table_memory()};
+    arrow::FloatBuilder send_probability{table_memory()};
+    arrow::Int32Builder cluster_size{table_memory()};
     RobotCells receiver;
-    arrow::FloatBuilder distance;
-    arrow::Int8Builder emitters;
-    arrow::Int8Builder receiver_faces;
-    arrow::FloatBuilder probability;
-    arrow::StringBuilder outcome;
-    arrow::Int8Builder copies;
+    arrow::FloatBuilder distance{table_memory()};
+    arrow::Int8Builder emitters{table_memory()};
+    arrow::Int8Builder receiver_faces{table_memory()};
+    arrow::FloatBuilder probability{table_memory()};
+    arrow::StringBuilder outcome{table_memory()};
+    arrow::Int8Builder copies{table_memory()};
 
     struct Column {
         char const* name;
@@ -167,7 +168,7 @@ MessageLog::MessageLog(MessageLogOptions const& options, LockedFile file)
 MessageLog::~MessageLog() = default;
 
 void MessageLog::append(MessageRow const& row) {
-    impl_->table.count_row(row.time_s, status_of([&] { return impl_->cells.append(row); }));
+    impl_->table.count_rows(row.time_s, 1, status_of([&] { return impl_->cells.append(row); }));
 }
 
 void MessageLog::save_if_due() {

@@ -21,6 +21,7 @@
 #include "base/save_progress.hpp"
 #include "base/utf8.hpp"
 #include "record/complete_file.hpp"
+#include "record/table_memory.hpp"
 #include "record/unfinished_file.hpp"
 
 namespace pogosim {
@@ -104,7 +105,7 @@ struct Pieces {
             for (auto const& batch : batches) {
                 parts.push_back(batch->column(i));
             }
-            ARROW_ASSIGN_OR_RAISE(columns.emplace_back(), arrow::Concatenate(parts));
+            ARROW_ASSIGN_OR_RAISE(columns.emplace_back(), arrow::Concatenate(parts, table_memory()));
         }
         return arrow::RecordBatch::Make(schema, row_count, std::move(columns));
     }
@@ -203,9 +204,11 @@ struct TableFile::Impl {
         return static_cast<std::uint64_t>(row_count) * static_cast<std::uint64_t>(schema->num_fields()) * kBytesPerCell;
     }
 
-    void count_row(float time_s) {
-        ++buffered_rows;
-        ++row_count;
+    std::int64_t room() const { return flush_row_count - buffered_rows - uncompleted.row_count; }
+
+    void count_rows(float time_s, std::int64_t count) {
+        buffered_rows += count;
+        row_count += count;
         if (unsaved_moments.empty() || unsaved_moments.back().time_s != time_s) {
             unsaved_moments.push_back({time_s, row_count});
         }
@@ -386,11 +389,15 @@ TableFile::~TableFile() {
     }
 }
 
-void TableFile::count_row(float time_s, Status const& added) {
+std::size_t TableFile::room() const {
+    return static_cast<std::size_t>(std::max<std::int64_t>(impl_->room(), 1));  // a forked child saves nothing
+}
+
+void TableFile::count_rows(float time_s, std::size_t count, Status const& added) {
     assert(impl_->open);
     impl_->check([&] { return added; });
-    impl_->count_row(time_s);
-    if (impl_->buffered_rows + impl_->uncompleted.row_count == impl_->flush_row_count && impl_->is_writable()) {
+    impl_->count_rows(time_s, static_cast<std::int64_t>(count));
+    if (impl_->room() == 0 && impl_->is_writable()) {
         impl_->check([&] { return impl_->cut(); });
         impl_->check([&] { return impl_->add_to_complete(impl_->schema); });
         if (impl_->unsaved.row_count >= kMostUnsavedRows) {

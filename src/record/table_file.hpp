@@ -57,8 +57,12 @@ public:
     TableFile(TableFile const&) = delete;
     TableFile& operator=(TableFile const&) = delete;
 
-    /// To be called for each row, in the order of time, with what came of adding its cells.
-    void count_row(float time_s, arrow::Status const& added);
+    /// Rows that may be added before they are counted, > 0.
+    std::size_t room() const;
+
+    /// To be called for rows of one time, in the order of time, with what came of adding their cells. `count`: up to
+    /// room().
+    void count_rows(float time_s, std::size_t count, arrow::Status const& added);
 
     // As those of DataFile.
     void save_if_due();

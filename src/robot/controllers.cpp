@@ -419,16 +419,16 @@ void Controllers::tick(std::uint32_t robot) {
     }
 }
 
-void Controllers::export_row(std::size_t robot, std::uint32_t object) {
+bool Controllers::export_row(std::size_t robot, std::uint32_t object, std::span<CellValue> cells) {
     DataExport& data = services_.data;
-    data.row.values.assign(data.columns.size(), CellValue());
-    data.held.fill(object, data.row.values);
-    data.row.exported = true;
+    data.held.fill(object, cells);
+    data.row = {.values = cells, .exported = true};
     data.filling = true;
     data.next_column = 0;
     call(static_cast<std::uint32_t>(robot), Phase::export_data, controllers_[robot].program.export_data);
     data.filling = false;
     data.filled_rows += data.row.exported && controllers_[robot].program.export_data != nullptr ? 1 : 0;
+    return data.row.exported;
 }
 
 bool Controllers::click(std::uint32_t robot) {

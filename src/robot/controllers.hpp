@@ -47,9 +47,9 @@ public:
     /// One step: the global step, then every robot that is due.
     void run_step();
 
-    /// callback_export_data of one robot, index `object` in World::objects. Its row is in the services' data
-    /// afterwards.
-    void export_row(std::size_t robot, std::uint32_t object);
+    /// callback_export_data of one robot, index `object` in World::objects, fills `cells`: one for each of the user's
+    /// columns, empty before. False: the program wants no row.
+    bool export_row(std::size_t robot, std::uint32_t object, std::span<CellValue> cells);
 
     /// callback_robot_click of one robot. False: it has none.
     bool click(std::uint32_t robot);

@@ -54,10 +54,10 @@ ObjectRow row_of(World const& world, Object const& object, std::optional<std::in
     return row;
 }
 
-bool has_subparts(World const& world) {
-    return std::ranges::any_of(world.categories, [](Category const& category) {
-        return category.spec.membrane && category.spec.membrane->in_data_file;
-    });
+/// Its rows are followed by those of its subparts.
+bool has_subparts(Category const& category) {
+    auto const& membrane = category.spec.membrane;
+    return membrane && membrane->in_data_file;
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ void Recorder::make_data_file() {
     options.path = output().data_filename;
     options.user_columns = export_.columns;
     options.fields = output().fields;
-    options.subpart_column = has_subparts(world_);
+    options.subpart_column = std::ranges::any_of(world_.categories, has_subparts);
     options.led_column = output().led_column;
     options.flush_row_count = output().flush_row_count;
     options.metadata = metadata();
@@ -150,14 +150,9 @@ std::optional<UserFailure> Recorder::record_rows() {
     if (kept_ != nullptr) {
         kept_->save(world_, table_);
     }
-    if (shown_ != nullptr) {
-        shown_->begin(world_.time_s());
-    }
-    for (std::size_t row = 0; row < table_.object.size(); ++row) {
-        write_row(world_.objects[table_.object[row]], table_.cells_of(row));
-    }
+    write_table();
     if (shown_ != nullptr && !failure) {
-        shown_->end();
+        show_table();
     }
     return failure;
 }
@@ -166,52 +161,69 @@ std::optional<UserFailure> Recorder::fill_table() {
     table_.clear();
     table_.object.reserve(world_.objects.size());
     table_.cells.reserve(world_.objects.size() * export_.columns.size());
-    return call_user_code([this] {
+    std::optional<UserFailure> failure = call_user_code([this] {
         for (std::uint32_t i = 0; i < world_.objects.size(); ++i) {
             if (category_is_recorded_[world_.objects[i].category]) {
                 add_to_table(i);
             }
         }
     });
+    table_.cells.resize(table_.object.size() * export_.columns.size());  // without those of a row that failed
+    return failure;
 }
 
 void Recorder::add_to_table(std::uint32_t object) {
     std::uint32_t const robot = world_.objects[object].robot;
-    if (robot != kNone) {
-        controllers_.export_row(robot, object);
-        if (!export_.row.exported) {
-            return;
-        }
-    }
-    table_.cells.resize((table_.object.size() + 1) * export_.columns.size());
-    std::span const cells = std::span(table_.cells).last(export_.columns.size());
-    if (robot != kNone) {
-        std::ranges::copy(export_.row.values, cells.begin());
-    } else {
+    std::size_t const first_cell = table_.cells.size();
+    table_.cells.resize(first_cell + export_.columns.size());
+    std::span const cells = std::span(table_.cells).subspan(first_cell);
+    if (robot == kNone) {
         export_.held.fill(object, cells);
+    } else if (!controllers_.export_row(robot, object, cells)) {
+        table_.cells.resize(first_cell);
+        return;
     }
     table_.object.push_back(object);
 }
 
-void Recorder::write_row(Object const& object, std::span<CellValue const> user) {
-    if (object.robot == kNone) {
-        data_file_->append(row_of(world_, object, std::nullopt), user);
-        return;
+/// Rows that follow each other are written together.
+void Recorder::write_table() {
+    std::size_t const count = table_.object.size();
+    built_in_.clear();
+    std::size_t first = 0;
+    auto const write_until = [&](std::size_t end) {
+        data_file_->append(std::span(built_in_).subspan(first, end - first), table_.cells_of(first, end));
+        first = end;
+    };
+    for (std::size_t row = 0; row < count; ++row) {
+        Object const& object = world_.objects[table_.object[row]];
+        built_in_.push_back(row_of(world_, object, ticks_of(object)));
+        if (has_subparts(world_.categories[object.category])) {
+            write_until(row + 1);
+            record_subparts(object);
+        }
     }
-    ObjectRow const built_in = row_of(world_, object, controllers_.ticks(object.robot));
-    data_file_->append(built_in, user);
-    record_subparts(object);
-    if (shown_ != nullptr) {
-        shown_->add(object.robot, built_in, user);
+    write_until(count);
+}
+
+/// Null for objects without a program.
+std::optional<std::int64_t> Recorder::ticks_of(Object const& object) const {
+    return object.robot != kNone ? std::optional<std::int64_t>(controllers_.ticks(object.robot)) : std::nullopt;
+}
+
+void Recorder::show_table() {
+    shown_->begin(world_.time_s());
+    for (std::size_t row = 0; row < table_.object.size(); ++row) {
+        Object const& object = world_.objects[table_.object[row]];
+        if (object.robot != kNone) {
+            shown_->add(object.robot, built_in_[row], table_.cells_of(row));
+        }
     }
+    shown_->end();
 }
 
 void Recorder::record_subparts(Object const& object) {
-    ObjectSpec const& spec = world_.categories[object.category].spec;
-    if (!spec.membrane || !spec.membrane->in_data_file) {
-        return;
-    }
-    ObjectRow row = row_of(world_, object, controllers_.ticks(object.robot));
+    ObjectRow row = row_of(world_, object, ticks_of(object));
     for (std::uint32_t part = 0; part < object.body_count; ++part) {
         Vec2 const position_mm = wrapped(world_, world_.bodies.position_mm[object.body + part]);
         row.x_mm = position_mm.x;

@@ -79,7 +79,9 @@ private:
     /// All user code of a save. After a failure the table has the rows until then.
     std::optional<UserFailure> fill_table();
     void add_to_table(std::uint32_t object);
-    void write_row(Object const& object, std::span<CellValue const> user);
+    void write_table();
+    void show_table();
+    std::optional<std::int64_t> ticks_of(Object const& object) const;
     void record_subparts(Object const& object);
 
     Scenario const& scenario_;
@@ -96,6 +98,7 @@ private:
     RecordedRows* shown_ = nullptr;       // null: nobody looks
     SavedColumns* kept_ = nullptr;        // null: nobody wants them
     DataTable table_;                     // of the present save
+    std::vector<ObjectRow> built_in_;     // of its rows
     std::vector<CellValue> empty_cells_;  // user columns of subparts
     Multiples row_times_;
 };

@@ -26,10 +26,14 @@ struct DataTable {
     std::vector<std::uint32_t> object;  // by row: index into World::objects
     std::vector<CellValue> cells;       // of a row in the order of the columns, row after row
 
-    std::span<CellValue const> cells_of(std::size_t row) const {
-        std::size_t const columns = cells.size() / object.size();
-        return std::span(cells).subspan(row * columns, columns);
+    std::span<CellValue const> cells_of(std::size_t row) const { return cells_of(row, row + 1); }
+
+    /// Of the rows from `first` to `last` - 1.
+    std::span<CellValue const> cells_of(std::size_t first, std::size_t last) const {
+        std::size_t const columns = object.empty() ? 0 : cells.size() / object.size();
+        return std::span(cells).subspan(first * columns, (last - first) * columns);
     }
+
     void clear() {
         object.clear();
         cells.clear();
@@ -38,7 +42,7 @@ struct DataTable {
 
 /// User part of the row that is being filled, in the order of the columns.
 struct DataRow {
-    std::vector<CellValue> values;
+    std::span<CellValue> values{};
     bool exported = true;  // false: the user program disabled the export of this row
 };
 

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -176,6 +178,34 @@ TEST_F(DataFileContent, RowsAreSplitIntoBatchesAndKeepTheirOrder) {
     for (int i = 0; i < 250; ++i) {
         ASSERT_EQ(data.text("number", i), std::to_string(i));
     }
+}
+
+TEST_F(DataFileContent, RowsAddedTogetherAreThoseAddedOneByOne) {
+    std::size_t const columns = kOneColumnOfEachType.size();
+    std::vector<ObjectRow> rows;
+    std::vector<CellValue> cells;
+    for (int i = 0; i < 25; ++i) {
+        rows.push_back(robot_row(i, 1.0));
+        rows.back().category = i % 3 == 0 ? "robots" : "walls";
+        rows.back().ticks = i % 4 == 0 ? std::nullopt : rows.back().ticks;
+        cells.insert(cells.end(), {std::int64_t{i}, std::int64_t{2}, std::int64_t{3}, std::int64_t{4}, 0.5 * i,
+                                   std::to_string(i), i % 2 == 0, 1.5});
+        cells[cells.size() - 1 - static_cast<std::size_t>(i) % columns] = {};  // null
+    }
+    auto const write = [&](std::string const& name, auto const& append) {
+        DataFile file({.path = path(name), .user_columns = kOneColumnOfEachType, .flush_row_count = 10});
+        append(file);
+        EXPECT_EQ(file.row_count(), 25);
+        file.close();
+    };
+    write("together.feather", [&](DataFile& file) { file.append(rows, cells); });
+    write("one_by_one.feather", [&](DataFile& file) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            file.append(rows[i], std::span(cells).subspan(i * columns, columns));
+        }
+    });
+    EXPECT_EQ(bytes_of(path("together.feather")), bytes_of(path("one_by_one.feather")));
+    EXPECT_EQ(read_back(path("together.feather")).rows_of_batch, (std::vector<std::int64_t>{10, 10, 5}));
 }
 
 TEST_F(DataFileContent, FullLastBatchIsNotFollowedByAnEmptyOne) {

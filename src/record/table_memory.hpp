@@ -1,0 +1,14 @@
+// Memory for the rows of tables.
+#pragma once
+
+#include <arrow/memory_pool.h>
+
+namespace pogosim {
+
+/// That of the C library, which keeps large pieces for the next ones: other pools give them back to the system, which
+/// clears each page before it is used again.
+inline arrow::MemoryPool* table_memory() {
+    return arrow::system_memory_pool();
+}
+
+}  // namespace pogosim
