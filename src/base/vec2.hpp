@@ -51,6 +51,9 @@ constexpr Vec2 rotate(Vec2 a, Vec2 unit) {
 /// The same angle in (-pi, pi].
 inline float wrap_angle(float angle_rad) {
     constexpr float pi = std::numbers::pi_v<float>;
+    if (angle_rad > -pi && angle_rad <= pi) {
+        return angle_rad;
+    }
     float const turned = std::remainder(angle_rad, 2.0F * pi);
     return turned <= -pi ? turned + 2.0F * pi : turned;
 }
