@@ -38,6 +38,7 @@ constexpr int kRobotsPerMembrane = 100;
 struct Result {
     double seconds = 0.0;  // wall clock
     std::int64_t steps = 0;
+    double time_step_s = 0.0;
     std::array<double, kStageNames.size()> stage_s{};
     double bytes_per_robot = 0.0;
     std::uint64_t hash = 0;
@@ -120,10 +121,9 @@ Result run_once(int robots, Options const& options) {
     result.bytes_per_robot =
         (resident_bytes() - bytes_before) / robots - static_cast<double>(*pogosim_this_program.user_data_bytes);
     result.hash = simulation.hash();
+    result.time_step_s = simulation.world().time_step_s;
     return result;
 }
-
-constexpr double kTimeStepS = 0.01;
 
 void print_header() {
     fmt::print("{:>7} {:>12} {:>16} {:>12}   ", "robots", "x real time", "us/robot/step", "kB/robot");
@@ -135,7 +135,7 @@ void print_header() {
 
 void print(int robots, Result const& best) {
     double const step_s = best.seconds / static_cast<double>(best.steps);
-    fmt::print("{:>7} {:>12.1f} {:>16.3f} {:>12.2f}   ", robots, kTimeStepS / step_s, 1e6 * step_s / robots,
+    fmt::print("{:>7} {:>12.1f} {:>16.3f} {:>12.2f}   ", robots, best.time_step_s / step_s, 1e6 * step_s / robots,
                best.bytes_per_robot / 1000.0);
     for (double const stage_s : best.stage_s) {
         fmt::print("{:>8.1f} %", 100.0 * stage_s / best.seconds);
@@ -147,7 +147,7 @@ void print_json(int robots, Result const& best) {
     double const step_s = best.seconds / static_cast<double>(best.steps);
     fmt::print(
         R"({{"robots": {}, "times_real_time": {}, "us_per_robot_and_step": {}, "kb_per_robot": {}, "hash": "{:016x}")",
-        robots, kTimeStepS / step_s, 1e6 * step_s / robots, best.bytes_per_robot / 1000.0, best.hash);
+        robots, best.time_step_s / step_s, 1e6 * step_s / robots, best.bytes_per_robot / 1000.0, best.hash);
     for (std::size_t s = 0; s < kStageNames.size(); ++s) {
         fmt::print(R"(, "share_of_{}": {})", kStageNames[s], best.stage_s[s] / best.seconds);
     }
