@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "base/grid.hpp"
 
@@ -36,22 +37,33 @@ MembraneSides::MembraneSides(World const& world) {
 
 std::vector<std::uint32_t> const& MembraneSides::hold(World& world) {
     put_back_.clear();
-    if (somebody_crossed(world)) {
+    is_back_.clear();
+    // Each pass puts somebody back who was not yet, so that there is an end: when all are, nobody has crossed.
+    while (somebody_crossed(world)) {
+        is_back_.resize(world.bodies.size());
         for (Side const& side : sides_) {
-            crossed_.clear();
-            std::ranges::set_symmetric_difference(side.was_inside, side.is_inside, std::back_inserter(crossed_));
-            for (std::uint32_t const i : crossed_) {
-                put_back(world.bodies, i);
-            }
-        }
-        if (somebody_crossed(world)) {
-            for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
-                put_back(world.bodies, i);
-            }
+            put_back_crossed(world.bodies, side);
         }
     }
     remember_poses(world.bodies);
     return put_back_;
+}
+
+/// Who has crossed goes back; if all of them have been already, the membrane moved over them, and goes back itself.
+void MembraneSides::put_back_crossed(Bodies& bodies, Side const& side) {
+    crossed_.clear();
+    std::ranges::set_symmetric_difference(side.was_inside, side.is_inside, std::back_inserter(crossed_));
+    if (crossed_.empty()) {
+        return;
+    }
+    bool const are_back = std::ranges::all_of(crossed_, [&](std::uint32_t i) { return is_back_[i]; });
+    if (are_back) {
+        crossed_.resize(side.membrane.body_count);
+        std::iota(crossed_.begin(), crossed_.end(), side.membrane.body);
+    }
+    for (std::uint32_t const i : crossed_) {
+        put_back(bodies, i);
+    }
 }
 
 void MembraneSides::look_again(World const& world) {
@@ -109,6 +121,10 @@ void MembraneSides::find_sides(World const& world) {
 }
 
 void MembraneSides::put_back(Bodies& bodies, std::uint32_t i) {
+    if (is_back_[i]) {
+        return;
+    }
+    is_back_[i] = true;
     bodies.position_mm[i] = poses_[i].position_mm;
     bodies.heading_rad[i] = poses_[i].heading_rad;
     bodies.heading_dir[i] = poses_[i].heading_dir;

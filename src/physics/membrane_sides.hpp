@@ -12,14 +12,14 @@ namespace pogosim {
 /// An engine's contacts and joints give way under blows and crowds that are too strong for its few iterations, and a
 /// body whose centre is past the middle of a membrane is pushed on to the wrong side. So the sides are compared after
 /// each step: a body that has changed sides goes back to where it was before the step, at rest. When somebody is on the
-/// wrong side of a membrane even so, because the membrane moved over him, the step does not take place for anybody.
+/// wrong side of a membrane even so, because the membrane moved over him, the membrane goes back, too. All others move on.
 /// Bodies that fit through the gaps between those of a membrane may pass.
 class MembraneSides {
 public:
     /// Takes sides and poses as they are now.
     explicit MembraneSides(World const& world);
 
-    /// To be called after a step of the engine. Returns the bodies that were put back, some of them twice.
+    /// To be called after a step of the engine. Returns the bodies that were put back.
     std::vector<std::uint32_t> const& hold(World& world);
 
     /// Takes sides and poses anew: when objects were put elsewhere.
@@ -44,6 +44,7 @@ private:
     bool somebody_crossed(World const& world);
     void find_lines(World const& world);
     void find_sides(World const& world);
+    void put_back_crossed(Bodies& bodies, Side const& side);
     void put_back(Bodies& bodies, std::uint32_t i);
     void remember_poses(Bodies const& bodies);
 
@@ -52,6 +53,7 @@ private:
     std::vector<Pose> poses_;                                // of all bodies, before the step
     std::vector<std::uint32_t> crossed_;                     // scratch
     std::vector<std::uint32_t> put_back_;
+    std::vector<bool> is_back_;  // of all bodies, while somebody is put back
 };
 
 }  // namespace pogosim

@@ -81,20 +81,38 @@ TEST_F(MembraneOfDisks, PutsBackAtRestWhoeverJumpsOutOrIn) {
     EXPECT_EQ(place(outside_), (Vec2{690, 500}));
 }
 
-TEST_F(MembraneOfDisks, ComesBackWithEverybodyWhenItMovedOverSomebody) {
+TEST_F(MembraneOfDisks, ComesBackWhenItMovedOverSomebodyAndOthersGoOn) {
     make(12, 10.0F);
     std::vector<Vec2> const before_mm = bodies().position_mm;
     for (std::uint32_t i = 0; i < membrane_.body_count; ++i) {
         move(i, place(i) + Vec2{200, 0});
     }
+    move(inside_, {505, 500});
     move(outside_, {910, 500});
     EXPECT_TRUE(holds());
-    EXPECT_EQ(bodies().position_mm, before_mm);
     for (std::uint32_t i = 0; i < bodies().size(); ++i) {
-        EXPECT_EQ(bodies().heading_rad[i], 0.0F);
-        EXPECT_EQ(bodies().heading_dir[i], (Vec2{1.0F, 0.0F}));
-        EXPECT_EQ(bodies().velocity_mm_s[i], Vec2{});
+        if (i != outside_) {
+            EXPECT_EQ(place(i), before_mm[i]);
+            EXPECT_EQ(bodies().heading_rad[i], 0.0F);
+            EXPECT_EQ(bodies().heading_dir[i], (Vec2{1.0F, 0.0F}));
+            EXPECT_EQ(bodies().velocity_mm_s[i], Vec2{});
+        }
     }
+    EXPECT_EQ(place(outside_), (Vec2{910, 500}));
+    EXPECT_EQ(bodies().velocity_mm_s[outside_].y, 2.0F);
+}
+
+TEST_F(MembraneOfDisks, ThatComesBackOverSomebodyElsePutsHimBackToo) {
+    make(12, 10.0F);
+    // The membrane leaves one behind, and another one enters where it was.
+    for (std::uint32_t i = 0; i < membrane_.body_count; ++i) {
+        move(i, place(i) + Vec2{-200, 0});
+    }
+    move(outside_, {560, 500});
+    EXPECT_TRUE(holds());
+    EXPECT_EQ(place(inside_), centre_mm_);
+    EXPECT_EQ(place(outside_), (Vec2{900, 500}));
+    EXPECT_EQ(place(0), (Vec2{600, 500}));
 }
 
 TEST_F(MembraneOfDisks, LetsThroughWhatFitsBetweenItsDisks) {
