@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "base/random.hpp"
@@ -133,6 +134,37 @@ TEST(KeptReceivers, KnowOfWallsAndOfMembranesThatMove) {
         expect_same_answers(known, world, random);
         ASSERT_FALSE(HasFatalFailure()) << "step " << step;
     }
+}
+
+/// Lists that grow leave holes in the cache's memory, until it gives up all; and some lists are too long for it.
+TEST(ReceiverCache, HasNothingOrWhatWasKeptHoweverMuchItForgets) {
+    constexpr std::uint32_t kRobots = 10;
+    ReceiverCache cache;
+    cache.clear(kRobots);
+    std::vector<std::uint32_t> counts(kRobots, 0);
+    RandomStream random(3, 0);
+    int forgotten = 0;
+    int refused = 0;
+    for (int round = 0; round < 300; ++round) {
+        std::uint32_t const robot = random.below(kRobots);
+        std::uint32_t const count = random.below(round < 200 ? 40'000U : 400'000U);
+        cache.store(robot, kAllFaces, 80.0F, 7, std::vector<Receiver>(count, {.robot = robot, .from_emitter_mm = {}}));
+        counts[robot] = count;
+        refused += cache.find(robot, kAllFaces, 80.0F) == nullptr ? 1 : 0;
+        for (std::uint32_t k = 0; k < kRobots; ++k) {
+            ReceiverCache::List const* const list = cache.find(k, kAllFaces, 80.0F);
+            if (list == nullptr) {
+                forgotten += k != robot && counts[k] > 0 ? 1 : 0;
+                continue;
+            }
+            std::span const receivers = cache.receivers(*list);
+            ASSERT_EQ(receivers.size(), counts[k]);
+            ASSERT_TRUE(std::ranges::all_of(receivers, [&](Receiver const& one) { return one.robot == k; }));
+        }
+    }
+    EXPECT_GT(forgotten, 0);
+    EXPECT_GT(refused, 0);
+    EXPECT_LT(refused, 150);
 }
 
 }  // namespace

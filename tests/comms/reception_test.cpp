@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+
+#include "comms/reception_table.hpp"
 
 namespace pogosim {
 namespace {
@@ -95,6 +98,24 @@ TEST(Reception, ProbabilitiesStayBetweenZeroAndOneForAnyParameters) {
                 double const probability = reception_probability(spec, 385, p, 60);
                 EXPECT_GE(probability, 0.0);
                 EXPECT_LE(probability, 1.0);
+            }
+        }
+    }
+}
+
+/// More kinds of messages than a table has rows, several of each row.
+TEST(ReceptionTable, GivesWhatTheLawGivesForMessagesOfAllKindsInAnyOrder) {
+    ReceptionSpec spec;
+    spec.law = ReceptionLaw::article;
+    ReceptionTable table;
+    for (int round = 0; round < 2; ++round) {
+        for (std::uint32_t cluster_size = 1; cluster_size < 40; ++cluster_size) {
+            for (float const send_probability : {0.1F, 0.5F, 1.0F}) {
+                for (std::uint16_t const message_bytes : {3, 4, 11, 100, 267}) {  // 11 and 267 share rows
+                    auto const expected =
+                        static_cast<float>(reception_probability(spec, message_bytes, send_probability, cluster_size));
+                    EXPECT_EQ(table.probability(spec, message_bytes, send_probability, cluster_size), expected);
+                }
             }
         }
     }
