@@ -95,6 +95,8 @@ std::string key_of(Setting setting) {
             return "physics_engine";
         case Setting::speed_up:
             return "GUI_speed_up";
+        case Setting::threads:
+            return "threads";
     }
     return "";
 }

@@ -21,6 +21,7 @@ enum class Setting {
     message_log,
     physics_engine,
     speed_up,
+    threads,
 };
 
 /// Values of an entry of `objects`.

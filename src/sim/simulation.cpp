@@ -33,8 +33,18 @@ std::uint32_t seed_of(Scenario const& scenario) {
 std::uint32_t thread_count(Scenario const& scenario, World const& world) {
     constexpr std::size_t kObjectsPerThread = 2000;
     std::size_t const processors = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
-    std::size_t const worthwhile = std::clamp<std::size_t>(world.objects.size() / kObjectsPerThread, 1, processors);
-    return scenario.threads ? static_cast<std::uint32_t>(*scenario.threads) : static_cast<std::uint32_t>(worthwhile);
+    if (!scenario.threads) {
+        return static_cast<std::uint32_t>(
+            std::clamp<std::size_t>(world.objects.size() / kObjectsPerThread, 1, processors));
+    }
+    auto const threads = static_cast<std::uint32_t>(*scenario.threads);
+    if (threads > processors) {
+        log().warn(
+            "{}: {} threads wait for each other on {} processor{}, which makes the run slower; 'auto' takes as many as "
+            "are of use",
+            place_of(scenario, Setting::threads), threads, processors, processors == 1 ? "" : "s");
+    }
+    return threads;
 }
 
 std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world, WorkerPool& workers) {
