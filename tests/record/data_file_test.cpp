@@ -188,8 +188,13 @@ TEST_F(DataFileContent, RowsAddedTogetherAreThoseAddedOneByOne) {
         rows.push_back(robot_row(i, 1.0));
         rows.back().category = i % 3 == 0 ? "robots" : "walls";
         rows.back().ticks = i % 4 == 0 ? std::nullopt : rows.back().ticks;
-        cells.insert(cells.end(), {std::int64_t{i}, std::int64_t{2}, std::int64_t{3}, std::int64_t{4}, 0.5 * i,
-                                   std::to_string(i), i % 2 == 0, 1.5});
+        for (std::int64_t const number : {std::int64_t{i}, std::int64_t{2}, std::int64_t{3}, std::int64_t{4}}) {
+            cells.emplace_back(number);
+        }
+        cells.emplace_back(0.5 * i);
+        cells.emplace_back(std::to_string(i));
+        cells.emplace_back(i % 2 == 0);
+        cells.emplace_back(1.5);
         cells[cells.size() - 1 - static_cast<std::size_t>(i) % columns] = {};  // null
     }
     auto const write = [&](std::string const& name, auto const& append) {
