@@ -3,6 +3,8 @@
 #include <concepts>
 #include <cstring>
 #include <limits>
+#include <mutex>
+#include <span>
 #include <string>
 
 #include "robot/context.hpp"
@@ -70,7 +72,24 @@ bool is_in_program(void const* variable) {
     });
 }
 
+/// Where parts of the swarm run on several threads, a variable of all robots has had its value before the first step:
+/// setting it again, to the default in between, would be seen by others.
+bool is_set_for_all(void const* variable) {
+    std::span const globals =
+        std::span(context.services->program_memory).first(context.services->program_memory.size() - 1);
+    return context.outbox != nullptr && std::ranges::any_of(globals, [variable](auto const& memory) {
+               return variable >= memory.data() && variable < memory.data() + memory.size();
+           });
+}
+
 void bind(BoundVariable const& bound) {
+    // A program that has no such memory crashes here, without the lock.
+    auto* const bytes = static_cast<unsigned char volatile*>(bound.variable);
+    if (bound.bytes > 0) {
+        bytes[0] = bytes[0];
+        bytes[bound.bytes - 1] = bytes[bound.bytes - 1];
+    }
+    std::lock_guard const lock(context.services->parameters_mutex);
     bound.read(*context.services->parameters, bound.name, bound.variable, bound.size);
     auto& all = context.services->bound_variables;
     auto const is_same = [&](BoundVariable const& known) {
@@ -85,9 +104,12 @@ template <class T>
 void read_value(char const* function, decltype(BoundVariable::read) read, T* variable, char const* name,
                 T default_value) {
     check_call(function, variable, name);
+    if (is_set_for_all(variable)) {
+        return;
+    }
     without_exceptions([&] {
         *variable = default_value;
-        bind({.name = name, .read = read, .variable = variable});
+        bind({.name = name, .read = read, .variable = variable, .bytes = sizeof(T)});
     });
 }
 
@@ -95,7 +117,11 @@ template <class T>
 void read_several(char const* function, decltype(BoundVariable::read) read, T* array, char const* name,
                   std::size_t size) {
     check_call(function, array, name);
-    without_exceptions([&] { bind({.name = name, .read = read, .variable = array, .size = size}); });
+    if (is_set_for_all(array)) {
+        return;
+    }
+    without_exceptions(
+        [&] { bind({.name = name, .read = read, .variable = array, .size = size, .bytes = size * sizeof(T)}); });
 }
 
 }  // namespace
@@ -144,11 +170,17 @@ void refuse_parameter(char const* name, char const* expected) {
     require_robot(__func__);
     require_argument(name, __func__, "the name");
     require_argument(expected, __func__, "the text of what was expected");
-    without_exceptions([&] { context.services->parameters->refuse(name, expected); });
+    without_exceptions([&] {
+        std::lock_guard const lock(context.services->parameters_mutex);
+        context.services->parameters->refuse(name, expected);
+    });
 }
 
 void check_parameter_range(char const* name, double value, double min, double max) {
     require_robot(__func__);
     require_argument(name, __func__, "the name");
-    without_exceptions([&] { context.services->parameters->check_range(name, value, min, max); });
+    without_exceptions([&] {
+        std::lock_guard const lock(context.services->parameters_mutex);
+        context.services->parameters->check_range(name, value, min, max);
+    });
 }

@@ -47,11 +47,10 @@ std::string with_robot_longs(std::string_view format) {
 void print_line(std::string_view line) {
     if (context.is_system) {
         pogosim::robot_log().info("[SYSTEM] [PRINTF] {}", line);
+    } else if (context.outbox != nullptr) {
+        context.outbox->said.push_back({.robot = context.robot, .format = {}, .text = std::string(line)});
     } else {
-        pogosim::robot_log().info("[ROBOT #{}] [PRINTF] {}", pogobot_helper_getid(), line);
-        if (context.services->printed_lines != nullptr) {
-            context.services->printed_lines->add(context.robot, line);
-        }
+        context.services->print_line(*context.world, context.robot, line);
     }
 }
 

@@ -181,5 +181,7 @@ uint32_t get_nb_robots() {
 }
 void stop_simulation() {
     require_robot(__func__);
-    context.services->stop_requested = true;
+    bool& stop_requested =
+        context.outbox != nullptr ? context.outbox->stop_requested : context.services->stop_requested;
+    stop_requested = true;
 }

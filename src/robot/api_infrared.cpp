@@ -45,7 +45,7 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
         return kSent;
     }
     ++context.controller->messages_sent;
-    pogosim::TransmissionQueue& air = context.world->air;
+    pogosim::TransmissionQueue& air = pogosim::current_air();
     air.transmissions.push_back({.robot = context.robot,
                                  .emitters = emitters,
                                  .message_bytes = static_cast<std::uint16_t>(header_bytes + header.payload_length),

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 
 #include "robot/controller.hpp"
 #include "robot/data_export.hpp"
+#include "robot/outbox.hpp"
 #include "robot/phase.hpp"
 #include "robot/printed_lines.hpp"
 #include "world/data_table.hpp"
@@ -27,7 +29,8 @@ struct BoundVariable {
     std::string name;  // of the parameter
     void (*read)(ParameterSource& source, std::string const& name, void* variable, std::size_t size) = nullptr;
     void* variable = nullptr;
-    std::size_t size = 1;  // of an array, or a text with its end
+    std::size_t size = 1;   // of an array, or a text with its end
+    std::size_t bytes = 0;  // of all
 };
 
 class Controllers;
@@ -51,7 +54,8 @@ struct WorldAccess {
 /// What user code can access besides its own robot.
 struct RunServices {
     ParameterSource* parameters = nullptr;
-    std::uint32_t seed = 0;  // of the run
+    std::mutex parameters_mutex{};  // of parameters and bound_variables, for robots on several threads
+    std::uint32_t seed = 0;         // of the run
     DataExport data;
     std::vector<std::span<std::byte>> program_memory{};  // its variables, and user data
     std::vector<BoundVariable> bound_variables{};
@@ -66,14 +70,21 @@ struct RunServices {
     template <class... Args>
     void warn_once(fmt::format_string<Args...> format, Args&&... args) {
         fmt::string_view const text = format;
-        if (is_first({text.data(), text.size()})) {
-            warn_of_robot(fmt::format(format, std::forward<Args>(args)...));
+        std::string_view const name{text.data(), text.size()};
+        if (is_new(name)) {
+            warn_of_robot(name, fmt::format(format, std::forward<Args>(args)...));
         }
     }
 
+    /// A line that a robot has printed.
+    void print_line(World const& world, std::uint32_t robot, std::string_view line);
+
+    /// A warning that names a robot, if it is the first one of this format.
+    void warn_first(std::string_view format, std::string const& text);
+
 private:
-    bool is_first(std::string_view format);
-    static void warn_of_robot(std::string const& text);
+    bool is_new(std::string_view format) const;
+    void warn_of_robot(std::string_view format, std::string const& text);
 };
 
 struct Context {
@@ -83,6 +94,7 @@ struct Context {
     std::uint32_t robot = kNone;       // index in World::robots; kNone in the context of callback_global_step
     Phase phase = Phase::none;
     std::string* printed = nullptr;  // what was printed here since the last line end
+    Outbox* outbox = nullptr;        // of the part of the swarm to which the robot belongs; null: all robots run here
     bool is_system = false;          // a callback of the whole run: global setup, data schema, global step
     bool sees_world = false;         // one of these or a click, in which the functions of world.h may be called
 
@@ -95,6 +107,19 @@ struct Context {
 
 /// The context of this thread.
 extern constinit thread_local Context context;
+
+/// Where the running robot's messages go.
+inline TransmissionQueue& current_air() {
+    return context.outbox != nullptr ? context.outbox->air : context.world->air;
+}
+
+/// The robot that runs in a thread, or ran last, to be named in another one.
+struct RunningRobot {
+    Context its_context;
+    std::uint32_t ticks = 0;
+};
+RunningRobot running_robot();
+void set_running_robot(RunningRobot const& robot);
 
 /// "user_step of robot #3 of category 'robots', tick 17": the user code that is running, or ran last.
 std::string current_place();

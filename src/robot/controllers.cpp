@@ -204,6 +204,7 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
                .robot = robot,
                .phase = phase,
                .printed = &self.printed,
+               .outbox = context.outbox,
                .is_system = robot == kNone};
     mydata = self.user_data;
     self.clock_reads = 0;
@@ -326,6 +327,12 @@ void Controllers::declare_columns() {
 }
 
 void Controllers::run_step() {
+    begin_step();
+    run_robots(0, static_cast<std::uint32_t>(controllers_.size()));
+    assert_controllers(world_, controllers_);
+}
+
+void Controllers::begin_step() {
     std::int64_t const now_us = this->now_us();
     if (callback_global_step != nullptr && now_us >= system_.clock_us) {
         enter(kNone, Phase::global_step);
@@ -335,8 +342,11 @@ void Controllers::run_step() {
         without_exceptions([this] { services_.access.settle_light(); });
     }
     hold_suspended();
-    auto const count = static_cast<std::uint32_t>(controllers_.size());
-    for (std::uint32_t i = 0; i < count; ++i) {
+}
+
+void Controllers::run_robots(std::uint32_t first, std::uint32_t last) {
+    std::int64_t const now_us = this->now_us();
+    for (std::uint32_t i = first; i < last; ++i) {
         if (now_us < controllers_[i].clock_us) {
             continue;
         }
@@ -345,7 +355,32 @@ void Controllers::run_step() {
         }
         tick(i);
     }
-    assert_controllers(world_, controllers_);
+}
+
+void Controllers::take_over(Outbox& outbox) {
+    TransmissionQueue& air = world_.air;
+    std::size_t const offset = air.payloads.size();
+    for (Transmission& transmission : outbox.air.transmissions) {
+        transmission.payload_offset += offset;
+    }
+    air.transmissions.insert(air.transmissions.end(), outbox.air.transmissions.begin(), outbox.air.transmissions.end());
+    air.payloads.insert(air.payloads.end(), outbox.air.payloads.begin(), outbox.air.payloads.end());
+    for (Outbox::Said const& said : outbox.said) {
+        if (said.format.empty()) {
+            services_.print_line(world_, said.robot, said.text);
+        } else {
+            services_.warn_first(said.format, said.text);
+        }
+    }
+    services_.stop_requested = services_.stop_requested || outbox.stop_requested;
+}
+
+std::string Controllers::why_one_after_the_other() const {
+    return pogosim::why_one_after_the_other(image_, services_.bound_variables);
+}
+
+ConfiguredVariables Controllers::configured_variables() const {
+    return {image_, services_.bound_variables};
 }
 
 std::int64_t Controllers::now_us() const {

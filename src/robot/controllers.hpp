@@ -12,6 +12,7 @@
 #include "robot/context.hpp"
 #include "robot/fenced_memory.hpp"
 #include "robot/program_image.hpp"
+#include "robot/shared_state.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -44,8 +45,22 @@ public:
     /// callback_create_data_schema: fills the services' columns.
     void declare_columns();
 
-    /// One step: the global step, then every robot that is due.
+    /// One step: begin_step(), then run_robots() of all.
     void run_step();
+
+    /// What comes before the robots: the global step.
+    void begin_step();
+
+    /// The robots from `first` to `last` - 1 that are due. Those that share nothing may run on several threads at a
+    /// time, each with an outbox of its own (Context::outbox).
+    void run_robots(std::uint32_t first, std::uint32_t last);
+
+    /// Puts messages on the air, lines and warnings into the log. What is in the outbox is lost.
+    void take_over(Outbox& outbox);
+
+    /// Why run_robots() must not run on several threads, see why_one_after_the_other(); empty: it may.
+    std::string why_one_after_the_other() const;
+    ConfiguredVariables configured_variables() const;
 
     /// callback_export_data of one robot, index `object` in World::objects, fills `cells`: one for each of the user's
     /// columns, empty before. False: the program wants no row.

@@ -60,7 +60,11 @@ struct RunGuard {
     RunGuard(void const* code, double timeout_s);
 
     pthread_t thread{};  // that works for the run: the only one that may jump
-    int depth = 0;       // of GuardedThread
+    // Of more threads that run user code at the same time, see HelperGuard.
+    RunGuard* helped = nullptr;                // the guard of their run; null: this is one
+    std::atomic<RunGuard*> helpers = nullptr;  // the first of them
+    RunGuard* next_helper = nullptr;
+    int depth = 0;  // of GuardedThread
     void const* program_base = nullptr;
     sigjmp_buf return_point{};
     std::atomic<bool> inside = false;

@@ -26,8 +26,11 @@ Words& last_words() {
 }
 
 DataFileNote const& data_file_note() {
-    RunGuard const* const run = active_guard != nullptr ? active_guard : process_run.load();
-    return run != nullptr ? run->data_file : kept_data_file;
+    RunGuard const* run = active_guard != nullptr ? active_guard : process_run.load();
+    if (run == nullptr) {
+        return kept_data_file;
+    }
+    return run->helped != nullptr ? run->helped->data_file : run->data_file;
 }
 
 void append_data_file(Words& words) {

@@ -24,6 +24,7 @@
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "pogosim/version.h"
+#include "robot/elf_bytes.hpp"
 
 namespace pogosim {
 
@@ -53,19 +54,13 @@ std::vector<char> content_of(std::filesystem::path const& file) {
     return {std::istreambuf_iterator<char>(input), {}};
 }
 
-template <class T>
-T* at(std::vector<char>& bytes, std::size_t offset, std::size_t count = 1) {
-    bool const inside = offset <= bytes.size() && count <= (bytes.size() - offset) / sizeof(T);
-    return inside ? reinterpret_cast<T*>(bytes.data() + offset) : nullptr;
-}
-
 /// What keeps a file from being loaded; empty: nothing.
-std::string problem_of(std::vector<char>& bytes) {
-    auto const* const header = at<Elf64_Ehdr>(bytes, 0);
+std::string problem_of(std::vector<char> const& bytes) {
+    auto const* const header = elf_at<Elf64_Ehdr>(bytes, 0);
     if (header == nullptr || std::memcmp(header->e_ident, ELFMAG, SELFMAG) != 0) {
         return "is no shared object: make one with 'make sim', or with 'cc -shared -fPIC'";
     }
-    auto const* const segments = at<Elf64_Phdr>(bytes, header->e_phoff, header->e_phnum);
+    auto const* const segments = elf_at<Elf64_Phdr>(bytes, header->e_phoff, header->e_phnum);
     bool const has_interpreter =
         segments != nullptr && std::any_of(segments, segments + header->e_phnum,
                                            [](Elf64_Phdr const& segment) { return segment.p_type == PT_INTERP; });
@@ -78,15 +73,18 @@ std::string problem_of(std::vector<char>& bytes) {
 /// Variables of inline functions and templates in C++ are unique in a process, whatever copy of the program they are in
 /// (STB_GNU_UNIQUE). Here, each copy has its own.
 void let_each_copy_have_its_variables(std::vector<char>& bytes) {
-    auto const* const header = at<Elf64_Ehdr>(bytes, 0);
-    auto const* const sections = at<Elf64_Shdr>(bytes, header->e_shoff, header->e_shnum);
+    auto const* const header = elf_at<Elf64_Ehdr>(bytes, 0);
+    auto const* const sections = elf_at<Elf64_Shdr>(bytes, header->e_shoff, header->e_shnum);
     for (int i = 0; sections != nullptr && i < header->e_shnum; ++i) {
         if (sections[i].sh_type != SHT_DYNSYM) {
             continue;
         }
         std::size_t const count = sections[i].sh_size / sizeof(Elf64_Sym);
-        auto* const symbols = at<Elf64_Sym>(bytes, sections[i].sh_offset, count);
-        for (std::size_t k = 0; symbols != nullptr && k < count; ++k) {
+        if (elf_at<Elf64_Sym>(bytes, sections[i].sh_offset, count) == nullptr) {
+            continue;
+        }
+        auto* const symbols = reinterpret_cast<Elf64_Sym*>(bytes.data() + sections[i].sh_offset);
+        for (std::size_t k = 0; k < count; ++k) {
             unsigned char& info = symbols[k].st_info;
             if (ELF64_ST_BIND(info) == STB_GNU_UNIQUE) {
                 info = ELF64_ST_INFO(STB_GLOBAL, ELF64_ST_TYPE(info));
@@ -137,6 +135,7 @@ private:
 /// What looks for the object that a place in memory belongs to.
 struct Search {
     std::uintptr_t place;
+    std::uintptr_t load_address = 0;
     std::vector<std::span<std::byte>> writable{};
 };
 
@@ -150,6 +149,7 @@ int look_at_object(dl_phdr_info* object, std::size_t /*bytes*/, void* of_search)
     if (!contains_place) {
         return 0;
     }
+    search.load_address = object->dlpi_addr;
     for (auto const& segment : segments) {
         if (segment.p_type == PT_LOAD && (segment.p_flags & PF_W) != 0) {
             // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
@@ -160,13 +160,20 @@ int look_at_object(dl_phdr_info* object, std::size_t /*bytes*/, void* of_search)
     return 1;
 }
 
-std::vector<std::span<std::byte>> variables_around(void const* place) {
+/// Looks for the object around a place.
+void find_memory(ProgramImage& image, void const* place) {
     Search search{.place = reinterpret_cast<std::uintptr_t>(place)};
     dl_iterate_phdr(look_at_object, &search);
-    return search.writable;
+    image.variables = std::move(search.writable);
+    image.load_address = search.load_address;
 }
 
-std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
+struct Copy {
+    std::shared_ptr<void> library;
+    std::shared_ptr<ProgramSymbols const> symbols;
+};
+
+Copy load_copy(std::filesystem::path const& file) {
     std::vector<char> bytes = content_of(file);
     if (std::string const problem = problem_of(bytes); !problem.empty()) {
         fail(file, problem);
@@ -182,16 +189,22 @@ std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
         }
         fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
     }
-    return {handle, [](void* library) { dlclose(library); }};
+    return {.library = {handle, [](void* library) { dlclose(library); }},
+            .symbols = std::make_shared<ProgramSymbols const>(symbols_of(bytes))};
 }
 
 #else
 
-std::vector<std::span<std::byte>> variables_around(void const* /*place*/) {
-    return {};  // parameters cannot be set during a run
+void find_memory(ProgramImage& /*image*/, void const* /*place*/) {
+    // Parameters cannot be set during a run.
 }
 
-std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
+struct Copy {
+    std::shared_ptr<void> library;
+    std::shared_ptr<ProgramSymbols const> symbols = std::make_shared<ProgramSymbols const>();
+};
+
+Copy load_copy(std::filesystem::path const& file) {
     static std::atomic<unsigned> copies = 0;
     std::error_code error;
     std::filesystem::path const copy =
@@ -205,7 +218,7 @@ std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
     if (handle == nullptr) {
         fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
     }
-    return {handle, [](void* library) { dlclose(library); }};
+    return {.library = {handle, [](void* library) { dlclose(library); }}};
 }
 
 #endif
@@ -213,15 +226,26 @@ std::shared_ptr<void> load_copy(std::filesystem::path const& file) {
 }  // namespace
 
 ProgramImage linked_program(pogosim_program const& program, std::string name) {
-    return {.name = std::move(name),
-            .variables = variables_around(&program),
-            .main = program.main,
-            .user_data_bytes = *program.user_data_bytes,
-            .construct_user_data = *program.construct_user_data};
+    ProgramImage image;
+    image.name = std::move(name);
+    find_memory(image, &program);
+    image.main = program.main;
+    image.user_data_bytes = *program.user_data_bytes;
+    image.construct_user_data = *program.construct_user_data;
+    return image;
+}
+
+ProgramSymbols ProgramImage::symbols() const {
+    if (loaded_symbols) {
+        return *loaded_symbols;
+    }
+    std::ifstream executable("/proc/self/exe", std::ios::binary);
+    std::vector<char> const bytes{std::istreambuf_iterator<char>(executable), {}};
+    return symbols_of(bytes);
 }
 
 ProgramImage load_program(std::filesystem::path const& file) {
-    std::shared_ptr<void> library = load_copy(file);
+    auto const [library, symbols] = load_copy(file);
     auto const* const program = static_cast<pogosim_program const*>(dlsym(library.get(), "pogosim_this_program"));
     if (program == nullptr) {
         fail(file, "is no program for Pogosim: link it as 'pkg-config --libs pogosim' says");
@@ -235,7 +259,8 @@ ProgramImage load_program(std::filesystem::path const& file) {
                                version_text(POGOSIM_VERSION_COMPILED)));
     }
     ProgramImage image = linked_program(*program, file.string());
-    image.loaded = std::move(library);
+    image.loaded = library;
+    image.loaded_symbols = symbols;
     return image;
 }
 

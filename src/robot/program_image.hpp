@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "pogosim/program.h"
+#include "robot/program_symbols.hpp"
 
 namespace pogosim {
 
@@ -17,8 +19,13 @@ struct ProgramImage {
     std::vector<std::span<std::byte>> variables{};  // memory that it can write: its .data and .bss
     int (*main)() = nullptr;
     std::size_t user_data_bytes = 0;
-    void (*construct_user_data)(void*) = nullptr;  // null in C
-    std::shared_ptr<void> loaded{};                // keeps a loaded program in memory; null: it is linked in
+    void (*construct_user_data)(void*) = nullptr;            // null in C
+    std::shared_ptr<void> loaded{};                          // keeps a loaded program in memory; null: it is linked in
+    std::uintptr_t load_address = 0;                         // of what its file says
+    std::shared_ptr<ProgramSymbols const> loaded_symbols{};  // of a loaded program
+
+    /// What its file says.
+    ProgramSymbols symbols() const;
 };
 
 /// A program that is a part of this executable.

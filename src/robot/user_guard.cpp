@@ -68,6 +68,9 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
         return;
     }
     CrashText const what = crash_name(signal, *info, signal_context);
+    if (guard != nullptr && guard->helped != nullptr && !guard->inside) {
+        end_run_from_background_thread(*guard->helped, what.c_str());
+    }
     if (is_others) {
         if (background_activity() != nullptr) {
             end_run_from_background_thread(*process_run, what.c_str());
@@ -186,6 +189,52 @@ GuardedThread::~GuardedThread() {
     active_guard = before_;
 }
 
+HelperGuard::HelperGuard(UserGuard& run) : run_(*run.state_), guard_(run_.program_base, run_.busy.timeout_s) {
+    RunGuard& self = *guard_.state_;
+    self.helped = &run_;
+    self.next_helper = run_.helpers;
+    run_.helpers = &self;
+}
+
+HelperGuard::~HelperGuard() {
+    RunGuard& self = *guard_.state_;
+    if (run_.helpers == &self) {
+        run_.helpers = self.next_helper;
+    } else {
+        RunGuard* before = run_.helpers;
+        while (before->next_helper != &self) {
+            before = before->next_helper;
+        }
+        before->next_helper = self.next_helper;
+    }
+    stop_watch(self);
+    if (is_entered_) {
+        caught_signals.need_no_more();
+    }
+}
+
+void HelperGuard::enter() {
+    if (is_entered_) {
+        return;
+    }
+    is_entered_ = true;
+    static thread_local SignalStackScope const stack;  // as long as the thread
+    RunGuard& self = *guard_.state_;
+    self.thread = pthread_self();
+    active_guard = &self;
+    caught_signals.need();
+    start_watch(self);
+    sigset_t watch;
+    sigemptyset(&watch);
+    sigaddset(&watch, SIGALRM);
+    sigaddset(&watch, SIGPROF);
+    pthread_sigmask(SIG_UNBLOCK, &watch, nullptr);
+}
+
+void begin_rescue_of_run(UserFailure const& failure) {
+    begin_rescue(*active_guard, failure.what.c_str(), failure.code, failure.in_other_thread);
+}
+
 ProcessRun::ProcessRun(UserGuard& guard) {
     enter_stage(RunStage::running);
     guard.state_->thread = pthread_self();
@@ -214,7 +263,9 @@ void begin_rescue(RunGuard& guard, char const* what, ExitCode code, bool in_othe
     guard.code = code;
     guard.in_other_thread = in_other_thread;
     guard.left_by_force = true;
-    watch_rescue(guard);
+    if (guard.helped == nullptr) {
+        watch_rescue(guard);
+    }
     prepare_last_words(what, in_other_thread);
 }
 

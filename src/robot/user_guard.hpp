@@ -59,6 +59,7 @@ public:
 
 private:
     friend class GuardedThread;
+    friend class HelperGuard;
     friend class ProcessRun;
     struct Destroy {
         void operator()(RunGuard* state) const;
@@ -66,6 +67,28 @@ private:
 
     FencedMemory memory_;  // of the state: a program that writes over the heap does not reach it
     std::unique_ptr<RunGuard, Destroy> state_;
+};
+
+/// The fence of a worker that runs user code for a run while its own thread does: crashes and endless loops in that code
+/// end the call in this thread, and what asks the run to end asks this thread, too.
+class HelperGuard {
+public:
+    explicit HelperGuard(UserGuard& run);
+    /// Its thread has ended, or does nothing any more.
+    ~HelperGuard();
+    HelperGuard(HelperGuard const&) = delete;
+    HelperGuard& operator=(HelperGuard const&) = delete;
+
+    /// The calling thread, always the same background thread, may use call_user_code() from now on.
+    void enter();
+
+    /// True if user code was aborted here, see begin_rescue_of_run().
+    bool was_left_by_force() const { return guard_.was_left_by_force(); }
+
+private:
+    RunGuard& run_;
+    UserGuard guard_;
+    bool is_entered_ = false;
 };
 
 /// As long as this lives, the thread works for a run: crashes in it, and what is below, are that run's, and signal
@@ -102,6 +125,9 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body);
 /// Runs the simulator's own code, whose memory user code may have corrupted. A crash in it, outside call_user_code, is
 /// returned as a failure, once: the caller then saves as much as possible and ends the program.
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body);
+
+/// User code has failed in a helper's thread and was aborted there: this thread, that of the run, saves what there is.
+void begin_rescue_of_run(UserFailure const& failure);
 
 /// A new call of user code begins: the watch starts again from zero.
 void restart_watch();

@@ -88,11 +88,28 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
     jump_out(guard, ExitCode::user_program);
 }
 
+/// From another thread.
+void hurry_thread(RunGuard& guard, char const* request_name) {
+    if (guard.is_watching) {
+        guard.hurry_request = request_name;
+        pthread_kill(guard.thread, SIGALRM);
+    }
+}
+
+bool has_busy_helper(RunGuard const& guard) {
+    RunGuard const* helper = guard.helpers;
+    while (helper != nullptr && !helper->inside) {
+        helper = helper->next_helper;
+    }
+    return helper != nullptr;
+}
+
 /// Tells the waiting user what is going on, once.
 void tell_what_is_waited_for(RunGuard& guard) {
     WallClockWatch& waiting = guard.waiting;
     ProcessorWatch const& busy = guard.busy;
-    if (waiting.told) {
+    bool const is_others_to_tell = !guard.inside && (guard.helped != nullptr || has_busy_helper(guard));
+    if (waiting.told || is_others_to_tell) {
         return;
     }
     waiting.told = true;
@@ -265,16 +282,19 @@ void hurry_user_code(RunGuard& guard, char const* request_name) {
         tell_what_is_waited_for(guard);
     }
     guard.wall_timer.arm(kLookPeriodS);
-}
-
-void UserGuard::hurry(char const* request_name) {
-    if (state_->is_watching) {
-        state_->hurry_request = request_name;
-        pthread_kill(state_->thread, SIGALRM);
+    for (RunGuard* helper = guard.helpers; helper != nullptr; helper = helper->next_helper) {
+        hurry_thread(*helper, request_name);
     }
 }
 
+void UserGuard::hurry(char const* request_name) {
+    hurry_thread(*state_, request_name);
+}
+
 void abandon_user_code(RunGuard& guard) {
+    for (RunGuard* helper = guard.helpers; helper != nullptr; helper = helper->next_helper) {
+        abandon_user_code(*helper);
+    }
     if (guard.inside) {
         SignalText<512> what;
         what << "interrupted again before it returned" << (is_at_robots_start() ? kMoveTheLoop : "");

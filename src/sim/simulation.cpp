@@ -279,6 +279,7 @@ std::optional<UserFailure> Simulation::start() {
     if (auto failure = call_user_code([this] { controllers_.start(); })) {
         return failure;
     }
+    share_steps();
     fit_time_step();
     check_motion(scenario_, physics_->motion_limits(), world_.time_step_s);
     if (auto failure = recorder_.open()) {
@@ -291,12 +292,28 @@ std::optional<UserFailure> Simulation::start() {
     return failure;
 }
 
+void Simulation::share_steps() {
+    if (workers_.size() == 1) {
+        return;
+    }
+    if (std::string const reason = controllers_.why_one_after_the_other(); !reason.empty()) {
+        log().info("threads: {}; robots take their steps one after the other: {}", workers_.size(), reason);
+        return;
+    }
+    log().info("threads: {}; robots take their steps on all of them", workers_.size());
+    shared_steps_.emplace(controllers_, guard_, workers_.size());
+}
+
+std::optional<UserFailure> Simulation::run_robots() {
+    return shared_steps_ ? shared_steps_->run_step(workers_) : call_user_code([this] { controllers_.run_step(); });
+}
+
 std::optional<UserFailure> Simulation::step() {
     Thread const thread(*this);
     stages_.begin_step();
     lighting_.update(world_);
     stages_.end(Stage::light);
-    if (auto failure = call_user_code([this] { controllers_.run_step(); })) {
+    if (auto failure = run_robots()) {
         return failure;
     }
     stages_.end(Stage::robots);

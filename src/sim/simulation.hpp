@@ -17,6 +17,7 @@
 #include "physics/physics_engine.hpp"
 #include "robot/controllers.hpp"
 #include "robot/program_image.hpp"
+#include "robot/shared_steps.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/inspector.hpp"
 #include "sim/pictures.hpp"
@@ -171,6 +172,8 @@ private:
     };
 
     std::optional<UserFailure> run_steps();
+    void share_steps();
+    std::optional<UserFailure> run_robots();
     void fit_time_step();
     void open_window();
     FreePlaces const& free_places();
@@ -187,6 +190,7 @@ private:
     Controllers controllers_;
     Lighting lighting_;
     IrChannel channel_;
+    std::optional<SharedSteps> shared_steps_;  // when robots may run on several threads
     WorkerPool workers_;
     std::unique_ptr<PhysicsEngine> physics_;
     SavedColumns saved_columns_;

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import re
+import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+import pogosim
 import pytest
-from running import Run, example, run
+from running import PROGRAMS, ROOT, Run, compile_program, example, run, start, write_scene
 
 Compile = Callable[[str], Path]
+
+SWARM: dict[str, object] = {
+    "objects.robots.nb": 600,
+    "arena_surface": 6e6,
+    "simulation_time": 1.0,
+    "user_code_timeout": 0.25,
+}
 
 SWARMS: dict[str, dict[str, object]] = {
     "run_and_tumble": {"physics_engine": "disk"},
@@ -18,6 +29,11 @@ SWARMS: dict[str, dict[str, object]] = {
     "push_sum": {"message_log": "messages.feather"},
     "phototaxis": {"boundary_condition": "periodic"},
 }
+
+
+def errors_of(result: Run) -> list[str]:
+    """All but what is said of machines with few processors."""
+    return [line for line in result.errors.splitlines() if "which makes the run slower" not in line]
 
 
 def run_with(threads: object, name: str, folder: Path) -> Run:
@@ -49,7 +65,163 @@ def test_crash_of_a_worker_ends_the_run_soon_with_its_data(program: Compile, tmp
     )
     assert time.monotonic() - began_s < 20.0
     assert result.code == 3
-    (line,) = result.errors.splitlines()
+    (line,) = errors_of(result)
     assert "the simulator crashed while it was working on a step (segmentation fault" in line
     assert line.endswith("The data file 'data.feather' contains all rows up to that point")
     assert 0.4 < float(result.frame()["time"].max()) < 1.5
+
+
+def what_is_said(text: str) -> list[str]:
+    """Lines of the log without their dates, and what is about the number of threads."""
+    lines = [re.sub(r"^\[[-\d :.]*\] ", "", line) for line in text.splitlines()]
+    return [line for line in lines if "threads: " not in line]
+
+
+def run_robots(program: Path, folder: Path, threads: int, kind: str, **parameters: object) -> Run:
+    settings = {**SWARM, "threads": threads, "parameters": {"kind": kind, "every": 100, "limit": 5, **parameters}}
+    return run(program, folder / str(threads), settings)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "nothing",
+        "stop_simulation",
+        "take_a_message_that_is_not_there",
+        "read_a_parameter_again",
+        "write_to_null",
+        "divide_by_zero",
+        "abort",
+        "exit_with_7",
+        "set_unknown_column",
+    ],
+)
+def test_robots_on_several_threads_do_say_and_fail_as_on_one(program: Compile, tmp_path: Path, kind: str) -> None:
+    expected = run_robots(program("many_threads.c"), tmp_path, 1, kind)
+    assert len(expected.robot_lines) > 50
+    for threads in (2, 3, 8):
+        result = run_robots(program("many_threads.c"), tmp_path, threads, kind)
+        assert f"threads: {threads}; robots take their steps on all of them" in result.output
+        assert result.code == expected.code
+        assert what_is_said(result.errors) == what_is_said(expected.errors)
+        data = [(one.folder / "data.feather").read_bytes() for one in (result, expected)]
+        assert data[0] == data[1]
+        said = [[line for line in what_is_said(one.output) if "PRINTF" in line] for one in (result, expected)]
+        if kind in ("nothing", "stop_simulation", "take_a_message_that_is_not_there", "read_a_parameter_again"):
+            assert said[0] == said[1]
+        else:  # then come the unfinished lines of all robots, some of which were a tick further
+            assert said[0][:-600] == said[1][:-600]
+
+
+def test_first_robot_that_fails_is_named(program: Compile, tmp_path: Path) -> None:
+    result = run_robots(program("many_threads.c"), tmp_path, 4, "write_to_null")
+    assert result.code == 3
+    (line,) = errors_of(result)
+    assert "the user program failed in user_step of robot #100 of category 'robots', tick 10, t = 0.1600 s: " in line
+    assert "segmentation fault at address" in line
+    assert line.endswith("The data file 'data.feather' contains all rows up to that point")
+    assert {f"[ROBOT #{robot}]" for robot in (200, 300)}.isdisjoint(
+        line.split(" [PRINTF] ")[0] for line in result.robot_lines if "going to write" in line
+    )
+
+
+@pytest.mark.parametrize("every", [5, 555])  # on all threads, on one
+def test_robot_that_never_returns_ends_the_run(program: Compile, tmp_path: Path, every: int) -> None:
+    began_s = time.monotonic()
+    result = run_robots(program("many_threads.c"), tmp_path, 2, "loop_for_ever", every=every)
+    assert time.monotonic() - began_s < 20.0
+    assert result.code == 3
+    (line,) = errors_of(result)
+    assert f"user_step of robot #{every} of" in line
+    assert "did not return within 0.25 s of processor time" in line
+    assert max(result.frame()["time"]) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("every", [5, 555])
+def test_second_interrupt_ends_robots_that_never_return(program: Compile, tmp_path: Path, every: int) -> None:
+    parameters = {"kind": "loop_for_ever", "every": every, "limit": 5}
+    settings = {**SWARM, "threads": 2, "user_code_timeout": 0, "parameters": parameters}
+    process = start(program("many_threads.c"), tmp_path, settings)
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    errors = process.communicate(timeout=30)[1]
+    assert process.returncode == 130
+    assert errors.count("stopping as soon as user_step of robot #") >= 1
+    assert f"the run was interrupted in user_step of robot #{every} of category 'robots'" in errors
+    assert "interrupted again before it returned" in errors
+
+
+def test_first_interrupt_ends_a_run_on_several_threads_after_its_step(program: Compile, tmp_path: Path) -> None:
+    settings = {**SWARM, "threads": 2, "simulation_time": 10000}
+    process = start(program("many_threads.c"), tmp_path, settings)
+    time.sleep(1.5)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=30)
+    assert process.returncode == 130
+
+
+def test_changed_parameter_that_all_robots_read_ends_the_run(program: Compile, tmp_path: Path) -> None:
+    assert run_robots(program("many_threads.c"), tmp_path, 1, "change_a_parameter").code == 0
+    result = run_robots(program("many_threads.c"), tmp_path, 2, "change_a_parameter")
+    assert result.code == 3
+    (line,) = errors_of(result)
+    assert "failed in user_step, tick " in line
+    assert "has changed the variable that is set from the parameter 'limit', which all robots share" in line
+
+
+REASONS = {
+    "static uint32_t steps; void user_step(void) { steps++; }": "all robots share the variable 'steps'",
+    "void user_step(void) { static int calls; calls++; }": "all robots share the variable 'calls.0'",
+    "static __thread int calls; void user_step(void) { calls++; }": "all robots share the variable 'calls'",
+    "POGO_SHARED uint32_t steps; void user_step(void) { steps++; }": "all robots share the variable 'steps'",
+    "void user_step(void) { fputs(\"a\", stderr); }": "the program uses '(stderr|fwrite|fputc|fputs)'",
+    'void user_step(void) { setenv("A", "B", 1); }': "the program uses 'setenv'",
+}
+
+
+@pytest.mark.parametrize("code", REASONS)
+def test_robots_that_share_something_take_their_steps_one_after_the_other(tmp_path: Path, code: str) -> None:
+    source = tmp_path / "shares.c"
+    source.write_text(
+        f"""#define _GNU_SOURCE
+#include "pogobase.h"
+typedef struct {{ int number; }} USERDATA;
+DECLARE_USERDATA(USERDATA)
+REGISTER_USERDATA(USERDATA)
+void user_init(void) {{}}
+{code}
+int main(void) {{ pogobot_init(); pogobot_start(user_init, user_step); return 0; }}
+"""
+    )
+    result = run(compile_program(tmp_path / "shares", source), tmp_path, {**SWARM, "threads": 2})
+    assert result.code == 0
+    (line,) = [line for line in result.output.splitlines() if "threads: 2" in line]
+    assert re.search(f"robots take their steps one after the other: {REASONS[code]}", line)
+
+
+def test_stripped_program_takes_its_steps_one_after_the_other(tmp_path: Path) -> None:
+    stripped = compile_program(tmp_path / "stripped", PROGRAMS / "many_threads.c", flags=("-s",))
+    result = run_robots(stripped, tmp_path, 2, "nothing")
+    assert "one after the other: the program has no symbol table" in result.output
+
+
+def test_runs_inside_python_have_threads_too(tmp_path: Path) -> None:
+    program = compile_program(tmp_path / "robots.so", PROGRAMS / "many_threads.c", flags=("-shared", "-fPIC"))
+    arena = {"arena_file": str(ROOT / "arenas" / "disk.csv"), "parameters": {"kind": "nothing", "every": 7, "limit": 5}}
+    hashes = []
+    for threads in (1, 2):
+        scene = write_scene(tmp_path, {**SWARM, **arena, "threads": threads})
+        with pogosim.Simulation(program, scene, seed=4) as simulation:
+            simulation.step(30)
+            simulation.parameters["limit"] = 8
+            simulation.step(30)
+            hashes.append(simulation.state_hash)
+    assert hashes[0] == hashes[1]
+    scene = write_scene(tmp_path, {**SWARM, **arena, "threads": 2, "parameters.kind": "write_to_null"})
+    with (
+        pogosim.Simulation(program, scene, seed=4) as simulation,
+        pytest.raises(pogosim.ProgramFailedError, match="user_step of robot #7 of"),
+    ):
+        simulation.step(60)

@@ -1,0 +1,32 @@
+// What the robots of a part of the swarm send and say while other threads run other parts. The parts are joined in the
+// order of the robots, so that nobody can tell how many there were.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "world/mailbox.hpp"
+
+namespace pogosim {
+
+struct Outbox {
+    struct Said {
+        std::uint32_t robot = 0;    // index in World::robots
+        std::string_view format{};  // of a warning, see RunServices::warn_once(); empty: a line that it has printed
+        std::string text{};
+    };
+
+    TransmissionQueue air;
+    std::vector<Said> said;
+    bool stop_requested = false;
+
+    void clear() {
+        air.clear();
+        said.clear();
+        stop_requested = false;
+    }
+};
+
+}  // namespace pogosim

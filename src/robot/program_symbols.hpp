@@ -1,0 +1,29 @@
+// What the file of a program says about its variables, and about the functions that it calls.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pogosim {
+
+struct ProgramSymbols {
+    /// One that the program may change.
+    struct Variable {
+        std::string name;
+        std::uintptr_t address = 0;  // from where the program is loaded
+        std::size_t bytes = 0;
+        bool is_of_thread = false;  // each thread has its own
+    };
+
+    bool are_known = false;  // false: it has no symbol table (strip, -s), or this system has other files
+    std::vector<Variable> variables{};
+    std::vector<std::string> imports{};  // names of functions and variables of libraries
+};
+
+/// `file`: the bytes of an executable or a shared object, which need not be well-formed.
+ProgramSymbols symbols_of(std::span<char const> file);
+
+}  // namespace pogosim

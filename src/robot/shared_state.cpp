@@ -1,0 +1,200 @@
+#include "robot/shared_state.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace pogosim {
+
+namespace {
+
+// Of the C and C++ libraries: what gives the same whoever calls it, in whatever order, and is safe on several threads.
+// Among those that are not here: strtok(), which remembers a text; fopen() and fprintf(), whose output would be in
+// another order.
+constexpr std::array kHarmless = std::to_array<std::string_view>({"_ITM_deregisterTMCloneTable",
+                                                                  "_ITM_registerTMCloneTable",
+                                                                  "_Unwind_Resume",
+                                                                  "_ZSt9terminatev",
+                                                                  "__assert_fail",
+                                                                  "__ctype_b_loc",
+                                                                  "__ctype_tolower_loc",
+                                                                  "__ctype_toupper_loc",
+                                                                  "__cxa_finalize",
+                                                                  "__errno_location",
+                                                                  "__gmon_start__",
+                                                                  "__gxx_personality_v0",
+                                                                  "__isoc99_sscanf",
+                                                                  "__libc_start_main",
+                                                                  "__stack_chk_fail",
+                                                                  "abort",
+                                                                  "abs",
+                                                                  "aligned_alloc",
+                                                                  "atof",
+                                                                  "atoi",
+                                                                  "atol",
+                                                                  "bsearch",
+                                                                  "calloc",
+                                                                  "div",
+                                                                  "free",
+                                                                  "isalnum",
+                                                                  "isalpha",
+                                                                  "isdigit",
+                                                                  "isspace",
+                                                                  "labs",
+                                                                  "ldiv",
+                                                                  "malloc",
+                                                                  "memchr",
+                                                                  "memcmp",
+                                                                  "memcpy",
+                                                                  "memmove",
+                                                                  "memset",
+                                                                  "qsort",
+                                                                  "realloc",
+                                                                  "snprintf",
+                                                                  "sprintf",
+                                                                  "sscanf",
+                                                                  "strcat",
+                                                                  "strchr",
+                                                                  "strcmp",
+                                                                  "strcpy",
+                                                                  "strlen",
+                                                                  "strncat",
+                                                                  "strncmp",
+                                                                  "strncpy",
+                                                                  "strnlen",
+                                                                  "strrchr",
+                                                                  "strstr",
+                                                                  "strtod",
+                                                                  "strtof",
+                                                                  "strtol",
+                                                                  "strtoul",
+                                                                  "tolower",
+                                                                  "toupper",
+                                                                  "vsnprintf",
+                                                                  "vsprintf"});
+static_assert(std::ranges::is_sorted(kHarmless));
+
+// Groups of functions: checked variants ("__memcpy_chk"), allocation, containers and texts in C++.
+constexpr std::array kHarmlessBeginnings = std::to_array<std::string_view>(
+    {"__cxa_", "_ZTI", "_ZTS", "_ZTVN10__cxxabiv1", "_Znw", "_Zna", "_Zdl", "_Zda", "_ZNSt7__cxx1112basic_string",
+     "_ZNKSt7__cxx1112basic_string", "_ZNSt8__detail15_List_node_base", "_ZNKSt8__detail20_Prime_rehash_policy",
+     "_ZSt18_Rb_tree", "_ZSt29_Rb_tree", "_ZSt28_Rb_tree"});
+
+// Of every program; nobody changes them after its start.
+constexpr std::array kOwnVariables = std::to_array<std::string_view>(
+    {"REGISTER_USERDATA_once", "UserdataConstruct", "UserdataSize", "_ZStL8__ioinit", "__dso_handle"});
+
+/// Where the object begins that a place in memory belongs to, and its file.
+struct LoadedObject {
+    void* begin = nullptr;
+    std::string_view file{};
+};
+
+LoadedObject object_of(void const* place) {
+    Dl_info info;
+    return place != nullptr && dladdr(place, &info) != 0 ? LoadedObject{info.dli_fbase, info.dli_fname}
+                                                         : LoadedObject{};
+}
+
+bool is_harmless_name(std::string_view name) {
+    auto const begins = [name](std::string_view beginning) { return name.starts_with(beginning); };
+    bool const is_checked_variant = name.starts_with("__") && name.ends_with("_chk");
+    if (is_checked_variant) {
+        name = name.substr(2, name.size() - 6);
+    }
+    bool const throws = name.starts_with("_ZSt") && name.find("__throw_") != std::string_view::npos;
+    return throws || std::ranges::binary_search(kHarmless, name) || std::ranges::any_of(kHarmlessBeginnings, begins);
+}
+
+/// The simulator's own functions know of threads; the mathematical ones keep nothing in mind.
+bool is_of_simulator_or_mathematical(std::string const& name) {
+    LoadedObject const simulator = object_of(reinterpret_cast<void const*>(&pogosim_rand));
+    static void* const library = dlopen(std::string(simulator.file).c_str(), RTLD_NOW | RTLD_NOLOAD);
+    LoadedObject const object = object_of(library != nullptr ? dlsym(library, name.c_str()) : nullptr);
+    return object.begin != nullptr &&
+           (object.begin == simulator.begin || object.file.find("/libm.so") != std::string_view::npos ||
+            object.file.find("/libm-") != std::string_view::npos);
+}
+
+bool is_own(std::string_view name) {
+    // completed.0: of the C compiler, set when the program ends.
+    return std::ranges::find(kOwnVariables, name) != kOwnVariables.end() || name.starts_with("completed.") ||
+           name.starts_with("pogo_user_data_");
+}
+
+std::byte* address_in(ProgramImage const& image, ProgramSymbols::Variable const& variable) {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+    return reinterpret_cast<std::byte*>(image.load_address + variable.address);
+}
+
+/// Each byte of it belongs to one that is set from the configuration.
+bool is_configured(std::byte const* begin, std::size_t bytes, std::span<BoundVariable const> bound) {
+    std::size_t covered = 0;
+    for (BoundVariable const& one : bound) {
+        auto const* const first = static_cast<std::byte const*>(one.variable);
+        if (first >= begin && first < begin + bytes) {
+            covered += one.bytes;
+        }
+    }
+    return covered >= bytes;
+}
+
+}  // namespace
+
+std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound) {
+    LoadedObject const simulator = object_of(reinterpret_cast<void const*>(&pogosim_rand));
+    if (object_of(reinterpret_cast<void const*>(image.main)).begin == simulator.begin) {
+        return "the program and the simulator are in one file";
+    }
+    ProgramSymbols const symbols = image.symbols();
+    if (!symbols.are_known) {
+        return "the program has no symbol table, which tells what robots share: link it without -s, and do not strip it";
+    }
+    for (ProgramSymbols::Variable const& variable : symbols.variables) {
+        if (!is_own(variable.name) &&
+            (variable.is_of_thread || !is_configured(address_in(image, variable), variable.bytes, bound))) {
+            return fmt::format("all robots share the variable '{}' (put it into USERDATA, or declare it const)",
+                               variable.name);
+        }
+    }
+    for (std::string const& name : symbols.imports) {
+        if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {
+            return fmt::format("the program uses '{}', which may keep something in mind from one robot to another",
+                               name);
+        }
+    }
+    return "";
+}
+
+ConfiguredVariables::ConfiguredVariables(ProgramImage const& image, std::span<BoundVariable const> bound) {
+    auto const is_global = [&image](void const* variable) {
+        return std::ranges::any_of(image.variables, [variable](auto const& memory) {
+            return variable >= memory.data() && variable < memory.data() + memory.size();
+        });
+    };
+    for (BoundVariable const& one : bound) {
+        if (is_global(one.variable)) {
+            variables_.push_back({.name = one.name,
+                                  .now = std::span(static_cast<std::byte const*>(one.variable), one.bytes),
+                                  .remembered = {}});
+        }
+    }
+}
+
+void ConfiguredVariables::remember() {
+    for (Variable& variable : variables_) {
+        variable.remembered.assign(variable.now.begin(), variable.now.end());
+    }
+}
+
+std::string ConfiguredVariables::changed() const {
+    auto const is_changed = [](Variable const& one) { return !std::ranges::equal(one.now, one.remembered); };
+    auto const found = std::ranges::find_if(variables_, is_changed);
+    return found != variables_.end() ? found->name : "";
+}
+
+}  // namespace pogosim

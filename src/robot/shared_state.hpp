@@ -1,0 +1,40 @@
+// Whether the robots of a program share something that they change: if not, several threads can run them at a time.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "robot/context.hpp"
+#include "robot/program_image.hpp"
+
+namespace pogosim {
+
+/// Why robots must take their steps one after the other; empty: they need not. They share nothing that they could
+/// change when all variables of the program are set from the configuration (and then stay as they are, see
+/// ConfiguredVariables), and it calls no function outside of the simulator but those that keep nothing in mind, such as
+/// sqrtf(). To be called after the program has read its configuration.
+std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound);
+
+/// Variables of the program that are set from the configuration. All robots read them.
+class ConfiguredVariables {
+public:
+    ConfiguredVariables(ProgramImage const& image, std::span<BoundVariable const> bound);
+
+    /// Before a step: parameters may have been set since the last one.
+    void remember();
+
+    /// The name of one that is not as it was remembered; empty: there is none.
+    std::string changed() const;
+
+private:
+    struct Variable {
+        std::string name;
+        std::span<std::byte const> now;
+        std::vector<std::byte> remembered;
+    };
+    std::vector<Variable> variables_;
+};
+
+}  // namespace pogosim

@@ -1,0 +1,86 @@
+#include "robot/shared_steps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::uint32_t kLeastRobots = 64;  // of a part that one worker takes
+
+}  // namespace
+
+SharedSteps::SharedSteps(Controllers& controllers, UserGuard& guard, std::uint32_t workers)
+    : controllers_(controllers), variables_(controllers.configured_variables()) {
+    for (std::uint32_t worker = 1; worker < workers; ++worker) {
+        guards_.push_back(std::make_unique<HelperGuard>(guard));
+    }
+}
+
+std::optional<UserFailure> SharedSteps::run_step(WorkerPool& workers) {
+    if (auto failure = call_user_code([this] { controllers_.begin_step(); })) {
+        return failure;
+    }
+    variables_.remember();
+    first_failed_ = kNone;
+    auto const count = static_cast<std::uint32_t>(controllers_.all().size());
+    parts_.resize(workers.range_count(count, kLeastRobots));
+    workers.run_ranges(count, kLeastRobots, [this](WorkRange range) { run_part(range); });
+    for (Part& part : parts_) {
+        if (auto failure = join(part)) {
+            return failure;
+        }
+    }
+    return look_at_variables();
+}
+
+void SharedSteps::run_part(WorkRange range) {
+    Part& part = parts_[range.part];
+    part.outbox.clear();
+    part.failure.reset();
+    if (range.part > first_failed_) {
+        return;  // the run ends before these robots
+    }
+    if (range.worker > 0) {
+        guards_[range.worker - 1]->enter();
+    }
+    context.outbox = &part.outbox;
+    part.failure = call_user_code([&] { controllers_.run_robots(range.first, range.last); });
+    context.outbox = nullptr;
+    if (part.failure) {
+        part.failed = running_robot();
+        std::uint32_t first = first_failed_;
+        while (range.part < first && !first_failed_.compare_exchange_weak(first, range.part)) {
+        }
+    }
+}
+
+/// After a failure, the other parts have not been.
+std::optional<UserFailure> SharedSteps::join(Part& part) {
+    controllers_.take_over(part.outbox);
+    if (!part.failure) {
+        return std::nullopt;
+    }
+    set_running_robot(part.failed);
+    if (std::ranges::any_of(guards_, [](auto const& guard) { return guard->was_left_by_force(); })) {
+        begin_rescue_of_run(*part.failure);
+    }
+    return part.failure;
+}
+
+std::optional<UserFailure> SharedSteps::look_at_variables() {
+    std::string const changed = variables_.changed();
+    if (changed.empty()) {
+        return std::nullopt;
+    }
+    context.is_system = true;  // nobody knows which robot it was
+    return UserFailure{
+        fmt::format("a robot has changed the variable that is set from the parameter '{}', which all robots "
+                    "share, while others ran on other threads: give each robot its own in USERDATA, or "
+                    "take threads: 1",
+                    changed)};
+}
+
+}  // namespace pogosim
