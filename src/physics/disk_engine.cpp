@@ -69,7 +69,8 @@ public:
           contacts_(world, walls),
           damping_(world.bodies),
           islands_(world),
-          solvers_(workers.size(), IslandSolver(world)) {
+          solvers_(workers.size(), IslandSolver(world)),
+          sweep_(world) {
         Bodies const& bodies = world.bodies;
         if (bodies.size() > 0) {
             ordinary_mm_ = kSweptShare * smallest_radius_mm(world);
@@ -103,12 +104,13 @@ public:
             near_walls_.build(world, containment_.walls(), near_pairs_.skin_mm());
             contacts_.build(world, near_pairs_, near_walls_);
         }
+        somebody_is_fast_ = fastest_mm_s * dt_s > ordinary_mm_;
         islands_.find(world, contacts_, {.reach_mm = reach_mm, .wakes_membranes = moved_}, workers_);
         moved_ = false;
         solve_islands(world, is_driven);
         move_others(world, dt_s);
         if (!fast_.empty()) {
-            hold_fast(world, dt_s);
+            hold_fast(world);
         }
         if (sides_) {
             hold_by_membranes(world);
@@ -144,21 +146,21 @@ private:
         auto const count = static_cast<std::uint32_t>(movable_.size());
         fast_in_range_.resize(workers_.range_count(count, kLeastBodies));
         workers_.run_ranges(count, kLeastBodies, [&](WorkRange range) {
-            std::vector<Start>& fast = fast_in_range_[range.part];
+            std::vector<std::uint32_t>& fast = fast_in_range_[range.part];
             fast.clear();
             for (std::uint32_t const i : std::span(movable_).subspan(range.first, range.last - range.first)) {
                 move_other(world, i, dt_s, fast);
             }
         });
         fast_.clear();
-        for (std::vector<Start> const& fast : fast_in_range_) {
+        for (std::vector<std::uint32_t> const& fast : fast_in_range_) {
             fast_.insert(fast_.end(), fast.begin(), fast.end());
         }
     }
 
-    /// A body without a contact moves on a straight line. All are held inside the arena but for the fast ones, whose
-    /// starts are found.
-    void move_other(World& world, std::uint32_t i, float dt_s, std::vector<Start>& fast) {
+    /// A body without a contact moves on a straight line. All are held inside the arena, in a periodic one but
+    /// for the fast ones. Those are found, and who may have met one.
+    void move_other(World& world, std::uint32_t i, float dt_s, std::vector<std::uint32_t>& fast) {
         Bodies& bodies = world.bodies;
         Vec2 const velocity_mm_s = bodies.velocity_mm_s[i];
         float const spin_rad_s = bodies.angular_velocity_rad_s[i];
@@ -171,21 +173,28 @@ private:
         if (bodies.heading_rad[i] != known_.heading_rad(i)) {
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
         }
-        if (squared_length(dt_s * velocity_mm_s) > ordinary_mm_ * ordinary_mm_) {
-            fast.push_back({i, known_.position_mm(i)});
-        } else if (world.periodic) {
+        float const moved2 = squared_length(place_mm - known_.position_mm(i));
+        bool const is_fast = moved2 > ordinary_mm_ * ordinary_mm_ || (has_contact && somebody_is_fast_);
+        if (is_fast) {
+            fast.push_back(i);
+        }
+        if (!world.periodic) {
+            place_mm = is_fast ? containment_.hold_fast(i, place_mm) : containment_.hold(i, place_mm);
+        } else if (!is_fast) {
             place_mm = wrapped_alone(world, place_mm);
-        } else {
-            place_mm = containment_.hold(i, place_mm);
         }
         bodies.position_mm[i] = place_mm;
     }
 
-    void hold_fast(World& world, float dt_s) {
-        sweep_.stop_at_impacts(world, contacts_.polygons(), fast_, dt_s);
-        for (Start const& start : fast_) {
-            Vec2& place_mm = world.bodies.position_mm[start.body];
-            place_mm = world.periodic ? wrapped_alone(world, place_mm) : containment_.hold_fast(start.body, place_mm);
+    void hold_fast(World& world) {
+        for (std::uint32_t const i : sweep_.stop_at_impacts(world, contacts_.polygons(), fast_, known_)) {
+            Vec2& place_mm = world.bodies.position_mm[i];
+            place_mm = world.periodic ? wrapped_alone(world, place_mm) : containment_.hold_fast(i, place_mm);
+        }
+        if (world.periodic) {
+            for (std::uint32_t const i : fast_) {
+                world.bodies.position_mm[i] = wrapped_alone(world, world.bodies.position_mm[i]);
+            }
         }
     }
 
@@ -290,10 +299,11 @@ private:
     std::optional<MembraneSides> sides_;  // when there are membranes
     std::vector<double> calm_s_;          // of each membrane: how long it has been slow
     std::vector<std::uint32_t> movable_;  // bodies that are not fixed
-    std::vector<Start> fast_;             // bodies in this step
-    std::vector<std::vector<Start>> fast_in_range_;
+    std::vector<std::uint32_t> fast_;     // bodies in this step
+    std::vector<std::vector<std::uint32_t>> fast_in_range_;
     float most_motion_mm_ = std::numeric_limits<float>::max();  // in a step
     float ordinary_mm_ = 1.0F;                                  // who goes further in a step is fast
+    bool somebody_is_fast_ = false;                             // before contacts slow him down
     bool has_overlaps_ = false;                                 // some disks overlapped after the last step
     bool moved_ = true;                                         // somebody was put elsewhere, perhaps into others
 };

@@ -8,15 +8,23 @@ namespace pogosim {
 namespace {
 
 constexpr float kRoundingMm = 1.0F;  // of places far from the origin
+// Disks may overlap by so much, and then come nearer by the other in a step: those that slide along each other are not
+// held.
+constexpr float kOverlapMm = 0.25F;
+constexpr float kNearerMm = 0.01F;
+// Whose way was cut so often stays where he was: others then have a fixed obstacle to stop at.
+constexpr int kMostLooks = 20;
 
-/// The fraction of a relative motion after which two disks touch that do not at first; 1 if they never do. `way_mm`:
-/// from one centre to the other.
+/// The fraction of a relative motion after which two disks touch; 1 if they never do. `way_mm`: from one centre to the
+/// other at the start. Disks that overlap touch when they come nearer.
 float fraction_to_touch(Vec2 way_mm, Vec2 motion_mm, float radius_mm) {
+    float const start_mm = length(way_mm);
+    float const touch_mm = std::min(radius_mm - kOverlapMm, start_mm - kNearerMm);
     float const a = squared_length(motion_mm);
     float const b = dot(way_mm, motion_mm);
-    float const c = squared_length(way_mm) - radius_mm * radius_mm;
+    float const c = start_mm * start_mm - touch_mm * touch_mm;
     float const discriminant = b * b - a * c;
-    if (c <= 0.0F || b >= 0.0F || discriminant < 0.0F) {
+    if (touch_mm <= 0.0F || b >= 0.0F || discriminant < 0.0F) {
         return 1.0F;
     }
     return std::min(c / (-b + std::sqrt(discriminant)), 1.0F);
@@ -24,42 +32,104 @@ float fraction_to_touch(Vec2 way_mm, Vec2 motion_mm, float radius_mm) {
 
 }  // namespace
 
-void Sweep::stop_at_impacts(World& world, FixedPolygons const& polygons, std::span<Start const> fast, float dt_s) {
+Sweep::Sweep(World const& world) : is_of_membrane_(world.bodies.size(), 0) {
+    for (Membrane const& membrane : world.membranes) {
+        std::fill_n(is_of_membrane_.begin() + membrane.body, membrane.body_count, 1);
+    }
+}
+
+std::vector<std::uint32_t> const& Sweep::stop_at_impacts(World& world, FixedPolygons const& polygons,
+                                                         std::span<std::uint32_t const> fast,
+                                                         KnownMotion const& before) {
     Bodies& bodies = world.bodies;
-    starts_mm_.resize(bodies.size());
-    float fastest_mm_s = 0.0F;
-    float largest_mm = 0.0F;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        starts_mm_[i] = bodies.position_mm[i] - dt_s * bodies.velocity_mm_s[i];
-        fastest_mm_s = std::max(fastest_mm_s, length(bodies.velocity_mm_s[i]));
-        largest_mm = std::max(largest_mm, bodies.radius_mm[i]);
+    find_ways(world, fast, before);
+    stopped_.clear();
+    waiting_.assign(fast.begin(), fast.end());
+    is_waiting_.assign(bodies.size(), 0);
+    looks_.assign(bodies.size(), 0);
+    for (std::uint32_t const i : fast) {
+        is_waiting_[i] = 1;
     }
-    for (Start const& start : fast) {
-        starts_mm_[start.body] = start.position_mm;
-    }
-    float const farthest_mm = 2.0F * (fastest_mm_s * dt_s + largest_mm);
-    grid_.build(starts_mm_, world.arena.bounds, farthest_mm, world.periodic);
-    for (Start const& start : fast) {
-        std::uint32_t const i = start.body;
-        Vec2 const velocity_mm_s = bodies.velocity_mm_s[i];
-        float const reach_mm =
-            dt_s * (length(velocity_mm_s) + fastest_mm_s) + bodies.radius_mm[i] + largest_mm + kRoundingMm;
-        float fraction = 1.0F;
-        grid_.for_each_near(start.position_mm, reach_mm, [&](std::uint32_t k, Vec2 from_mm) {
-            if (polygons.is_one(k)) {
-                fraction = std::min(fraction, polygons.fraction_to_touch(world, k, start.position_mm,
-                                                                         dt_s * velocity_mm_s, bodies.radius_mm[i]));
-            } else if (k != i) {
-                Vec2 const way = minimum_image(world, start.position_mm, from_mm);
-                Vec2 const motion = dt_s * (bodies.velocity_mm_s[k] - velocity_mm_s);
-                fraction =
-                    std::min(fraction, fraction_to_touch(way, motion, bodies.radius_mm[i] + bodies.radius_mm[k]));
-            }
-        });
-        if (fraction < 1.0F) {
-            bodies.position_mm[i] = start.position_mm + fraction * dt_s * velocity_mm_s;
+    // In the order of arrival. Fractions only become smaller, so this ends.
+    for (std::size_t next = 0; next < waiting_.size(); ++next) {
+        std::uint32_t const i = waiting_[next];
+        is_waiting_[i] = 0;
+        float const fraction = free_fraction(world, polygons, i);
+        if (fraction < fractions_[i]) {
+            fractions_[i] = ++looks_[i] < kMostLooks ? fraction : 0.0F;
+            bodies.position_mm[i] = starts_mm_[i] + fractions_[i] * motions_mm_[i];
+            stopped_.push_back(i);
+            look_at_again(world, i);
         }
     }
+    return stopped_;
+}
+
+void Sweep::find_ways(World const& world, std::span<std::uint32_t const> fast, KnownMotion const& before) {
+    Bodies const& bodies = world.bodies;
+    starts_mm_.resize(bodies.size());
+    motions_mm_.resize(bodies.size());
+    fractions_.assign(bodies.size(), 1.0F);
+    for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+        starts_mm_[i] = before.position_mm(i);
+        motions_mm_[i] = minimum_image(world, starts_mm_[i], bodies.position_mm[i]);
+    }
+    for (std::uint32_t const i : fast) {
+        motions_mm_[i] = bodies.position_mm[i] - starts_mm_[i];  // not wrapped yet
+    }
+    float farthest2 = 0.0F;
+    largest_mm_ = 0.0F;
+    for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+        farthest2 = std::max(farthest2, squared_length(motions_mm_[i]));
+        largest_mm_ = std::max(largest_mm_, bodies.radius_mm[i]);
+    }
+    farthest_mm_ = std::sqrt(farthest2);
+    grid_.build(starts_mm_, world.arena.bounds, 2.0F * (farthest_mm_ + largest_mm_), world.periodic);
+}
+
+/// Between the starts of a body and of whoever it can meet in the step.
+float Sweep::reach_mm(Bodies const& bodies, std::uint32_t i) const {
+    return length(motions_mm_[i]) + farthest_mm_ + bodies.radius_mm[i] + largest_mm_ + kRoundingMm;
+}
+
+/// Of its motion, before it meets somebody.
+float Sweep::free_fraction(World const& world, FixedPolygons const& polygons, std::uint32_t i) const {
+    Bodies const& bodies = world.bodies;
+    float fraction = fractions_[i];
+    grid_.for_each_near(starts_mm_[i], reach_mm(bodies, i), [&](std::uint32_t k, Vec2 /*start_mm*/) {
+        if (polygons.is_one(k)) {
+            fraction = std::min(
+                fraction, polygons.fraction_to_touch(world, k, starts_mm_[i], motions_mm_[i], bodies.radius_mm[i]));
+        } else if (k != i && (is_of_membrane_[i] == 0 || is_of_membrane_[k] == 0)) {
+            fraction = std::min(fraction, fraction_before(world, i, k));
+        }
+    });
+    return fraction;
+}
+
+/// Both move until one of them stops; then the other one goes on alone.
+float Sweep::fraction_before(World const& world, std::uint32_t i, std::uint32_t k) const {
+    float const radius_mm = world.bodies.radius_mm[i] + world.bodies.radius_mm[k];
+    Vec2 const way_mm = minimum_image(world, starts_mm_[i], starts_mm_[k]);
+    Vec2 const together_mm = motions_mm_[k] - motions_mm_[i];
+    float const together = std::min(fractions_[i], fractions_[k]);
+    float const met = together * fraction_to_touch(way_mm, together * together_mm, radius_mm);
+    if (met < together || fractions_[k] >= fractions_[i]) {
+        return met < together ? met : fractions_[i];
+    }
+    float const alone = fractions_[i] - together;
+    Vec2 const rest_mm = way_mm + together * together_mm;
+    return together + alone * fraction_to_touch(rest_mm, -alone * motions_mm_[i], radius_mm);
+}
+
+/// All that may meet it where it stands now.
+void Sweep::look_at_again(World const& world, std::uint32_t i) {
+    grid_.for_each_near(starts_mm_[i], reach_mm(world.bodies, i), [&](std::uint32_t k, Vec2 /*start_mm*/) {
+        if (k != i && is_waiting_[k] == 0 && fractions_[k] > fractions_[i] && !world.bodies.spec[k].fixed) {
+            is_waiting_[k] = 1;
+            waiting_.push_back(k);
+        }
+    });
 }
 
 }  // namespace pogosim

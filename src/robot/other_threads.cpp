@@ -92,7 +92,14 @@ void prepare_main_thread_for_crashes() {
 
 }  // namespace pogosim
 
-#ifdef __linux__
+// With clang's thread sanitizer in the library itself, its own pthread_create() must stay the one that is called.
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define POGOSIM_HAS_THREAD_SANITIZER
+#endif
+#endif
+
+#if defined(__linux__) && !defined(POGOSIM_HAS_THREAD_SANITIZER)
 
 extern "C" {
 

@@ -72,6 +72,26 @@ float deepest_overlap_mm(World const& world) {
     return deepest;
 }
 
+/// Whatever the speed: from a hundredth of a radius in a step to four diameters.
+TEST_P(Crowds, FastGasDoesNotOverlap) {
+    for (float const speed_mm_s : {30.0F, 1000.0F, 2000.0F, 5000.0F, 20000.0F}) {
+        World world = packed(15, 15, 0.3F, 0.5F);
+        RandomStream random(1, 0);
+        auto const engine = make_engine(world, {});
+        float deepest_mm = 0.0F;
+        for (int step = 0; step < 200; ++step) {
+            if (step % 10 == 0) {
+                for (Vec2& velocity : world.bodies.velocity_mm_s) {
+                    velocity = speed_mm_s * direction(random.uniform(-kPi, kPi));
+                }
+            }
+            engine->advance(world);
+            deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
+        }
+        EXPECT_LT(deepest_mm, is_disk_engine() ? 1.2F : 6.0F) << speed_mm_s << " mm/s";
+    }
+}
+
 TEST_P(Crowds, DenseGasDoesNotOverlapNorGainEnergy) {
     for (float const restitution : {0.0F, 0.5F, 1.0F}) {
         World world = packed(20, 20, 0.8F, restitution);
