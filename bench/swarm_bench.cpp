@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,7 @@ constexpr double kAreaPerRobotMm2 = 1e4;
 constexpr double kWarmUpS = 8.0;                 // simulated: the flash of light and the boot of hanabi are over
 constexpr std::int64_t kRobotSteps = 2'000'000;  // measured in each run
 constexpr std::string_view kConfiguration = POGOSIM_BENCH_CONFIGURATION;  // conf/....yaml
+constexpr bool kSharesNothing = POGOSIM_BENCH_SHARES_NOTHING;  // its robots, as the simulator finds out otherwise
 constexpr bool kHasMembranes = kConfiguration == "walls_and_membranes";
 constexpr int kRobotsPerMembrane = 100;
 
@@ -79,15 +81,13 @@ Scenario scenario_of(int robots, std::vector<std::string> const& overrides) {
 
 void step_or_die(Simulation& simulation) {
     if (auto const failure = simulation.step()) {
-        fmt::print(stderr, "{}\n", failure->what);
-        std::exit(EXIT_FAILURE);
+        throw std::runtime_error(failure->what);
     }
 }
 
 void warm_up(Simulation& simulation) {
     if (auto const failure = simulation.start()) {
-        fmt::print(stderr, "{}\n", failure->what);
-        std::exit(EXIT_FAILURE);
+        throw std::runtime_error(failure->what);
     }
     while (simulation.world().time_s() < kWarmUpS) {
         step_or_die(simulation);
@@ -104,7 +104,7 @@ void load_code(Options const& options) {
 Result run_once(int robots, Options const& options) {
     double const bytes_before = resident_bytes();
     Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(robots, options.overrides),
-                          {.measure_stages = true});
+                          {.measure_stages = true, .shares_nothing = kSharesNothing});
     GuardedThread const thread(simulation.guard());  // as of a whole run, not of each step
     warm_up(simulation);
     StageClock const warm = simulation.stages();
@@ -157,12 +157,15 @@ void print_json(int robots, Result const& best) {
 
 constexpr int kMostRobots = 10'000'000;
 
-/// Ends the program when the arguments are wrong.
+std::string usage(char const* program) {
+    return fmt::format("Usage: {} [--json] [--runs N] [--set KEY=VALUE] ... [number of robots, 1 to {} ...]", program,
+                       kMostRobots);
+}
+
+/// Throws when the arguments are wrong.
 Options options_of(int argc, char** argv) {
     auto const fail = [&](std::string const& what) {
-        fmt::print(stderr, "{}\nUsage: {} [--json] [--runs N] [--set KEY=VALUE] ... [number of robots, 1 to {} ...]\n",
-                   what, argv[0], kMostRobots);
-        std::exit(2);
+        throw std::runtime_error(fmt::format("{}\n{}", what, usage(argv[0])));
     };
     Options options;
     for (int i = 1; i < argc; ++i) {
@@ -204,8 +207,7 @@ void measure(Options const& options) {
         for (int run = 1; run < options.runs; ++run) {
             Result const next = run_once(robots, options);
             if (next.hash != best.hash) {
-                fmt::print(stderr, "two runs of {} robots end in different states\n", robots);
-                std::exit(EXIT_FAILURE);
+                throw std::runtime_error(fmt::format("two runs of {} robots end in different states", robots));
             }
             // The first run says most about memory: later ones find some already there.
             double const bytes = best.bytes_per_robot;
@@ -219,6 +221,10 @@ void measure(Options const& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (argc > 1 && (std::string_view(argv[1]) == "--help" || std::string_view(argv[1]) == "-h")) {
+        fmt::print("{}\n", usage(argv[0]));
+        return EXIT_SUCCESS;
+    }
     start_logging({.quiet = true, .file = {}});
     try {
         measure(options_of(argc, argv));
