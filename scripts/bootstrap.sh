@@ -136,6 +136,8 @@ make_venv() {
     fi
 
     if [ "$(cat .venv/root 2>/dev/null)" != "$root" ] || ! .venv/bin/python -m pip --version >/dev/null 2>&1; then
+        [ ! -L .venv ] || fail ".venv is a link to $(readlink .venv), which was made for another folder" \
+            "Remove the link: each clone has a .venv of its own"
         python=$(system_python) || fail "python3 not found" "Install Python 3.10 or later"
         say "Making .venv with $python"
         "$python" -m venv --clear .venv || fail "$python -m venv" "See Python's message above; remove .venv and try again"
