@@ -70,11 +70,11 @@ std::span<K const> any_geometry_keys() {
 std::span<K const> size_keys() {
     constexpr auto is_rectangle = [](Shape const& shape) { return shape.kind == ShapeKind::rectangle; };
     static std::array const keys{
-        K{"radius", &Shape::radius_mm, kLength, "mm", "Radius of a disk."}.only_if(
+        K{"radius", &Shape::radius_mm, kBodyLength, "mm", "Radius of a disk."}.only_if(
             [](Shape const& shape) { return shape.kind == ShapeKind::disk; }),
-        K{"body_width", &Shape::width_mm, kLength, "mm", "Size of a rectangle along x."}.only_if(is_rectangle),
-        K{"body_height", &Shape::height_mm, kLength, "mm", "Size of a rectangle along y."}.only_if(is_rectangle),
-        K{"side_length", &Shape::side_length_mm, kLength, "mm",
+        K{"body_width", &Shape::width_mm, kBodyLength, "mm", "Size of a rectangle along x."}.only_if(is_rectangle),
+        K{"body_height", &Shape::height_mm, kBodyLength, "mm", "Size of a rectangle along y."}.only_if(is_rectangle),
+        K{"side_length", &Shape::side_length_mm, kBodyLength, "mm",
           "Side of an equilateral triangle, one corner towards -y."}
             .only_if([](Shape const& shape) { return shape.kind == ShapeKind::triangle; }),
     };

@@ -11,6 +11,8 @@ namespace pogosim {
 
 /// Sizes and coordinates. What is below 1 mm is probably in metres.
 inline constexpr Range kLength = above(0).up_to(kMaxLength).usually_from(1);
+/// Of bodies: smaller ones have masses that a float cannot divide by.
+inline constexpr Range kBodyLength = between(1e-3, kMaxLength).usually_from(1);
 inline constexpr Range kLengthOrZero = between(0, kMaxLength).usually_from(1);
 inline constexpr Range kCoordinate = between(-kMaxLength, kMaxLength).usually_from(1);
 

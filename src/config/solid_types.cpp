@@ -56,8 +56,7 @@ std::span<Key<MembraneSpec> const> membrane_keys() {
     };
     static std::array const keys{
         K{"num_dots", &MembraneSpec::body_count, between(3, kMostBodies), "", "Number of bodies along the outline."},
-        K{"dot_radius", &MembraneSpec::radius_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm",
-          "Radius of a dot."}
+        K{"dot_radius", &MembraneSpec::radius_mm, between(1e-3, kMaxLength).usually_from(0.1), "mm", "Radius of a dot."}
             .only_if(has_dot_radius),
         K{"cross_span", &MembraneSpec::cross_span, between(0, kMostBodies), "dots",
           "Above 1: adds weaker springs from each dot to the one this many places further on, which keep the membrane "
@@ -74,7 +73,7 @@ std::span<Key<MembraneSpec> const> membrane_keys() {
 std::span<Key<MembraneSpec> const> thickness_keys() {
     using K = Key<MembraneSpec>;
     static std::array const keys{
-        K{"rect_thickness", &MembraneSpec::thickness_mm, above(0).up_to(kMaxLength).usually_from(0.1), "mm",
+        K{"rect_thickness", &MembraneSpec::thickness_mm, between(1e-3, kMaxLength).usually_from(0.1), "mm",
           "Thickness of the segments; default: dot_radius."},
     };
     return keys;
