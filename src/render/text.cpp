@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <filesystem>
+#include <new>
 #include <string>
 
 #include "base/library_folder.hpp"
@@ -63,6 +66,23 @@ std::string_view system_font() {
     return found;
 }
 
+namespace {
+
+/// ImGui does not look whether it was given memory.
+void* allocate(std::size_t bytes, void* /*user_data*/) {
+    void* const memory = std::malloc(bytes);
+    if (memory == nullptr) {
+        throw std::bad_alloc();
+    }
+    return memory;
+}
+
+void release(void* memory, void* /*user_data*/) {
+    std::free(memory);
+}
+
+}  // namespace
+
 /// The letters of one size.
 struct Text::Face {
 #if IMGUI_VERSION_NUM >= 19200  // fonts have glyphs for each of several sizes
@@ -84,6 +104,7 @@ struct Text::Face {
     int atlas_height = 0;
 
     explicit Face(int size_px) {
+        ImGui::SetAllocatorFunctions(allocate, release);
         auto const size = static_cast<float>(size_px);
         ImFontConfig config;
         config.SizePixels = size;
