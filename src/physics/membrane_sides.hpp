@@ -12,7 +12,8 @@ namespace pogosim {
 /// An engine's contacts and joints give way under blows and crowds that are too strong for its few iterations, and a
 /// body whose centre is past the middle of a membrane is pushed on to the wrong side. So the sides are compared after
 /// each step: a body that has changed sides goes back to where it was before the step, at rest. When somebody is on the
-/// wrong side of a membrane even so, because the membrane moved over him, the membrane goes back, too. All others move on.
+/// wrong side of a membrane even so, because the membrane moved over him, the membrane goes back, too. All others move
+/// on.
 /// Bodies that fit through the gaps between those of a membrane may pass.
 class MembraneSides {
 public:

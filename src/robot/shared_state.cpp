@@ -152,7 +152,7 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     }
     ProgramSymbols const symbols = image.symbols();
     if (!symbols.are_known) {
-        return "the program has no symbol table, which tells what robots share: link it without -s, and do not strip it";
+        return "the program has no symbol table, which tells what robots share: link it without -s";
     }
     for (ProgramSymbols::Variable const& variable : symbols.variables) {
         if (!is_own(variable.name) &&

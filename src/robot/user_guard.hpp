@@ -69,8 +69,8 @@ private:
     std::unique_ptr<RunGuard, Destroy> state_;
 };
 
-/// The fence of a worker that runs user code for a run while its own thread does: crashes and endless loops in that code
-/// end the call in this thread, and what asks the run to end asks this thread, too.
+/// The fence of a worker that runs user code for a run, beside the thread of the run: crashes and endless loops in that
+/// code end the call in this thread, and what asks the run to end asks this thread, too.
 class HelperGuard {
 public:
     explicit HelperGuard(UserGuard& run);

@@ -53,6 +53,10 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
         throw ConfigError(fmt::format("{}: {} {}; use {} or box2d", place_of(scenario, Setting::physics_engine), engine,
                                       reason, kAutomaticEngine));
     }
+    if (std::string const reason = why_not_the_first_engine(world); engine == kAutomaticEngine && !reason.empty()) {
+        log().info("physics_engine: {}, since disk {}{}", physics_engine_behind(engine, world), reason,
+                   world.periodic ? "; bodies do not meet across the borders of the arena" : "");
+    }
     auto const purpose = [&] { return fmt::format("the physics of {} bodies", world.bodies.size()); };
     try {
         return allocate_for(purpose, std::nullopt,
@@ -296,7 +300,8 @@ void Simulation::share_steps() {
     if (workers_.size() == 1) {
         return;
     }
-    if (std::string const reason = controllers_.why_one_after_the_other(); !reason.empty()) {
+    std::string const reason = options_.shares_nothing ? "" : controllers_.why_one_after_the_other();
+    if (!reason.empty()) {
         log().info("threads: {}; robots take their steps one after the other: {}", workers_.size(), reason);
         return;
     }

@@ -37,6 +37,7 @@ class WindowDriver;
 struct RunOptions {
     bool progress_bar = false;
     bool measure_stages = false;         // for benchmarks
+    bool shares_nothing = false;         // the program: for benchmarks, where it is in one file with the simulator
     bool strict = false;                 // unread parameters are an error
     std::shared_ptr<Log> log{};          // null: that of the process
     std::int64_t hash_period_steps = 0;  // a hash of the state in the log after so many steps each; 0: none

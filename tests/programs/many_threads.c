@@ -1,5 +1,5 @@
-// Robots that share nothing, so that several threads may run them. `kind` says what robots do in tick 10, those whose id
-// is a multiple of `every` (not 0).
+// Robots that share nothing, so that several threads may run them. `kind` says what robots do in tick 10: those whose
+// id is a multiple of `every`, but not 0.
 #include <math.h>
 
 #include "pogobase.h"

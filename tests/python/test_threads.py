@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -176,7 +175,7 @@ REASONS = {
     "void user_step(void) { static int calls; calls++; }": "all robots share the variable 'calls.0'",
     "static __thread int calls; void user_step(void) { calls++; }": "all robots share the variable 'calls'",
     "POGO_SHARED uint32_t steps; void user_step(void) { steps++; }": "all robots share the variable 'steps'",
-    "void user_step(void) { fputs(\"a\", stderr); }": "the program uses '(stderr|fwrite|fputc|fputs)'",
+    'void user_step(void) { fputs("a", stderr); }': "the program uses '(stderr|fwrite|fputc|fputs)'",
     'void user_step(void) { setenv("A", "B", 1); }': "the program uses 'setenv'",
 }
 
