@@ -157,7 +157,7 @@ TEST(BadInput, WrongRobots) {
          {"    nb: {batch_options: [1], default_option: arenas/disk.csv}",
           "objects.robots.nb: expected an integer from 0 to 10000000, found 'arenas/disk.csv'"},
          {"    body_density: 0",
-          "objects.robots.body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found 0"},
+          "objects.robots.body_density: expected a number from 1e-10 to 1000000000000000 (per (100 mm)^2), found 0"},
          {"    body_restitution: 1.8", "objects.robots.body_restitution: expected a number from 0 to 1, found 1.8"},
          {"    communication_radius: -3",
           "objects.robots.communication_radius: expected a number from 0 to 1000000 (mm), found -3"},
