@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import subprocess
 import sysconfig
 from pathlib import Path
+
+from running import ROOT
 
 PACKAGES = Path(sysconfig.get_path("platlib"))
 
@@ -19,3 +22,19 @@ def test_environment_holds_neither_tests_of_packages_nor_clients_for_remote_data
 def test_tables_can_be_read_and_written_without_those_clients() -> None:
     for module in ("pyarrow.fs", "pyarrow.parquet", "pyarrow.dataset", "pyarrow.feather"):
         importlib.import_module(module)
+
+
+def test_environment_of_another_folder_that_is_linked_is_left_alone(tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "kept").write_text("kept")
+    clone = tmp_path / "clone"
+    (clone / "scripts").mkdir(parents=True)
+    for name in ("scripts/bootstrap.sh", "pyproject.toml"):
+        (clone / name).write_text((ROOT / name).read_text())
+    (clone / ".venv").symlink_to(other)
+    command = ["bash", "-c", ". scripts/bootstrap.sh; make_venv build"]
+    done = subprocess.run(command, cwd=clone, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1
+    assert f".venv is a link to {other}, which was made for another folder. Remove the link" in done.stderr
+    assert [path.name for path in other.iterdir()] == ["kept"]

@@ -37,7 +37,7 @@ def test_crowd_of_the_disk_engine_keeps_apart_and_in_its_arena_with_equal_bytes(
         assert np.hypot(*(places - arena_radius_mm).T).max() < arena_radius_mm - RADIUS_MM + 1.5
 
 
-@pytest.mark.parametrize(
+SHAPES = pytest.mark.parametrize(
     ("settings", "reason"),
     [
         ({"objects.bars": {"type": "passive_object", "nb": 1, "geometry": "rectangle", "body_width": 50,
@@ -46,6 +46,9 @@ def test_crowd_of_the_disk_engine_keeps_apart_and_in_its_arena_with_equal_bytes(
          "'rings' is a membrane of segments"),
     ],
 )  # fmt: skip
+
+
+@SHAPES
 def test_disk_engine_refuses_what_is_no_disk(tmp_path: Path, settings: dict[str, object], reason: str) -> None:
     result = run(example("run_and_tumble"), tmp_path, {"physics_engine": "disk", **settings})
     line = next(
@@ -55,3 +58,14 @@ def test_disk_engine_refuses_what_is_no_disk(tmp_path: Path, settings: dict[str,
     )
     expected = f"Error: scene.yaml:{line}: physics_engine: disk moves disks only, but {reason}; use auto or box2d\n"
     assert (result.code, result.errors) == (2, expected)
+
+
+@SHAPES
+def test_automatic_choice_of_box2d_is_explained(tmp_path: Path, settings: dict[str, object], reason: str) -> None:
+    short = {"simulation_time": 0.1, "arena_file": "arenas/square.csv", **settings}
+    for boundary, more in (("solid", ""), ("periodic", "; bodies do not meet across the borders of the arena")):
+        result = run(example("run_and_tumble"), tmp_path, {**short, "boundary_condition": boundary})
+        assert result.code == 0, result.text
+        (line,) = [line for line in result.output.splitlines() if "physics_engine: " in line]
+        assert line.endswith(f"[info] physics_engine: box2d, since disk moves disks only, but {reason}{more}")
+    assert "physics_engine: " not in run(example("run_and_tumble"), tmp_path, {"simulation_time": 0.1}).output
