@@ -92,6 +92,27 @@ TEST_P(Crowds, FastGasDoesNotOverlap) {
     }
 }
 
+/// A before something fixed, and B behind A, both fast.
+TEST_P(Crowds, WhoFollowsSomebodyThatIsStoppedStopsBehindHim) {
+    for (float const gap_mm : {1.0F, 30.0F}) {
+        for (float const speed_mm_s : {1000.0F, 6000.0F, 15000.0F}) {
+            World world = square_world(4000.0F);
+            ObjectSpec wall = disk(26.5F, 0.0F);
+            wall.body->fixed = true;
+            add_robot(world, {3000, 2000}, 0.0F, wall);
+            add_robot(world, {3000 - 53 - gap_mm, 2000}, 0.0F, disk(26.5F, 0.0F));
+            add_robot(world, {3000 - 106 - 2 * gap_mm, 2000}, 0.0F, disk(26.5F, 0.0F));
+            auto const engine = make_engine(world, {});
+            world.bodies.velocity_mm_s[1] = world.bodies.velocity_mm_s[2] = {speed_mm_s, 0};
+            for (int step = 0; step < 30; ++step) {
+                engine->advance(world);
+                EXPECT_LT(deepest_overlap_mm(world), is_disk_engine() ? 0.5F : 7.0F)
+                    << speed_mm_s << " mm/s, gaps of " << gap_mm << " mm, step " << step;
+            }
+        }
+    }
+}
+
 TEST_P(Crowds, DenseGasDoesNotOverlapNorGainEnergy) {
     for (float const restitution : {0.0F, 0.5F, 1.0F}) {
         World world = packed(20, 20, 0.8F, restitution);

@@ -59,6 +59,26 @@ TEST_P(Motion, DampedBodySlowsDownExponentially) {
     EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 100.0F / 0.3F * (1.0F - left), 500.0F * error);
 }
 
+/// So little in a step that the formula for it has few digits.
+TEST_P(Motion, WeaklyDampedBodySlowsDownExponentially) {
+    World world = square_world(5000.0F);
+    add_robot(world, {1000, 1000}, 0.0F, body(0.5F, 0.0F, 0.05F));
+    world.bodies.velocity_mm_s[0] = {100, 0};
+    run(world, 20.0);
+    float const error = GetParam() == "disk" ? 1e-4F : 2e-3F;
+    float const left = std::exp(-0.05F * 20.0F);
+    EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 100.0F * left, 100.0F * error);
+    EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F + 100.0F / 0.05F * (1.0F - left), 2000.0F * error);
+}
+
+TEST_P(Motion, BodyThatOnlyTurnsGoesOnTurning) {
+    World world = square_world();
+    add_robot(world, {500, 500}, 0.0F, body(0.5F));
+    world.bodies.angular_velocity_rad_s[0] = 3.0F;
+    run(world, 2.0);
+    EXPECT_NEAR(world.bodies.heading_rad[0], 6.0F, 1e-3F);
+}
+
 TEST_P(Motion, ElasticHeadOnCollisionSwapsTheVelocities) {
     World world = square_world(5000.0F);
     add_robot(world, {1000, 1000}, 0.0F, body(1.0F));
