@@ -41,7 +41,7 @@ struct WorldAccess {
     std::function<bool(Object const& object, Vec2 centre_mm)> is_free{};  // of walls
     std::function<void()> update_light{};                                 // takes the settings of lamps over
     bool light_is_stale = false;                                          // a setting has changed since
-    bool gave_user_data = false;                                          // in callback_global_setup
+    bool gave_user_data = false;                                          // of any robot, to callbacks of the run
 
     void settle_light() {
         if (light_is_stale) {

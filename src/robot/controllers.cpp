@@ -140,15 +140,23 @@ std::size_t Controllers::user_data_stride() const {
 }
 
 Controllers::Thread::Thread(Controllers& controllers) : controllers_(controllers) {
-    callback_global_setup = controllers.callbacks_.global_setup;
-    callback_create_data_schema = controllers.callbacks_.create_data_schema;
-    callback_global_step = controllers.callbacks_.global_step;
+    set_callbacks_of_thread(controllers.callbacks_);
 }
 
 Controllers::Thread::~Thread() {
-    controllers_.callbacks_ = {.global_setup = callback_global_setup,
-                               .create_data_schema = callback_create_data_schema,
-                               .global_step = callback_global_step};
+    controllers_.callbacks_ = callbacks_of_thread();
+}
+
+Controllers::Callbacks Controllers::callbacks_of_thread() {
+    return {.global_setup = callback_global_setup,
+            .create_data_schema = callback_create_data_schema,
+            .global_step = callback_global_step};
+}
+
+void Controllers::set_callbacks_of_thread(Callbacks const& callbacks) {
+    callback_global_setup = callbacks.global_setup;
+    callback_create_data_schema = callbacks.create_data_schema;
+    callback_global_step = callbacks.global_step;
 }
 
 void Controllers::allocate_user_data() {
@@ -329,6 +337,10 @@ void Controllers::declare_columns() {
 void Controllers::run_step() {
     begin_step();
     run_robots(0, static_cast<std::uint32_t>(controllers_.size()));
+    end_step();
+}
+
+void Controllers::end_step() const {
     assert_controllers(world_, controllers_);
 }
 
@@ -376,6 +388,9 @@ void Controllers::take_over(Outbox& outbox) {
 }
 
 std::string Controllers::why_one_after_the_other() const {
+    if (gave_user_data()) {
+        return "callback_global_setup has had USERDATA of robots, and may have put the same address into several";
+    }
     return pogosim::why_one_after_the_other(image_, services_.bound_variables);
 }
 

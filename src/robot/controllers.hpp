@@ -45,7 +45,7 @@ public:
     /// callback_create_data_schema: fills the services' columns.
     void declare_columns();
 
-    /// One step: begin_step(), then run_robots() of all.
+    /// One step: begin_step(), run_robots() of all, end_step().
     void run_step();
 
     /// What comes before the robots: the global step.
@@ -55,12 +55,17 @@ public:
     /// time, each with an outbox of its own (Context::outbox).
     void run_robots(std::uint32_t first, std::uint32_t last);
 
+    /// What comes after them: checks of debug builds.
+    void end_step() const;
+
     /// Puts messages on the air, lines and warnings into the log. What is in the outbox is lost.
     void take_over(Outbox& outbox);
 
     /// Why run_robots() must not run on several threads, see why_one_after_the_other(); empty: it may.
     std::string why_one_after_the_other() const;
     ConfiguredVariables configured_variables() const;
+    /// A callback of the whole run has had user data of robots: these may share memory from then on.
+    bool gave_user_data() const { return services_.access.gave_user_data; }
 
     /// callback_export_data of one robot, index `object` in World::objects, fills `cells`: one for each of the user's
     /// columns, empty before. False: the program wants no row.
@@ -122,14 +127,18 @@ public:
     /// Bytes of one robot's user data.
     std::size_t user_data_bytes() const { return image_.user_data_bytes; }
 
-private:
-    /// Set by SET_CALLBACK(), for the run as a whole.
+    /// Set by SET_CALLBACK(), for the run as a whole; variables of each thread.
     struct Callbacks {
         void (*global_setup)() = nullptr;
         void (*create_data_schema)() = nullptr;
         void (*global_step)() = nullptr;
-    };
 
+        friend bool operator==(Callbacks const&, Callbacks const&) = default;
+    };
+    static Callbacks callbacks_of_thread();
+    static void set_callbacks_of_thread(Callbacks const& callbacks);
+
+private:
     void allocate_user_data();
     void draw_individual_differences(std::uint64_t seed);
     void enter(std::uint32_t robot, Phase phase);

@@ -24,7 +24,6 @@ constexpr std::array kHarmless = std::to_array<std::string_view>({"_ITM_deregist
                                                                   "__ctype_tolower_loc",
                                                                   "__ctype_toupper_loc",
                                                                   "__cxa_finalize",
-                                                                  "__errno_location",
                                                                   "__gmon_start__",
                                                                   "__gxx_personality_v0",
                                                                   "__isoc99_sscanf",
@@ -78,11 +77,28 @@ constexpr std::array kHarmless = std::to_array<std::string_view>({"_ITM_deregist
                                                                   "vsprintf"});
 static_assert(std::ranges::is_sorted(kHarmless));
 
-// Groups of functions: checked variants ("__memcpy_chk"), allocation, containers and texts in C++.
-constexpr std::array kHarmlessBeginnings = std::to_array<std::string_view>(
-    {"__cxa_", "_ZTI", "_ZTS", "_ZTVN10__cxxabiv1", "_Znw", "_Zna", "_Zdl", "_Zda", "_ZNSt7__cxx1112basic_string",
-     "_ZNKSt7__cxx1112basic_string", "_ZNSt8__detail15_List_node_base", "_ZNKSt8__detail20_Prime_rehash_policy",
-     "_ZSt18_Rb_tree", "_ZSt29_Rb_tree", "_ZSt28_Rb_tree"});
+// Groups of functions: allocation, exceptions, containers and texts in C++.
+constexpr std::array kHarmlessBeginnings = std::to_array<std::string_view>({"__cxa_",
+                                                                            "_ZTI",
+                                                                            "_ZTS",
+                                                                            "_ZTV",
+                                                                            "_Znw",
+                                                                            "_Zna",
+                                                                            "_Zdl",
+                                                                            "_Zda",
+                                                                            "_ZNSt7__cxx1112basic_string",
+                                                                            "_ZNKSt7__cxx1112basic_string",
+                                                                            "_ZNSt8__detail15_List_node_base",
+                                                                            "_ZNKSt8__detail20_Prime_rehash_policy",
+                                                                            "_ZSt18_Rb_tree",
+                                                                            "_ZSt28_Rb_tree",
+                                                                            "_ZSt29_Rb_tree",
+                                                                            "_ZNKSt9exception",
+                                                                            "_ZNSt9exception",
+                                                                            "_ZNSt11logic_error",
+                                                                            "_ZNSt12out_of_range",
+                                                                            "_ZNSt13runtime_error",
+                                                                            "_ZNSt16invalid_argument"});
 
 // Of every program; nobody changes them after its start.
 constexpr std::array kOwnVariables = std::to_array<std::string_view>(
@@ -110,8 +126,12 @@ bool is_harmless_name(std::string_view name) {
     return throws || std::ranges::binary_search(kHarmless, name) || std::ranges::any_of(kHarmlessBeginnings, begins);
 }
 
-/// The simulator's own functions know of threads; the mathematical ones keep nothing in mind.
+/// The simulator's own functions know of threads; the mathematical ones keep nothing in mind, but for those that set
+/// how numbers are rounded (fesetround() and so on), and the sign that lgamma() leaves.
 bool is_of_simulator_or_mathematical(std::string const& name) {
+    if (name.starts_with("fe") || name == "signgam") {
+        return false;
+    }
     LoadedObject const simulator = object_of(reinterpret_cast<void const*>(&pogosim_rand));
     static void* const library = dlopen(std::string(simulator.file).c_str(), RTLD_NOW | RTLD_NOLOAD);
     LoadedObject const object = object_of(library != nullptr ? dlsym(library, name.c_str()) : nullptr);
@@ -121,9 +141,9 @@ bool is_of_simulator_or_mathematical(std::string const& name) {
 }
 
 bool is_own(std::string_view name) {
-    // completed.0: of the C compiler, set when the program ends.
+    // completed.0: of the C compiler, set when the program ends. DW.ref: where C++ finds its own functions.
     return std::ranges::find(kOwnVariables, name) != kOwnVariables.end() || name.starts_with("completed.") ||
-           name.starts_with("pogo_user_data_");
+           name.starts_with("DW.ref.") || name.starts_with("pogo_user_data_");
 }
 
 std::byte* address_in(ProgramImage const& image, ProgramSymbols::Variable const& variable) {
@@ -133,14 +153,16 @@ std::byte* address_in(ProgramImage const& image, ProgramSymbols::Variable const&
 
 /// Each byte of it belongs to one that is set from the configuration.
 bool is_configured(std::byte const* begin, std::size_t bytes, std::span<BoundVariable const> bound) {
-    std::size_t covered = 0;
+    std::vector<bool> is_bound(bytes, false);
     for (BoundVariable const& one : bound) {
         auto const* const first = static_cast<std::byte const*>(one.variable);
         if (first >= begin && first < begin + bytes) {
-            covered += one.bytes;
+            std::size_t const offset = static_cast<std::size_t>(first - begin);
+            std::fill_n(is_bound.begin() + static_cast<std::ptrdiff_t>(offset), std::min(one.bytes, bytes - offset),
+                        true);
         }
     }
-    return covered >= bytes;
+    return std::ranges::find(is_bound, false) == is_bound.end();
 }
 
 }  // namespace

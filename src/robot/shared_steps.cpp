@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/log.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -23,23 +25,43 @@ std::optional<UserFailure> SharedSteps::run_step(WorkerPool& workers) {
     if (auto failure = call_user_code([this] { controllers_.begin_step(); })) {
         return failure;
     }
+    if (!is_over_ && controllers_.gave_user_data()) {
+        is_over_ = true;
+        log().info(
+            "robots take their steps one after the other from now on: callback_global_step has had USERDATA of "
+            "robots, and may have put the same address into several");
+    }
+    if (is_over_) {
+        return run_one_after_the_other();
+    }
     variables_.remember();
+    callbacks_ = Controllers::callbacks_of_thread();
     first_failed_ = kNone;
     auto const count = static_cast<std::uint32_t>(controllers_.all().size());
     parts_.resize(workers.range_count(count, kLeastRobots));
     workers.run_ranges(count, kLeastRobots, [this](WorkRange range) { run_part(range); });
+    Controllers::set_callbacks_of_thread(callbacks_);
     for (Part& part : parts_) {
         if (auto failure = join(part)) {
             return failure;
         }
     }
+    controllers_.end_step();
     return look_at_variables();
+}
+
+std::optional<UserFailure> SharedSteps::run_one_after_the_other() {
+    return call_user_code([this] {
+        controllers_.run_robots(0, static_cast<std::uint32_t>(controllers_.all().size()));
+        controllers_.end_step();
+    });
 }
 
 void SharedSteps::run_part(WorkRange range) {
     Part& part = parts_[range.part];
     part.outbox.clear();
     part.failure.reset();
+    part.callbacks = callbacks_;
     if (range.part > first_failed_) {
         return;  // the run ends before these robots
     }
@@ -47,8 +69,10 @@ void SharedSteps::run_part(WorkRange range) {
         guards_[range.worker - 1]->enter();
     }
     context.outbox = &part.outbox;
+    Controllers::set_callbacks_of_thread(callbacks_);
     part.failure = call_user_code([&] { controllers_.run_robots(range.first, range.last); });
     context.outbox = nullptr;
+    part.callbacks = Controllers::callbacks_of_thread();
     if (part.failure) {
         part.failed = running_robot();
         std::uint32_t first = first_failed_;
@@ -60,6 +84,9 @@ void SharedSteps::run_part(WorkRange range) {
 /// After a failure, the other parts have not been.
 std::optional<UserFailure> SharedSteps::join(Part& part) {
     controllers_.take_over(part.outbox);
+    if (part.callbacks != callbacks_) {
+        Controllers::set_callbacks_of_thread(part.callbacks);
+    }
     if (!part.failure) {
         return std::nullopt;
     }

@@ -30,7 +30,10 @@ private:
         Outbox outbox;
         std::optional<UserFailure> failure;
         RunningRobot failed;
+        Controllers::Callbacks callbacks;  // as its robots have left them
     };
+
+    std::optional<UserFailure> run_one_after_the_other();
 
     void run_part(WorkRange range);
     std::optional<UserFailure> join(Part& part);
@@ -40,6 +43,8 @@ private:
     ConfiguredVariables variables_;
     std::vector<std::unique_ptr<HelperGuard>> guards_;  // of each worker but the first, whose guard is that of the run
     std::vector<Part> parts_;
+    Controllers::Callbacks callbacks_;             // before the robots' steps
+    bool is_over_ = false;                         // they may share memory now
     std::atomic<std::uint32_t> first_failed_ = 0;  // of the parts; kNone: none has failed
 };
 

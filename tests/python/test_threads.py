@@ -177,6 +177,22 @@ REASONS = {
     "POGO_SHARED uint32_t steps; void user_step(void) { steps++; }": "all robots share the variable 'steps'",
     'void user_step(void) { fputs("a", stderr); }': "the program uses '(stderr|fwrite|fputc|fputs)'",
     'void user_step(void) { setenv("A", "B", 1); }': "the program uses 'setenv'",
+    'void user_step(void) { char text[] = "a b"; strtok(text, " "); }': "the program uses 'strtok'",
+    "#include <fenv.h>\nvoid user_step(void) { fesetround(FE_UPWARD); }": "the program uses 'fesetround'",
+    "#include <errno.h>\nvoid user_step(void) { mydata->number = errno; }": "the program uses '__errno_location'",
+    """static struct { float speed; uint32_t count; } all;
+void user_step(void) { all.count++; init_float_from_configuration(&all.speed, "speed", 1); }
+void set(void) {
+    init_float_from_configuration(&all.speed, "speed", 1);
+    init_float_from_configuration(&all.speed, "fast", 1);
+}
+#define MORE SET_CALLBACK(callback_global_setup, set);
+""": "all robots share the variable 'all'",
+    """#include "pogosim/world.h"
+void user_step(void) {}
+void set(void) { pogosim_world_user_data(0); }
+#define MORE SET_CALLBACK(callback_global_setup, set);
+""": "callback_global_setup has had USERDATA of robots",
 }
 
 
@@ -191,13 +207,60 @@ DECLARE_USERDATA(USERDATA)
 REGISTER_USERDATA(USERDATA)
 void user_init(void) {{}}
 {code}
-int main(void) {{ pogobot_init(); pogobot_start(user_init, user_step); return 0; }}
+#ifndef MORE
+#define MORE
+#endif
+int main(void) {{ pogobot_init(); pogobot_start(user_init, user_step); MORE return 0; }}
 """
     )
     result = run(compile_program(tmp_path / "shares", source), tmp_path, {**SWARM, "threads": 2})
     assert result.code == 0
     (line,) = [line for line in result.output.splitlines() if "threads: 2" in line]
     assert re.search(f"robots take their steps one after the other: {REASONS[code]}", line)
+
+
+def test_supervisor_that_has_had_userdata_ends_the_steps_on_several_threads(tmp_path: Path) -> None:
+    source = tmp_path / "gives.c"
+    source.write_text(
+        """#include "pogobase.h"
+#include "pogosim/world.h"
+typedef struct { int* number; } USERDATA;
+DECLARE_USERDATA(USERDATA)
+REGISTER_USERDATA(USERDATA)
+void user_init(void) {}
+void user_step(void) {
+    if (mydata->number) {
+        *mydata->number = *mydata->number * 3 + pogobot_helper_getid();
+        pogobot_led_setColor((uint8_t)*mydata->number, 0, 0);
+    }
+}
+void supervise(void) {
+    if (pogobot_ticks == 5) {
+        int* number = calloc(1, sizeof(int));
+        for (uint32_t i = 0; i < get_nb_robots(); i++) {
+            ((USERDATA*)pogosim_world_user_data(i))->number = number;
+        }
+    }
+}
+int main(void) {
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    SET_CALLBACK(callback_global_step, supervise);
+    return 0;
+}
+"""
+    )
+    program = compile_program(tmp_path / "gives", source)
+    runs = [
+        run(program, tmp_path / str(threads), {**SWARM, "threads": threads}, ["--hash", "10"]) for threads in (1, 2)
+    ]
+    assert "robots take their steps on all of them" in runs[1].output
+    assert "robots take their steps one after the other from now on" in runs[1].output
+    hashes = [
+        [line.split("state after")[1] for line in one.output.splitlines() if "state after" in line] for one in runs
+    ]
+    assert hashes[0] == hashes[1]
+    assert len(hashes[0]) == 10
 
 
 def test_stripped_program_takes_its_steps_one_after_the_other(tmp_path: Path) -> None:
@@ -224,3 +287,41 @@ def test_runs_inside_python_have_threads_too(tmp_path: Path) -> None:
         pytest.raises(pogosim.ProgramFailedError, match="user_step of robot #7 of"),
     ):
         simulation.step(60)
+
+
+def test_cpp_programs_with_containers_and_exceptions_share_nothing(tmp_path: Path) -> None:
+    source = tmp_path / "containers.cpp"
+    source.write_text(
+        """#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <vector>
+#include "pogobase.h"
+struct Userdata { std::vector<int> seen; std::map<int, std::string> names; std::unordered_map<int, int> count; };
+DECLARE_USERDATA(Userdata);
+REGISTER_USERDATA(Userdata);
+static constexpr int weights[4] = {1, 2, 3, 4};
+void user_init() { srand(static_cast<unsigned>(pogobot_helper_getRandSeed())); }
+void user_step() {
+    mydata->seen.push_back(rand() % 1000 * weights[rand() % 4]);
+    std::sort(mydata->seen.begin(), mydata->seen.end());
+    mydata->names[rand() % 10] = "robot " + std::to_string(rand() % 100);
+    mydata->count[mydata->seen.front()]++;
+    try {
+        if (rand() % 20 == 0) {
+            throw std::runtime_error("one in twenty");
+        }
+    } catch (std::exception const& error) {
+        printf("%s %s\\n", error.what(), mydata->names.begin()->second.c_str());
+    }
+}
+int main() { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+"""
+    )
+    program = compile_program(tmp_path / "containers", source)
+    runs = [run(program, tmp_path / str(threads), {**SWARM, "threads": threads}) for threads in (1, 3)]
+    assert "robots take their steps on all of them" in runs[1].output
+    assert len(runs[0].robot_lines) > 1000
+    assert runs[0].robot_lines == runs[1].robot_lines
