@@ -55,12 +55,12 @@ TEST(BadObjects, NegativeAndZeroSizesAndMasses) {
     for (char const* const type :
          {"pogobot", "pogobject", "membrane", "rectmembrane", "active_object", "passive_object"}) {
         expect_refused(
-            type, {{"geometry: disk, radius: 0", ".radius: expected a number above 0, at most 1000000 (mm), found 0"},
-                   {"geometry: disk, radius: -5", ".radius: expected a number above 0, at most 1000000 (mm), found -5"},
+            type, {{"geometry: disk, radius: 0", ".radius: expected a number from 0.001 to 1000000 (mm), found 0"},
+                   {"geometry: disk, radius: -5", ".radius: expected a number from 0.001 to 1000000 (mm), found -5"},
                    {"geometry: disk, body_density: -1",
-                    ".body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found -1"},
+                    ".body_density: expected a number from 1e-10 to 1000000000000000 (per (100 mm)^2), found -1"},
                    {"geometry: disk, body_density: 0",
-                    ".body_density: expected a number above 0, at most 1000000000000000 (per (100 mm)^2), found 0"},
+                    ".body_density: expected a number from 1e-10 to 1000000000000000 (per (100 mm)^2), found 0"},
                    {"geometry: blob", ".geometry: expected one of disk, rectangle, triangle, found 'blob'"},
                    {"geometry: arena", ".geometry: expected one of disk, rectangle, triangle, found 'arena'"},
                    {"geometry: disk, x: 4", ".x: x without y; specify both or neither"}});
@@ -73,7 +73,7 @@ TEST(BadObjects, MembranesWithoutDots) {
             type,
             {{"geometry: disk, num_dots: 0", ".num_dots: expected an integer from 3 to 10000, found 0"},
              {"geometry: disk, num_dots: -3", ".num_dots: expected an integer from 3 to 10000, found -3"},
-             {"geometry: disk, dot_radius: 0", ".dot_radius: expected a number above 0, at most 1000000 (mm), found 0"},
+             {"geometry: disk, dot_radius: 0", ".dot_radius: expected a number from 0.001 to 1000000 (mm), found 0"},
              {"geometry: disk, stiffness: 0", ".stiffness: expected a number above 0, at most 10000 (Hz), found 0"},
              {"geometry: disk, cross_span: -1", ".cross_span: expected an integer from 0 to 10000 (dots), found -1"},
              {"geometry: disk, colormap: blue", ".colormap: expected rainbow or qualitative, found 'blue'"}});
@@ -88,7 +88,7 @@ TEST(BadObjects, RingsThatCannotBe) {
     expect_refused("rectmembrane", {{"geometry: disk, radius: 100, rect_thickness: 201",
                                      ".rect_thickness: the membrane is too thick for a shape of radius 100 mm"},
                                     {"geometry: disk, rect_thickness: 0",
-                                     ".rect_thickness: expected a number above 0, at most 1000000 (mm), found 0"}});
+                                     ".rect_thickness: expected a number from 0.001 to 1000000 (mm), found 0"}});
     EXPECT_EQ(error_with("  it: {type: membrane, geometry: disk}\n"), "no error");  // all defaults
 }
 
