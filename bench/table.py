@@ -19,6 +19,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import pandas as pd
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAMS = ("run_and_tumble", "hanabi", "push_sum", "moving_oscillators", "phototaxis", "walls_and_membranes")
@@ -89,6 +90,10 @@ def draw(rows: pd.DataFrame, path: Path) -> None:
             if not line.empty:
                 axes.plot(line["robots"], line[COST], style, color=f"C{number}", label=f"{program}, {engine}")
     axes.set(xscale="log", yscale="log", xlabel="robots", ylabel="\u00b5s per robot and step, one thread")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", " ")))
+    axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.grid(which="both", alpha=0.3)
     axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.savefig(path, dpi=120)
