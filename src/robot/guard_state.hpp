@@ -48,6 +48,7 @@ struct WallClockWatch {
 struct RescueWatch {
     std::uint64_t writes_seen = 0;
     double last_write_s = 0.0;
+    double grace_s = 0.0;
 };
 
 /// Where the data file stands, for last words. Plain memory: the heap may be destroyed.
@@ -152,8 +153,8 @@ void give_back_watch_signals();
 /// Watches over the thread that calls this.
 void start_watch(RunGuard& guard);
 
-/// From now on the only thing that is watched is that the data file gets on.
-void watch_rescue(RunGuard& guard);
+/// From now on the only thing that is watched is that the data file gets on. `grace_s`: more time for what comes before.
+void watch_rescue(RunGuard& guard, double grace_s = 0.0);
 
 void stop_watch(RunGuard& guard);
 

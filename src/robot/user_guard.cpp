@@ -114,6 +114,17 @@ void CaughtSignals::need_no_more() {
     }
 }
 
+/// Its own thread waits for all that run user code, some of which may wait for a lock that is held for ever now: that must
+/// have an end, too.
+void let_run_expect_rescue(RunGuard const& helper) {
+    RunGuard& run = *helper.helped;
+    set_reason(run, helper.what.c_str());
+    run.code = helper.code;
+    run.last_words = helper.last_words;
+    run.left_by_force = true;
+    watch_rescue(run, run.busy.timeout_s);
+}
+
 UserFailure requested_failure(RunGuard& guard, EndRequest const& request) {
     if (!guard.left_by_force) {
         begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
@@ -267,6 +278,9 @@ void begin_rescue(RunGuard& guard, char const* what, ExitCode code, bool in_othe
         watch_rescue(guard);
     }
     prepare_last_words(what, in_other_thread);
+    if (guard.helped != nullptr) {
+        let_run_expect_rescue(guard);
+    }
 }
 
 void give_up_rescue(RunGuard& guard) {

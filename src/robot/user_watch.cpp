@@ -156,7 +156,7 @@ void look_after_rescue(RunGuard& guard, double now_s) {
         rescue.writes_seen = writes;
         rescue.last_write_s = now_s;
     }
-    double const limit_s = kPatienceS + static_cast<double>(progress.bytes) / kSlowestDiskBytesPerS;
+    double const limit_s = kPatienceS + rescue.grace_s + static_cast<double>(progress.bytes) / kSlowestDiskBytesPerS;
     if (now_s - rescue.last_write_s > limit_s) {
         give_up_rescue(guard);
     }
@@ -256,8 +256,8 @@ void start_watch(RunGuard& guard) {
     }
 }
 
-void watch_rescue(RunGuard& guard) {
-    guard.rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s()};
+void watch_rescue(RunGuard& guard, double grace_s) {
+    guard.rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s(), .grace_s = grace_s};
     catch_signal(SIGALRM, SA_RESTART, on_look);  // the program may have taken it
     guard.wall_timer.arm(kRescueLookPeriodS);
 }

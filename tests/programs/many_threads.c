@@ -14,7 +14,7 @@ typedef struct {
 DECLARE_USERDATA(USERDATA)
 REGISTER_USERDATA(USERDATA)
 
-static char kind[32] = "nothing";
+static char kind[40] = "nothing";
 static uint16_t every = 100;
 static int32_t limit = 5;
 
@@ -55,6 +55,16 @@ static void do_deed(void) {
         *nowhere = 1;
     } else if (is("divide_by_zero")) {
         limit = 10 / zero;
+    } else if (is("one_crashes_beside_one_that_loops")) {
+        int volatile* volatile nowhere = NULL;
+        while (pogobot_helper_getid() == 300) {
+            zero = 0;
+        }
+        if (pogobot_helper_getid() == 299) {
+            for (uint32_t volatile i = 0; i < 300000000; i++) {  // until the other one is at it
+            }
+            *nowhere = 1;
+        }
     } else if (is("abort")) {
         abort();
     } else if (is("loop_for_ever")) {

@@ -136,6 +136,19 @@ def test_robot_that_never_returns_ends_the_run(program: Compile, tmp_path: Path,
     assert max(result.frame()["time"]) == pytest.approx(0.1)
 
 
+def test_crash_beside_a_robot_that_never_returns_ends_the_run(program: Compile, tmp_path: Path) -> None:
+    began_s = time.monotonic()
+    parameters = {"kind": "one_crashes_beside_one_that_loops", "every": 1, "limit": 5}
+    settings = {**SWARM, "threads": 2, "user_code_timeout": 0, "parameters": parameters}
+    result = run(program("many_threads.c"), tmp_path, settings)
+    assert time.monotonic() - began_s < 40.0
+    assert result.code == 3
+    (line,) = errors_of(result)
+    assert "failed in user_step of robot #299 of category 'robots', tick 10" in line
+    assert "segmentation fault" in line
+    assert "run it again with -s 1 --set simulation_time=" in line
+
+
 @pytest.mark.parametrize("every", [5, 555])
 def test_second_interrupt_ends_robots_that_never_return(program: Compile, tmp_path: Path, every: int) -> None:
     parameters = {"kind": "loop_for_ever", "every": every, "limit": 5}
