@@ -153,7 +153,7 @@ void give_back_watch_signals();
 /// Watches over the thread that calls this.
 void start_watch(RunGuard& guard);
 
-/// From now on the only thing that is watched is that the data file gets on. `grace_s`: more time for what comes before.
+/// From now on the only thing that is watched is that the data file gets on. `grace_s`: for what comes before.
 void watch_rescue(RunGuard& guard, double grace_s = 0.0);
 
 void stop_watch(RunGuard& guard);
