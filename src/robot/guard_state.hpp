@@ -82,6 +82,7 @@ struct RunGuard {
     bool too_long = false;
     std::atomic<bool> crashed = false;
     std::atomic<bool> left_by_force = false;
+    std::atomic<bool> expects_rescue = false;  // a helper was left by force, and all others are waited for
 
     // Requests to stop.
     std::atomic<int> interrupts = 0;

@@ -126,7 +126,7 @@ bool is_harmless_name(std::string_view name) {
     return throws || std::ranges::binary_search(kHarmless, name) || std::ranges::any_of(kHarmlessBeginnings, begins);
 }
 
-/// The simulator's own functions know of threads; the mathematical ones keep nothing in mind, but for those that set
+/// The simulator's own functions know of threads; the mathematical ones have no state, but for those that set
 /// how numbers are rounded (fesetround() and so on), and the sign that lgamma() leaves.
 bool is_of_simulator_or_mathematical(std::string const& name) {
     if (name.starts_with("fe") || name == "signgam") {
@@ -185,8 +185,7 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     }
     for (std::string const& name : symbols.imports) {
         if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {
-            return fmt::format("the program uses '{}', which may keep something in mind from one robot to another",
-                               name);
+            return fmt::format("the program uses '{}', which may have a state that all robots share", name);
         }
     }
     return "";

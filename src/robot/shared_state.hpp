@@ -13,7 +13,7 @@ namespace pogosim {
 
 /// Why robots must take their steps one after the other; empty: they need not. They share nothing that they could
 /// change when all variables of the program are set from the configuration (and then stay as they are, see
-/// ConfiguredVariables), and it calls no function outside of the simulator but those that keep nothing in mind, such as
+/// ConfiguredVariables), and it calls no function outside of the simulator but those without a state, such as
 /// sqrtf(). To be called after the program has read its configuration.
 std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound);
 

@@ -121,7 +121,7 @@ void let_run_expect_rescue(RunGuard const& helper) {
     set_reason(run, helper.what.c_str());
     run.code = helper.code;
     run.last_words = helper.last_words;
-    run.left_by_force = true;
+    run.expects_rescue = true;
     watch_rescue(run, run.busy.timeout_s);
 }
 

@@ -183,6 +183,12 @@ void on_look(int signal, siginfo_t* info, void* signal_context) {
         return;
     }
     WallClockWatch& waiting = guard.waiting;
+    if (guard.expects_rescue) {
+        look_after_rescue(guard, now_s);
+        if (*waiting.request_name == '\0') {
+            return;
+        }
+    }
     ProcessorWatch const& busy = guard.busy;
     if (guard.calls != waiting.calls_seen) {
         waiting.calls_seen = guard.calls;
