@@ -13,7 +13,7 @@ constexpr float kRoundingMm = 1.0F;  // of places far from the origin
 constexpr float kOverlapMm = 0.25F;
 constexpr float kNearerMm = 0.01F;
 // Whose way was cut so often stays where he was: others then have a fixed obstacle to stop at.
-constexpr int kMostLooks = 20;
+constexpr int kMostCuts = 20;
 
 /// The fraction of a relative motion after which two disks touch; 1 if they never do. `way_mm`: from one centre to the
 /// other at the start. Disks that overlap touch when they come nearer.
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> const& Sweep::stop_at_impacts(World& world, FixedPoly
     stopped_.clear();
     waiting_.assign(fast.begin(), fast.end());
     is_waiting_.assign(bodies.size(), 0);
-    looks_.assign(bodies.size(), 0);
+    cuts_.assign(bodies.size(), 0);
     for (std::uint32_t const i : fast) {
         is_waiting_[i] = 1;
     }
@@ -56,7 +56,7 @@ std::vector<std::uint32_t> const& Sweep::stop_at_impacts(World& world, FixedPoly
         is_waiting_[i] = 0;
         float const fraction = free_fraction(world, polygons, i);
         if (fraction < fractions_[i]) {
-            fractions_[i] = ++looks_[i] < kMostLooks ? fraction : 0.0F;
+            fractions_[i] = ++cuts_[i] < kMostCuts ? fraction : 0.0F;
             bodies.position_mm[i] = starts_mm_[i] + fractions_[i] * motions_mm_[i];
             stopped_.push_back(i);
             look_at_again(world, i);

@@ -36,7 +36,7 @@ private:
     std::vector<float> fractions_;      // of its motion that each makes
     std::vector<std::uint32_t> waiting_;
     std::vector<char> is_waiting_;  // of all bodies
-    std::vector<int> looks_;        // at each body
+    std::vector<int> cuts_;         // of the way of each body
     std::vector<std::uint32_t> stopped_;
     UniformGrid grid_;  // of the starts
     float farthest_mm_ = 0.0F;
