@@ -48,10 +48,6 @@ std::string const& physics_engine_behind(std::string const& name, World const& w
     return engine_for(name, world).name;
 }
 
-std::string why_not_the_first_engine(World const& world) {
-    return engines().front().why_unfit(world);
-}
-
 std::string why_unfit(std::string const& name, World const& world) {
     return engine_for(name, world).why_unfit(world);
 }

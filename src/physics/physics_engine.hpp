@@ -37,9 +37,6 @@ inline constexpr std::string_view kAutomaticEngine = "auto";
 /// What make_physics_engine() knows: kAutomaticEngine, then the engines.
 std::vector<std::string> const& physics_engine_names();
 
-/// Why kAutomaticEngine is not the first engine here; empty: it is.
-std::string why_not_the_first_engine(World const& world);
-
 /// The engine that a name stands for in this world: another one than `name` for kAutomaticEngine only.
 std::string const& physics_engine_behind(std::string const& name, World const& world);
 

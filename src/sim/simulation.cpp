@@ -53,7 +53,7 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
         throw ConfigError(fmt::format("{}: {} {}; use {} or box2d", place_of(scenario, Setting::physics_engine), engine,
                                       reason, kAutomaticEngine));
     }
-    if (std::string const reason = why_not_the_first_engine(world); engine == kAutomaticEngine && !reason.empty()) {
+    if (std::string const reason = why_unfit("disk", world); engine == kAutomaticEngine && !reason.empty()) {
         log().info("physics_engine: {}, since disk {}{}", physics_engine_behind(engine, world), reason,
                    world.periodic ? "; bodies do not meet across the borders of the arena" : "");
     }
