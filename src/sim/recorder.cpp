@@ -200,7 +200,7 @@ void Recorder::write_table() {
         built_in_.push_back(row_of(world_, object, ticks_of(object)));
         if (has_subparts(world_.categories[object.category])) {
             write_until(row + 1);
-            record_subparts(object);
+            record_subparts(object, built_in_.back());
         }
     }
     write_until(count);
@@ -222,8 +222,7 @@ void Recorder::show_table() {
     shown_->end();
 }
 
-void Recorder::record_subparts(Object const& object) {
-    ObjectRow row = row_of(world_, object, ticks_of(object));
+void Recorder::record_subparts(Object const& object, ObjectRow row) {
     for (std::uint32_t part = 0; part < object.body_count; ++part) {
         Vec2 const position_mm = wrapped(world_, world_.bodies.position_mm[object.body + part]);
         row.x_mm = position_mm.x;

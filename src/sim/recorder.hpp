@@ -82,7 +82,8 @@ private:
     void write_table();
     void show_table();
     std::optional<std::int64_t> ticks_of(Object const& object) const;
-    void record_subparts(Object const& object);
+    /// Rows of its bodies, each like the object's own `row` at another place.
+    void record_subparts(Object const& object, ObjectRow row);
 
     Scenario const& scenario_;
     World const& world_;
