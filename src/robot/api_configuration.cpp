@@ -4,10 +4,10 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
-#include <span>
 #include <string>
 
 #include "robot/context.hpp"
+#include "robot/program_image.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
 
@@ -67,19 +67,14 @@ void assign_text(ParameterSource& source, std::string const& name, void* text, s
 
 /// Only what lives as long as the run may be set later: not a variable on the stack.
 bool is_in_program(void const* variable) {
-    return std::ranges::any_of(context.services->program_memory, [variable](auto const& memory) {
-        return variable >= memory.data() && variable < memory.data() + memory.size();
-    });
+    return pogosim::is_in_any(context.services->program_variables, variable) ||
+           pogosim::is_in_any({&context.services->user_data, 1}, variable);
 }
 
 /// Where parts of the swarm run on several threads, a variable of all robots has had its value before the first step:
 /// setting it again, to the default in between, would be seen by others.
 bool is_set_for_all(void const* variable) {
-    std::span const globals =
-        std::span(context.services->program_memory).first(context.services->program_memory.size() - 1);
-    return context.outbox != nullptr && std::ranges::any_of(globals, [variable](auto const& memory) {
-               return variable >= memory.data() && variable < memory.data() + memory.size();
-           });
+    return context.outbox != nullptr && pogosim::is_in_any(context.services->program_variables, variable);
 }
 
 void bind(BoundVariable const& bound) {

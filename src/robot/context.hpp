@@ -57,7 +57,8 @@ struct RunServices {
     std::mutex parameters_mutex{};  // of parameters and bound_variables, for robots on several threads
     std::uint32_t seed = 0;         // of the run
     DataExport data;
-    std::vector<std::span<std::byte>> program_memory{};  // its variables, and user data
+    std::vector<std::span<std::byte>> program_variables{};
+    std::span<std::byte> user_data{};  // of all robots and the global step
     std::vector<BoundVariable> bound_variables{};
     bool stop_requested = false;
     std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once

@@ -177,8 +177,8 @@ void Controllers::allocate_user_data() {
         controllers_[i].user_data = user_data_.data() + i * stride;
     }
     system_.user_data = user_data_.data() + controllers_.size() * stride;
-    services_.program_memory = image_.variables;
-    services_.program_memory.emplace_back(user_data_.data(), stride * blocks);
+    services_.program_variables = image_.variables;
+    services_.user_data = {user_data_.data(), stride * blocks};
 }
 
 void Controllers::draw_individual_differences(std::uint64_t seed) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 #ifdef __linux__
-#include <elf.h>
 #include <link.h>
 #include <sys/mman.h>
 #endif
@@ -24,7 +23,7 @@
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "pogosim/version.h"
-#include "robot/elf_bytes.hpp"
+#include "robot/elf_file.hpp"
 
 namespace pogosim {
 
@@ -56,15 +55,13 @@ std::vector<char> content_of(std::filesystem::path const& file) {
 
 /// What keeps a file from being loaded; empty: nothing.
 std::string problem_of(std::vector<char> const& bytes) {
-    auto const* const header = elf_at<Elf64_Ehdr>(bytes, 0);
-    if (header == nullptr || std::memcmp(header->e_ident, ELFMAG, SELFMAG) != 0) {
+    ElfFile const elf = elf_file(bytes);
+    if (elf.header == nullptr) {
         return "is no shared object: make one with 'make sim', or with 'cc -shared -fPIC'";
     }
-    auto const* const segments = elf_at<Elf64_Phdr>(bytes, header->e_phoff, header->e_phnum);
     bool const has_interpreter =
-        segments != nullptr && std::any_of(segments, segments + header->e_phnum,
-                                           [](Elf64_Phdr const& segment) { return segment.p_type == PT_INTERP; });
-    if (header->e_type != ET_DYN || has_interpreter) {
+        std::ranges::any_of(elf.segments, [](Elf64_Phdr const& segment) { return segment.p_type == PT_INTERP; });
+    if (elf.header->e_type != ET_DYN || has_interpreter) {
         return "is an executable: name the shared object that 'make sim' makes beside it, NAME.so";
     }
     return "";
@@ -73,18 +70,13 @@ std::string problem_of(std::vector<char> const& bytes) {
 /// Variables of inline functions and templates in C++ are unique in a process, whatever copy of the program they are in
 /// (STB_GNU_UNIQUE). Here, each copy has its own.
 void let_each_copy_have_its_variables(std::vector<char>& bytes) {
-    auto const* const header = elf_at<Elf64_Ehdr>(bytes, 0);
-    auto const* const sections = elf_at<Elf64_Shdr>(bytes, header->e_shoff, header->e_shnum);
-    for (int i = 0; sections != nullptr && i < header->e_shnum; ++i) {
-        if (sections[i].sh_type != SHT_DYNSYM) {
+    ElfFile const elf = elf_file(bytes);
+    for (Elf64_Shdr const& section : elf.sections) {
+        if (section.sh_type != SHT_DYNSYM) {
             continue;
         }
-        std::size_t const count = sections[i].sh_size / sizeof(Elf64_Sym);
-        if (elf_at<Elf64_Sym>(bytes, sections[i].sh_offset, count) == nullptr) {
-            continue;
-        }
-        auto* const symbols = reinterpret_cast<Elf64_Sym*>(bytes.data() + sections[i].sh_offset);
-        for (std::size_t k = 0; k < count; ++k) {
+        auto* const symbols = reinterpret_cast<Elf64_Sym*>(bytes.data() + section.sh_offset);
+        for (std::size_t k = 0; k < elf_symbols(elf, section).size(); ++k) {
             unsigned char& info = symbols[k].st_info;
             if (ELF64_ST_BIND(info) == STB_GNU_UNIQUE) {
                 info = ELF64_ST_INFO(STB_GLOBAL, ELF64_ST_TYPE(info));

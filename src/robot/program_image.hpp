@@ -1,6 +1,7 @@
 // A user's program in memory: linked into the executable that runs, or loaded from a shared object.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -27,6 +28,12 @@ struct ProgramImage {
     /// What its file says.
     ProgramSymbols symbols() const;
 };
+
+/// Whether a place is in one of these pieces of memory.
+inline bool is_in_any(std::span<std::span<std::byte> const> pieces, void const* place) {
+    return std::ranges::any_of(
+        pieces, [place](auto const& piece) { return place >= piece.data() && place < piece.data() + piece.size(); });
+}
 
 /// A program that is a part of this executable.
 ProgramImage linked_program(pogosim_program const& program, std::string name);

@@ -1,38 +1,15 @@
 #include "robot/program_symbols.hpp"
 
-#ifdef __linux__
-#include <elf.h>
-#endif
-
 #include <algorithm>
-#include <cstring>
 #include <string_view>
 
-#include "robot/elf_bytes.hpp"
+#include "robot/elf_file.hpp"
 
 namespace pogosim {
 
 #ifdef __linux__
 
 namespace {
-
-struct ElfFile {
-    std::span<char const> bytes;
-    std::span<Elf64_Shdr const> sections;
-    std::span<Elf64_Phdr const> segments;
-};
-
-ElfFile elf_file(std::span<char const> bytes) {
-    auto const* const header = elf_at<Elf64_Ehdr>(bytes, 0);
-    if (header == nullptr || std::memcmp(header->e_ident, ELFMAG, SELFMAG) != 0) {
-        return {.bytes = bytes, .sections = {}, .segments = {}};
-    }
-    auto const* const sections = elf_at<Elf64_Shdr>(bytes, header->e_shoff, header->e_shnum);
-    auto const* const segments = elf_at<Elf64_Phdr>(bytes, header->e_phoff, header->e_phnum);
-    return {.bytes = bytes,
-            .sections = {sections, sections != nullptr ? header->e_shnum : std::size_t{0}},
-            .segments = {segments, segments != nullptr ? header->e_phnum : std::size_t{0}}};
-}
 
 std::string_view text_at(std::span<char const> texts, std::size_t offset) {
     std::span<char const> const text = texts.subspan(std::min(offset, texts.size()));
@@ -58,15 +35,13 @@ bool is_writable(ElfFile const& file, Elf64_Sym const& symbol) {
 /// Calls see(symbol, name) for each symbol of a table.
 template <class See>
 void for_each_symbol(ElfFile const& file, Elf64_Shdr const& table, See const& see) {
-    std::size_t const count = table.sh_size / sizeof(Elf64_Sym);
-    auto const* const symbols = elf_at<Elf64_Sym>(file.bytes, table.sh_offset, count);
-    if (symbols == nullptr || table.sh_link >= file.sections.size()) {
+    if (table.sh_link >= file.sections.size()) {
         return;
     }
     Elf64_Shdr const& text_table = file.sections[table.sh_link];
-    auto const* const texts = elf_at<char>(file.bytes, text_table.sh_offset, text_table.sh_size);
-    for (Elf64_Sym const& symbol : std::span(symbols, count)) {
-        see(symbol, text_at({texts, texts != nullptr ? text_table.sh_size : 0}, symbol.st_name));
+    std::span const texts = elf_array<char>(file.bytes, text_table.sh_offset, text_table.sh_size);
+    for (Elf64_Sym const& symbol : elf_symbols(file, table)) {
+        see(symbol, text_at(texts, symbol.st_name));
     }
 }
 

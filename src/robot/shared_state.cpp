@@ -10,99 +10,100 @@
 
 namespace pogosim {
 
+using namespace std::string_view_literals;
+
 namespace {
 
 // Of the C and C++ libraries: what gives the same whoever calls it, in whatever order, and is safe on several threads.
 // Among those that are not here: strtok(), which remembers a text; fopen() and fprintf(), whose output would be in
 // another order.
-constexpr std::array kHarmless = std::to_array<std::string_view>({"_ITM_deregisterTMCloneTable",
-                                                                  "_ITM_registerTMCloneTable",
-                                                                  "_Unwind_Resume",
-                                                                  "_ZSt9terminatev",
-                                                                  "__assert_fail",
-                                                                  "__ctype_b_loc",
-                                                                  "__ctype_tolower_loc",
-                                                                  "__ctype_toupper_loc",
-                                                                  "__cxa_finalize",
-                                                                  "__gmon_start__",
-                                                                  "__gxx_personality_v0",
-                                                                  "__isoc99_sscanf",
-                                                                  "__libc_start_main",
-                                                                  "__stack_chk_fail",
-                                                                  "abort",
-                                                                  "abs",
-                                                                  "aligned_alloc",
-                                                                  "atof",
-                                                                  "atoi",
-                                                                  "atol",
-                                                                  "bsearch",
-                                                                  "calloc",
-                                                                  "div",
-                                                                  "free",
-                                                                  "isalnum",
-                                                                  "isalpha",
-                                                                  "isdigit",
-                                                                  "isspace",
-                                                                  "labs",
-                                                                  "ldiv",
-                                                                  "malloc",
-                                                                  "memchr",
-                                                                  "memcmp",
-                                                                  "memcpy",
-                                                                  "memmove",
-                                                                  "memset",
-                                                                  "qsort",
-                                                                  "realloc",
-                                                                  "snprintf",
-                                                                  "sprintf",
-                                                                  "sscanf",
-                                                                  "strcat",
-                                                                  "strchr",
-                                                                  "strcmp",
-                                                                  "strcpy",
-                                                                  "strlen",
-                                                                  "strncat",
-                                                                  "strncmp",
-                                                                  "strncpy",
-                                                                  "strnlen",
-                                                                  "strrchr",
-                                                                  "strstr",
-                                                                  "strtod",
-                                                                  "strtof",
-                                                                  "strtol",
-                                                                  "strtoul",
-                                                                  "tolower",
-                                                                  "toupper",
-                                                                  "vsnprintf",
-                                                                  "vsprintf"});
+constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
+                               "_ITM_registerTMCloneTable"sv,
+                               "_Unwind_Resume"sv,
+                               "_ZSt9terminatev"sv,
+                               "__assert_fail"sv,
+                               "__ctype_b_loc"sv,
+                               "__ctype_tolower_loc"sv,
+                               "__ctype_toupper_loc"sv,
+                               "__gmon_start__"sv,
+                               "__gxx_personality_v0"sv,
+                               "__isoc99_sscanf"sv,
+                               "__libc_start_main"sv,
+                               "__stack_chk_fail"sv,
+                               "abort"sv,
+                               "abs"sv,
+                               "aligned_alloc"sv,
+                               "atof"sv,
+                               "atoi"sv,
+                               "atol"sv,
+                               "bsearch"sv,
+                               "calloc"sv,
+                               "div"sv,
+                               "free"sv,
+                               "isalnum"sv,
+                               "isalpha"sv,
+                               "isdigit"sv,
+                               "isspace"sv,
+                               "labs"sv,
+                               "ldiv"sv,
+                               "malloc"sv,
+                               "memchr"sv,
+                               "memcmp"sv,
+                               "memcpy"sv,
+                               "memmove"sv,
+                               "memset"sv,
+                               "qsort"sv,
+                               "realloc"sv,
+                               "snprintf"sv,
+                               "sprintf"sv,
+                               "sscanf"sv,
+                               "strcat"sv,
+                               "strchr"sv,
+                               "strcmp"sv,
+                               "strcpy"sv,
+                               "strlen"sv,
+                               "strncat"sv,
+                               "strncmp"sv,
+                               "strncpy"sv,
+                               "strnlen"sv,
+                               "strrchr"sv,
+                               "strstr"sv,
+                               "strtod"sv,
+                               "strtof"sv,
+                               "strtol"sv,
+                               "strtoul"sv,
+                               "tolower"sv,
+                               "toupper"sv,
+                               "vsnprintf"sv,
+                               "vsprintf"sv};
 static_assert(std::ranges::is_sorted(kHarmless));
 
 // Groups of functions: allocation, exceptions, containers and texts in C++.
-constexpr std::array kHarmlessBeginnings = std::to_array<std::string_view>({"__cxa_",
-                                                                            "_ZTI",
-                                                                            "_ZTS",
-                                                                            "_ZTV",
-                                                                            "_Znw",
-                                                                            "_Zna",
-                                                                            "_Zdl",
-                                                                            "_Zda",
-                                                                            "_ZNSt7__cxx1112basic_string",
-                                                                            "_ZNKSt7__cxx1112basic_string",
-                                                                            "_ZNSt8__detail15_List_node_base",
-                                                                            "_ZNKSt8__detail20_Prime_rehash_policy",
-                                                                            "_ZSt18_Rb_tree",
-                                                                            "_ZSt28_Rb_tree",
-                                                                            "_ZSt29_Rb_tree",
-                                                                            "_ZNKSt9exception",
-                                                                            "_ZNSt9exception",
-                                                                            "_ZNSt11logic_error",
-                                                                            "_ZNSt12out_of_range",
-                                                                            "_ZNSt13runtime_error",
-                                                                            "_ZNSt16invalid_argument"});
+constexpr std::array kHarmlessBeginnings{"__cxa_"sv,
+                                         "_ZTI"sv,
+                                         "_ZTS"sv,
+                                         "_ZTV"sv,
+                                         "_Znw"sv,
+                                         "_Zna"sv,
+                                         "_Zdl"sv,
+                                         "_Zda"sv,
+                                         "_ZNSt7__cxx1112basic_string"sv,
+                                         "_ZNKSt7__cxx1112basic_string"sv,
+                                         "_ZNSt8__detail15_List_node_base"sv,
+                                         "_ZNKSt8__detail20_Prime_rehash_policy"sv,
+                                         "_ZSt18_Rb_tree"sv,
+                                         "_ZSt28_Rb_tree"sv,
+                                         "_ZSt29_Rb_tree"sv,
+                                         "_ZNKSt9exception"sv,
+                                         "_ZNSt9exception"sv,
+                                         "_ZNSt11logic_error"sv,
+                                         "_ZNSt12out_of_range"sv,
+                                         "_ZNSt13runtime_error"sv,
+                                         "_ZNSt16invalid_argument"sv};
 
 // Of every program; nobody changes them after its start.
-constexpr std::array kOwnVariables = std::to_array<std::string_view>(
-    {"REGISTER_USERDATA_once", "UserdataConstruct", "UserdataSize", "_ZStL8__ioinit", "__dso_handle"});
+constexpr std::array kOwnVariables{"REGISTER_USERDATA_once"sv, "UserdataConstruct"sv, "UserdataSize"sv,
+                                   "_ZStL8__ioinit"sv, "__dso_handle"sv};
 
 /// Where the object begins that a place in memory belongs to, and its file.
 struct LoadedObject {
@@ -114,6 +115,11 @@ LoadedObject object_of(void const* place) {
     Dl_info info;
     return place != nullptr && dladdr(place, &info) != 0 ? LoadedObject{info.dli_fbase, info.dli_fname}
                                                          : LoadedObject{};
+}
+
+LoadedObject const& simulator() {
+    static LoadedObject const found = object_of(reinterpret_cast<void const*>(&pogosim_rand));
+    return found;
 }
 
 bool is_harmless_name(std::string_view name) {
@@ -132,11 +138,10 @@ bool is_of_simulator_or_mathematical(std::string const& name) {
     if (name.starts_with("fe") || name == "signgam") {
         return false;
     }
-    LoadedObject const simulator = object_of(reinterpret_cast<void const*>(&pogosim_rand));
-    static void* const library = dlopen(std::string(simulator.file).c_str(), RTLD_NOW | RTLD_NOLOAD);
+    static void* const library = dlopen(std::string(simulator().file).c_str(), RTLD_NOW | RTLD_NOLOAD);
     LoadedObject const object = object_of(library != nullptr ? dlsym(library, name.c_str()) : nullptr);
     return object.begin != nullptr &&
-           (object.begin == simulator.begin || object.file.find("/libm.so") != std::string_view::npos ||
+           (object.begin == simulator().begin || object.file.find("/libm.so") != std::string_view::npos ||
             object.file.find("/libm-") != std::string_view::npos);
 }
 
@@ -168,8 +173,7 @@ bool is_configured(std::byte const* begin, std::size_t bytes, std::span<BoundVar
 }  // namespace
 
 std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound) {
-    LoadedObject const simulator = object_of(reinterpret_cast<void const*>(&pogosim_rand));
-    if (object_of(reinterpret_cast<void const*>(image.main)).begin == simulator.begin) {
+    if (object_of(reinterpret_cast<void const*>(image.main)).begin == simulator().begin) {
         return "the program and the simulator are in one file";
     }
     ProgramSymbols const symbols = image.symbols();
@@ -192,13 +196,8 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
 }
 
 ConfiguredVariables::ConfiguredVariables(ProgramImage const& image, std::span<BoundVariable const> bound) {
-    auto const is_global = [&image](void const* variable) {
-        return std::ranges::any_of(image.variables, [variable](auto const& memory) {
-            return variable >= memory.data() && variable < memory.data() + memory.size();
-        });
-    };
     for (BoundVariable const& one : bound) {
-        if (is_global(one.variable)) {
+        if (is_in_any(image.variables, one.variable)) {
             variables_.push_back({.name = one.name,
                                   .now = std::span(static_cast<std::byte const*>(one.variable), one.bytes),
                                   .remembered = {}});
