@@ -64,7 +64,7 @@ struct RunGuard {
     // Of more threads that run user code at the same time, see HelperGuard.
     RunGuard* helped = nullptr;                // the guard of their run; null: this is one
     std::atomic<RunGuard*> helpers = nullptr;  // the first of them
-    RunGuard* next_helper = nullptr;
+    std::atomic<RunGuard*> next_helper = nullptr;
     int depth = 0;  // of GuardedThread
     void const* program_base = nullptr;
     sigjmp_buf return_point{};

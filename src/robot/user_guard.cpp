@@ -203,21 +203,17 @@ GuardedThread::~GuardedThread() {
 HelperGuard::HelperGuard(UserGuard& run) : run_(*run.state_), guard_(run_.program_base, run_.busy.timeout_s) {
     RunGuard& self = *guard_.state_;
     self.helped = &run_;
-    self.next_helper = run_.helpers;
+    self.next_helper = run_.helpers.load();
     run_.helpers = &self;
 }
 
 HelperGuard::~HelperGuard() {
     RunGuard& self = *guard_.state_;
-    if (run_.helpers == &self) {
-        run_.helpers = self.next_helper;
-    } else {
-        RunGuard* before = run_.helpers;
-        while (before->next_helper != &self) {
-            before = before->next_helper;
-        }
-        before->next_helper = self.next_helper;
+    std::atomic<RunGuard*>* link = &run_.helpers;
+    while (*link != &self) {
+        link = &link->load()->next_helper;
     }
+    *link = self.next_helper.load();
     stop_watch(self);
     if (is_entered_) {
         caught_signals.need_no_more();
