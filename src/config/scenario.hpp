@@ -87,6 +87,12 @@ struct OutputConfig {
 /// Threads of a run.
 inline constexpr int kMostThreads = 256;
 
+/// Variables of the program outside USERDATA.
+enum class RobotMemoryKind {
+    shared,  // one for all robots
+    own,     // each robot has its own
+};
+
 struct Scenario {
     std::filesystem::path file;                       // the configuration; relative names are also looked for beside it
     std::string arena_file;                           // needed
@@ -102,6 +108,7 @@ struct Scenario {
     std::optional<int> threads = 1;       // absent: as many as the number of objects is worth
     std::optional<std::uint32_t> seed;    // absent: drawn from the system
     double user_code_timeout_s = 10.0;    // processor time one call of user code may take; 0: no limit
+    RobotMemoryKind robot_memory = RobotMemoryKind::shared;
     int light_map_columns = 100;
     int light_map_rows = 100;
     FormationSpec formation;

@@ -53,6 +53,11 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"user_code_timeout", &Scenario::user_code_timeout_s, between(0, 1e6), "s",
           "Limit on the processor time of one call to user code (excluding other threads of the program), and on its "
           "wall-clock time once a signal has requested a stop; 0: no limit."},
+        K{"robot_memory",
+          one_of(&Scenario::robot_memory, {{"shared", RobotMemoryKind::shared}, {"own", RobotMemoryKind::own}}), any(),
+          "",
+          "Variables of the user program outside USERDATA. shared: one for all robots. own: each robot has its own, as "
+          "on real robots, except those marked POGO_SHARED; a run then takes the steps of robots on one thread."},
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "",
           "Everything in the arena, by category; see the tables below."},

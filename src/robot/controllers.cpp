@@ -14,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/memory.hpp"
 #include "robot/assert_controllers.hpp"
 #include "robot/program_checks.hpp"
@@ -181,6 +182,21 @@ void Controllers::allocate_user_data() {
     services_.user_data = {user_data_.data(), stride * blocks};
 }
 
+void Controllers::give_robots_own_memory() {
+    if (std::string const reason = why_memory_is_shared(image_); !reason.empty()) {
+        throw ConfigError(fmt::format("robot_memory: own needs to know the program's variables, but {}", reason));
+    }
+    std::vector<std::span<std::byte>> const pieces = image_.memory_of_robots();
+    own_memory_ = std::make_unique<RobotMemory>(pieces, static_cast<std::uint32_t>(controllers_.size()));
+}
+
+void Controllers::set_for_all(BoundVariable const& bound, ParameterSource& source) {
+    bound.read(source, bound.name, bound.variable, bound.size);
+    if (own_memory_) {
+        own_memory_->give_to_all({static_cast<std::byte const*>(bound.variable), bound.bytes});
+    }
+}
+
 void Controllers::draw_individual_differences(std::uint64_t seed) {
     std::uint64_t const key = mix64(seed + 1);
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
@@ -214,6 +230,9 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
                .printed = &self.printed,
                .outbox = context.outbox,
                .is_system = robot == kNone};
+    if (own_memory_) {
+        own_memory_->load(robot);
+    }
     mydata = self.user_data;
     self.clock_reads = 0;
     load_globals(self.loop);
@@ -293,7 +312,17 @@ void Controllers::run_global_setup() {
             {reinterpret_cast<char const*>(controller(robot).user_data), user_data_bytes()});
     };
     std::size_t const before = digest();
+    if (own_memory_) {
+        own_memory_->load(robot);
+        own_memory_->begin_common_change();
+    }
     call_as_system(robot, Phase::global_setup, callback_global_setup);
+    if (own_memory_) {
+        for (BoundVariable const& bound : services_.bound_variables) {
+            own_memory_->give_to_all({static_cast<std::byte const*>(bound.variable), bound.bytes});
+        }
+        own_memory_->end_common_change();
+    }
     without_exceptions([this] { services_.access.settle_light(); });
     if (count > 1 && digest() != before && !services_.access.gave_user_data) {
         warn_of_user_data_in_setup(world_.robots.id[robot]);
@@ -388,6 +417,9 @@ void Controllers::take_over(Outbox& outbox) {
 }
 
 std::string Controllers::why_one_after_the_other() const {
+    if (own_memory_) {
+        return "each has its own memory (robot_memory: own), which is put into the program before its step";
+    }
     if (gave_user_data()) {
         return "callback_global_setup has had USERDATA of robots, and may have put the same address into several";
     }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "robot/context.hpp"
 #include "robot/fenced_memory.hpp"
 #include "robot/program_image.hpp"
+#include "robot/robot_memory.hpp"
 #include "robot/shared_state.hpp"
 #include "world/world.hpp"
 
@@ -37,6 +39,18 @@ public:
     private:
         Controllers& controllers_;
     };
+
+    /// From start() on, each robot has its own copy of the program's variables, and so has the global step. Throws
+    /// ConfigError for a program whose variables are not known.
+    void give_robots_own_memory();
+
+    ProgramImage const& image() const { return image_; }
+
+    /// Null: robots share the program's variables.
+    RobotMemory* own_memory() const { return own_memory_.get(); }
+
+    /// Gives a variable another value: that of the program, or those of all robots.
+    void set_for_all(BoundVariable const& bound, ParameterSource& source);
 
     /// Constructs the user data of C++ programs, runs main() for each robot, then callback_global_setup, then every
     /// user_init.
@@ -165,6 +179,7 @@ private:
     Controller system_;                 // of the global step
     std::vector<Suspended> suspended_;  // by robot, ascending
     FencedMemory user_data_;
+    std::unique_ptr<RobotMemory> own_memory_;  // copies: of each robot, and of the global step
     std::string program_name_;
     std::array<char*, 2> main_arguments_{};  // of the program's main(): its name, and NULL
 };

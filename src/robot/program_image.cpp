@@ -236,6 +236,15 @@ ProgramSymbols ProgramImage::symbols() const {
     return symbols_of(bytes);
 }
 
+std::vector<std::span<std::byte>> ProgramImage::memory_of_robots() const {
+    std::vector<std::span<std::byte>> pieces;
+    for (ProgramSymbols::Piece const& piece : symbols().memory) {
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+        pieces.emplace_back(reinterpret_cast<std::byte*>(load_address + piece.begin), piece.end - piece.begin);
+    }
+    return pieces;
+}
+
 ProgramImage load_program(std::filesystem::path const& file) {
     auto const [library, symbols] = load_copy(file);
     auto const* const program = static_cast<pogosim_program const*>(dlsym(library.get(), "pogosim_this_program"));

@@ -27,6 +27,9 @@ struct ProgramImage {
 
     /// What its file says.
     ProgramSymbols symbols() const;
+
+    /// The variables of which each robot may have its own, see ProgramSymbols::memory.
+    std::vector<std::span<std::byte>> memory_of_robots() const;
 };
 
 /// Whether a place is in one of these pieces of memory.

@@ -1,7 +1,10 @@
 #include "robot/program_symbols.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <string_view>
+#include <utility>
 
 #include "robot/elf_file.hpp"
 
@@ -45,11 +48,84 @@ void for_each_symbol(ElfFile const& file, Elf64_Shdr const& table, See const& se
     }
 }
 
+std::string_view name_of(ElfFile const& file, Elf64_Shdr const& section) {
+    if (file.header->e_shstrndx >= file.sections.size()) {
+        return "";
+    }
+    Elf64_Shdr const& names = file.sections[file.header->e_shstrndx];
+    return text_at(elf_array<char>(file.bytes, names.sh_offset, names.sh_size), section.sh_name);
+}
+
+/// Those of the linker, and of sanitizers, are as the dynamic linker leaves them.
+bool has_variables_of_robots(ElfFile const& file, Elf64_Shdr const& section) {
+    constexpr std::uint64_t kWritable = SHF_WRITE | SHF_ALLOC;
+    bool const is_memory = section.sh_type == SHT_PROGBITS || section.sh_type == SHT_NOBITS;
+    if (!is_memory || (section.sh_flags & (kWritable | SHF_TLS)) != kWritable) {
+        return false;
+    }
+    constexpr std::array kOthers{".got", ".data.rel.ro", ".tm_clone_table", ".ctors",   ".dtors",
+                                 ".jcr", "pogo_shared",  "asan_",           "__sancov", "__llvm_"};
+    std::string_view const name = name_of(file, section);
+    return std::ranges::none_of(kOthers, [&](std::string_view other) { return name.starts_with(other); });
+}
+
+void take_out(std::vector<ProgramSymbols::Piece>& pieces, ProgramSymbols::Piece gap) {
+    std::vector<ProgramSymbols::Piece> rest;
+    for (ProgramSymbols::Piece const& piece : pieces) {
+        ProgramSymbols::Piece const before{piece.begin, std::min(piece.end, std::max(piece.begin, gap.begin))};
+        ProgramSymbols::Piece const after{std::max(piece.begin, std::min(piece.end, std::max(gap.end, before.end))),
+                                          piece.end};
+        for (ProgramSymbols::Piece const& part : {before, after}) {
+            if (part.begin < part.end) {
+                rest.push_back(part);
+            }
+        }
+    }
+    pieces = std::move(rest);
+}
+
+/// Variables of libraries may lie in an executable that uses them: stdout, std::cout.
+void take_out_variables_of_libraries(ElfFile const& file, std::vector<ProgramSymbols::Piece>& pieces) {
+    std::uint32_t const copy = file.header->e_machine == EM_AARCH64 ? R_AARCH64_COPY : R_X86_64_COPY;
+    for (Elf64_Shdr const& section : file.sections) {
+        if (section.sh_type != SHT_RELA || section.sh_link >= file.sections.size()) {
+            continue;
+        }
+        std::span const symbols = elf_symbols(file, file.sections[section.sh_link]);
+        for (Elf64_Rela const& relocation :
+             elf_array<Elf64_Rela>(file.bytes, section.sh_offset, section.sh_size / sizeof(Elf64_Rela))) {
+            std::size_t const symbol = ELF64_R_SYM(relocation.r_info);
+            if (ELF64_R_TYPE(relocation.r_info) == copy && symbol < symbols.size()) {
+                take_out(pieces, {relocation.r_offset, relocation.r_offset + symbols[symbol].st_size});
+            }
+        }
+    }
+}
+
+std::vector<ProgramSymbols::Piece> memory_of_robots(ElfFile const& file) {
+    std::vector<ProgramSymbols::Piece> pieces;
+    for (Elf64_Shdr const& section : file.sections) {
+        if (has_variables_of_robots(file, section) && section.sh_size > 0) {
+            pieces.push_back({section.sh_addr, section.sh_addr + section.sh_size});
+        }
+    }
+    if (file.header != nullptr) {
+        take_out_variables_of_libraries(file, pieces);
+    }
+    for (Elf64_Phdr const& segment : file.segments) {
+        if (segment.p_type == PT_GNU_RELRO) {
+            take_out(pieces, {segment.p_vaddr, segment.p_vaddr + segment.p_memsz});
+        }
+    }
+    return pieces;
+}
+
 }  // namespace
 
 ProgramSymbols symbols_of(std::span<char const> bytes) {
     ProgramSymbols found;
     ElfFile const file = elf_file(bytes);
+    found.memory = memory_of_robots(file);
     for (Elf64_Shdr const& section : file.sections) {
         if (section.sh_type == SHT_SYMTAB) {
             found.are_known = true;

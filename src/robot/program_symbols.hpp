@@ -18,8 +18,15 @@ struct ProgramSymbols {
         bool is_of_thread = false;  // each thread has its own
     };
 
+    /// A piece of memory.
+    struct Piece {
+        std::uintptr_t begin = 0;  // from where the program is loaded
+        std::uintptr_t end = 0;
+    };
+
     bool are_known = false;  // false: it has no symbol table (strip, -s), or this system has other files
     std::vector<Variable> variables{};
+    std::vector<Piece> memory{};  // of which robots may have their own: not POGO_SHARED, nor what is of libraries
     std::vector<std::string> imports{};  // names of functions and variables of libraries
 };
 

@@ -122,6 +122,12 @@ LoadedObject const& simulator() {
     return found;
 }
 
+constexpr auto kInOneFile = "the program and the simulator are in one file";
+
+bool is_in_file_of_simulator(ProgramImage const& image) {
+    return object_of(reinterpret_cast<void const*>(image.main)).begin == simulator().begin;
+}
+
 bool is_harmless_name(std::string_view name) {
     auto const begins = [name](std::string_view beginning) { return name.starts_with(beginning); };
     bool const is_checked_variant = name.starts_with("__") && name.ends_with("_chk");
@@ -173,8 +179,8 @@ bool is_configured(std::byte const* begin, std::size_t bytes, std::span<BoundVar
 }  // namespace
 
 std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound) {
-    if (object_of(reinterpret_cast<void const*>(image.main)).begin == simulator().begin) {
-        return "the program and the simulator are in one file";
+    if (is_in_file_of_simulator(image)) {
+        return kInOneFile;
     }
     ProgramSymbols const symbols = image.symbols();
     if (!symbols.are_known) {
@@ -191,6 +197,19 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
         if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {
             return fmt::format("the program uses '{}', which may have a state that all robots share", name);
         }
+    }
+    return "";
+}
+
+std::string why_memory_is_shared(ProgramImage const& image) {
+    if (is_in_file_of_simulator(image)) {
+        return kInOneFile;
+    }
+    auto const is_in_program = [&](std::span<std::byte> piece) {
+        return is_in_any(image.variables, piece.data()) && is_in_any(image.variables, piece.data() + piece.size() - 1);
+    };
+    if (image.symbols().memory.empty() || !std::ranges::all_of(image.memory_of_robots(), is_in_program)) {
+        return "its file does not say where they are: link it without -Wl,--strip-section-headers and the like";
     }
     return "";
 }

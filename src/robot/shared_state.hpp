@@ -17,6 +17,9 @@ namespace pogosim {
 /// sqrtf(). To be called after the program has read its configuration.
 std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound);
 
+/// Why robots cannot have own copies of the program's variables; empty: they can.
+std::string why_memory_is_shared(ProgramImage const& image);
+
 /// Variables of the program that are set from the configuration. All robots read them.
 class ConfiguredVariables {
 public:

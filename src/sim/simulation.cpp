@@ -280,6 +280,9 @@ std::optional<UserFailure> Simulation::start() {
                 seed_, world_.robots.size(), controllers_.user_data_bytes(), step_count(), world_.time_step_s,
                 physics_engine_behind(scenario_.physics_engine, world_), workers_.size());
     lighting_.update(world_);
+    if (scenario_.robot_memory == RobotMemoryKind::own) {
+        controllers_.give_robots_own_memory();
+    }
     if (auto failure = call_user_code([this] { controllers_.start(); })) {
         return failure;
     }
@@ -411,7 +414,7 @@ bool Simulation::set_parameter(std::string const& name, std::string const& yaml_
     bool has_variable = false;
     for (BoundVariable const& bound : services_.bound_variables) {
         if (bound.name == name) {
-            bound.read(source, bound.name, bound.variable, bound.size);
+            controllers_.set_for_all(bound, source);
             has_variable = true;
         }
     }

@@ -1,10 +1,14 @@
 #include "sim/state_hash.hpp"
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstring>
 #include <span>
 #include <vector>
+
+#include "robot/address_space.hpp"
+#include "robot/robot_memory.hpp"
 
 namespace pogosim {
 
@@ -97,6 +101,26 @@ void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailbo
     hash.add(mailboxes.dropped(robot));
 }
 
+/// What robots have changed of their own memory. Addresses differ from run to run: of one in the program, its offset
+/// counts, and of another one that it is one.
+void add_own_memory(Hash& hash, Controllers const& controllers) {
+    AddressSpace const addresses(controllers.image());
+    auto const add_part = [&](RobotMemory::Part const& part) {
+        hash.add(part.offset);
+        std::span<std::byte const> rest = part.bytes;
+        for (; rest.size() >= sizeof(std::uint64_t); rest = rest.subspan(sizeof(std::uint64_t))) {
+            std::uint64_t word = 0;
+            std::memcpy(&word, rest.data(), sizeof(word));
+            hash.add(addresses.without_place(word));
+        }
+        hash.add_bytes(rest);
+    };
+    for (std::uint32_t robot = 0; robot < controllers.all().size(); ++robot) {
+        std::ranges::for_each(controllers.own_memory()->changed_parts(robot), add_part);
+    }
+    std::ranges::for_each(controllers.own_memory()->changed_parts(kNone), add_part);
+}
+
 }  // namespace
 
 std::uint64_t state_hash(World const& world, Controllers const& controllers) {
@@ -120,6 +144,9 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
             hash.add(setting.intensity);
             hash.add(setting.moved_mm);
         }
+    }
+    if (controllers.own_memory() != nullptr) {
+        add_own_memory(hash, controllers);
     }
     return mix64(hash.value());
 }

@@ -103,7 +103,8 @@ def test_warning_reads_like_a_compilers(tmp_path: Path) -> None:
         f"main.c:2:9: warning: 'total' (4 bytes) {shared}",
         f"main.c:4:32: warning: 'seen' in count() (1 byte) {shared}",
         "Move it to USERDATA, read it in global_setup with init_from_configuration(), "
-        "or mark it POGO_SHARED if sharing is intended.",
+        "or mark it POGO_SHARED if sharing is intended. With 'robot_memory: own' in its configuration, each robot has "
+        "its own.",
     ]
 
 

@@ -131,7 +131,7 @@ int check(Options const& options) {
         std::fprintf(
             stderr,
             "Move it to USERDATA, read it in global_setup with init_from_configuration(), or mark it POGO_SHARED if "
-            "sharing is intended.\n");
+            "sharing is intended. With 'robot_memory: own' in its configuration, each robot has its own.\n");
     }
     return options.errors && !found.empty() ? 1 : 0;
 }
