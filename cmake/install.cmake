@@ -52,7 +52,7 @@ install(FILES
     "${PROJECT_BINARY_DIR}/cmake/pogosimConfigVersion.cmake"
     DESTINATION "${package_dir}")
 
-# How programs are compiled: pogosim.pc for pkg-config, and the same in pogosim.mk for make, which needs no pkg-config. Once
+# How programs are compiled: pogosim.pc for pkg-config (pogosim-sdk.pc for programs written for the robots' SDK), and the same in pogosim.mk for make, which needs no pkg-config. Once
 # for each of the two places. The installed ones are relative to themselves: the tree may be moved, and `cmake --install
 # --prefix` may choose the place late. Blanks in paths are escaped as pkg-config and shells want it.
 function(pogosim_build_settings folder)
@@ -60,6 +60,7 @@ function(pogosim_build_settings folder)
         string(REPLACE " " "\\ " ${place} "${${place}}")
     endforeach()
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${folder}/pogosim.pc" @ONLY)
+    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim-sdk.pc.in" "${folder}/pogosim-sdk.pc" @ONLY)
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.mk.in" "${folder}/pogosim.mk" @ONLY)
 endfunction()
 
@@ -74,7 +75,8 @@ set(interfacedir "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/interface")
 set(shared_state "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-shared-state")
 set(template "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/template_prj")
 pogosim_build_settings("${PROJECT_BINARY_DIR}/cmake")
-install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" "${PROJECT_BINARY_DIR}/cmake/pogosim.mk"
+install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" "${PROJECT_BINARY_DIR}/cmake/pogosim-sdk.pc"
+        "${PROJECT_BINARY_DIR}/cmake/pogosim.mk"
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 set(includedir "${PROJECT_SOURCE_DIR}/include")

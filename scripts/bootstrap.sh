@@ -9,7 +9,7 @@
 # shellcheck shell=bash
 
 apt_packages="build-essential cmake ninja-build ccache pkg-config
-    libbox2d-dev libyaml-cpp-dev libspdlog-dev libfmt-dev libcli11-dev libgtest-dev libbenchmark-dev libdw-dev
+    libbox2d-dev libyaml-cpp-dev libspdlog-dev libfmt-dev libcli11-dev libgtest-dev libbenchmark-dev libdw-dev libboost-context-dev
     libsdl2-dev libimgui-dev libpng-dev fonts-dejavu-core
     python3 python3-venv ca-certificates"
 # libclang-rt-dev: the sanitizers of clang. xvfb, xdotool, x11-apps: a display to test the window on. ffmpeg: films.
@@ -19,7 +19,7 @@ apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg ch
     gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf
     g++-aarch64-linux-gnu qemu-user gdb valgrind slurmctld slurmd slurm-client munge"
 apt_tidy_packages="clang-tidy"
-brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark sdl2 imgui libpng
+brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark sdl2 imgui libpng boost
     python3"
 brew_test_packages="doxygen ffmpeg"
 brew_tidy_packages="llvm"

@@ -17,6 +17,7 @@ struct pogosim_program {
     int (*main)(void);                    ///< the program's main(), which the headers rename
     size_t const* user_data_bytes;        ///< size of USERDATA; 0 without REGISTER_USERDATA
     void (**construct_user_data)(void*);  ///< constructs USERDATA in C++ programs; NULL in others
+    char const* for_sdk;                  ///< not NULL: written for the robots' SDK (pogobot.h): main() does not return
 };
 
 /// That of the program which contains it.
@@ -28,10 +29,14 @@ int pogosim_run_program(struct pogosim_program const* program, int argc, char** 
 /// Lets the simulator report crashes and interrupts from now on, also those before main(): for executables alone.
 void pogosim_guard_process(void);
 
-// What a program's calls of rand(), srand() and exit() become.
+// What a program's calls of rand(), srand(), exit() and usleep() become.
 int pogosim_rand(void);
 void pogosim_srand(unsigned seed);
 void pogosim_exit(int status) __attribute__((noreturn));
+void pogosim_usleep(unsigned microseconds);
+
+/// What msleep() is in the simulator's main loop: nothing of the tick is left to go on with after it.
+void pogosim_sleep_after_tick(int milliseconds);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

@@ -54,10 +54,15 @@ std::span<Key<Scenario> const> scenario_keys() {
           "Limit on the processor time of one call to user code (excluding other threads of the program), and on its "
           "wall-clock time once a signal has requested a stop; 0: no limit."},
         K{"robot_memory",
-          one_of(&Scenario::robot_memory, {{"shared", RobotMemoryKind::shared}, {"own", RobotMemoryKind::own}}), any(),
-          "",
+          one_of(&Scenario::robot_memory, {{"auto", RobotMemoryKind::automatic},
+                                           {"shared", RobotMemoryKind::shared},
+                                           {"own", RobotMemoryKind::own}}),
+          any(), "",
           "Variables of the user program outside USERDATA. shared: one for all robots. own: each robot has its own, as "
-          "on real robots, except those marked POGO_SHARED; a run then takes the steps of robots on one thread."},
+          "on real robots, except those marked POGO_SHARED; the robots then take their steps on one thread. auto: own "
+          "for programs written for the robots' SDK (pogobot.h), else shared."},
+        K{"robot_stack_size", &Scenario::robot_stack_kib, between(64, 1 << 20), "KiB",
+          "Stack on which the program of a robot runs. Only what is used of it takes memory."},
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "",
           "Everything in the arena, by category; see the tables below."},

@@ -11,11 +11,15 @@ int robot_main(void);
 __attribute__((weak)) size_t UserdataSize = 0;
 __attribute__((weak)) void (*UserdataConstruct)(void*) = NULL;
 
+// Of a program written for the robots' SDK, see pogobot.h.
+extern char const pogosim_is_for_sdk __attribute__((weak));
+
 struct pogosim_program const pogosim_this_program = {
     .interface_version = POGOSIM_VERSION_COMPILED,
     .main = robot_main,
     .user_data_bytes = &UserdataSize,
     .construct_user_data = &UserdataConstruct,
+    .for_sdk = &pogosim_is_for_sdk,
 };
 
 // Functions of the C library that are the robot's own. Defined within the program, and seen only there, they are the
@@ -28,6 +32,11 @@ POGO_WITHIN_PROGRAM int rand(void) {
 
 POGO_WITHIN_PROGRAM void srand(unsigned seed) {
     pogosim_srand(seed);
+}
+
+POGO_WITHIN_PROGRAM int usleep(unsigned microseconds) {
+    pogosim_usleep(microseconds);
+    return 0;
 }
 
 POGO_WITHIN_PROGRAM void exit(int status) {

@@ -8,6 +8,7 @@
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
+#include "robot/waiting.hpp"
 
 using pogosim::context;
 using pogosim::FrameHeader;
@@ -41,6 +42,7 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
         context.services->warn_once("a message of {} bytes was not sent: its payload is NULL", header.payload_length);
         return kNotSent;
     }
+    pogosim::note_call();
     if (!context.has_robot() || emitters == 0 || power == 0) {
         return kSent;
     }
@@ -179,10 +181,15 @@ void pogobot_infrared_set_power(uint8_t power) {
     context.controller->ir_power = std::min<uint8_t>(power, pogobot_infrared_emitter_power_max);
 }
 
-void pogobot_infrared_update() {}
+void pogobot_infrared_update() {
+    if (context.controller != nullptr) {
+        pogosim::note_call();
+    }
+}
 
 int pogobot_infrared_message_available() {
     require_robot(__func__);
+    pogosim::note_call();
     context.controller->program.reads_messages = true;
     return context.has_robot() && !context.world->mailboxes.empty(context.robot) ? 1 : 0;
 }

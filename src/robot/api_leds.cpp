@@ -1,6 +1,7 @@
 // pogolib/leds.h
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/waiting.hpp"
 
 using pogosim::context;
 using pogosim::require_robot;
@@ -12,6 +13,7 @@ void pogobot_led_setColor(uint8_t const r, uint8_t const g, uint8_t const b) {
 
 void pogobot_led_setColors(uint8_t const r, uint8_t const g, uint8_t const b, uint8_t id) {
     require_robot(__func__);
+    pogosim::note_call();
     if (id >= pogosim::kLedCount) {
         context.services->warn_once("pogobot_led_setColors: no LED {}; nothing set (valid: 0 head, 1 to 4 ring)", id);
     } else if (context.has_robot()) {

@@ -4,6 +4,7 @@
 
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/waiting.hpp"
 
 using pogosim::context;
 using pogosim::kMotorCount;
@@ -34,6 +35,7 @@ void warn_if_negative(std::uint16_t power) {
 
 void pogobot_motor_power_set(motor_id motor, uint16_t value) {
     require_robot(__func__);
+    pogosim::note_call();
     if (is_motor(motor)) {
         warn_if_negative(value);
         context.controller->motors.power[motor] = std::min<uint16_t>(value, motorFull);

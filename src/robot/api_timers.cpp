@@ -1,10 +1,14 @@
 // pogolib/timers.h
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <limits>
+#include <thread>
 
+#include "pogosim/program.h"
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/waiting.hpp"
 
 using pogosim::context;
 using pogosim::require_argument;
@@ -14,16 +18,9 @@ namespace {
 
 constexpr std::int64_t kMicrosecondsPerMillisecond = 1000;
 
-// User code takes no simulated time, so a program that waits in a loop for a stopwatch or a timer would wait forever.
-// Beyond this many clock queries within one tick, each one takes a microsecond, as on the real robot.
-constexpr int kFreeClockReads = 1000;
-constexpr std::int64_t kClockReadUs = 1;
-
 std::int64_t now_us() {
     pogosim::Controller& self = *context.controller;
-    if (++self.clock_reads > kFreeClockReads) {
-        self.clock_us += kClockReadUs;
-    }
+    pogosim::note_clock_read();
     return self.clock_us;
 }
 
@@ -86,7 +83,7 @@ bool pogobot_timer_has_expired(time_reference_t* timer) {
 void pogobot_timer_wait_for_expiry(time_reference_t* timer) {
     require_robot(__func__);
     require_argument(timer, __func__, "timer");
-    context.controller->clock_us = std::max(context.controller->clock_us, timer->origin_us);
+    pogosim::sleep_until(timer->origin_us);
 }
 
 void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset) {
@@ -97,7 +94,19 @@ void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t m
 
 void msleep(int milliseconds) {
     require_robot(__func__);
-    context.controller->clock_us += std::max(0, milliseconds) * kMicrosecondsPerMillisecond;
+    pogosim::sleep_until(context.controller->clock_us + std::max(0, milliseconds) * kMicrosecondsPerMillisecond);
+}
+
+void pogosim_usleep(unsigned microseconds) {
+    if (context.controller == nullptr) {  // in a thread that the program has started
+        std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
+        return;
+    }
+    pogosim::sleep_until(context.controller->clock_us + microseconds);
+}
+
+void pogosim_sleep_after_tick(int milliseconds) {
+    context.controller->clock_us += milliseconds * kMicrosecondsPerMillisecond;
 }
 
 void pli_timer_sleep_stopwatch_init() {}

@@ -88,12 +88,21 @@ private:
     void warn_of_robot(std::string_view format, std::string const& text);
 };
 
+/// Whether a robot's program may give the processor back in the middle, see waiting.hpp.
+enum class Waiting : std::uint8_t {
+    never,       // in callbacks
+    for_inputs,  // in user_init: sleeping is over at once
+    always,
+};
+
 struct Context {
     World* world = nullptr;
     RunServices* services = nullptr;
     Controller* controller = nullptr;  // never null while user code runs
     std::uint32_t robot = kNone;       // index in World::robots; kNone in the context of callback_global_step
     Phase phase = Phase::none;
+    Waiting waiting = Waiting::never;
+    std::int64_t step_us = 0;        // time of the step: from here on, a robot waits
     std::string* printed = nullptr;  // what was printed here since the last line end
     Outbox* outbox = nullptr;        // of the part of the swarm to which the robot belongs; null: all robots run here
     bool is_system = false;          // a callback of the whole run: global setup, data schema, global step

@@ -8,6 +8,7 @@
 
 #include "base/random.hpp"
 #include "interface/pogobase_inside.hpp"
+#include "robot/phase.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -58,14 +59,20 @@ inline constexpr int kPhotosensorCount = 3;  // back, front left, front right
 struct Accelerometer {
     Vec2 previous_mm_s;
     Vec2 current_mm_s;
-    float interval_s = 0.0F;      // between the two; 0 before the second tick
+    float interval_s = 0.0F;  // between the two; 0 before the second tick
+    bool has_measured = false;
     std::int64_t current_us = 0;  // the robot's clock at the last tick
 };
+
+class Fiber;
 
 struct Controller {
     std::int64_t clock_us = 0;        // the robot's own time
     std::int64_t clock_drift_us = 0;  // added at every tick
-    int clock_reads = 0;              // since the tick began
+    std::int64_t went_on_us = 0;      // its time when it got the processor
+    int calls = 0;                    // of what programs wait with in a loop, see waiting.hpp
+    Fiber* fiber = nullptr;           // on which its program waits in the middle; null: it does not
+    Phase waits_in = Phase::none;
     Program program;
     std::byte* user_data = nullptr;
     LoopGlobals loop;

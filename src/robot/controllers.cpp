@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "robot/assert_controllers.hpp"
+#include "robot/forked_child.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
@@ -47,6 +48,7 @@ constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
 
 constexpr std::int64_t kNever = std::int64_t{1} << 62U;  // us; room for what a callback may add to it
+constexpr std::int64_t kIdle = kNever / 2;               // us; of a program that has ended
 
 /// Bytes from one robot's user data to the next one's.
 std::size_t stride_of(std::size_t user_data_bytes) {
@@ -98,12 +100,18 @@ int draw_between(IntRange range, RandomStream& stream) {
 }
 
 /// In the robot's own time, in which ticks are evenly spaced: steps and ticks do not coincide.
-void measure_velocity(Accelerometer& meter, Vec2 velocity_mm_s, std::int64_t clock_us, bool first) {
+void measure_velocity(World const& world, std::uint32_t robot, Controller& self) {
     constexpr float seconds_per_us = 1e-6F;
+    std::uint32_t const body = world.robots.body[robot];
+    if (body == kNone) {
+        return;
+    }
+    Accelerometer& meter = self.accelerometer;
     meter.previous_mm_s = meter.current_mm_s;
-    meter.current_mm_s = velocity_mm_s;
-    meter.interval_s = first ? 0.0F : static_cast<float>(clock_us - meter.current_us) * seconds_per_us;
-    meter.current_us = clock_us;
+    meter.current_mm_s = world.bodies.velocity_mm_s[body];
+    bool const first = !std::exchange(meter.has_measured, true);
+    meter.interval_s = first ? 0.0F : static_cast<float>(self.clock_us - meter.current_us) * seconds_per_us;
+    meter.current_us = self.clock_us;
 }
 
 /// Like the C library, calls main() with arguments, whether it takes them or not. C leaves that undefined, and
@@ -118,8 +126,9 @@ void call_main(int (*function)(), char** arguments) {
 
 }  // namespace
 
-Controllers::Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed)
-    : image_(std::move(image)), world_(world), services_(services) {
+Controllers::Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed,
+                         std::size_t stack_bytes)
+    : image_(std::move(image)), world_(world), services_(services), fibers_(stack_bytes) {
     services_.access.controllers = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
@@ -227,6 +236,7 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
                .controller = &self,
                .robot = robot,
                .phase = phase,
+               .step_us = step_us_,
                .printed = &self.printed,
                .outbox = context.outbox,
                .is_system = robot == kNone};
@@ -234,9 +244,21 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
         own_memory_->load(robot);
     }
     mydata = self.user_data;
-    self.clock_reads = 0;
+    self.calls = 0;
     load_globals(self.loop);
     restart_watch();
+}
+
+void Controllers::note_callbacks(Program& program) {
+    program.export_data = callback_export_data;
+    program.end = callback_robot_end;
+    program.click = callback_robot_click;
+}
+
+void Controllers::set_callbacks(Program const& program) {
+    callback_export_data = program.export_data;
+    callback_robot_end = program.end;
+    callback_robot_click = program.click;
 }
 
 /// Code of the whole run that has a robot's memory, such as callback_global_setup.
@@ -291,16 +313,23 @@ void Controllers::construct_user_data(std::uint32_t robot) {
 
 void Controllers::run_main(std::uint32_t robot) {
     enter(robot, Phase::main);
+    context.waiting = image_.is_for_sdk ? Waiting::always : Waiting::never;
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
     // A program may modify its arguments, so each robot gets a fresh copy.
     program_name_ = image_.name;
     main_arguments_ = {program_name_.data(), nullptr};
     call_main(image_.main, main_arguments_.data());
     leave();
-    Program& program = controller(robot).program;
-    program.export_data = callback_export_data;
-    program.end = callback_robot_end;
-    program.click = callback_robot_click;
+    note_callbacks(controller(robot).program);
+}
+
+void Controllers::run_init(std::uint32_t robot) {
+    if (void (*const init)() = controllers_[robot].program.init) {
+        enter(robot, Phase::user_init);
+        context.waiting = Waiting::for_inputs;
+        init();
+        leave();
+    }
 }
 
 /// Its mydata is that of the last robot, as long as programs are known to read it there.
@@ -332,6 +361,10 @@ void Controllers::run_global_setup() {
 void Controllers::start() {
     auto const count = static_cast<std::uint32_t>(controllers_.size());
     warn_of_large_user_data(user_data_bytes());
+    if (image_.is_for_sdk) {
+        start_sdk_program();
+        return;
+    }
     construct_user_data(kNone);
     for (std::uint32_t i = 0; i < count; ++i) {
         construct_user_data(i);
@@ -346,9 +379,91 @@ void Controllers::start() {
     warn_of_idle_categories(world_, controllers_, services_.started_categories);
     run_global_setup();
     for (std::uint32_t i = 0; i < count; ++i) {
-        call(i, Phase::user_init, controllers_[i].program.init);
+        if (is_alive(world_, i)) {
+            run_on_fiber(i, &Controllers::run_init);
+        } else {
+            call(i, Phase::user_init, controllers_[i].program.init);
+        }
     }
     warn_of_missing_init(controllers_);
+}
+
+/// Up to where main() waits for the first time. Walls and membranes have no such program.
+void Controllers::start_sdk_program() {
+    for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
+        bool const is_robot =
+            world_.robots.body[i] != kNone && !world_.categories[world_.robots.category[i]].spec.membrane;
+        controllers_[i].clock_us = is_robot ? 0 : kIdle;
+        if (is_robot) {
+            run_on_fiber(i, &Controllers::run_sdk_main);
+            controllers_[i].program.registered = true;
+        }
+    }
+    run_global_setup();
+    warn_of_missing_init(controllers_);
+}
+
+void Controllers::run_sdk_main(std::uint32_t robot) {
+    run_main(robot);
+    controllers_[robot].clock_us = kIdle;
+    command_motors(robot);
+}
+
+void Controllers::run_on_fiber(std::uint32_t robot, void (Controllers::*part)(std::uint32_t)) {
+    struct Call {
+        Controllers& controllers;
+        std::uint32_t robot;
+        void (Controllers::*part)(std::uint32_t);
+    };
+    Call call{*this, robot, part};
+    Fiber& fiber = free_fiber();
+    auto const body = [](void* argument) {
+        Call const copy = *static_cast<Call*>(argument);  // which the robot may outlive
+        (copy.controllers.*copy.part)(copy.robot);
+    };
+    if (run_on(fiber, body, &call)) {
+        fibers_.put_back(fiber);
+    }
+}
+
+Fiber& Controllers::free_fiber() {
+    Fiber* fiber = nullptr;
+    without_exceptions([&] { fiber = &fibers_.take(); });
+    return *fiber;
+}
+
+void Controllers::wait() {
+    if (is_forked_child()) {
+        end_forked_child(0);  // what comes now is the parent's
+    }
+    std::uint32_t const robot = context.robot;
+    Controller& self = controllers_[robot];
+    self.waits_in = context.phase;
+    self.fiber = running_fiber();
+    has_waited_ = true;
+    leave();
+    if (self.waits_in == Phase::main) {
+        note_callbacks(self.program);
+        drift(self, self.went_on_us);
+    }
+    command_motors(robot);
+    leave_fiber();
+}
+
+void Controllers::go_on(std::uint32_t robot) {
+    Controller& self = controllers_[robot];
+    measure_velocity(world_, robot, self);
+    int const calls = self.calls;
+    enter(robot, self.waits_in);
+    self.calls = calls;
+    context.waiting = Waiting::always;
+    self.went_on_us = self.clock_us;
+    if (self.waits_in == Phase::main) {
+        set_callbacks(self.program);
+    }
+    if (resume(*self.fiber)) {
+        fibers_.put_back(*std::exchange(self.fiber, nullptr));
+    }
 }
 
 void Controllers::declare_columns() {
@@ -374,8 +489,8 @@ void Controllers::end_step() const {
 }
 
 void Controllers::begin_step() {
-    std::int64_t const now_us = this->now_us();
-    if (callback_global_step != nullptr && now_us >= system_.clock_us) {
+    step_us_ = now_us();
+    if (callback_global_step != nullptr && step_us_ >= system_.clock_us) {
         enter(kNone, Phase::global_step);
         context.sees_world = true;
         pogo_main_loop_step(callback_global_step);
@@ -385,16 +500,59 @@ void Controllers::begin_step() {
     hold_suspended();
 }
 
+/// Robots that take their steps, one after the other, on a fiber: when one of them waits, the fiber is its own until its
+/// step is over, and the others go on on another one.
+struct Controllers::Turns {
+    Controllers& controllers;
+    std::uint32_t next;
+    std::uint32_t last;  // not one of them
+};
+
 void Controllers::run_robots(std::uint32_t first, std::uint32_t last) {
-    std::int64_t const now_us = this->now_us();
-    for (std::uint32_t i = first; i < last; ++i) {
-        if (now_us < controllers_[i].clock_us) {
+    Turns turns{*this, first, last};
+    while (turns.next < last) {
+        if (is_waiting(turns.next)) {
+            go_on(turns.next);
+            turns.next += is_due(turns.next) ? 0 : 1;
             continue;
         }
-        if (controllers_[i].loop.loop_hz == 0) {
-            controllers_[i].clock_us = now_us;  // without a sleep the clock follows the steps
+        Fiber& fiber = free_fiber();
+        if (run_on(
+                fiber,
+                [](void* argument) {
+                    static_cast<Turns*>(argument)->controllers.take_turns(*static_cast<Turns*>(argument));
+                },
+                &turns)) {
+            fibers_.put_back(fiber);
         }
-        tick(i);
+    }
+}
+
+bool Controllers::is_due(std::uint32_t robot) const {
+    return step_us_ >= controllers_[robot].clock_us;
+}
+
+bool Controllers::is_waiting(std::uint32_t robot) const {
+    return is_due(robot) && controllers_[robot].fiber != nullptr;
+}
+
+void Controllers::take_turns(Turns& turns) {
+    for (; turns.next < turns.last; ++turns.next) {
+        std::uint32_t const robot = turns.next;
+        Controller& self = controllers_[robot];
+        if (!is_due(robot)) {
+            continue;
+        }
+        if (self.fiber != nullptr) {
+            return;  // it goes on with its own
+        }
+        if (self.loop.loop_hz == 0) {
+            self.clock_us = step_us_;  // without a sleep the clock follows the steps
+        }
+        tick(robot);
+        if (self.fiber != nullptr) {
+            return;  // it has waited: the turns have long gone on without it
+        }
     }
 }
 
@@ -487,15 +645,23 @@ void Controllers::hold_suspended() {
 
 void Controllers::tick(std::uint32_t robot) {
     Controller& self = controllers_[robot];
-    if (std::uint32_t const body = world_.robots.body[robot]; body != kNone) {
-        measure_velocity(self.accelerometer, world_.bodies.velocity_mm_s[body], self.clock_us, self.loop.ticks == 0);
-    }
+    measure_velocity(world_, robot, self);
     enter(robot, Phase::user_step);
+    context.waiting = Waiting::always;
     pogo_main_loop_step(self.program.step);
     leave();
-    // The drift must not turn the clock back.
-    std::int64_t const slept_us = self.clock_us - self.loop.loop_timer.origin_us;
-    self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);
+    drift(self, self.loop.loop_timer.origin_us);
+    command_motors(robot);
+}
+
+/// Of the clock, since a time of it.
+void Controllers::drift(Controller& self, std::int64_t since_us) {
+    std::int64_t const slept_us = self.clock_us - since_us;
+    self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);  // must not turn the clock back
+}
+
+void Controllers::command_motors(std::uint32_t robot) {
+    Controller const& self = controllers_[robot];
     if (self.motors.driven && world_.spec_of(robot).has_wheels) {
         command_velocity(world_, robot, self.motors);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "robot/context.hpp"
 #include "robot/fenced_memory.hpp"
+#include "robot/fibers.hpp"
 #include "robot/program_image.hpp"
 #include "robot/robot_memory.hpp"
 #include "robot/shared_state.hpp"
@@ -22,7 +24,7 @@ namespace pogosim {
 class Controllers {
 public:
     /// Makes a controller for each robot of the world and one for the global step. `services` and `world` outlive this.
-    Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed);
+    Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed, std::size_t stack_bytes);
     ~Controllers();
 
     Controllers(Controllers const&) = delete;
@@ -45,6 +47,12 @@ public:
     void give_robots_own_memory();
 
     ProgramImage const& image() const { return image_; }
+
+    /// The running robot waits: its program goes on in the first step in which its clock is reached. Returns then.
+    void wait();
+
+    /// Whether a robot has waited in the middle of its program.
+    bool has_waited() const { return has_waited_; }
 
     /// Null: robots share the program's variables.
     RobotMemory* own_memory() const { return own_memory_.get(); }
@@ -160,6 +168,16 @@ private:
     static void leave();
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
+    void run_init(std::uint32_t robot);
+    void start_sdk_program();
+    void run_sdk_main(std::uint32_t robot);
+    void run_on_fiber(std::uint32_t robot, void (Controllers::*part)(std::uint32_t));
+    Fiber& free_fiber();
+    void go_on(std::uint32_t robot);
+    bool is_due(std::uint32_t robot) const;
+    bool is_waiting(std::uint32_t robot) const;
+    struct Turns;
+    void take_turns(Turns& turns);
     void run_global_setup();
     void call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world = false);
     std::int64_t now_us() const;
@@ -169,6 +187,10 @@ private:
     void hold_suspended();
     void call_as_system(std::uint32_t robot, Phase phase, void (*function)());
     void tick(std::uint32_t robot);
+    static void drift(Controller& self, std::int64_t since_us);
+    void command_motors(std::uint32_t robot);
+    static void note_callbacks(Program& program);
+    static void set_callbacks(Program const& program);
     Controller& controller(std::uint32_t robot);
 
     ProgramImage image_;
@@ -179,6 +201,9 @@ private:
     Controller system_;                 // of the global step
     std::vector<Suspended> suspended_;  // by robot, ascending
     FencedMemory user_data_;
+    FiberPool fibers_;          // on which programs run
+    std::int64_t step_us_ = 0;  // time of the step
+    std::atomic<bool> has_waited_ = false;
     std::unique_ptr<RobotMemory> own_memory_;  // copies: of each robot, and of the global step
     std::string program_name_;
     std::array<char*, 2> main_arguments_{};  // of the program's main(): its name, and NULL

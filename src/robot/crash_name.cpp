@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
+
+#include "robot/fibers.hpp"
 
 namespace pogosim {
 
@@ -48,11 +51,11 @@ void* stack_pointer([[maybe_unused]] void const* signal_context) {
 }
 
 /// Both the stack pointer and the faulting address are at or beyond the end of the stack.
-bool is_stack_overflow(siginfo_t const& info, void const* signal_context) {
+bool is_stack_overflow(Stack const& stack, siginfo_t const& info, void const* signal_context) {
     auto const pointer = reinterpret_cast<std::uintptr_t>(stack_pointer(signal_context));
     auto const touched = reinterpret_cast<std::uintptr_t>(info.si_addr);
-    std::uintptr_t const first = noted.end + std::min(kStackMarginBytes, noted.bytes / 4);
-    return noted.end > 0 && pointer != 0 && pointer < first && touched < first && touched + kStackMarginBytes > pointer;
+    std::uintptr_t const first = stack.end + std::min(kStackMarginBytes, stack.bytes / 4);
+    return stack.end > 0 && pointer != 0 && pointer < first && touched < first && touched + kStackMarginBytes > pointer;
 }
 
 }  // namespace
@@ -74,11 +77,15 @@ void note_stack() {
 CrashText crash_name(int signal, siginfo_t const& info, void const* signal_context) {
     CrashText text;
     bool const has_address = (signal == SIGSEGV || signal == SIGBUS) && info.si_code > 0;
-    if (has_address && is_stack_overflow(info, signal_context)) {
+    std::span const fiber = running_fiber_stack();
+    Stack const stack =
+        fiber.empty() ? noted : Stack{.end = reinterpret_cast<std::uintptr_t>(fiber.data()), .bytes = fiber.size()};
+    if (has_address && is_stack_overflow(stack, info, signal_context)) {
         text << "stack overflow: the ";
-        text.whole(noted.bytes / kBytesPerKib) << " KiB of the stack are full (ulimit -s), as after a function that "
-                                                  "calls itself without end, or with large "
-                                                  "local arrays; a real robot has 128 KiB of memory in all";
+        text.whole(stack.bytes / kBytesPerKib)
+            << " KiB of the stack are full (" << (fiber.empty() ? "ulimit -s" : "robot_stack_size")
+            << "), as after a function that calls itself without end, or with large local arrays; a real robot has 128 "
+               "KiB of memory in all";
         return text;
     }
     auto const* const crash =

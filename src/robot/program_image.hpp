@@ -21,6 +21,7 @@ struct ProgramImage {
     int (*main)() = nullptr;
     std::size_t user_data_bytes = 0;
     void (*construct_user_data)(void*) = nullptr;            // null in C
+    bool is_for_sdk = false;                                 // its main() does not return
     std::shared_ptr<void> loaded{};                          // keeps a loaded program in memory; null: it is linked in
     std::uintptr_t load_address = 0;                         // of what its file says
     std::shared_ptr<ProgramSymbols const> loaded_symbols{};  // of a loaded program

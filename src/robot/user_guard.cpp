@@ -10,6 +10,7 @@
 #include "base/background_thread.hpp"
 #include "robot/caught_signals.hpp"
 #include "robot/crash_name.hpp"
+#include "robot/fibers.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/guard_state.hpp"
 #include "robot/last_words.hpp"
@@ -307,6 +308,7 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
         return requested_failure(guard, *request);
     }
     if (sigsetjmp(guard.return_point, 0) != 0) {
+        forget_running_fiber();
         RunGuard& run = *active_guard;
         EndRequest const* const request = end_request(run);
         return request != nullptr ? requested_failure(run, *request)
@@ -337,6 +339,7 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body) {
     RunGuard& guard = *active_guard;
     if (sigsetjmp(guard.rescue_point, 0) != 0) {
+        forget_running_fiber();
         return UserFailure{std::string("the simulator crashed (") + active_guard->what.c_str() + ")" + kOwnMemoryAdvice,
                            ExitCode::user_program};
     }

@@ -82,7 +82,8 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       parameters_(scenario_),
       guard_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
-      controllers_(std::move(program), world_, services_, seed_),
+      controllers_(std::move(program), world_, services_, seed_,
+                   static_cast<std::size_t>(scenario_.robot_stack_kib) * 1024),
       lighting_(make_lighting(scenario_, world_)),
       workers_(thread_count(scenario_, world_)),
       physics_(make_physics(scenario_, world_, workers_)),
@@ -280,7 +281,10 @@ std::optional<UserFailure> Simulation::start() {
                 seed_, world_.robots.size(), controllers_.user_data_bytes(), step_count(), world_.time_step_s,
                 physics_engine_behind(scenario_.physics_engine, world_), workers_.size());
     lighting_.update(world_);
-    if (scenario_.robot_memory == RobotMemoryKind::own) {
+    bool const is_own = scenario_.robot_memory == RobotMemoryKind::automatic
+                            ? controllers_.image().is_for_sdk
+                            : scenario_.robot_memory == RobotMemoryKind::own;
+    if (is_own) {
         controllers_.give_robots_own_memory();
     }
     if (auto failure = call_user_code([this] { controllers_.start(); })) {

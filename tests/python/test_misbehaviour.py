@@ -43,7 +43,7 @@ def test_program_that_behaves_ends_with_0_and_says_nothing(program: Compile, tmp
         ("divide_by_zero", "integer division by zero"),
         ("abort", r"abort\(\)"),
         ("end_the_thread", r"called pthread_exit\(\), which ends the only thread that can run the simulator"),
-        ("overflow_the_stack", r"stack overflow: the \d+ KiB of the stack are full \(ulimit -s\)"),
+        ("overflow_the_stack", r"stack overflow: the \d+ KiB of the stack are full \(robot_stack_size\)"),
         ("write_beyond_userdata", "segmentation fault at address"),
         ("free_what_is_not_allocated", r"abort\(\)"),
         ("loop_for_ever", r"did not return within 0\.25 s of processor time \(user_code_timeout\)"),

@@ -130,8 +130,8 @@ def test_run_on_a_small_stack_ends_well_or_names_the_stack(tmp_path: Path, kib: 
 
 
 def test_overflow_of_a_small_stack_is_named(program: Compile, tmp_path: Path) -> None:
-    settings = {"parameters": {"kind": "overflow_the_stack", "place": "user_step"}}
-    result = limited(program("misbehave.c"), tmp_path, settings, resource.RLIMIT_STACK, 256 << 10)
+    settings = {"parameters": {"kind": "overflow_the_stack", "place": "user_step"}, "robot_stack_size": 64}
+    result = run(program("misbehave.c"), tmp_path, settings)
     assert result.code == 3
     assert "in user_step of robot #1 of category 'robots', tick 10" in result.errors
-    assert re.search(r"stack overflow: the \d+ KiB of the stack are full \(ulimit -s\)", result.errors)
+    assert "stack overflow: the 64 KiB of the stack are full (robot_stack_size)" in result.errors

@@ -157,4 +157,5 @@ def test_other_words_are_refused(tmp_path: Path) -> None:
     program = compile_program(tmp_path / "own", PROGRAMS / "own_memory.c")
     result = run(program, tmp_path / "run", {**OWN, "robot_memory": "private"})
     assert result.code == 2
-    assert "robot_memory: expected shared or own, found private" in result.errors.replace('"', "").replace("'", "")
+    text = result.errors.replace(chr(34), "").replace("'", "")
+    assert "robot_memory: expected one of auto, shared, own, found private" in text

@@ -90,7 +90,7 @@ private:
     RunServices services_{.parameters = nullptr, .seed = 1, .data = {}, .warned = {}, .printed_lines = &lines_};
     UserGuard guard_;
     GuardedThread thread_;
-    Controllers controllers_{testing::test_program(), world_, services_, 1};
+    Controllers controllers_{testing::test_program(), world_, services_, 1, 1 << 20};
     Outcome outcome_;
 };
 

@@ -16,7 +16,9 @@ int pogosim_putchar(int character);
 int pogosim_puts(char const* text);
 
 // The program's main(), renamed by pogosim/pogolib.h. With arguments it has the same name for the linker.
+#if !defined(POGOSIM_FOR_SDK) || defined(__cplusplus)
 int robot_main(void);
+#endif
 #define POGO_SYMBOL_PREFIX(prefix) POGO_SYMBOL_PREFIX_RAW(prefix)
 #define POGO_SYMBOL_PREFIX_RAW(prefix) #prefix
 #define POGO_ROBOT_MAIN __asm__(POGO_SYMBOL_PREFIX(__USER_LABEL_PREFIX__) "robot_main")

@@ -1,0 +1,269 @@
+#include "robot/fibers.hpp"
+
+#include <cxxabi.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <boost/context/detail/fcontext.hpp>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include "base/memory.hpp"
+
+// A sanitizer needs to know which stack is in use. It may be in the user's program alone, so it is asked for here.
+extern "C" {
+[[gnu::weak]] void __sanitizer_start_switch_fiber(void** fake_stack, void const* bottom, std::size_t bytes);
+[[gnu::weak]] void __sanitizer_finish_switch_fiber(void* fake_stack, void const** old_bottom, std::size_t* old_bytes);
+[[gnu::weak]] void __asan_unpoison_memory_region(void const volatile* address, std::size_t bytes);
+[[gnu::weak]] void* __tsan_create_fiber(unsigned flags);
+[[gnu::weak]] void __tsan_destroy_fiber(void* fiber);
+[[gnu::weak]] void* __tsan_get_current_fiber();
+[[gnu::weak]] void __tsan_switch_to_fiber(void* fiber, unsigned flags);
+}
+
+namespace pogosim {
+
+namespace {
+
+// boost::context::fiber would unwind the stacks of code that is never resumed, which is a program's: so this uses what
+// it is made of.
+using boost::context::detail::fcontext_t;
+using boost::context::detail::jump_fcontext;
+using boost::context::detail::make_fcontext;
+using boost::context::detail::transfer_t;
+
+constexpr std::size_t kGuardBytes = 65536;  // a function may touch this much beyond its stack pointer
+constexpr double kBytesPerKib = 1024.0;
+
+/// Memory with forbidden pages before it, in which an overflow ends.
+class Stack {
+public:
+    explicit Stack(std::size_t bytes) : mapped_bytes_(kGuardBytes + bytes) {
+        void* const place = mmap(nullptr, mapped_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (place == MAP_FAILED) {
+            throw std::bad_alloc();
+        }
+        mapping_ = static_cast<std::byte*>(place);
+        if (mprotect(mapping_ + kGuardBytes, bytes, PROT_READ | PROT_WRITE) != 0) {
+            munmap(place, mapped_bytes_);
+            throw std::bad_alloc();
+        }
+#ifdef MADV_NOHUGEPAGE
+        madvise(place, mapped_bytes_, MADV_NOHUGEPAGE);  // else a stack takes 2 MB as soon as it is used
+#endif
+        if (__asan_unpoison_memory_region != nullptr) {
+            __asan_unpoison_memory_region(place, mapped_bytes_);
+        }
+    }
+    ~Stack() {
+        munmap(mapping_, mapped_bytes_);
+    }
+    Stack(Stack const&) = delete;
+    Stack& operator=(Stack const&) = delete;
+
+    std::span<std::byte> bytes() const {
+        return {mapping_ + kGuardBytes, mapped_bytes_ - kGuardBytes};
+    }
+
+private:
+    std::size_t mapped_bytes_;
+    std::byte* mapping_ = nullptr;
+};
+
+/// What the C++ runtime keeps for each thread of the exceptions that are being handled.
+using HandledExceptions = std::array<std::byte, 2 * sizeof(void*)>;
+
+/// Those of this thread become those of the code that runs next.
+void swap_handled_exceptions(HandledExceptions& other) {
+    void* const of_thread = abi::__cxa_get_globals();
+    HandledExceptions before;
+    std::memcpy(before.data(), of_thread, before.size());
+    std::memcpy(of_thread, other.data(), other.size());
+    other = before;
+}
+
+}  // namespace
+
+class Fiber {
+public:
+    explicit Fiber(std::size_t stack_bytes) : stack_(stack_bytes) {
+        std::span const bytes = stack_.bytes();
+        inside_ = make_fcontext(bytes.data() + bytes.size(), bytes.size(), main_of_fiber);
+        tsan_fiber_ = __tsan_create_fiber != nullptr ? __tsan_create_fiber(0) : nullptr;
+    }
+    ~Fiber() {
+        if (tsan_fiber_ != nullptr) {
+            __tsan_destroy_fiber(tsan_fiber_);
+        }
+    }
+    Fiber(Fiber const&) = delete;
+    Fiber& operator=(Fiber const&) = delete;
+
+    void call(void (*body)(void*), void* argument) {
+        body_ = body;
+        argument_ = argument;
+        has_returned_ = false;
+    }
+    bool enter();
+    void leave();
+    void forget();
+    std::span<std::byte const> stack() const { return stack_.bytes(); }
+
+private:
+    [[noreturn]] static void main_of_fiber(transfer_t from);
+    void note_entry();
+
+    Stack stack_;
+    fcontext_t inside_ = nullptr;   // where its code goes on
+    fcontext_t outside_ = nullptr;  // where whoever has resumed it goes on
+    void (*body_)(void*) = nullptr;
+    void* argument_ = nullptr;
+    bool has_returned_ = true;
+    std::exception_ptr thrown_;
+    HandledExceptions handled_{};  // while it is left: its own; else those of whoever has resumed it
+
+    // For sanitizers.
+    void* fake_stack_ = nullptr;
+    void* outside_fake_stack_ = nullptr;
+    void const* outside_stack_ = nullptr;
+    std::size_t outside_stack_bytes_ = 0;
+    void* tsan_fiber_ = nullptr;
+    void* tsan_outside_ = nullptr;
+};
+
+namespace {
+
+constinit thread_local Fiber* running = nullptr;
+
+}  // namespace
+
+void Fiber::main_of_fiber(transfer_t from) {
+    Fiber& self = *static_cast<Fiber*>(from.data);
+    self.outside_ = from.fctx;
+    self.note_entry();
+    for (;;) {
+        try {
+            self.body_(self.argument_);
+        } catch (...) {
+            self.thrown_ = std::current_exception();
+        }
+        self.has_returned_ = true;
+        self.leave();
+    }
+}
+
+/// The first thing that happens after a switch to it.
+void Fiber::note_entry() {
+    if (__sanitizer_finish_switch_fiber != nullptr) {
+        __sanitizer_finish_switch_fiber(fake_stack_, &outside_stack_, &outside_stack_bytes_);
+    }
+}
+
+bool Fiber::enter() {
+    running = this;
+    swap_handled_exceptions(handled_);
+    if (__sanitizer_start_switch_fiber != nullptr) {
+        __sanitizer_start_switch_fiber(&outside_fake_stack_, stack_.bytes().data(), stack_.bytes().size());
+    }
+    if (tsan_fiber_ != nullptr) {
+        tsan_outside_ = __tsan_get_current_fiber();
+        __tsan_switch_to_fiber(tsan_fiber_, 0);
+    }
+    inside_ = jump_fcontext(inside_, this).fctx;
+    if (__sanitizer_finish_switch_fiber != nullptr) {
+        __sanitizer_finish_switch_fiber(outside_fake_stack_, nullptr, nullptr);
+    }
+    swap_handled_exceptions(handled_);
+    running = nullptr;
+    if (thrown_) {
+        std::rethrow_exception(std::exchange(thrown_, nullptr));
+    }
+    return has_returned_;
+}
+
+// Nothing of the thread may be used after the jump: it may be another one.
+void Fiber::leave() {
+    if (__sanitizer_start_switch_fiber != nullptr) {
+        __sanitizer_start_switch_fiber(&fake_stack_, outside_stack_, outside_stack_bytes_);
+    }
+    if (tsan_fiber_ != nullptr) {
+        __tsan_switch_to_fiber(tsan_outside_, 0);
+    }
+    outside_ = jump_fcontext(outside_, this).fctx;
+    note_entry();
+}
+
+void Fiber::forget() {
+    // Code that was left may have been handling an exception.
+    swap_handled_exceptions(handled_);
+    if (__sanitizer_start_switch_fiber != nullptr) {
+        __sanitizer_start_switch_fiber(nullptr, outside_stack_, outside_stack_bytes_);
+        __sanitizer_finish_switch_fiber(outside_fake_stack_, nullptr, nullptr);
+    }
+    if (tsan_fiber_ != nullptr) {
+        __tsan_switch_to_fiber(tsan_outside_, 0);
+    }
+}
+
+FiberPool::FiberPool(std::size_t stack_bytes) : stack_bytes_(stack_bytes) {}
+
+FiberPool::~FiberPool() = default;
+
+Fiber& FiberPool::take() {
+    std::lock_guard const lock(mutex_);
+    if (unused_.empty()) {
+        auto const purpose = [&] {
+            return fmt::format(
+                "the stack of {:g} KiB of one more robot that waits in the middle of its program: {} have theirs. "
+                "Make stacks smaller (robot_stack_size), or allow the process more memory (ulimit -v) or pieces of it "
+                "(sysctl vm.max_map_count)",
+                static_cast<double>(stack_bytes_) / kBytesPerKib, all_.size());
+        };
+        allocate_for(purpose, std::nullopt, [&] {
+            all_.push_back(std::make_unique<Fiber>(stack_bytes_));
+            unused_.reserve(all_.size());
+        });
+        return *all_.back();
+    }
+    Fiber& fiber = *unused_.back();
+    unused_.pop_back();
+    return fiber;
+}
+
+void FiberPool::put_back(Fiber& fiber) {
+    std::lock_guard const lock(mutex_);
+    unused_.push_back(&fiber);
+}
+
+bool run_on(Fiber& fiber, void (*body)(void*), void* argument) {
+    fiber.call(body, argument);
+    return fiber.enter();
+}
+
+bool resume(Fiber& fiber) {
+    return fiber.enter();
+}
+
+void leave_fiber() {
+    running->leave();
+}
+
+Fiber* running_fiber() {
+    return running;
+}
+
+void forget_running_fiber() {
+    if (Fiber* const fiber = std::exchange(running, nullptr)) {
+        fiber->forget();
+    }
+}
+
+std::span<std::byte const> running_fiber_stack() {
+    return running != nullptr ? running->stack() : std::span<std::byte const>();
+}
+
+}  // namespace pogosim

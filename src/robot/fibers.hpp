@@ -1,0 +1,59 @@
+// Stacks for code that may stop in the middle and go on later: fibers, with the switch between stacks of Boost.Context.
+//
+//   run_on(fiber, body) ──► body ──► leave_fiber() ──┐
+//   resume(fiber) ◄─────────────────────────────────┘
+//        └─────► after leave_fiber() ──► body returns ──► fiber may be used for other code
+//
+// Code that is never resumed is left as it is: its destructors do not run, and its stack is given back with the others.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace pogosim {
+
+class Fiber;
+
+/// Fibers that are used again and again. May be used by several threads.
+class FiberPool {
+public:
+    explicit FiberPool(std::size_t stack_bytes);
+    ~FiberPool();
+    FiberPool(FiberPool const&) = delete;
+    FiberPool& operator=(FiberPool const&) = delete;
+
+    /// One on which no code runs. Throws OutOfMemory.
+    Fiber& take();
+    void put_back(Fiber& fiber);
+
+private:
+    std::size_t stack_bytes_;
+    std::mutex mutex_;  // of what follows
+    std::vector<std::unique_ptr<Fiber>> all_;
+    std::vector<Fiber*> unused_;
+};
+
+/// Calls body(argument) on a fiber, from code that is on none. Returns when the body has returned (true) or has called
+/// leave_fiber() (false). Exceptions that leave the body are thrown here.
+bool run_on(Fiber& fiber, void (*body)(void*), void* argument);
+
+/// Goes on where the code on the fiber has left it; returns as run_on() does.
+bool resume(Fiber& fiber);
+
+/// Back to whoever called run_on() or resume(). Returns when the fiber is resumed, perhaps in another thread.
+void leave_fiber();
+
+/// The one on which this thread runs, or null.
+Fiber* running_fiber();
+
+/// The code on the running fiber of this thread was left with a jump; it cannot be resumed.
+void forget_running_fiber();
+
+/// The stack on which this thread runs, if it is a fiber's; else empty. For signal handlers.
+std::span<std::byte const> running_fiber_stack();
+
+}  // namespace pogosim

@@ -1,0 +1,39 @@
+#include "robot/waiting.hpp"
+
+#include <algorithm>
+
+#include "robot/controllers.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// Nothing of this thread may be used after it: the robot may go on in another one.
+void wait_for_step(Waiting least) {
+    if (context.waiting >= least && context.controller->clock_us > context.step_us) {
+        context.services->access.controllers->wait();
+    }
+}
+
+}  // namespace
+
+void sleep_until(std::int64_t clock_us) {
+    Controller& self = *context.controller;
+    self.clock_us = std::max(self.clock_us, clock_us);
+    self.calls = 0;
+    wait_for_step(Waiting::always);
+}
+
+void take_time_to_read_clock() {
+    context.controller->clock_us += kCallUs;
+    wait_for_step(Waiting::always);
+}
+
+void take_time_to_read_input() {
+    if (context.waiting != Waiting::never) {
+        context.controller->clock_us += kCallUs;
+        wait_for_step(Waiting::for_inputs);
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,37 @@
+// Programs that wait in the middle of a step: msleep(), or a loop until a message comes or some time has passed. They
+// give the processor back, and go on in the step of the simulation in which their robot's clock is reached.
+//
+// The code of a robot takes no simulated time, so a loop that waits would wait for ever. Beyond a number of calls that no
+// program needs in one step, each call takes the time that it takes on a robot.
+#pragma once
+
+#include <cstdint>
+
+#include "robot/context.hpp"
+
+namespace pogosim {
+
+inline constexpr int kFreeCalls = 1000;      // of each tick, and after each sleep
+inline constexpr std::int64_t kCallUs = 10;  // of a processor with 21 MHz
+
+/// The robot sleeps until its clock shows this.
+void sleep_until(std::int64_t clock_us);
+
+void take_time_to_read_clock();
+void take_time_to_read_input();
+
+/// The robot reads its clock.
+inline void note_clock_read() {
+    if (++context.controller->calls > kFreeCalls) [[unlikely]] {
+        take_time_to_read_clock();
+    }
+}
+
+/// The robot does what may be in a loop that waits: it reads a sensor, looks for messages, or sends something.
+inline void note_call() {
+    if (++context.controller->calls > kFreeCalls) [[unlikely]] {
+        take_time_to_read_input();
+    }
+}
+
+}  // namespace pogosim
