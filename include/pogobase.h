@@ -4,6 +4,10 @@
 #ifndef POGOBASE_H
 #define POGOBASE_H
 
+#ifdef POGOSIM_FOR_SDK
+#error "pogobot.h is included before pogobase.h: take one of them. pogobase.h has all that is in pogobot.h"
+#endif
+
 #include "pogosim/pogosim.h"
 #include "pogosim/version.h"
 

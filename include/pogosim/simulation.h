@@ -5,6 +5,9 @@
 #ifndef POGOSIM_SIMULATION_H
 #define POGOSIM_SIMULATION_H
 
+#include "pogosim/pogolib.h"
+#include "pogosim/shared_state.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -19,7 +22,7 @@ void stop_simulation(void);
 
 // ---- Callbacks: SET_CALLBACK(callback_name, function), in main() after pogobot_start() ----
 
-/// Sets a callback; in main(), after pogobot_start(). On real robots it does nothing, and the function need not exist.
+/// Sets a callback; in main(), after pogobot_start() or, with pogobot.h, before its loop. On real robots it does nothing, and the function need not exist.
 #define SET_CALLBACK(callback_name, fn) ((callback_name) = (fn))
 
 /// Once, before any user_init: read the configuration here.

@@ -14,6 +14,8 @@
 #ifndef POGOSIM_WORLD_H
 #define POGOSIM_WORLD_H
 
+#include "pogosim/pogolib.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif

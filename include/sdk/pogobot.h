@@ -37,8 +37,8 @@
 extern "C" {
 #endif
 // Tells the simulator how to run the program.
-extern char const pogosim_is_for_sdk;
-__attribute__((weak)) char const pogosim_is_for_sdk = 1;
+extern char const pogosim_is_for_sdk __attribute__((weak));
+char const pogosim_is_for_sdk = 1;
 #ifdef __cplusplus
 }
 #endif

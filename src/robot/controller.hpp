@@ -2,6 +2,8 @@
 // robot.
 #pragma once
 
+#include <pthread.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -73,6 +75,7 @@ struct Controller {
     int calls = 0;                    // of what programs wait with in a loop, see waiting.hpp
     Fiber* fiber = nullptr;           // on which its program waits in the middle; null: it does not
     Phase waits_in = Phase::none;
+    pthread_t waits_on{};  // the thread in which it began to
     Program program;
     std::byte* user_data = nullptr;
     LoopGlobals loop;

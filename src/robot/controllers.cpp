@@ -88,6 +88,17 @@ LoopGlobals stored_globals() {
             .loop_timer = timer_main_loop};
 }
 
+/// Whether code that waits may go on in another thread. It is compiled as if that never happened, so it may keep the
+/// address of a variable that each thread has, such as mydata, in a register. Not on x86-64, where such variables are
+/// read and written without their address.
+constexpr bool can_change_threads() {
+#ifdef __x86_64__
+    return true;
+#else
+    return false;
+#endif
+}
+
 /// A bijection of 16 bits, so that the first seeds of up to 65536 robots differ.
 std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
     auto const odd_factor = static_cast<std::uint16_t>(key | 1U);
@@ -439,6 +450,7 @@ void Controllers::wait() {
     std::uint32_t const robot = context.robot;
     Controller& self = controllers_[robot];
     self.waits_in = context.phase;
+    self.waits_on = pthread_self();
     self.fiber = running_fiber();
     has_waited_ = true;
     leave();
@@ -455,6 +467,11 @@ void Controllers::go_on(std::uint32_t robot) {
     measure_velocity(world_, robot, self);
     int const calls = self.calls;
     enter(robot, self.waits_in);
+    if (!can_change_threads() && pthread_equal(self.waits_on, pthread_self()) == 0) {
+        refuse_user_code(
+            "a robot that waits in the middle of its program can only go on in the thread in which it began to (on this "
+            "processor): run it with threads: 1, and let one thread of Python step it");
+    }
     self.calls = calls;
     context.waiting = Waiting::always;
     self.went_on_us = self.clock_us;

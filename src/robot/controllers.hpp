@@ -165,7 +165,7 @@ private:
     void draw_individual_differences(std::uint64_t seed);
     void enter(std::uint32_t robot, Phase phase);
     void enter_as_system(std::uint32_t robot, Phase phase);
-    static void leave();
+    [[gnu::noinline]] static void leave();  // see can_change_threads()
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
     void run_init(std::uint32_t robot);

@@ -28,12 +28,15 @@ constexpr double kPatienceS = 10.0;     // for user code without a limit, and fo
 constexpr double kRescueLookPeriodS = 0.25;
 constexpr double kSlowestDiskBytesPerS = 1e7;
 
-/// A program for the SDK alone has its endless loop where the robot starts.
+/// A program for the SDK alone has its endless loop where the robot starts, which pogobot.h makes possible.
 bool is_at_robots_start() {
-    return context.phase == Phase::main || context.phase == Phase::user_init;
+    return context.phase == Phase::user_init || (context.phase == Phase::main && context.waiting == Waiting::never);
 }
 
-constexpr auto kMoveTheLoop = ": move the body of its endless loop into user_step (see docs/porting.md)";
+constexpr auto kMoveTheLoop =
+    ": move the body of its endless loop into user_step, or include pogobot.h alone (see docs/porting.md)";
+constexpr auto kLetTimePass =
+    "; while it runs, time passes only as it sleeps, or reads its clock, sensors or messages again and again";
 
 double thread_processor_time_s() {
     timespec now = {};
@@ -80,9 +83,7 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
     SignalText<512> what;
     what << "did not return within ";
     what.number(busy.timeout_s, 6, /*kept=*/false) << " s of processor time (user_code_timeout)";
-    what << (is_at_robots_start() ? kMoveTheLoop
-                                  : "; messages and sensors do not change while user code runs, so a step must not "
-                                    "wait for them in a loop");
+    what << (is_at_robots_start() ? kMoveTheLoop : kLetTimePass);
     guard.too_long = true;
     begin_rescue(guard, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
     jump_out(guard, ExitCode::user_program);

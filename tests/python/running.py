@@ -145,22 +145,26 @@ def build_folder() -> Path:
     return usable[-1]
 
 
-def pkg_config(*arguments: str) -> list[str]:
+def pkg_config(*arguments: str, package: str = "pogosim") -> list[str]:
     """Ask pkg-config about the built library."""
     environment = {**os.environ, "PKG_CONFIG_PATH": str(build_folder())}
-    command = ["pkg-config", *arguments, "pogosim"]
+    command = ["pkg-config", *arguments, package]
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.split()
 
 
 def compile_program(
-    output: Path, *sources: Path, compiler: str | None = None, flags: Sequence[str] = ("-Wall", "-Wextra", "-Werror")
+    output: Path,
+    *sources: Path,
+    compiler: str | None = None,
+    flags: Sequence[str] = ("-Wall", "-Wextra", "-Werror"),
+    package: str = "pogosim",
 ) -> Path:
-    """Compile sources of one language to a program."""
+    """Compile sources of one language to a program; `package`: "pogosim-sdk" for one that includes pogobot.h."""
     is_cpp = sources[0].suffix == ".cpp"
     standard = [] if any(flag.startswith("-std=") for flag in flags) else ["-std=c++20" if is_cpp else "-std=c11"]
     command = [compiler or ("c++" if is_cpp else "cc"), *standard, "-O1", *flags]
     command += [str(source) for source in sources]
-    command += [*pkg_config("--cflags", "--libs"), "-o", str(output)]
+    command += [*pkg_config("--cflags", "--libs", package=package), "-o", str(output)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stderr}"
     return output

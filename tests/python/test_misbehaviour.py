@@ -164,7 +164,7 @@ def test_failure_in_any_function_of_the_program_names_the_function(
     assert (len(result.frame()) > 0) == (place in ("export_data", "robot_end"))
 
 
-MOVE_THE_LOOP = "move the body of its endless loop into user_step (see docs/porting.md)"
+MOVE_THE_LOOP = "move the body of its endless loop into user_step, or include pogobot.h alone (see docs/porting.md)"
 
 
 @pytest.mark.parametrize("place", ["main", "user_init"])

@@ -19,8 +19,8 @@ namespace {
 constexpr char const* usage = R"(Usage: pogosim-shared-state [options] PROGRAM
 
 Lists the modifiable variables that all simulated robots share: everything except USERDATA, variables read from the
-configuration (init_from_configuration), variables marked POGO_SHARED, and those declared in system headers. PROGRAM is
-a linked executable with debug information (-g).
+configuration (init_from_configuration), variables marked POGO_SHARED, and those declared in system headers. None in
+programs written for the robots' SDK alone (pogobot.h). PROGRAM is a linked executable with debug information (-g).
 
   --ignore FOLDER         ignore variables declared in files of this folder; may be repeated
   -Werror=shared-state    treat shared variables as errors
@@ -123,6 +123,9 @@ void print(Object const& object, bool error) {
 
 int check(Options const& options) {
     ProgramFile const program(options.program);
+    if (program.is_for_sdk()) {
+        return 0;
+    }
     auto const found = find_shared_state(program, options);
     for (auto const& object : found) {
         print(object, options.errors);

@@ -4,6 +4,7 @@
 #include <gelf.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <functional>
@@ -93,6 +94,11 @@ std::string ProgramFile::text_at(uint64_t address) const {
 std::string ProgramFile::symbol_at(uint64_t address) const {
     auto const found = symbols_.find(address);
     return found == symbols_.end() ? "" : found->second;
+}
+
+bool ProgramFile::is_for_sdk() const {
+    auto const is_mark = [](auto const& symbol) { return symbol.second == "pogosim_is_for_sdk"; };
+    return std::any_of(symbols_.begin(), symbols_.end(), is_mark);
 }
 
 bool ProgramFile::has_guard(std::string const& symbol) const {

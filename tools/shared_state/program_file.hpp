@@ -38,6 +38,9 @@ public:
     /// Name of the object at this address, as the linker knows it; empty if there is none.
     std::string symbol_at(uint64_t address) const;
 
+    /// Whether it is written for the robots' SDK alone (pogobot.h): each simulated robot has its own variables.
+    bool is_for_sdk() const;
+
     /// Whether a guard makes sure that the C++ object with this symbol is initialised at most once: it is initialised
     /// when the first robot gets there.
     bool has_guard(std::string const& symbol) const;
