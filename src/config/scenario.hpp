@@ -109,7 +109,7 @@ struct Scenario {
     std::optional<int> threads = 1;       // absent: as many as the number of objects is worth
     std::optional<std::uint32_t> seed;    // absent: drawn from the system
     double user_code_timeout_s = 10.0;    // processor time one call of user code may take; 0: no limit
-    int robot_stack_kib = 8192;              // of the stack of each robot that waits in the middle of its program
+    int robot_stack_kib = 8192;           // of the stack of each robot that waits in the middle of its program
     RobotMemoryKind robot_memory = RobotMemoryKind::automatic;
     int light_map_columns = 100;
     int light_map_rows = 100;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "base/log.hpp"
 #include "robot/context.hpp"
@@ -28,6 +29,26 @@ constexpr std::uint32_t kNotSent = 1;
 
 static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
 
+/// Chance that a robot sends in the time of a tick, for the article's law of reception. In the endless loop of a program
+/// without the main loop, it is what the robot has done in the last second or two.
+float send_probability() {
+    constexpr float largest_percentage = 100.0F;
+    if (context.phase != pogosim::Phase::main) {
+        return std::min<float>(percent_msgs_sent_per_ticks, largest_percentage) / largest_percentage;
+    }
+    constexpr std::int64_t window_us = 1000000;
+    constexpr std::int64_t tick_us = 16000;  // of the main loop at 60 Hz
+    std::int64_t const now_us = context.controller->clock_us;
+    pogosim::SentRate& rate = context.controller->sent_rate;
+    if (now_us - rate.began_us >= window_us) {
+        rate = {.before_us = rate.began_us, .began_us = now_us, .before = rate.present};
+    }
+    rate.present += now_us != std::exchange(rate.last_us, now_us) ? 1 : 0;
+    std::int64_t const watched_us = now_us - rate.before_us + tick_us;
+    return std::min(1.0F, static_cast<float>(rate.before + rate.present) * static_cast<float>(tick_us) /
+                              static_cast<float>(watched_us));
+}
+
 /// Puts one transmission on the air.
 std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header, std::uint16_t header_bytes,
                    std::uint8_t const* payload) {
@@ -51,7 +72,7 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
     air.transmissions.push_back({.robot = context.robot,
                                  .emitters = emitters,
                                  .message_bytes = static_cast<std::uint16_t>(header_bytes + header.payload_length),
-                                 .send_probability = std::min<float>(percent_msgs_sent_per_ticks, 100.0F) / 100.0F,
+                                 .send_probability = send_probability(),
                                  .range_mm = context.spec().ir.range_at_mm(power),
                                  .header = header,
                                  .payload_offset = air.payloads.size()});

@@ -66,6 +66,15 @@ struct Accelerometer {
     std::int64_t current_us = 0;  // the robot's clock at the last tick
 };
 
+/// How often it sends, where no main loop knows that: since the window before the present one began.
+struct SentRate {
+    std::int64_t before_us = 0;  // when that was
+    std::int64_t began_us = 0;   // of the present window
+    std::int64_t last_us = -1;   // when it sent last
+    std::uint32_t before = 0;    // times at which it sent, of each
+    std::uint32_t present = 0;
+};
+
 class Fiber;
 
 struct Controller {
@@ -83,7 +92,8 @@ struct Controller {
     Accelerometer accelerometer;
     std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
     std::uint8_t ir_power = 1;
-    std::uint64_t messages_sent = 0;      // by whatever function
+    std::uint64_t messages_sent = 0;  // by whatever function
+    SentRate sent_rate;
     std::uint64_t messages_received = 0;  // taken out of its queue
     RandomStream random;                  // rand() and srand() of the program
     RandomStream seeds;                   // getRandSeed(), from the second call on

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/context/detail/fcontext.hpp>
 #include <cstring>
@@ -131,6 +132,7 @@ private:
     void* outside_fake_stack_ = nullptr;
     void const* outside_stack_ = nullptr;
     std::size_t outside_stack_bytes_ = 0;
+    std::byte const* outside_frame_ = nullptr;  // the last one of whoever has resumed it
     void* tsan_fiber_ = nullptr;
     void* tsan_outside_ = nullptr;
 };
@@ -165,6 +167,7 @@ void Fiber::note_entry() {
 
 bool Fiber::enter() {
     running = this;
+    outside_frame_ = static_cast<std::byte const*>(__builtin_frame_address(0));
     swap_handled_exceptions(handled_);
     if (__sanitizer_start_switch_fiber != nullptr) {
         __sanitizer_start_switch_fiber(&outside_fake_stack_, stack_.bytes().data(), stack_.bytes().size());
@@ -203,6 +206,12 @@ void Fiber::forget() {
     if (__sanitizer_start_switch_fiber != nullptr) {
         __sanitizer_start_switch_fiber(nullptr, outside_stack_, outside_stack_bytes_);
         __sanitizer_finish_switch_fiber(outside_fake_stack_, nullptr, nullptr);
+    }
+    if (__asan_unpoison_memory_region != nullptr) {
+        // Frames that the jump has skipped. The sanitizer has seen to those on the fiber alone.
+        auto const* const here = static_cast<std::byte const*>(__builtin_frame_address(0));
+        std::byte const* const end = outside_frame_ - kGuardBytes;
+        __asan_unpoison_memory_region(end, static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, here - end)));
     }
     if (tsan_fiber_ != nullptr) {
         __tsan_switch_to_fiber(tsan_outside_, 0);

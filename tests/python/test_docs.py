@@ -265,7 +265,7 @@ def test_page_of_messages_quotes_what_mistakes_in_the_first_program_lead_to(tmp_
     quoted = [line for block in blocks(ROOT / "docs" / "messages.md", "") for line in block.splitlines()]
     program, configuration = blocks(README, "c")[0], blocks(README, "yaml")[0]
     crash = "if (pogobot_helper_getid() == 7 && pogobot_ticks == 100) { *(int volatile*)0 = 1; }\n"
-    endless = "while (!pogobot_infrared_message_available()) {}\n"
+    endless = "for (;;) {}\n"
     mistakes = [
         (program, configuration.replace("nb: 30", "nb: 30, raduis: 26.5")),
         (program, configuration.replace("nb: 30", "nb: thirty")),
