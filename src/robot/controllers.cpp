@@ -469,8 +469,8 @@ void Controllers::go_on(std::uint32_t robot) {
     enter(robot, self.waits_in);
     if (!can_change_threads() && pthread_equal(self.waits_on, pthread_self()) == 0) {
         refuse_user_code(
-            "a robot that waits in the middle of its program can only go on in the thread in which it began to (on this "
-            "processor): run it with threads: 1, and let one thread of Python step it");
+            "a robot that waits in the middle of its program can only go on in the thread in which it began to (on "
+            "this processor): run it with threads: 1, and let one thread of Python step it");
     }
     self.calls = calls;
     context.waiting = Waiting::always;
@@ -517,8 +517,8 @@ void Controllers::begin_step() {
     hold_suspended();
 }
 
-/// Robots that take their steps, one after the other, on a fiber: when one of them waits, the fiber is its own until its
-/// step is over, and the others go on on another one.
+/// Robots that take their steps, one after the other, on a fiber: when one of them waits, the fiber is its own until
+/// its step is over, and the others go on on another one.
 struct Controllers::Turns {
     Controllers& controllers;
     std::uint32_t next;
