@@ -29,8 +29,8 @@ constexpr std::uint32_t kNotSent = 1;
 
 static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
 
-/// Chance that a robot sends in the time of a tick, for the article's law of reception. In an endless loop in main(), it
-/// is what the robot has done in the last second or two.
+/// Chance that a robot sends in the time of a tick, for the article's law of reception. In an endless loop in main(),
+/// it is what the robot has done in the last second or two.
 float send_probability() {
     constexpr float largest_percentage = 100.0F;
     if (context.phase != pogosim::Phase::main) {

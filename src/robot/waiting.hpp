@@ -1,8 +1,8 @@
 // Programs that wait in the middle of a step: msleep(), or a loop until a message comes or some time has passed. They
 // give the processor back, and go on in the step of the simulation in which their robot's clock is reached.
 //
-// The code of a robot takes no simulated time, so a loop that waits would wait for ever. Beyond a number of calls that no
-// program needs in one step, each call takes the time that it takes on a robot.
+// The code of a robot takes no simulated time, so a loop that waits would wait for ever. Beyond a number of calls that
+// no program needs in one step, each call takes the time that it takes on a robot.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 /// @file
 /// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stops while user code runs and
-/// advances when the robot sleeps. Loops that wait end nevertheless: after a thousand calls of the library in a tick, each
-/// further one that reads the clock or a sensor, looks for messages, sends, or sets a motor or an LED takes ten
-/// microseconds. Differences are clamped to the range of int32_t (35 minutes); on a
-/// real robot they wrap around after about 107 s.
+/// advances when the robot sleeps. Loops that wait end nevertheless: after a thousand calls of the library in a tick,
+/// each further one that reads the clock or a sensor, looks for messages, sends, or sets a motor or an LED takes ten
+/// microseconds. Differences are clamped to the range of int32_t (35 minutes); on a real robot they wrap around after
+/// about 107 s.
 #ifndef POGOSIM_POGOLIB_TIMERS_H
 #define POGOSIM_POGOLIB_TIMERS_H
 
