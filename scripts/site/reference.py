@@ -9,7 +9,13 @@ from doxygen_pages import Header, declarations, introduction, read_headers, stru
 from links import ROOT
 
 # Headers that only include others, or that programs need not know.
-NOT_SHOWN = {"pogobase.h", "pogosim/pogolib.h"}
+NOT_SHOWN = {
+    "pogobase.h",
+    "pogosim/pogolib.h",
+    "sdk/generated/csr.h",
+    "sdk/hw/common.h",
+    "sdk/pogosim_sdk_program.h",
+}
 # Of the package: modules that are commands, or other names of them.
 NOT_FOR_SCRIPTS = {"__init__", "__main__", "command"}
 ROOMS_SETTINGS = [
