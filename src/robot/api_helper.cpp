@@ -45,6 +45,7 @@ void pogosim_srand(unsigned seed) {
 }
 
 void pogosim_exit(int status) {
+    constexpr int kCallees = 1;  // exit() in program.c
     char what[32];
     std::snprintf(what, sizeof(what), "called exit(%d)", status);
     auto const code = static_cast<pogosim::ExitCode>(status & 0xFF);
@@ -52,10 +53,10 @@ void pogosim_exit(int status) {
         pogosim::end_forked_child(status);
     }
     if (pogosim::inside_user_code()) {
-        pogosim::leave_user_code(what, code);
+        pogosim::leave_user_code(what, code, kCallees);
     }
     if (pogosim::is_other_thread_of_run()) {
-        pogosim::end_run_from_thread(what, code);
+        pogosim::end_run_from_thread(what, code, nullptr, kCallees);
     }
     if (pogosim::run_stage() == pogosim::RunStage::before_main) {
         std::fprintf(stderr, "pogosim: the user program %s before main(). The run did not start.\n", what);

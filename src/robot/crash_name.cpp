@@ -31,6 +31,10 @@ static_assert(kNames.size() == kCrashSignals.size());
 constexpr std::uintptr_t kStackMarginBytes = 65536;
 constexpr std::uintptr_t kBytesPerKib = 1024;
 
+// Where the processor of the robot has its registers (LiteX SoC: CSR). Systems with 64 bits put nothing there.
+constexpr std::uintptr_t kFirstRegister = 0xf0000000;
+constexpr std::uintptr_t kEndOfRegisters = 0xf0010000;
+
 struct Stack {
     std::uintptr_t end = 0;  // its lowest address
     std::uintptr_t bytes = 0;
@@ -94,8 +98,25 @@ CrashText crash_name(int signal, siginfo_t const& info, void const* signal_conte
     if (has_address) {
         text << " at address ";
         text.address(info.si_addr);
+        auto const address = reinterpret_cast<std::uintptr_t>(info.si_addr);
+        if (address >= kFirstRegister && address < kEndOfRegisters) {
+            text << ", which is a register of the hardware on the robot: those are not simulated";
+        }
     }
     return text;
+}
+
+void const* return_address([[maybe_unused]] void const* signal_context) {
+#if defined(__linux__) && defined(__x86_64__)
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): a call leaves its return address on the stack
+    return *reinterpret_cast<void* const*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RSP]);
+#elif defined(__linux__) && defined(__aarch64__)
+    constexpr int kLinkRegister = 30;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): a call leaves its return address in a register
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.regs[kLinkRegister]);
+#else
+    return nullptr;
+#endif
 }
 
 void* program_counter([[maybe_unused]] void const* signal_context) {

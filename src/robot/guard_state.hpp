@@ -23,6 +23,7 @@ struct EndRequest {
     SignalText<512> what;
     ExitCode code = ExitCode::user_program;
     bool in_other_thread = false;
+    void const* place = nullptr;  // see UserFailure
     double made_s = 0.0;
 };
 enum class RequestState { none, being_made, made };
@@ -80,6 +81,7 @@ struct RunGuard {
     bool in_other_thread = false;
     bool refused = false;
     bool too_long = false;
+    void const* place = nullptr;
     std::atomic<bool> crashed = false;
     std::atomic<bool> left_by_force = false;
     std::atomic<bool> expects_rescue = false;  // a helper was left by force, and all others are waited for
@@ -123,13 +125,16 @@ void begin_rescue(RunGuard& guard, char const* what, ExitCode code, bool in_othe
 
 [[noreturn]] void jump_out(RunGuard& guard, ExitCode code);
 
+/// Where user code is, for the message; see place_in_program(). To be called when all else is prepared for the end.
+void note_place(RunGuard& guard, void const* signal_context = nullptr, int callees = 0);
+
 /// False inside a library function such as malloc(), which may hold a lock that would never be released.
 bool is_in_user_program(RunGuard const& guard, void const* signal_context);
 
 /// Requests the end of the run from anywhere: another thread, or a signal handler. User code is aborted as soon as it
 /// holds no lock, as far as that can be determined; the simulator's own code runs to its end. Only the first request
-/// counts.
-void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread);
+/// counts. `place`: see UserFailure.
+void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread, void const* place = nullptr);
 
 /// Null while there is none.
 EndRequest const* end_request(RunGuard const& guard);

@@ -229,13 +229,20 @@ ProgramImage linked_program(pogosim_program const& program, std::string name) {
     return image;
 }
 
+std::vector<char> ProgramImage::bytes_of_file() const {
+    std::error_code error;
+    if (loaded && (std::filesystem::last_write_time(file, error) != file_time || error)) {
+        return {};
+    }
+    std::ifstream input(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(input), {}};
+}
+
 ProgramSymbols ProgramImage::symbols() const {
     if (loaded_symbols) {
         return *loaded_symbols;
     }
-    std::ifstream executable("/proc/self/exe", std::ios::binary);
-    std::vector<char> const bytes{std::istreambuf_iterator<char>(executable), {}};
-    return symbols_of(bytes);
+    return symbols_of(bytes_of_file());
 }
 
 std::vector<std::span<std::byte>> ProgramImage::memory_of_robots() const {
@@ -248,6 +255,8 @@ std::vector<std::span<std::byte>> ProgramImage::memory_of_robots() const {
 }
 
 ProgramImage load_program(std::filesystem::path const& file) {
+    std::error_code error;
+    auto const file_time = std::filesystem::last_write_time(file, error);
     auto const [library, symbols] = load_copy(file);
     auto const* const program = static_cast<pogosim_program const*>(dlsym(library.get(), "pogosim_this_program"));
     if (program == nullptr) {
@@ -264,6 +273,8 @@ ProgramImage load_program(std::filesystem::path const& file) {
     ProgramImage image = linked_program(*program, file.string());
     image.loaded = library;
     image.loaded_symbols = symbols;
+    image.file = std::filesystem::absolute(file, error);  // the host may change its folder
+    image.file_time = file_time;
     return image;
 }
 

@@ -24,7 +24,12 @@ struct ProgramImage {
     bool is_for_sdk = false;                                 // its main() does not return
     std::shared_ptr<void> loaded{};                          // keeps a loaded program in memory; null: it is linked in
     std::uintptr_t load_address = 0;                         // of what its file says
+    std::filesystem::path file = "/proc/self/exe";           // that it was read from
+    std::filesystem::file_time_type file_time{};             // when it was written; none: it is the one that runs
     std::shared_ptr<ProgramSymbols const> loaded_symbols{};  // of a loaded program
+
+    /// Empty if another file is there now, or none.
+    std::vector<char> bytes_of_file() const;
 
     /// What its file says.
     ProgramSymbols symbols() const;

@@ -157,10 +157,30 @@ ProgramSymbols symbols_of(std::span<char const> bytes) {
     return found;
 }
 
+std::string function_at(std::span<char const> bytes, std::uintptr_t address) {
+    ElfFile const file = elf_file(bytes);
+    std::string found;
+    for (Elf64_Shdr const& section : file.sections) {
+        if (section.sh_type == SHT_SYMTAB || section.sh_type == SHT_DYNSYM) {
+            for_each_symbol(file, section, [&](Elf64_Sym const& symbol, std::string_view name) {
+                bool const is_function = ELF64_ST_TYPE(symbol.st_info) == STT_FUNC && symbol.st_shndx != SHN_UNDEF;
+                if (is_function && address >= symbol.st_value && address - symbol.st_value < symbol.st_size) {
+                    found = name;
+                }
+            });
+        }
+    }
+    return found;
+}
+
 #else
 
 ProgramSymbols symbols_of(std::span<char const> /*bytes*/) {
     return {};
+}
+
+std::string function_at(std::span<char const> /*bytes*/, std::uintptr_t /*address*/) {
+    return "";
 }
 
 #endif

@@ -33,4 +33,7 @@ struct ProgramSymbols {
 /// `file`: the bytes of an executable or a shared object, which need not be well-formed.
 ProgramSymbols symbols_of(std::span<char const> file);
 
+/// The function with this address, from where the program is loaded, as the linker knows it; empty: there is none.
+std::string function_at(std::span<char const> file, std::uintptr_t address);
+
 }  // namespace pogosim

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "base/background_thread.hpp"
+#include "robot/backtrace.hpp"
 #include "robot/caught_signals.hpp"
 #include "robot/crash_name.hpp"
 #include "robot/fibers.hpp"
@@ -62,6 +63,7 @@ CaughtSignals caught_signals;
 }
 
 void on_crash(int signal, siginfo_t* info, void* signal_context) {
+    go_on_after_crash_of_backtrace();
     RunGuard* const guard = active_guard;
     bool const is_others = is_other_thread_of_run();
     if (guard == nullptr && !is_others && !process_is_ours()) {
@@ -76,7 +78,7 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
         if (background_activity() != nullptr) {
             end_run_from_background_thread(*process_run, what.c_str());
         }
-        end_run_from_thread(what.c_str(), ExitCode::user_program);
+        end_run_from_thread(what.c_str(), ExitCode::user_program, signal_context);
     }
     if (guard == nullptr) {
         prepare_last_words(what.c_str(), !on_main_thread());
@@ -87,6 +89,7 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
     }
     begin_rescue(*guard, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
     if (guard->inside) {
+        note_place(*guard, signal_context);
         jump_out(*guard, ExitCode::user_program);
     }
     if (guard->rescuable.exchange(false)) {
@@ -130,7 +133,10 @@ UserFailure requested_failure(RunGuard& guard, EndRequest const& request) {
     if (!guard.left_by_force) {
         begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
     }
-    UserFailure failure{request.what.c_str(), request.code, false, request.in_other_thread};
+    UserFailure failure{.what = request.what.c_str(),
+                        .code = request.code,
+                        .in_other_thread = request.in_other_thread,
+                        .place = request.place};
     drop_end_request(guard);
     return failure;
 }
@@ -295,6 +301,10 @@ void jump_out(RunGuard& guard, ExitCode code) {
     siglongjmp(guard.return_point, 1);
 }
 
+void note_place(RunGuard& guard, void const* signal_context, int callees) {
+    guard.place = place_in_program(guard.program_base, signal_context, callees);
+}
+
 bool is_in_user_program(RunGuard const& guard, void const* signal_context) {
     void* const counter = program_counter(signal_context);
     Dl_info here;
@@ -312,7 +322,11 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
         RunGuard& run = *active_guard;
         EndRequest const* const request = end_request(run);
         return request != nullptr ? requested_failure(run, *request)
-                                  : UserFailure{run.what.c_str(), run.code, run.refused, false, run.too_long};
+                                  : UserFailure{.what = run.what.c_str(),
+                                                .code = run.code,
+                                                .refused = run.refused,
+                                                .too_long = run.too_long,
+                                                .place = run.place};
     }
     guard.entered_s.store(monotonic_s(), std::memory_order_relaxed);
     guard.inside = true;
@@ -365,7 +379,7 @@ bool interrupted() {
     return active_guard != nullptr && active_guard->interrupts > 0;
 }
 
-void leave_user_code(char const* what, ExitCode code) {
+void leave_user_code(char const* what, ExitCode code, int callees) {
     if (is_forked_child()) {
         std::fprintf(stderr, "pogosim: a child process of the user program: %s\n", what);
         end_forked_child(static_cast<int>(code));
@@ -375,6 +389,7 @@ void leave_user_code(char const* what, ExitCode code) {
         std::abort();
     }
     set_reason(*active_guard, what);
+    note_place(*active_guard, nullptr, callees);
     jump_out(*active_guard, code);
 }
 
@@ -389,8 +404,9 @@ bool is_other_thread_of_run() {
     return active_guard == nullptr && process_run != nullptr && !on_main_thread();
 }
 
-void end_run_from_thread(char const* what, ExitCode code) {
-    request_end(*process_run, what, code, /*in_other_thread=*/true);
+void end_run_from_thread(char const* what, ExitCode code, void const* signal_context, int callees) {
+    void const* const place = place_in_program(process_run.load()->program_base, signal_context, callees);
+    request_end(*process_run, what, code, /*in_other_thread=*/true, place);
     stop_this_thread();
 }
 

@@ -36,6 +36,7 @@ struct UserFailure {
     bool refused = false;          // rejected by an interface function: an invalid parameter, an unknown column
     bool in_other_thread = false;  // in one that the program started
     bool too_long = false;         // it had not returned after user_code_timeout
+    void const* place = nullptr;   // in the program's code, that was executed last; null: unknown
 };
 
 struct RunGuard;
@@ -139,7 +140,8 @@ bool inside_user_code();
 bool interrupted();
 
 /// Ends the running call_user_code with this failure. Does not return; outside user code it aborts.
-[[noreturn]] void leave_user_code(char const* what, ExitCode code);
+/// `callees`: functions of ours in the program which it has called, and that the message does not name.
+[[noreturn]] void leave_user_code(char const* what, ExitCode code, int callees = 0);
 
 /// The same for a call that the interface refuses: exit code 2.
 [[noreturn]] void refuse_user_code(char const* what);
@@ -148,7 +150,10 @@ bool interrupted();
 bool is_other_thread_of_run();
 
 /// Ends the run from another thread, which stops here: the run ends with this failure and a complete data file.
-[[noreturn]] void end_run_from_thread(char const* what, ExitCode code);
+/// `signal_context`: of its crash; null: it has called a function of the interface.
+/// `callees`: see leave_user_code().
+[[noreturn]] void end_run_from_thread(char const* what, ExitCode code, void const* signal_context = nullptr,
+                                      int callees = 0);
 
 /// An interface function was called while no robot was running: before main(), after the run or in a thread that the
 /// program started. Ends the program with a message and exit code 3.

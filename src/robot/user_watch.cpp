@@ -86,6 +86,7 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
     what << (is_at_robots_start() ? kMoveTheLoop : kLetTimePass);
     guard.too_long = true;
     begin_rescue(guard, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    note_place(guard, signal_context);
     jump_out(guard, ExitCode::user_program);
 }
 
@@ -144,6 +145,10 @@ void look_after_request(RunGuard& guard, void const* signal_context, double now_
     }
     if (is_in_user_program(guard, signal_context) || asked_since_s > kLongestRetryS) {
         begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
+        if (!request.in_other_thread) {
+            note_place(guard, signal_context);
+            guard.request.place = guard.place;
+        }
         jump_out(guard, request.code);
     }
 }
@@ -216,7 +221,7 @@ void on_look(int signal, siginfo_t* info, void* signal_context) {
 
 }  // namespace
 
-void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread) {
+void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread, void const* place) {
     RequestState expected = RequestState::none;
     if (guard.left_by_force || !guard.request_state.compare_exchange_strong(expected, RequestState::being_made)) {
         return;
@@ -226,6 +231,7 @@ void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other
     request.what << what;
     request.code = code;
     request.in_other_thread = in_other_thread;
+    request.place = place;
     request.made_s = monotonic_s();
     guard.request_state = RequestState::made;
     guard.wall_timer.arm(kRetryPeriodS);

@@ -15,6 +15,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/places.hpp"
+#include "robot/source_place.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
 #include "sim/lamps_of.hpp"
@@ -457,8 +458,10 @@ void Simulation::fit_time_step() {
 }
 
 void Simulation::report(UserFailure const& failure) const {
-    std::string const where = fmt::format(
-        "{}, t = {:.4f} s", failure.in_other_thread ? "a thread that it started" : current_place(), world_.time_s());
+    std::string const source = place_in_source(controllers_.image(), failure.place);
+    std::string const where =
+        fmt::format("{}, t = {:.4f} s{}", failure.in_other_thread ? "a thread that it started" : current_place(),
+                    world_.time_s(), source.empty() ? "" : ", " + source);
     if (failure.refused) {
         log().error("{} (called from {}){}", failure.what, where, recorder_.note());
         return;
@@ -470,7 +473,7 @@ void Simulation::report(UserFailure const& failure) const {
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
     // C++ compilers let a function without its return run on into the next one; only a real main() is excused.
     bool const may_lack_return = failure.code == ExitCode::user_program && !failure.in_other_thread &&
-                                 !failure.too_long && context.phase == Phase::main;
+                                 !failure.too_long && context.phase == Phase::main && !controllers_.image().is_for_sdk;
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
               failed ? "failed" : "ended", where, failure.what,
               may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", recorder_.note());

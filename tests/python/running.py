@@ -125,6 +125,11 @@ def run_command(program: Path, folder: Path, arguments: Sequence[str]) -> Run:
     return Run(ended.returncode, ended.stdout, ended.stderr, folder)
 
 
+def without_places(messages: str) -> str:
+    """Leave out where in the program's source a failure was, which depends on how it is compiled."""
+    return re.sub(r"(t = [\d.]+ s), (?:at [^\n:]+:\d+ )?in [^\n]*?\): ", r"\1: ", messages)
+
+
 def example(name: str) -> Path:
     """Return a built example program."""
     path = ROOT / "examples" / name / name

@@ -16,7 +16,8 @@ SECONDS = 20
 def final_rows(name: str, folder: Path, seed: int) -> pd.DataFrame:
     settings = {"seed": seed, "simulation_time": SECONDS}
     frame = run_shipped(name, folder / f"{name}_{seed}", settings, "heartbeat").frame()
-    return frame[frame.time == frame.time.max()]
+    last: pd.DataFrame = frame[frame.time == frame.time.max()]
+    return last
 
 
 def test_program_for_robots_has_the_statistics_of_the_one_for_the_main_loop(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Compile
-from running import Run, compile_program, run, run_command, start, write_scene
+from running import Run, compile_program, run, run_command, start, without_places, write_scene
 
 # Robot 1 misbehaves in tick 10, which begins at 0.16 s: ticks last 16 ms.
 WHERE = "in user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s"
@@ -56,7 +56,7 @@ def test_crash_in_user_code_ends_with_3_a_message_and_a_readable_file(
 ) -> None:
     result = misbehave(program, tmp_path, kind)
     assert result.code == 3
-    assert f"the user program failed {WHERE}: " in result.errors
+    assert f"the user program failed {WHERE}: " in without_places(result.errors)
     assert re.search(what, result.errors)
     assert "The data file 'data.feather' contains all rows up to that point" in result.errors
     assert saved_times(result) == SAVED_TIMES
@@ -65,7 +65,7 @@ def test_crash_in_user_code_ends_with_3_a_message_and_a_readable_file(
 def test_data_lost_with_the_heap_can_be_had_by_the_run_that_the_message_names(program: Compile, tmp_path: Path) -> None:
     result = misbehave(program, tmp_path, "free_twice")
     assert result.code == 3
-    assert f"the user program failed {WHERE}: abort()" in result.errors
+    assert f"the user program failed {WHERE}: abort()" in without_places(result.errors)
     if lost := re.search(r"could not be completed.*run it again with (.*)$", result.errors, re.MULTILINE):
         again = run_command(program("misbehave.c"), tmp_path, ["-c", "scene.yaml", "-g", *lost.group(1).split()])
         assert (again.code, again.errors) == (0, "")
@@ -76,7 +76,7 @@ def test_destroyed_heap_is_said_whatever_is_left_of_it(program: Compile, tmp_pat
     result = misbehave(program, tmp_path, "write_over_the_heap")
     assert result.code == 3
     assert "the user program failed in user_step" in result.errors
-    assert "tick 10, t = 0.1600 s: " in result.errors
+    assert "tick 10, t = 0.1600 s: " in without_places(result.errors)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="replaces free() of the GNU C library")
@@ -111,7 +111,7 @@ def test_exit_in_user_code_keeps_its_code_and_the_data(
 ) -> None:
     result = misbehave(program, tmp_path, kind)
     assert result.code == code
-    assert f"the user program {verb} {WHERE}: called exit({code})" in result.errors
+    assert f"the user program {verb} {WHERE}: called exit({code})" in without_places(result.errors)
     assert saved_times(result) == SAVED_TIMES
 
 
@@ -124,7 +124,7 @@ def test_robot_that_stops_the_simulation_ends_it_well(program: Compile, tmp_path
 def test_cpp_exception_is_reported_with_its_text(program: Compile, tmp_path: Path) -> None:
     result = run(program("throw.cpp"), tmp_path)
     assert result.code == 3
-    assert f"the user program failed {WHERE}: C++ exception: a tyre is flat" in result.errors
+    assert f"the user program failed {WHERE}: C++ exception: a tyre is flat" in without_places(result.errors)
     assert saved_times(result) == SAVED_TIMES
 
 
@@ -157,7 +157,7 @@ def test_failure_in_any_function_of_the_program_names_the_function(
 ) -> None:
     result = misbehave(program, tmp_path, kind, place)
     assert result.code == 3
-    assert f"the user program failed in {place} of {who}: " in result.errors
+    assert f"the user program failed in {place} of {who}: " in without_places(result.errors)
     crashed_in_main = place == "main" and kind != "loop_for_ever"
     assert ("main() must end with 'return 0;'" in result.errors) == crashed_in_main
     # A run that fails before its first row leaves a file without rows, so that an older one does not pass for its own.
@@ -205,7 +205,8 @@ def test_failure_in_a_callback_of_the_whole_run_names_no_robot(
 ) -> None:
     result = misbehave(program, tmp_path, "write_to_null", place)
     assert result.code == 3
-    assert f"the user program failed in callback_{place}, {when}: segmentation fault" in result.errors
+    assert f"the user program failed in callback_{place}, {when}, in " in result.errors
+    assert "(): segmentation fault at address" in result.errors
     assert "robot #" not in result.errors
     assert len(result.frame()) == rows
     assert "[SYSTEM] [PRINTF] going to write to null" in result.output
@@ -319,7 +320,7 @@ def test_second_interrupt_ends_user_code_that_hangs(program: Compile, tmp_path: 
     process.send_signal(signal.SIGINT)
     result = end(process, tmp_path)
     assert result.code == 130
-    assert f"the run was interrupted {WHERE}: interrupted again before it returned" in result.errors
+    assert f"the run was interrupted {WHERE}: interrupted again before it returned" in without_places(result.errors)
     assert saved_times(result) == SAVED_TIMES
 
 
@@ -358,7 +359,7 @@ def test_one_signal_ends_user_code_that_has_not_returned_after_its_time(
     result = end(process, tmp_path)
     assert result.code == 130
     assert f"the run was interrupted {WHERE}: it had not returned 0.25 s after it began (user_code_timeout), and " in (
-        result.errors
+        without_places(result.errors)
     )
     assert name in result.errors
     assert "The data file 'data.feather' contains all rows up to that point" in result.errors

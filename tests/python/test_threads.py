@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pogosim
 import pytest
-from running import PROGRAMS, ROOT, Run, compile_program, example, run, start, write_scene
+from running import PROGRAMS, ROOT, Run, compile_program, example, run, start, without_places, write_scene
 
 Compile = Callable[[str], Path]
 
@@ -116,7 +116,10 @@ def test_first_robot_that_fails_is_named(program: Compile, tmp_path: Path) -> No
     result = run_robots(program("many_threads.c"), tmp_path, 4, "write_to_null")
     assert result.code == 3
     (line,) = errors_of(result)
-    assert "the user program failed in user_step of robot #100 of category 'robots', tick 10, t = 0.1600 s: " in line
+    assert (
+        "the user program failed in user_step of robot #100 of category 'robots', tick 10, t = 0.1600 s: "
+        in without_places(line)
+    )
     assert "segmentation fault at address" in line
     assert line.endswith("The data file 'data.feather' contains all rows up to that point")
     assert {f"[ROBOT #{robot}]" for robot in (200, 300)}.isdisjoint(

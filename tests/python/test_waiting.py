@@ -149,7 +149,8 @@ def test_loop_without_end_still_meets_its_limit(program: Compile, tmp_path: Path
 def test_crash_after_a_wait_names_robot_and_time(program: Compile, tmp_path: Path) -> None:
     result = wait(program, tmp_path, "crash")
     assert result.code == 3
-    assert "user_step of robot #1 of category 'robots', tick 0, t = 0.1000 s: segmentation fault" in result.errors
+    assert "user_step of robot #1 of category 'robots', tick 0, t = 0.1000 s, in " in result.errors
+    assert "(): segmentation fault" in result.errors
     assert len(result.frame()) == 3 * 2, "the rows up to then"
 
 

@@ -1,0 +1,14 @@
+// Where in a program's code a crash or a refused call came from.
+#pragma once
+
+namespace pogosim {
+
+/// The place in the code of a program that was executed last: functions of libraries, and of the simulator, that it has
+/// called are passed over, and so is that many `callees` of its own. `program_base`: where the program is loaded. Null:
+/// unknown, as when the stack is destroyed. Also for signal handlers.
+void const* place_in_program(void const* program_base, void const* signal_context = nullptr, int callees = 0);
+
+/// For handlers of crashes: goes back to place_in_program() if that is what crashed, as on a destroyed stack.
+void go_on_after_crash_of_backtrace();
+
+}  // namespace pogosim

@@ -1,0 +1,14 @@
+// The line of a program's source that a place in its code was made from.
+#pragma once
+
+#include <string>
+
+#include "robot/program_image.hpp"
+
+namespace pogosim {
+
+/// "at main.c:31 in compute()" by the debug information of the program's file; "in compute()" by its symbols where
+/// there is none; empty where there are none either, or the file has been built again since.
+std::string place_in_source(ProgramImage const& image, void const* place);
+
+}  // namespace pogosim
