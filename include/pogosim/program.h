@@ -29,7 +29,14 @@ int pogosim_run_program(struct pogosim_program const* program, int argc, char** 
 /// Lets the simulator report crashes and interrupts from now on, also those before main(): for executables alone.
 void pogosim_guard_process(void);
 
-// What a program's calls of rand(), srand(), exit() and usleep() become.
+/// The program's variables are as its file says: what constructs static objects in C++ runs after `self`, which has
+/// called this, among the functions that run before main(). Those may run again, for each robot that has variables of
+/// its own.
+void pogosim_before_constructors(struct pogosim_program const* program, void (*self)(void));
+
+// What a program's calls of rand(), srand(), exit() and usleep() become, and, in C++, what destroys a static object at
+// the end of the process: `destroy(object)`, if `library` is still in memory.
+int pogosim_at_end(void (*destroy)(void*), void* object, void* library);
 int pogosim_rand(void);
 void pogosim_srand(unsigned seed);
 void pogosim_exit(int status) __attribute__((noreturn));

@@ -39,6 +39,16 @@ POGO_WITHIN_PROGRAM int usleep(unsigned microseconds) {
     return 0;
 }
 
+int __cxa_atexit(void (*destroy)(void*), void* object, void* library);
+POGO_WITHIN_PROGRAM int __cxa_atexit(void (*destroy)(void*), void* object, void* library) {
+    return pogosim_at_end(destroy, object, library);
+}
+
+// The first that a program may ask for; constructors of static objects come much later.
+__attribute__((constructor(101))) static void before_constructors(void) {
+    pogosim_before_constructors(&pogosim_this_program, before_constructors);
+}
+
 POGO_WITHIN_PROGRAM void exit(int status) {
     pogosim_exit(status);
 }

@@ -106,6 +106,7 @@ struct Context {
     std::string* printed = nullptr;  // what was printed here since the last line end
     Outbox* outbox = nullptr;        // of the part of the swarm to which the robot belongs; null: all robots run here
     bool is_system = false;          // a callback of the whole run: global setup, data schema, global step
+    bool has_own_memory = false;     // its variables are its own
     bool sees_world = false;         // one of these or a click, in which the functions of world.h may be called
 
     bool has_robot() const { return robot != kNone; }

@@ -206,8 +206,8 @@ void Controllers::give_robots_own_memory() {
     if (std::string const reason = why_memory_is_shared(image_); !reason.empty()) {
         throw ConfigError(fmt::format("robot_memory: own needs to know the program's variables, but {}", reason));
     }
-    std::vector<std::span<std::byte>> const pieces = image_.memory_of_robots();
-    own_memory_ = std::make_unique<RobotMemory>(pieces, static_cast<std::uint32_t>(controllers_.size()));
+    own_variables_ = image_.memory_of_robots();
+    own_memory_ = std::make_unique<RobotMemory>(own_variables_, static_cast<std::uint32_t>(controllers_.size()));
 }
 
 void Controllers::set_for_all(BoundVariable const& bound, ParameterSource& source) {
@@ -250,7 +250,8 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
                .step_us = step_us_,
                .printed = &self.printed,
                .outbox = context.outbox,
-               .is_system = robot == kNone};
+               .is_system = robot == kNone,
+               .has_own_memory = own_memory_ != nullptr};
     if (own_memory_) {
         own_memory_->load(robot);
     }
@@ -313,7 +314,16 @@ void Controllers::call_as_system(std::uint32_t robot, Phase phase, void (*functi
     }
 }
 
-/// In C++, what a robot does with its globals before main().
+/// In C++, what robots do with their globals before main(). All of them, before the first main(): objects that they
+/// share (POGO_SHARED) are constructed by each.
+void Controllers::construct_static_objects() {
+    for (std::uint32_t i = 0; i < controllers_.size() && own_memory_ && image_.constructors; ++i) {
+        enter(i, Phase::construct_static_objects);
+        construct_again(*image_.constructors, own_variables_);
+        leave();
+    }
+}
+
 void Controllers::construct_user_data(std::uint32_t robot) {
     if (image_.construct_user_data != nullptr) {
         enter(robot, Phase::construct_user_data);
@@ -372,6 +382,7 @@ void Controllers::run_global_setup() {
 void Controllers::start() {
     auto const count = static_cast<std::uint32_t>(controllers_.size());
     warn_of_large_user_data(user_data_bytes());
+    construct_static_objects();
     if (image_.is_for_sdk) {
         start_sdk_program();
         return;

@@ -166,6 +166,7 @@ private:
     void enter(std::uint32_t robot, Phase phase);
     void enter_as_system(std::uint32_t robot, Phase phase);
     [[gnu::noinline]] static void leave();  // see can_change_threads()
+    void construct_static_objects();
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
     void run_init(std::uint32_t robot);
@@ -204,6 +205,7 @@ private:
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step
     std::atomic<bool> has_waited_ = false;
+    std::vector<std::span<std::byte>> own_variables_;
     std::unique_ptr<RobotMemory> own_memory_;  // copies: of each robot, and of the global step
     std::string program_name_;
     std::array<char*, 2> main_arguments_{};  // of the program's main(): its name, and NULL

@@ -9,6 +9,7 @@ namespace pogosim {
 
 enum class Phase : std::uint8_t {
     none,
+    construct_static_objects,
     construct_user_data,
     main,
     global_setup,
@@ -25,6 +26,7 @@ enum class Phase : std::uint8_t {
 /// For messages: "user_step". Safe in signal handlers.
 constexpr char const* name_of(Phase phase) {
     constexpr std::array kNames{"",
+                                "a constructor of static objects",
                                 "constructor of USERDATA",
                                 "main",
                                 "callback_global_setup",

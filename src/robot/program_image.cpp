@@ -224,6 +224,7 @@ ProgramImage linked_program(pogosim_program const& program, std::string name) {
     image.main = program.main;
     image.user_data_bytes = *program.user_data_bytes;
     image.construct_user_data = *program.construct_user_data;
+    image.constructors = constructors_of(program);
     // One of its files may include pogobot.h, and the one with main() pogobase.h.
     image.is_for_sdk = program.for_sdk != nullptr && image.user_data_bytes == 0;
     return image;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pogosim/program.h"
+#include "robot/constructors.hpp"
 #include "robot/program_symbols.hpp"
 
 namespace pogosim {
@@ -21,6 +22,7 @@ struct ProgramImage {
     int (*main)() = nullptr;
     std::size_t user_data_bytes = 0;
     void (*construct_user_data)(void*) = nullptr;            // null in C
+    std::shared_ptr<Constructors const> constructors{};      // of its static objects; null: there are none
     bool is_for_sdk = false;                                 // its main() does not return
     std::shared_ptr<void> loaded{};                          // keeps a loaded program in memory; null: it is linked in
     std::uintptr_t load_address = 0;                         // of what its file says

@@ -87,6 +87,10 @@ constexpr std::uint64_t kTicksBetweenLooks = 64;  // of each robot
 
 }  // namespace
 
+void copy_program_bytes(std::byte* to, std::byte const* from, std::size_t count) {
+    copy_bytes(to, from, count);
+}
+
 RobotMemory::RobotMemory(std::span<std::span<std::byte> const> pieces, std::uint32_t robots) : robots_(robots) {
     for (std::span<std::byte> const piece : pieces) {
         for (std::size_t at = 0; at < piece.size(); at += kBlockBytes) {

@@ -15,6 +15,9 @@
 
 namespace pogosim {
 
+/// Bytes of a program's variables, and those that a sanitizer forbids between them.
+void copy_program_bytes(std::byte* to, std::byte const* from, std::size_t count);
+
 class RobotMemory {
 public:
     /// What is in these pieces of the program's memory now: `robots` copies of it, and one more for code that is of no
