@@ -78,6 +78,17 @@ def ended(process: subprocess.Popen[str], folder: Path) -> Run:
     return Run(process.returncode, output, errors, folder)
 
 
+def lines_until(word: str, process: subprocess.Popen[str]) -> str:
+    """Return the lines that a batch has printed up to one with this word."""
+    assert process.stdout is not None
+    lines = ""
+    while word not in lines:
+        line = process.stdout.readline()
+        assert line, f"it ended without {word}: {lines}"
+        lines += line
+    return lines
+
+
 def ask(site: dict[str, str], *command: str) -> list[str]:
     """Return the lines that a command of SLURM prints."""
     return subprocess.run(command, env=site, capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
@@ -122,14 +133,16 @@ def wait_for_simulators(folder: Path, process: subprocess.Popen[str]) -> None:
 
 
 def test_jobs_do_the_runs_and_leave_nothing_but_the_same_bytes(
-    site: dict[str, str], undisturbed: dict[str, bytes], tmp_path: Path
+    site: dict[str, str], undisturbed: dict[str, bytes], gate: Gate, tmp_path: Path
 ) -> None:
     write(tmp_path)
     more = ("--slurm-cores", "2", "--slurm-time", "10", "--slurm-partition", "main", "--slurm-option", "comment=mine")
-    result = ended(start(tmp_path, site, *more), tmp_path)
+    process = start(tmp_path, site, *more, program=gate.program)
+    said = lines_until("RUNNING", process)
+    gate.open()
+    result = ended(process, tmp_path)
     assert (result.code, result.errors) == (0, "")
-    assert "SLURM: submitted 2 jobs of 2 cores" in result.output
-    assert "RUNNING" in result.output
+    assert "SLURM: submitted 2 jobs of 2 cores" in said
     assert results(tmp_path) == undisturbed
     assert sorted(path.name for path in tmp_path.iterdir()) == ["many.yaml", "results"]
     wait_until(lambda: not jobs(site))
