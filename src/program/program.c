@@ -44,8 +44,8 @@ POGO_WITHIN_PROGRAM int __cxa_atexit(void (*destroy)(void*), void* object, void*
     return pogosim_at_end(destroy, object, library);
 }
 
-// The first that a program may ask for; constructors of static objects come much later.
-__attribute__((constructor(101))) static void before_constructors(void) {
+// After guard_process() of main.c, which must not run again; constructors of static objects come much later.
+__attribute__((constructor(102))) static void before_constructors(void) {
     pogosim_before_constructors(&pogosim_this_program, before_constructors);
 }
 

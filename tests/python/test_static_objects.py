@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+import signal
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pogosim import Simulation
-from running import PROGRAMS, Run, compile_program, compiler, run, write_scene
+from running import PROGRAMS, Run, compile_program, compiler, run, start, write_scene
 
 SOURCE = PROGRAMS / "static_objects.cpp"
 ROBOTS = 20
@@ -93,3 +94,19 @@ int main() { for (;;) msleep(10); }
     assert result.code == 3
     assert "a constructor of static objects of robot #1" in result.errors
     assert "main.cpp:4" in result.errors
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGUSR1"])
+@pytest.mark.parametrize("source", [SOURCE, PROGRAMS / "endless.c"], ids=lambda path: path.suffix)
+def test_signals_end_the_run_and_nothing_else(source: Path, name: str, tmp_path: Path) -> None:
+    """What notes that main() has not begun, and is among the constructors, is not called again."""
+    program = compile_program(tmp_path / "prog", source, package="pogosim-sdk")
+    process = start(program, tmp_path / "run", {"simulation_time": 1.0e6, "objects.robots.nb": 3})
+    assert process.stdout is not None
+    assert "PRINTF" in process.stdout.readline()
+    process.send_signal(signal.Signals[name])
+    output, errors = process.communicate(timeout=60)
+    assert process.returncode == 130, errors
+    assert "interrupted at t = " in errors + output
+    assert "main()" not in errors
+    assert len(Run(0, output, errors, tmp_path / "run").frame()) > 0
