@@ -34,9 +34,11 @@ void pogosim_guard_process(void);
 /// its own.
 void pogosim_before_constructors(struct pogosim_program const* program, void (*self)(void));
 
-// What a program's calls of rand(), srand(), exit() and usleep() become, and, in C++, what destroys a static object at
-// the end of the process: `destroy(object)`, if `library` is still in memory.
+/// In C++: calls `destroy(object)`, for a static object, when the process ends or `library` leaves memory; never for an
+/// object of a robot that has variables of its own. Returns 0 unless memory is short.
 int pogosim_at_end(void (*destroy)(void*), void* object, void* library);
+
+// What a program's calls of rand(), srand(), exit() and usleep() become.
 int pogosim_rand(void);
 void pogosim_srand(unsigned seed);
 void pogosim_exit(int status) __attribute__((noreturn));
@@ -44,6 +46,9 @@ void pogosim_usleep(unsigned microseconds);
 
 /// What msleep() is in the simulator's main loop: nothing of the tick is left to go on with after it.
 void pogosim_sleep_after_tick(int milliseconds);
+
+/// The robot's program reads its clock, which takes time if it does so again and again.
+void pogosim_let_time_pass(void);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

@@ -17,7 +17,17 @@ POGO_PER_ROBOT time_reference_t timer_main_loop;
 POGO_PER_ROBOT uint32_t _current_time_milliseconds = 0;
 POGO_PER_ROBOT uint32_t _error_code_initial_time = 0;  // 0: no error is shown
 
+#ifdef REAL_ROBOT
+#define LET_TIME_PASS()
+#else
+#include "pogosim/program.h"
+// In the simulator, a program that reads its clock again and again waits, and may go on in another thread. Only here,
+// where no address of a variable that each thread has is known: the functions of timers do not wait in this file.
+#define LET_TIME_PASS() pogosim_let_time_pass()
+#endif
+
 uint32_t current_time_milliseconds(void) {
+    LET_TIME_PASS();
     // Moves the origin by whole milliseconds, so that the rest is not lost and the stopwatch never overflows.
     int32_t const us = pogobot_stopwatch_get_elapsed_microseconds(&_global_timer);
     if (us >= 1000 || us <= -1000) {

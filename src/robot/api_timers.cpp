@@ -105,6 +105,17 @@ void pogosim_usleep(unsigned microseconds) {
     pogosim::sleep_until(context.controller->clock_us + microseconds);
 }
 
+void pogosim_let_time_pass() {
+    require_robot("current_time_milliseconds");
+    pogosim::note_clock_read();
+}
+
+/// What pogobot_stopwatch_get_elapsed_microseconds() is in the main loop.
+extern "C" int32_t pogosim_elapsed_microseconds(time_reference_t* stopwatch);
+int32_t pogosim_elapsed_microseconds(time_reference_t* stopwatch) {
+    return saturate(context.controller->clock_us - stopwatch->origin_us);
+}
+
 void pogosim_sleep_after_tick(int milliseconds) {
     context.controller->clock_us += milliseconds * kMicrosecondsPerMillisecond;
 }

@@ -19,7 +19,11 @@ void wait_for_step(Waiting least) {
 
 void sleep_until(std::int64_t clock_us) {
     Controller& self = *context.controller;
-    self.clock_us = std::max(self.clock_us, clock_us);
+    if (clock_us <= self.clock_us) {
+        note_call();
+        return;
+    }
+    self.clock_us = clock_us;
     self.calls = 0;
     wait_for_step(Waiting::always);
 }

@@ -33,7 +33,7 @@ static void sleep_in_small_steps(void) {
 }
 
 static void wait_for_message(void) {
-    while (!pogobot_infrared_message_available()) {
+    while (pogobot_infrared_update(), !pogobot_infrared_message_available()) {
     }
     message_t received;
     pogobot_infrared_recover_next_message(&received);
@@ -103,7 +103,6 @@ static void wait(void) {
         }
     } else if (strcmp(how, "no end") == 0) {
         for (;;) {
-            msleep(0);
         }
     } else if (strcmp(how, "drive") == 0) {
         pogobot_motor_set(motorL, motorFull);

@@ -25,7 +25,7 @@ CALLS = {
     "led": "pogobot_led_setColor",
     "stop": "stop_simulation",
     "category": "get_current_robot_category",
-    "milliseconds": "pogobot_stopwatch_get_elapsed_microseconds",
+    "milliseconds": "current_time_milliseconds",
 }
 
 

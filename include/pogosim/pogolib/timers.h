@@ -1,9 +1,9 @@
 /// @file
 /// Stopwatches, timers and sleeping, in microseconds of the robot's own clock. The clock stops while user code runs and
 /// advances when the robot sleeps. Loops that wait end nevertheless: after a thousand calls of the library in a tick,
-/// each further one that reads the clock or a sensor, looks for messages, sends, or sets a motor or an LED takes ten
-/// microseconds. Differences are clamped to the range of int32_t (35 minutes); on a real robot they wrap around after
-/// about 107 s.
+/// each further one that reads the clock or a sensor, looks for messages, sends, sets a motor or an LED, or sleeps for
+/// no time takes ten microseconds. Differences are clamped to the range of int32_t (35 minutes); on a real robot they
+/// wrap around after about 107 s.
 #ifndef POGOSIM_POGOLIB_TIMERS_H
 #define POGOSIM_POGOLIB_TIMERS_H
 
@@ -38,8 +38,9 @@ void pogobot_timer_wait_for_expiry(time_reference_t* timer);
 /// Moves the expiry by the offset: re-arms a periodic timer without drift.
 void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t microseconds_offset);
 
-/// Sleeps for this time: the robot's program goes on in the first step of the simulation in which it is over. In user_init
-/// and in callbacks, the robot's clock is moved on, and the program goes on at once. Zero and negative values do nothing.
+/// Sleeps for this time: the robot's program goes on in the first step of the simulation in which it is over. In
+/// user_init and in callbacks, the robot's clock is moved on, and the program goes on at once. Zero and negative values
+/// take no time.
 void msleep(int milliseconds);
 
 /// The same in microseconds.
