@@ -18,7 +18,11 @@ $(error ROBOT_CATEGORY must be one word, found '$(ROBOT_CATEGORY)')
 endif
 
 LAYER := $(sort $(wildcard $(POGOSIM_INTERFACE_DIR)/*.c))
-OBJECTS := $(SOURCES:%=$(BIN_DIR)/%.o) $(patsubst $(POGOSIM_INTERFACE_DIR)/%,$(BIN_DIR)/pogosim/%.o,$(LAYER))
+PROGRAM_OBJECTS := $(SOURCES:%=$(BIN_DIR)/%.o)
+LAYER_OBJECTS := $(patsubst $(POGOSIM_INTERFACE_DIR)/%,$(BIN_DIR)/pogosim/%.o,$(LAYER))
+OBJECTS := $(PROGRAM_OBJECTS) $(LAYER_OBJECTS)
+# Whether the program uses the layer: one with pogobot.h alone does not, and may have variables of the same names.
+USES_LAYER = grep -q 'pogobase\.h' $(PROGRAM_OBJECTS:.o=.d)
 
 ROBOT_FLAGS := -DREAL_ROBOT -DROBOT_CATEGORY=$(ROBOT_CATEGORY) -flto -ffunction-sections -fdata-sections \
     -I. -I$(POGO_SDK)/includes -I$(POGOSIM_INCLUDE_DIR) $(addprefix -I,$(POGOUTILS_INCLUDE_DIR)) -MD -MP
@@ -27,7 +31,7 @@ CPP_FLAGS := $(filter-out -std=% -fexceptions -Wstrict-prototypes -Wold-style-de
     -std=gnu++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics
 CFLAGS += $(ROBOT_FLAGS)
 COMPILE_CPP = $(TRIPLE)-g++ -c $(CPP_FLAGS) $(ROBOT_FLAGS) $< -o $@
-LINK = $(CC) $(CPUFLAGS) -Os -flto $(OBJECTS) -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -Wl,--gc-sections \
+LINK = $(CC) $(CPUFLAGS) -Os -flto $(PROGRAM_OBJECTS) $$($(USES_LAYER) && echo $(LAYER_OBJECTS)) -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -Wl,--gc-sections \
     -L$(POGO_SDK)/libs -Wl,--start-group -lcompiler_rt -lc -lpogobot -Wl,--end-group
 
 bin: $(FIRMWARE).bin
@@ -39,7 +43,7 @@ $(FIRMWARE).bin: $(FIRMWARE).elf
 
 # With a misspelt category, the robot would do nothing. The compiler removes calls for other categories.
 $(FIRMWARE).elf: $(OBJECTS) $(BIN_DIR)/.link
-	@$(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || { echo "This program has no pogobot_start() for robots of \
+	@! $(USES_LAYER) || $(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || { echo "This program has no pogobot_start() for robots of \
 category '$(ROBOT_CATEGORY)' (ROBOT_CATEGORY)" >&2; exit 1; }
 	$(LINK) -o $@
 

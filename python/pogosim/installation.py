@@ -69,7 +69,7 @@ def installation_in(folder: Path) -> Installation | None:
             Path(os.path.normpath(settings[name][0]))
             for name in ("POGOSIM_LIBRARY_DIR", "POGOSIM_TEMPLATE_DIR", "SHARED_STATE_TOOL")
         )
-        flags = (*settings["POGOSIM_CFLAGS"], *settings["POGOSIM_LIBS"])
+        flags = (*settings["POGOSIM_CFLAGS"], *settings["POGOSIM_SDK_CFLAGS"], *settings["POGOSIM_LIBS"])
         return Installation(folder, settings["POGOSIM_VERSION"][0], library, template, shared_state, flags)
     except (KeyError, IndexError, ValueError):
         raise InstallationError(f"{file} is of another version, or damaged: build that Pogosim again") from None

@@ -223,6 +223,20 @@ def test_category_chooses_the_controller(project: Path, sdk: Path) -> None:
     assert (b"I follow" in image.read_bytes(), b"I lead" in image.read_bytes()) == (False, True)
 
 
+def test_program_for_the_robots_alone_becomes_firmware_without_the_interface(project: Path, sdk: Path) -> None:
+    write(
+        project,
+        {
+            "main.c": '#include "pogobot.h"\nuint32_t pogobot_ticks;\nint main(void) { pogobot_init(); '
+            "for (;;) { pogobot_ticks++; msleep(10); } }\n"
+        },
+    )
+    made(project, "bin", f"POGO_SDK={sdk}")
+    functions = listing(project / "build" / "bin" / "firmware.elf")
+    assert "main" in functions
+    assert "pogo_main_loop_step" not in functions
+
+
 def test_category_that_no_controller_is_for_is_an_error(project: Path, sdk: Path) -> None:
     unknown = make(project, "bin", f"POGO_SDK={sdk}", "ROBOT_CATEGORY=robot")
     assert unknown.code == 2
