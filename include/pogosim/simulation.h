@@ -22,10 +22,12 @@ void stop_simulation(void);
 
 // ---- Callbacks: SET_CALLBACK(callback_name, function), in main() after pogobot_start() ----
 
-/// Sets a callback; in main(), after pogobot_start() or, with pogobot.h, before its loop. On real robots it does nothing, and the function need not exist.
+/// Sets a callback; in main(), after pogobot_start() or, with pogobot.h, before the first wait. On real robots it does
+/// nothing, and the function need not exist.
 #define SET_CALLBACK(callback_name, fn) ((callback_name) = (fn))
 
-/// Once, before any user_init: read the configuration here.
+/// Once, before any user_init: read the configuration here. With pogobot.h, when all robots have come to their first
+/// wait.
 extern POGO_PER_ROBOT void (*callback_global_setup)(void);
 /// Once, after every user_init, if there is a data file: declare columns here.
 extern POGO_PER_ROBOT void (*callback_create_data_schema)(void);

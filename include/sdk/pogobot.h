@@ -3,7 +3,7 @@
 /// variables are globals. Compiled with this one, such a program runs in the simulator as it is; each simulated robot
 /// has its own variables and its own `main()`, which may wait in the middle.
 ///
-///     cc main.c -o prog $(pkg-config --cflags --libs pogosim-sdk)
+///     cc main.c -o prog $(PKG_CONFIG_PATH=build/release pkg-config --cflags --libs pogosim-sdk)
 ///
 /// What belongs to the simulator alone (columns of the data file, values from the configuration) is in
 /// pogosim/simulation.h, to be included between `#ifdef SIMULATOR` and `#endif`. Registers of the hardware are not
@@ -15,5 +15,6 @@
 #include "pogosim_sdk_program.h"
 #endif
 #include "pogosim/pogolib.h"
+#include "pogosim/shared_state.h"
 
 #endif

@@ -143,9 +143,11 @@ void pogobot_infrared_set_power(uint8_t power);
 
 // Receiving, without msg_rx_fn. When the queue is full, new messages are dropped.
 
-/// Decodes received data on a real robot; does nothing in the simulator.
+/// Decodes received data on a real robot, which gets no messages without it; does nothing in the simulator. The main
+/// loop of pogobase.h calls it.
 void pogobot_infrared_update(void);
-/// Non-zero if a message is waiting. It does not change within a simulated tick: do not wait for it in a loop.
+/// Non-zero if a message is waiting. A loop that waits for it goes on when a message comes; call
+/// pogobot_infrared_update() and msleep() in it.
 int pogobot_infrared_message_available(void);
 /// Drops all waiting messages.
 void pogobot_infrared_clear_message_queue(void);

@@ -1,12 +1,12 @@
 /// @file
-/// Registers of the robot's hardware, which are not simulated: a program that uses one does not link. Programs that
+/// Registers of the robot's hardware, which are not simulated: a program that uses one does not compile or link. Programs that
 /// include this header and use no register run.
 #ifndef POGOSIM_SDK_CSR_H
 #define POGOSIM_SDK_CSR_H
 
 #include <stdint.h>
 
-#pragma message("registers of the hardware are not simulated: a program that uses one does not link")
+#pragma message("registers of the hardware are not simulated: a program that uses one does not compile or link")
 
 #ifdef __cplusplus
 extern "C" {
