@@ -4,7 +4,6 @@
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 
@@ -14,31 +13,41 @@ namespace {
 
 constexpr std::uint64_t kAddressElsewhere = 0xADD2E55;  // any number
 
+// Where the system puts programs, their heaps, libraries, stacks and what a sanitizer allocates. A word in there is
+// taken for an address, whatever this run has there: else a number would be one in some runs and not in others.
+#ifdef __aarch64__
+constexpr std::uint64_t kFirstAddress = 0xaaaa00000000;
+constexpr std::uint64_t kEndOfAddresses = 0x1000000000000;
+#else
+constexpr std::uint64_t kFirstAddress = 0x550000000000;
+constexpr std::uint64_t kEndOfAddresses = 0x800000000000;
+#endif
+
 }  // namespace
 
-AddressSpace::AddressSpace(ProgramImage const& image) : load_address_(image.load_address) {
+AddressSpace::AddressSpace(ProgramImage const& image)
+    : program_{.begin = image.load_address, .end = image.load_address} {
     // An image is one piece of the address space; its last byte may be one past the end of its last variable.
-    std::uint64_t image_end = image.load_address;
     for (std::span<std::byte> const piece : image.variables) {
-        image_end = std::max(image_end, reinterpret_cast<std::uint64_t>(piece.data() + piece.size()));
+        program_.end = std::max(program_.end, reinterpret_cast<std::uint64_t>(piece.data() + piece.size()));
     }
+    // The heap of a program without random addresses (-no-pie) begins behind it.
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
-        std::uint64_t begin = 0;
-        std::uint64_t end = 0;
-        if (std::sscanf(line.c_str(), "%" SCNx64 "-%" SCNx64, &begin, &end) == 2) {
-            bool const is_programs = begin >= image.load_address && begin < image_end;
-            mappings_.push_back({.begin = begin, .end = end, .is_programs = is_programs});
+        Range range;
+        if (line.ends_with("[heap]") &&
+            std::sscanf(line.c_str(), "%" SCNx64 "-%" SCNx64, &range.begin, &range.end) == 2) {
+            heap_ = range;
         }
     }
 }
 
 std::uint64_t AddressSpace::without_place(std::uint64_t word) const {
-    auto const next = std::ranges::upper_bound(mappings_, word, {}, &Mapping::begin);
-    if (next == mappings_.begin() || word >= std::prev(next)->end) {
-        return word;
+    if (program_.contains(word)) {
+        return word - program_.begin;
     }
-    return std::prev(next)->is_programs ? word - load_address_ : kAddressElsewhere;
+    bool const is_address = (word >= kFirstAddress && word < kEndOfAddresses) || heap_.contains(word);
+    return is_address ? kAddressElsewhere : word;
 }
 
 }  // namespace pogosim

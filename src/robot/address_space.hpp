@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "robot/program_image.hpp"
 
@@ -14,17 +13,17 @@ public:
     explicit AddressSpace(ProgramImage const& image);
 
     /// The same in every run: of an address in the program its offset there, of another one a constant, and what is no
-    /// address as it is.
+    /// address as it is. Numbers that look like an address count as one.
     std::uint64_t without_place(std::uint64_t word) const;
 
 private:
-    struct Mapping {
-        std::uint64_t begin;
-        std::uint64_t end;
-        bool is_programs;
+    struct Range {
+        std::uint64_t begin = 0;
+        std::uint64_t end = 0;
+        bool contains(std::uint64_t word) const { return word >= begin && word < end; }
     };
-    std::uint64_t load_address_;
-    std::vector<Mapping> mappings_;  // ascending
+    Range program_;
+    Range heap_{};
 };
 
 }  // namespace pogosim

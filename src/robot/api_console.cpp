@@ -12,6 +12,7 @@
 #include "robot/forked_child.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/user_guard.hpp"
+#include "robot/waiting.hpp"
 
 using pogosim::context;
 
@@ -86,6 +87,13 @@ void print(std::string_view text) {
     });
 }
 
+/// Printing for ever is what some programs for the robots alone do in main(); in a step it is a mistake.
+void note_output() {
+    if (is_robot_printing() && context.phase == pogosim::Phase::main) {
+        pogosim::note_call();
+    }
+}
+
 }  // namespace
 
 int pogosim_vprintf(char const* format, va_list arguments) {
@@ -110,6 +118,7 @@ int pogosim_vprintf(char const* format, va_list arguments) {
         }
         va_end(again);
     });
+    note_output();
     return size;
 }
 
@@ -127,6 +136,7 @@ int pogosim_printf(char const* format, ...) {
 int pogosim_putchar(int character) {
     char const text = static_cast<char>(character);
     print({&text, 1});
+    note_output();
     return static_cast<unsigned char>(character);
 }
 
@@ -138,5 +148,6 @@ int pogosim_puts(char const* text) {
     }
     print(text);
     print("\n");
+    note_output();
     return 0;
 }

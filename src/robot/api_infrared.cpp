@@ -204,6 +204,7 @@ void pogobot_infrared_set_power(uint8_t power) {
 
 void pogobot_infrared_update() {
     if (context.controller != nullptr) {
+        context.controller->program.decodes_messages = true;
         pogosim::note_call();
     }
 }

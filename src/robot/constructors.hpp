@@ -24,6 +24,9 @@ struct Constructors {
 /// That of a program in memory; null: it has no static objects to construct.
 std::shared_ptr<Constructors const> constructors_of(pogosim_program const& program);
 
+/// Of a program that may leave memory: whoever has asked for its constructors keeps them.
+void forget_constructors_of(pogosim_program const& program);
+
 /// Makes the variables in these pieces of memory what they were before, and constructs the objects in them.
 void construct_again(Constructors const& constructors, std::span<std::span<std::byte> const> pieces);
 

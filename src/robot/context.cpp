@@ -54,12 +54,13 @@ std::string current_place() {
 }
 
 std::string current_robot_name() {
+    std::string const tick = has_ticks(context.phase) ? fmt::format(", tick {}", pogobot_ticks) : "";
     if (context.is_system) {
-        return fmt::format("{}, tick {}", name_of(context.phase), pogobot_ticks);
+        return fmt::format("{}{}", name_of(context.phase), tick);
     }
     World const& world = *context.world;
-    return fmt::format("robot #{} of category '{}', tick {}", world.robots.id[context.robot],
-                       world.categories[world.robots.category[context.robot]].name, pogobot_ticks);
+    return fmt::format("robot #{} of category '{}'{}", world.robots.id[context.robot],
+                       world.categories[world.robots.category[context.robot]].name, tick);
 }
 
 }  // namespace pogosim

@@ -88,7 +88,7 @@ private:
     void warn_of_robot(std::string_view format, std::string const& text);
 };
 
-/// Whether a robot's program may give the processor back in the middle, see waiting.hpp.
+/// Whether a robot's program may return control to the simulator in the middle, see waiting.hpp.
 enum class Waiting : std::uint8_t {
     never,       // in callbacks
     for_inputs,  // in user_init: sleeping is over at once
@@ -118,6 +118,18 @@ struct Context {
 
 /// The context of this thread.
 extern constinit thread_local Context context;
+
+/// As long as this lives, this thread works for no robot.
+class WithoutRobot {
+public:
+    WithoutRobot() : before_(context) { context = {}; }
+    ~WithoutRobot() { context = before_; }
+    WithoutRobot(WithoutRobot const&) = delete;
+    WithoutRobot& operator=(WithoutRobot const&) = delete;
+
+private:
+    Context before_;
+};
 
 /// Where the running robot's messages go.
 inline TransmissionQueue& current_air() {

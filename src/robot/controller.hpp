@@ -34,9 +34,11 @@ struct LoopGlobals {
 
 /// What the program registered for this robot.
 struct Program {
-    bool registered = false;      // a pogobot_start() named this robot's category
-    bool prepared = false;        // pogobot_init() was called
-    bool reads_messages = false;  // it looked into its queue, in user code or for msg_rx_fn
+    bool registered = false;        // a pogobot_start() named this robot's category
+    bool prepared = false;          // pogobot_init() was called
+    bool reads_messages = false;    // it looked into its queue, in user code or for msg_rx_fn
+    bool decodes_messages = false;  // pogobot_infrared_update() was called
+    bool returned = false;          // main() of a program for the SDK has ended
     void (*init)() = nullptr;
     void (*step)() = nullptr;
     void (*export_data)() = nullptr;

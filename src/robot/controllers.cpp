@@ -253,7 +253,7 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
                .is_system = robot == kNone,
                .has_own_memory = own_memory_ != nullptr};
     if (own_memory_) {
-        own_memory_->load(robot);
+        without_exceptions([&] { own_memory_->load(robot); });
     }
     mydata = self.user_data;
     self.calls = 0;
@@ -292,6 +292,7 @@ void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), boo
     Suspended const* const off = find_suspended(robot);
     std::size_t const transmissions = world_.air.transmissions.size();
     std::size_t const payload_bytes = world_.air.payloads.size();
+    int const calls = controller(robot).calls;
     if (off != nullptr) {
         wake(*off);
     }
@@ -299,6 +300,7 @@ void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), boo
     context.sees_world = sees_world;
     function();
     leave();
+    controller(robot).calls = calls;  // of one that waits
     if (Suspended* const still_off = find_suspended(robot)) {
         rest(*still_off);
         world_.air.transmissions.resize(transmissions);
@@ -336,10 +338,11 @@ void Controllers::run_main(std::uint32_t robot) {
     enter(robot, Phase::main);
     context.waiting = image_.is_for_sdk ? Waiting::always : Waiting::never;
     callback_export_data = callback_robot_end = callback_robot_click = nullptr;
-    // A program may modify its arguments, so each robot gets a fresh copy.
-    program_name_ = image_.name;
-    main_arguments_ = {program_name_.data(), nullptr};
-    call_main(image_.main, main_arguments_.data());
+    // A program may modify its arguments, so each robot gets a fresh copy; those of programs for the SDK keep theirs.
+    MainArguments& arguments = main_arguments_[image_.is_for_sdk && robot != kNone ? robot : 0];
+    arguments.name = image_.name;
+    arguments.values = {arguments.name.data(), nullptr};
+    call_main(image_.main, arguments.values.data());
     leave();
     note_callbacks(controller(robot).program);
 }
@@ -381,7 +384,9 @@ void Controllers::run_global_setup() {
 
 void Controllers::start() {
     auto const count = static_cast<std::uint32_t>(controllers_.size());
-    warn_of_large_user_data(user_data_bytes());
+    main_arguments_.resize(image_.is_for_sdk ? std::max(1U, count) : 1U);
+    warn_of_large_memory("USERDATA has", user_data_bytes());
+    warn_of_large_memory("the program's variables have", own_memory_ ? own_memory_->bytes() : 0);
     construct_static_objects();
     if (image_.is_for_sdk) {
         start_sdk_program();
@@ -421,12 +426,15 @@ void Controllers::start_sdk_program() {
             controllers_[i].program.registered = true;
         }
     }
+    begun_with_ = callbacks_of_thread();
+    has_begun_ = true;
     run_global_setup();
     warn_of_missing_init(controllers_);
 }
 
 void Controllers::run_sdk_main(std::uint32_t robot) {
     run_main(robot);
+    controllers_[robot].program.returned = true;
     controllers_[robot].clock_us = kIdle;
     command_motors(robot);
 }
@@ -467,10 +475,26 @@ void Controllers::wait() {
     leave();
     if (self.waits_in == Phase::main) {
         note_callbacks(self.program);
+        warn_of_late_callbacks();
         drift(self, self.went_on_us);
     }
     command_motors(robot);
     leave_fiber();
+}
+
+/// Of callbacks that are called once, before the first step.
+void Controllers::warn_of_late_callbacks() {
+    auto const warn_if = [this](bool is_late, char const* name) {
+        if (is_late) {
+            services_.warn_once("{} is set after main() has waited for the first time: it is not called; set it before",
+                                name);
+        }
+    };
+    if (has_begun_) {
+        warn_if(callback_global_setup != nullptr && begun_with_.global_setup == nullptr, "callback_global_setup");
+        warn_if(callback_create_data_schema != nullptr && begun_with_.create_data_schema == nullptr,
+                "callback_create_data_schema");
+    }
 }
 
 void Controllers::go_on(std::uint32_t robot) {
@@ -701,7 +725,9 @@ bool Controllers::export_row(std::size_t robot, std::uint32_t object, std::span<
     data.row = {.values = cells, .exported = true};
     data.filling = true;
     data.next_column = 0;
+    std::int64_t const clock_us = controllers_[robot].clock_us;
     call(static_cast<std::uint32_t>(robot), Phase::export_data, controllers_[robot].program.export_data);
+    controllers_[robot].clock_us = clock_us;  // how often rows are saved changes nothing
     data.filling = false;
     data.filled_rows += data.row.exported && controllers_[robot].program.export_data != nullptr ? 1 : 0;
     return data.row.exported;
@@ -735,7 +761,9 @@ void Controllers::print_unfinished_lines() {
 void Controllers::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, controllers_);
     warn_of_unused_messages(world_, controllers_, arrivals);
+    warn_of_undecoded_messages(controllers_);
     warn_of_send_percent(world_, controllers_);
+    tell_of_ended_programs(controllers_);
 }
 
 void Controllers::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {

@@ -172,6 +172,7 @@ private:
     void run_init(std::uint32_t robot);
     void start_sdk_program();
     void run_sdk_main(std::uint32_t robot);
+    void warn_of_late_callbacks();
     void run_on_fiber(std::uint32_t robot, void (Controllers::*part)(std::uint32_t));
     Fiber& free_fiber();
     void go_on(std::uint32_t robot);
@@ -196,6 +197,8 @@ private:
 
     ProgramImage image_;
     Callbacks callbacks_;
+    Callbacks begun_with_;    // of a program for the SDK: those that its main() has set before it waited
+    bool has_begun_ = false;  // these are known
     World& world_;
     RunServices& services_;
     std::vector<Controller> controllers_;
@@ -207,8 +210,11 @@ private:
     std::atomic<bool> has_waited_ = false;
     std::vector<std::span<std::byte>> own_variables_;
     std::unique_ptr<RobotMemory> own_memory_;  // copies: of each robot, and of the global step
-    std::string program_name_;
-    std::array<char*, 2> main_arguments_{};  // of the program's main(): its name, and NULL
+    struct MainArguments {
+        std::string name;
+        std::array<char*, 2> values{};  // the program's name, and NULL
+    };
+    std::vector<MainArguments> main_arguments_;  // of main(): one for all, or each robot's
 };
 
 }  // namespace pogosim

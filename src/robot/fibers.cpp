@@ -37,7 +37,8 @@ using boost::context::detail::jump_fcontext;
 using boost::context::detail::make_fcontext;
 using boost::context::detail::transfer_t;
 
-constexpr std::size_t kGuardBytes = 65536;  // a function may touch this much beyond its stack pointer
+constexpr std::size_t kGuardBytes = std::size_t{1} << 20U;  // large local arrays must not reach beyond it
+constexpr std::size_t kJumpedBytes = 65536;  // of frames between whoever has resumed a fiber and where a jump ends
 constexpr double kBytesPerKib = 1024.0;
 
 /// Memory with forbidden pages before it, in which an overflow ends.
@@ -210,7 +211,7 @@ void Fiber::forget() {
     if (__asan_unpoison_memory_region != nullptr) {
         // Frames that the jump has skipped. The sanitizer has seen to those on the fiber alone.
         auto const* const here = static_cast<std::byte const*>(__builtin_frame_address(0));
-        std::byte const* const end = outside_frame_ - kGuardBytes;
+        std::byte const* const end = outside_frame_ - kJumpedBytes;
         __asan_unpoison_memory_region(end, static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, here - end)));
     }
     if (tsan_fiber_ != nullptr) {

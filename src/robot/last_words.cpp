@@ -80,7 +80,11 @@ Words words_of_run(char const* where, char const* what, char const* advice) {
     return words;
 }
 
-void append_time(PlaceText& text) {
+void append_tick_and_time(PlaceText& text) {
+    if (has_ticks(context.phase)) {
+        text << ", tick ";
+        text.whole(pogobot_ticks);
+    }
     text << ", t = ";
     text.number(context.world->time_s(), 4) << " s";
 }
@@ -104,9 +108,8 @@ void prepare_words_of_run(char const* what) {
         return;
     }
     PlaceText where;
-    where << " in " << name_of(context.phase) << ", tick ";
-    where.whole(pogobot_ticks);
-    append_time(where);
+    where << " in " << name_of(context.phase);
+    append_tick_and_time(where);
     last_words() = words_of_run(where.c_str(), what, "");
     SignalText<256> const advice = advice_to_repeat();
     last_words() = words_of_run(where.c_str(), what, advice.c_str());
@@ -145,9 +148,7 @@ PlaceText running_place() {
         text << " of robot #";
         text.whole(context.world->robots.id[context.robot]) << " of category '" << get_current_robot_category() << "'";
     }
-    text << ", tick ";
-    text.whole(pogobot_ticks);
-    append_time(text);
+    append_tick_and_time(text);
     return text;
 }
 

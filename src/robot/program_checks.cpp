@@ -12,6 +12,9 @@
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
 
+// The run-time library of clang's sanitizers is a part of the program.
+extern "C" [[gnu::weak]] void __asan_init();
+
 namespace pogosim {
 
 namespace {
@@ -46,9 +49,9 @@ bool receives_never(Controller const& controller) {
 
 }  // namespace
 
-void warn_of_large_user_data(std::size_t bytes) {
-    if (bytes > kRobotMemoryBytes) {
-        log().warn("USERDATA has {} bytes, more than the {} bytes (128 KiB) of a real robot's memory", bytes,
+void warn_of_large_memory(std::string_view what, std::size_t bytes) {
+    if (bytes > kRobotMemoryBytes && __asan_init == nullptr) {
+        log().warn("{} {} bytes, more than the {} bytes (128 KiB) of a real robot's memory", what, bytes,
                    kRobotMemoryBytes);
     }
 }
@@ -82,8 +85,7 @@ void warn_of_missing_init(std::span<Controller const> controllers) {
     auto const is_prepared = [](Controller const& controller) { return controller.program.prepared; };
     if (std::ranges::any_of(controllers, runs) && std::ranges::none_of(controllers, is_prepared)) {
         log().warn(
-            "the program never calls pogobot_init(), which real robots require: call it in main(), before "
-            "pogobot_start()");
+            "the program never calls pogobot_init(), which real robots require: call it at the beginning of main()");
     }
 }
 
@@ -155,9 +157,28 @@ void warn_of_unused_messages(World const& world, std::span<Controller const> con
     auto const reads = [](Controller const& controller) { return controller.program.reads_messages; };
     if (arrivals > 0 && std::ranges::none_of(controllers, reads) && std::ranges::none_of(deaf, std::identity())) {
         log().warn(
-            "{} messages arrived, but no robot reads them: set msg_rx_fn in user_init, or call "
-            "pogobot_infrared_message_available() in user_step",
+            "{} messages arrived, but no robot reads them: set msg_rx_fn in user_init, or look for them with "
+            "pogobot_infrared_message_available()",
             arrivals);
+    }
+}
+
+void warn_of_undecoded_messages(std::span<Controller const> controllers) {
+    auto const reads = [](Controller const& controller) { return controller.program.reads_messages; };
+    auto const decodes = [](Controller const& controller) { return controller.program.decodes_messages; };
+    if (std::ranges::any_of(controllers, reads) && std::ranges::none_of(controllers, decodes)) {
+        log().warn(
+            "the program reads messages and never calls pogobot_infrared_update(), without which a real robot receives "
+            "none: call it before pogobot_infrared_message_available()");
+    }
+}
+
+void tell_of_ended_programs(std::span<Controller const> controllers) {
+    auto const has_returned = [](Controller const& controller) { return controller.program.returned; };
+    auto const ended = std::ranges::count_if(controllers, has_returned);
+    if (ended > 0) {
+        log().info("main() of {} robot{} has returned: such a robot keeps its motors and LEDs and does nothing more",
+                   ended, ended == 1 ? "" : "s");
     }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robot/context.hpp"
@@ -17,8 +18,8 @@
 
 namespace pogosim {
 
-/// User data too large for a real robot. `bytes`: of one robot.
-void warn_of_large_user_data(std::size_t bytes);
+/// Variables too large for a real robot. `what`: "USERDATA has"; `bytes`: of one robot.
+void warn_of_large_memory(std::string_view what, std::size_t bytes);
 
 /// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
 void warn_of_user_data_in_setup(std::uint32_t id);
@@ -43,6 +44,12 @@ void warn_of_lost_messages(World const& world, std::span<Controller const> contr
 /// Messages that are never read, or that a program intends to send and read but cannot. `arrivals`: messages that
 /// reached robots in the whole run.
 void warn_of_unused_messages(World const& world, std::span<Controller const> controllers, std::uint64_t arrivals);
+
+/// A program that reads messages and never has them decoded.
+void warn_of_undecoded_messages(std::span<Controller const> controllers);
+
+/// Programs for the SDK whose main() has returned.
+void tell_of_ended_programs(std::span<Controller const> controllers);
 
 /// A percent_msgs_sent_per_ticks above 100, by category.
 void warn_of_send_percent(World const& world, std::span<Controller const> controllers);

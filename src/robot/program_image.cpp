@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 #ifdef __linux__
-#include <link.h>
 #include <sys/mman.h>
 #endif
 
@@ -23,7 +22,9 @@
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "pogosim/version.h"
+#include "robot/context.hpp"
 #include "robot/elf_file.hpp"
+#include "robot/loaded_object.hpp"
 
 namespace pogosim {
 
@@ -37,6 +38,16 @@ std::string version_text(std::uint32_t encoded) {
 
 [[noreturn]] void fail(std::filesystem::path const& file, std::string const& problem) {
     throw ConfigError(fmt::format("the program '{}' {}", escaped(file.string()), problem));
+}
+
+// Constructors and destructors of static objects are of no robot, although one may have run last in this thread.
+void* loaded(std::filesystem::path const& file) {
+    WithoutRobot const nobody;
+    return dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+}
+void unload(void* library) {
+    WithoutRobot const nobody;
+    dlclose(library);
 }
 
 #ifdef __linux__
@@ -124,42 +135,6 @@ private:
     int descriptor_;
 };
 
-/// What looks for the object that a place in memory belongs to.
-struct Search {
-    std::uintptr_t place;
-    std::uintptr_t load_address = 0;
-    std::vector<std::span<std::byte>> writable{};
-};
-
-int look_at_object(dl_phdr_info* object, std::size_t /*bytes*/, void* of_search) {
-    auto& search = *static_cast<Search*>(of_search);
-    std::span const segments(object->dlpi_phdr, object->dlpi_phnum);
-    bool const contains_place = std::ranges::any_of(segments, [&](auto const& segment) {
-        std::uintptr_t const begin = object->dlpi_addr + segment.p_vaddr;
-        return segment.p_type == PT_LOAD && search.place >= begin && search.place - begin < segment.p_memsz;
-    });
-    if (!contains_place) {
-        return 0;
-    }
-    search.load_address = object->dlpi_addr;
-    for (auto const& segment : segments) {
-        if (segment.p_type == PT_LOAD && (segment.p_flags & PF_W) != 0) {
-            // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
-            auto* const begin = reinterpret_cast<std::byte*>(object->dlpi_addr + segment.p_vaddr);
-            search.writable.emplace_back(begin, segment.p_memsz);
-        }
-    }
-    return 1;
-}
-
-/// Looks for the object around a place.
-void find_memory(ProgramImage& image, void const* place) {
-    Search search{.place = reinterpret_cast<std::uintptr_t>(place)};
-    dl_iterate_phdr(look_at_object, &search);
-    image.variables = std::move(search.writable);
-    image.load_address = search.load_address;
-}
-
 struct Copy {
     std::shared_ptr<void> library;
     std::shared_ptr<ProgramSymbols const> symbols;
@@ -173,7 +148,7 @@ Copy load_copy(std::filesystem::path const& file) {
     let_each_copy_have_its_variables(bytes);
     MemoryFile const copy(file.filename().string(), bytes);
     std::string const path = copy.path();
-    void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* const handle = loaded(path);
     if (handle == nullptr) {
         std::string problem = dlerror();
         if (problem.starts_with(path + ": ")) {
@@ -181,15 +156,10 @@ Copy load_copy(std::filesystem::path const& file) {
         }
         fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
     }
-    return {.library = {handle, [](void* library) { dlclose(library); }},
-            .symbols = std::make_shared<ProgramSymbols const>(symbols_of(bytes))};
+    return {.library = {handle, unload}, .symbols = std::make_shared<ProgramSymbols const>(symbols_of(bytes))};
 }
 
 #else
-
-void find_memory(ProgramImage& /*image*/, void const* /*place*/) {
-    // Parameters cannot be set during a run.
-}
 
 struct Copy {
     std::shared_ptr<void> library;
@@ -204,13 +174,13 @@ Copy load_copy(std::filesystem::path const& file) {
     if (error || !std::filesystem::copy_file(file, copy, error)) {
         fail(file, fmt::format("cannot be read: {}", error.message()));
     }
-    void* const handle = dlopen(copy.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* const handle = loaded(copy);
     std::string const problem = handle == nullptr ? dlerror() : "";
     std::filesystem::remove(copy, error);
     if (handle == nullptr) {
         fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
     }
-    return {.library = {handle, [](void* library) { dlclose(library); }}};
+    return {.library = {handle, unload}};
 }
 
 #endif
@@ -220,7 +190,9 @@ Copy load_copy(std::filesystem::path const& file) {
 ProgramImage linked_program(pogosim_program const& program, std::string name) {
     ProgramImage image;
     image.name = std::move(name);
-    find_memory(image, &program);
+    LoadedObject object = loaded_object_at(&program);
+    image.variables = std::move(object.writable);
+    image.load_address = object.load_address;
     image.main = program.main;
     image.user_data_bytes = *program.user_data_bytes;
     image.construct_user_data = *program.construct_user_data;
@@ -272,6 +244,7 @@ ProgramImage load_program(std::filesystem::path const& file) {
                                version_text(POGOSIM_VERSION_COMPILED)));
     }
     ProgramImage image = linked_program(*program, file.string());
+    forget_constructors_of(*program);
     image.loaded = library;
     image.loaded_symbols = symbols;
     image.file = std::filesystem::absolute(file, error);  // the host may change its folder

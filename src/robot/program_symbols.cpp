@@ -84,9 +84,20 @@ void take_out(std::vector<ProgramSymbols::Piece>& pieces, ProgramSymbols::Piece 
     pieces = std::move(rest);
 }
 
+std::uint32_t copy_relocation(ElfFile const& file) {
+    switch (file.header->e_machine) {
+        case EM_AARCH64:
+            return R_AARCH64_COPY;
+        case EM_RISCV:
+            return R_RISCV_COPY;
+        default:
+            return R_X86_64_COPY;
+    }
+}
+
 /// Variables of libraries may lie in an executable that uses them: stdout, std::cout.
 void take_out_variables_of_libraries(ElfFile const& file, std::vector<ProgramSymbols::Piece>& pieces) {
-    std::uint32_t const copy = file.header->e_machine == EM_AARCH64 ? R_AARCH64_COPY : R_X86_64_COPY;
+    std::uint32_t const copy = copy_relocation(file);
     for (Elf64_Shdr const& section : file.sections) {
         if (section.sh_type != SHT_RELA || section.sh_link >= file.sections.size()) {
             continue;

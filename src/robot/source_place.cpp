@@ -27,10 +27,15 @@ struct FreeMemory {
     void operator()(void* memory) const { std::free(memory); }
 };
 
+/// The headers rename the program's main().
+std::string own_name(std::string const& function) {
+    return function == "robot_main" ? "main" : function;
+}
+
 /// As in the source: "Swarm::step(int)", or "compute()" in C, whose symbols do not name parameters. Compilers name
 /// parts and copies of a function "compute.cold" and "compute.isra.0".
 std::string written_name(std::string const& symbol) {
-    std::string const function = symbol.substr(0, symbol.find('.'));
+    std::string const function = own_name(symbol.substr(0, symbol.find('.')));
     int status = 0;
     std::unique_ptr<char, FreeMemory> const name(abi::__cxa_demangle(function.c_str(), nullptr, nullptr, &status));
     return name != nullptr ? name.get() : function + "()";
@@ -107,7 +112,7 @@ std::string place_by_debug_information(std::string const& file, std::uintptr_t a
     }
     std::string const function = function_in(&*unit, address);
     return fmt::format("at {}:{}{}", file_of(line, &*unit), number,
-                       function.empty() ? "" : fmt::format(" in {}()", function));
+                       function.empty() ? "" : fmt::format(" in {}()", own_name(function)));
 }
 
 #else

@@ -50,6 +50,7 @@ void user_step(void) {
         pogobot_photosensors_read(3);
     } else if (is("polls")) {
         pogobot_infrared_clear_message_queue();
+        pogobot_infrared_update();
         pogobot_infrared_message_available();
     } else if (is("late_reading")) {
         init_from_configuration(late);

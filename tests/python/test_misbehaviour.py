@@ -137,7 +137,7 @@ def test_exception_of_a_constructor_of_user_data_ends_with_3_and_an_empty_file(t
     )
     result = run(compile_program(tmp_path / "main", source), tmp_path)
     assert result.code == 3
-    where = "in constructor of USERDATA of robot #1 of category 'robots', tick 0, t = 0.0000 s"
+    where = "in constructor of USERDATA of robot #1 of category 'robots', t = 0.0000 s"
     assert f"the user program failed {where}: C++ exception: no air" in result.errors
     assert len(result.frame()) == 0
 
@@ -145,7 +145,7 @@ def test_exception_of_a_constructor_of_user_data_ends_with_3_and_an_empty_file(t
 @pytest.mark.parametrize(
     ("place", "who"),
     [
-        ("main", "robot #1 of category 'robots', tick 0, t = 0.0000 s"),
+        ("main", "robot #1 of category 'robots', t = 0.0000 s"),
         ("user_init", "robot #1 of category 'robots', tick 0, t = 0.0000 s"),
         ("export_data", "robot #1 of category 'robots', tick 6, t = 0.1000 s"),
         ("robot_end", "robot #1 of category 'robots', tick 125, t = 2.0000 s"),
@@ -187,7 +187,7 @@ def test_interrupted_program_that_keeps_its_own_endless_loop_is_told_to_move_it(
         process.send_signal(signal.SIGINT)
     result = end(process, tmp_path)
     assert result.code == 130
-    assert "the run was interrupted in main of robot #1 of category 'robots', tick 0, " in result.errors
+    assert "the run was interrupted in main of robot #1 of category 'robots', " in result.errors
     assert f": {MOVE_THE_LOOP}\n" in result.errors
     assert "return 0" not in result.errors
 

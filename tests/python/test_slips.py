@@ -53,11 +53,11 @@ def warnings(result: Run) -> list[str]:
         ("no_init", "the program never calls pogobot_init(), "),
         (
             "late_init",
-            "robot #0 of category 'robots', tick 0: pogobot_init() is called after pogobot_start(), ",
+            "robot #0 of category 'robots': pogobot_init() is called after pogobot_start(), ",
         ),
         (
             "two_starts",
-            "robot #0 of category 'robots', tick 0: pogobot_start() is called again for the category ",
+            "robot #0 of category 'robots': pogobot_start() is called again for the category ",
         ),
         (
             "setup_of_userdata",
