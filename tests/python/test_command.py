@@ -11,7 +11,7 @@ from pathlib import Path
 import pogosim
 import pytest
 from project import CLEAN, TEMPLATE
-from running import Run, build_folder, write_scene
+from running import PROGRAMS, Run, build_folder, write_scene
 
 SUBCOMMANDS = (
     "new",
@@ -191,6 +191,14 @@ def test_run_compiles_a_source_file(tmp_path: Path) -> None:
         2,
         "pogosim run: circles.c does not compile; see the compiler's messages above",
     )
+
+
+def test_run_compiles_a_program_for_the_robots_alone(tmp_path: Path) -> None:
+    shutil.copy(PROGRAMS / "endless.c", tmp_path / "endless.c")
+    configuration = write_scene(tmp_path, {"parameters.gain": 9})
+    result = command(tmp_path, "run", "endless.c", "-c", str(configuration), "-g")
+    assert (result.code, result.errors) == (0, ""), result.text
+    assert set(result.frame().gain) == {9}
 
 
 def test_run_warns_of_shared_variables_and_gives_the_exit_code(tmp_path: Path) -> None:

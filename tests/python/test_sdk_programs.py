@@ -172,10 +172,14 @@ def test_loop_that_does_nothing_is_named(tmp_path: Path) -> None:
     assert "did not return within 0.3 s of processor time (user_code_timeout); while it runs, time" in result.errors
 
 
-def test_walls_do_not_run_the_program(endless: Path, tmp_path: Path) -> None:
-    walls = {"objects.walls": {"type": "pogowall", "geometry": "arena"}}
+def test_walls_and_membranes_do_not_run_the_program(endless: Path, tmp_path: Path) -> None:
+    walls = {
+        "objects.walls": {"type": "pogowall", "geometry": "arena"},
+        "objects.ring": {"type": "membrane", "geometry": "disk", "radius": 90, "x": 500, "y": 500},
+    }
     result = run(endless, tmp_path, {**NEAR, **walls, "parameters.gain": 9})
     assert result.code == 0, result.text
+    assert set(re.findall(r"\[ROBOT #(\d+)\]", result.text)) == {str(i) for i in range(8)}
     assert result.errors == ""
     assert "[ROBOT #65535]" not in result.text
 

@@ -236,6 +236,27 @@ def test_clocks_of_waiting_programs_drift(tmp_path: Path) -> None:
     assert len(turns[1]) > 1
 
 
+def test_child_process_ends_where_it_would_wait(tmp_path: Path) -> None:
+    program = sdk(
+        tmp_path,
+        """#include "pogobot.h"
+#include <unistd.h>
+int main(void) {
+    pogobot_init();
+    msleep(50);
+    int const parent = pogobot_helper_getid() != 1 || fork() != 0;
+    printf("before %d\\n", parent);
+    msleep(50);
+    printf("after %d\\n", parent);
+    for (;;) { msleep(100); }
+}
+""",
+    )
+    result = run(program, tmp_path / "run", {})
+    assert result.code == 0, result.text
+    assert re.findall(r"after \d", result.text) == ["after 1"] * 3
+
+
 # ---- what they say ----
 
 
