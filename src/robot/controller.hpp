@@ -79,6 +79,10 @@ struct SentRate {
 
 class Fiber;
 
+// What a clock shows of a robot that is not due, us.
+inline constexpr std::int64_t kNever = std::int64_t{1} << 62U;  // switched off; room for what a callback may add to it
+inline constexpr std::int64_t kIdle = kNever / 2;               // its main() has returned
+
 struct Controller {
     std::int64_t clock_us = 0;        // the robot's own time
     std::int64_t clock_drift_us = 0;  // added at every tick

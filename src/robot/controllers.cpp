@@ -20,6 +20,7 @@
 #include "robot/forked_child.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/sensing.hpp"
 #include "robot/user_guard.hpp"
 #include "robot/velocity_command.hpp"
 
@@ -46,9 +47,6 @@ constexpr char const* kSystemCategory = "__system";
 // Ids of the random streams that do not belong to one robot's body.
 constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
-
-constexpr std::int64_t kNever = std::int64_t{1} << 62U;  // us; room for what a callback may add to it
-constexpr std::int64_t kIdle = kNever / 2;               // us; of a program that has ended
 
 /// Bytes from one robot's user data to the next one's.
 std::size_t stride_of(std::size_t user_data_bytes) {
@@ -88,17 +86,6 @@ LoopGlobals stored_globals() {
             .loop_timer = timer_main_loop};
 }
 
-/// Whether code that waits may go on in another thread. It is compiled as if that never happened, so it may keep the
-/// address of a variable that each thread has, such as mydata, in a register. Not on x86-64, where such variables are
-/// read and written without their address.
-constexpr bool can_change_threads() {
-#ifdef __x86_64__
-    return true;
-#else
-    return false;
-#endif
-}
-
 /// A bijection of 16 bits, so that the first seeds of up to 65536 robots differ.
 std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
     auto const odd_factor = static_cast<std::uint16_t>(key | 1U);
@@ -108,21 +95,6 @@ std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
 
 int draw_between(IntRange range, RandomStream& stream) {
     return range.min + static_cast<int>(stream.below(static_cast<std::uint32_t>(range.max - range.min) + 1U));
-}
-
-/// In the robot's own time, in which ticks are evenly spaced: steps and ticks do not coincide.
-void measure_velocity(World const& world, std::uint32_t robot, Controller& self) {
-    constexpr float seconds_per_us = 1e-6F;
-    std::uint32_t const body = world.robots.body[robot];
-    if (body == kNone) {
-        return;
-    }
-    Accelerometer& meter = self.accelerometer;
-    meter.previous_mm_s = meter.current_mm_s;
-    meter.current_mm_s = world.bodies.velocity_mm_s[body];
-    bool const first = !std::exchange(meter.has_measured, true);
-    meter.interval_s = first ? 0.0F : static_cast<float>(self.clock_us - meter.current_us) * seconds_per_us;
-    meter.current_us = self.clock_us;
 }
 
 /// Like the C library, calls main() with arguments, whether it takes them or not. C leaves that undefined, and
@@ -289,7 +261,7 @@ void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), boo
     if (function == nullptr) {
         return;
     }
-    Suspended const* const off = find_suspended(robot);
+    SwitchedOff const* const off = find_switched_off(robot);
     std::size_t const transmissions = world_.air.transmissions.size();
     std::size_t const payload_bytes = world_.air.payloads.size();
     int const calls = controller(robot).calls;
@@ -301,7 +273,7 @@ void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), boo
     function();
     leave();
     controller(robot).calls = calls;  // of one that waits
-    if (Suspended* const still_off = find_suspended(robot)) {
+    if (SwitchedOff* const still_off = find_switched_off(robot)) {
         rest(*still_off);
         world_.air.transmissions.resize(transmissions);
         world_.air.payloads.resize(payload_bytes);
@@ -439,49 +411,6 @@ void Controllers::run_sdk_main(std::uint32_t robot) {
     command_motors(robot);
 }
 
-void Controllers::run_on_fiber(std::uint32_t robot, void (Controllers::*part)(std::uint32_t)) {
-    struct Call {
-        Controllers& controllers;
-        std::uint32_t robot;
-        void (Controllers::*part)(std::uint32_t);
-    };
-    Call call{*this, robot, part};
-    Fiber& fiber = free_fiber();
-    auto const body = [](void* argument) {
-        Call const copy = *static_cast<Call*>(argument);  // which the robot may outlive
-        (copy.controllers.*copy.part)(copy.robot);
-    };
-    if (run_on(fiber, body, &call)) {
-        fibers_.put_back(fiber);
-    }
-}
-
-Fiber& Controllers::free_fiber() {
-    Fiber* fiber = nullptr;
-    without_exceptions([&] { fiber = &fibers_.take(); });
-    return *fiber;
-}
-
-void Controllers::wait() {
-    if (is_forked_child()) {
-        end_forked_child(0);  // what comes now is the parent's
-    }
-    std::uint32_t const robot = context.robot;
-    Controller& self = controllers_[robot];
-    self.waits_in = context.phase;
-    self.waits_on = pthread_self();
-    self.fiber = running_fiber();
-    has_waited_ = true;
-    leave();
-    if (self.waits_in == Phase::main) {
-        note_callbacks(self.program);
-        warn_of_late_callbacks();
-        drift(self, self.went_on_us);
-    }
-    command_motors(robot);
-    leave_fiber();
-}
-
 /// Of callbacks that are called once, before the first step.
 void Controllers::warn_of_late_callbacks() {
     auto const warn_if = [this](bool is_late, char const* name) {
@@ -494,27 +423,6 @@ void Controllers::warn_of_late_callbacks() {
         warn_if(callback_global_setup != nullptr && begun_with_.global_setup == nullptr, "callback_global_setup");
         warn_if(callback_create_data_schema != nullptr && begun_with_.create_data_schema == nullptr,
                 "callback_create_data_schema");
-    }
-}
-
-void Controllers::go_on(std::uint32_t robot) {
-    Controller& self = controllers_[robot];
-    measure_velocity(world_, robot, self);
-    int const calls = self.calls;
-    enter(robot, self.waits_in);
-    if (!can_change_threads() && pthread_equal(self.waits_on, pthread_self()) == 0) {
-        refuse_user_code(
-            "a robot that waits in the middle of its program can only go on in the thread in which it began to (on "
-            "this processor): run it with threads: 1, and let one thread of Python step it");
-    }
-    self.calls = calls;
-    context.waiting = Waiting::always;
-    self.went_on_us = self.clock_us;
-    if (self.waits_in == Phase::main) {
-        set_callbacks(self.program);
-    }
-    if (resume(*self.fiber)) {
-        fibers_.put_back(*std::exchange(self.fiber, nullptr));
     }
 }
 
@@ -549,63 +457,7 @@ void Controllers::begin_step() {
         leave();
         without_exceptions([this] { services_.access.settle_light(); });
     }
-    hold_suspended();
-}
-
-/// Robots that take their steps, one after the other, on a fiber: when one of them waits, the fiber is its own until
-/// its step is over, and the others go on on another one.
-struct Controllers::Turns {
-    Controllers& controllers;
-    std::uint32_t next;
-    std::uint32_t last;  // not one of them
-};
-
-void Controllers::run_robots(std::uint32_t first, std::uint32_t last) {
-    Turns turns{*this, first, last};
-    while (turns.next < last) {
-        if (is_waiting(turns.next)) {
-            go_on(turns.next);
-            turns.next += is_due(turns.next) ? 0 : 1;
-            continue;
-        }
-        Fiber& fiber = free_fiber();
-        if (run_on(
-                fiber,
-                [](void* argument) {
-                    static_cast<Turns*>(argument)->controllers.take_turns(*static_cast<Turns*>(argument));
-                },
-                &turns)) {
-            fibers_.put_back(fiber);
-        }
-    }
-}
-
-bool Controllers::is_due(std::uint32_t robot) const {
-    return step_us_ >= controllers_[robot].clock_us;
-}
-
-bool Controllers::is_waiting(std::uint32_t robot) const {
-    return is_due(robot) && controllers_[robot].fiber != nullptr;
-}
-
-void Controllers::take_turns(Turns& turns) {
-    for (; turns.next < turns.last; ++turns.next) {
-        std::uint32_t const robot = turns.next;
-        Controller& self = controllers_[robot];
-        if (!is_due(robot)) {
-            continue;
-        }
-        if (self.fiber != nullptr) {
-            return;  // it goes on with its own
-        }
-        if (self.loop.loop_hz == 0) {
-            self.clock_us = step_us_;  // without a sleep the clock follows the steps
-        }
-        tick(robot);
-        if (self.fiber != nullptr) {
-            return;  // it has waited: the turns have long gone on without it
-        }
-    }
+    hold_switched_off();
 }
 
 void Controllers::take_over(Outbox& outbox) {
@@ -642,57 +494,6 @@ ConfiguredVariables Controllers::configured_variables() const {
 
 std::int64_t Controllers::now_us() const {
     return std::llround(world_.time_s() * kMicrosecondsPerSecond);
-}
-
-void Controllers::set_alive(std::uint32_t robot, bool alive) {
-    if (alive == is_alive(world_, robot)) {
-        return;
-    }
-    auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
-    std::vector<std::uint32_t>& switched_off = world_.switched_off;
-    auto const entry = std::ranges::lower_bound(switched_off, robot);
-    if (alive) {
-        wake(*place);
-        suspended_.erase(place);
-        switched_off.erase(entry);
-    } else {
-        switched_off.insert(entry, robot);
-        rest(*suspended_.insert(place, {.robot = robot}));
-    }
-}
-
-Controllers::Suspended* Controllers::find_suspended(std::uint32_t robot) {
-    auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
-    return place != suspended_.end() && place->robot == robot ? &*place : nullptr;
-}
-
-std::int64_t Controllers::clock_us(std::uint32_t robot) const {
-    auto const place = std::ranges::lower_bound(suspended_, robot, {}, &Suspended::robot);
-    return place != suspended_.end() && place->robot == robot ? place->clock_us : controllers_[robot].clock_us;
-}
-
-void Controllers::wake(Suspended const& self) {
-    controllers_[self.robot].clock_us = std::max(self.clock_us, now_us());
-    world_.robots.led[self.robot] = self.leds;
-}
-
-/// Never due: that takes no branch in run_step(). Of one that rests already, nothing is kept.
-void Controllers::rest(Suspended& self) {
-    std::int64_t const clock_us = std::exchange(controllers_[self.robot].clock_us, kNever);
-    Leds const leds = std::exchange(world_.robots.led[self.robot], {});
-    if (clock_us < kNever) {
-        self.clock_us = clock_us;
-        self.leds = leds;
-    }
-}
-
-/// As motors without power do, but without their noise.
-void Controllers::hold_suspended() {
-    for (Suspended const& self : suspended_) {
-        if (controllers_[self.robot].motors.driven && world_.spec_of(self.robot).has_wheels) {
-            world_.robots.command[self.robot] = {.velocity_mm_s = {}, .angular_velocity_rad_s = 0.0F, .pending = true};
-        }
-    }
 }
 
 void Controllers::tick(std::uint32_t robot) {

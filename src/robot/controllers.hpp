@@ -105,13 +105,13 @@ public:
     void set_alive(std::uint32_t robot, bool alive);
 
     /// A robot that is switched off, and what it goes on with.
-    struct Suspended {
+    struct SwitchedOff {
         std::uint32_t robot = 0;
         std::int64_t clock_us = 0;
         Leds leds{};
     };
     /// All robots that are switched off, as in World::switched_off.
-    std::span<Suspended const> suspended() const { return suspended_; }
+    std::span<SwitchedOff const> switched_off() const { return switched_off_; }
 
     /// Clock of a robot between two of its ticks, us; of one that is switched off, when that happened.
     std::int64_t clock_us(std::uint32_t robot) const;
@@ -183,10 +183,10 @@ private:
     void run_global_setup();
     void call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world = false);
     std::int64_t now_us() const;
-    Suspended* find_suspended(std::uint32_t robot);
-    void wake(Suspended const& self);
-    void rest(Suspended& self);
-    void hold_suspended();
+    SwitchedOff* find_switched_off(std::uint32_t robot);
+    void wake(SwitchedOff const& self);
+    void rest(SwitchedOff& self);
+    void hold_switched_off();
     void call_as_system(std::uint32_t robot, Phase phase, void (*function)());
     void tick(std::uint32_t robot);
     static void drift(Controller& self, std::int64_t since_us);
@@ -202,8 +202,8 @@ private:
     World& world_;
     RunServices& services_;
     std::vector<Controller> controllers_;
-    Controller system_;                 // of the global step
-    std::vector<Suspended> suspended_;  // by robot, ascending
+    Controller system_;                      // of the global step
+    std::vector<SwitchedOff> switched_off_;  // by robot, ascending
     FencedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step

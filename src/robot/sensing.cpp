@@ -1,6 +1,8 @@
 #include "robot/sensing.hpp"
 
 #include <array>
+#include <cstdint>
+#include <utility>
 
 namespace pogosim {
 
@@ -30,6 +32,20 @@ double mean_light(World const& world, std::uint32_t body) {
 double light_of(World const& world, Object const& object) {
     bool const has_sensors = object.robot != kNone && object.body_count == 1;
     return has_sensors ? mean_light(world, object.body) : world.light.at(wrapped(world, centre_mm(world, object)));
+}
+
+void measure_velocity(World const& world, std::uint32_t robot, Controller& self) {
+    constexpr float seconds_per_us = 1e-6F;
+    std::uint32_t const body = world.robots.body[robot];
+    if (body == kNone) {
+        return;
+    }
+    Accelerometer& meter = self.accelerometer;
+    meter.previous_mm_s = meter.current_mm_s;
+    meter.current_mm_s = world.bodies.velocity_mm_s[body];
+    bool const first = !std::exchange(meter.has_measured, true);
+    meter.interval_s = first ? 0.0F : static_cast<float>(self.clock_us - meter.current_us) * seconds_per_us;
+    meter.current_us = self.clock_us;
 }
 
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "robot/controller.hpp"
 #include "world/world.hpp"
@@ -16,6 +17,10 @@ double mean_light(World const& world, std::uint32_t body);
 
 /// Light at an object, sensor counts, without noise: mean of the sensors of a rigid robot; of others, in the middle.
 double light_of(World const& world, Object const& object);
+
+/// The accelerometer of a robot notes its velocity, at a time of the robot's own clock: its ticks are evenly spaced
+/// there, and do not coincide with steps.
+void measure_velocity(World const& world, std::uint32_t robot, Controller& self);
 
 /// Mean acceleration over the last tick in the frame of the robot with this body, m/s2: x forward, y to the right.
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter);

@@ -131,7 +131,7 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
         add_robot(hash, all[robot], world.mailboxes, robot);
     }
     // Nothing is added where nobody has changed what these say.
-    for (Controllers::Suspended const& off : controllers.suspended()) {
+    for (Controllers::SwitchedOff const& off : controllers.switched_off()) {
         hash.add(off.robot);
         hash.add(off.clock_us);
         add_leds(hash, off.leds);

@@ -1,0 +1,158 @@
+// How the robots of a step take turns, and wait in the middle:
+//
+//   run_robots() ──► take_turns(), on a fiber ──► tick() of robot 0, 1, 2, ...
+//        ▲                                            │ msleep() of robot 2, or a loop of its: wait()
+//        │                                            ▼
+//        └──────────────── leave_fiber() ─── the fiber is robot 2's; its clock is ahead
+//   run_robots() ──► take_turns(), on another fiber ──► tick() of robot 3, ...
+//
+// In the step in which its clock is reached, run_robots() resumes the fiber of robot 2 (go_on()). wait() returns in
+// there, and so do the rest of its tick and of take_turns(), which sees that the turns have gone on without it.
+#include <pthread.h>
+
+#include <cstdint>
+#include <utility>
+
+#include "robot/controllers.hpp"
+#include "robot/forked_child.hpp"
+#include "robot/sensing.hpp"
+#include "robot/user_guard.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// Whether code that waits may go on in another thread. It is compiled as if that never happened, so it may keep the
+/// address of a variable that each thread has, such as mydata, in a register. Not on x86-64, where such variables are
+/// read and written without their address.
+constexpr bool can_change_threads() {
+#ifdef __x86_64__
+    return true;
+#else
+    return false;
+#endif
+}
+
+}  // namespace
+
+void Controllers::run_on_fiber(std::uint32_t robot, void (Controllers::*part)(std::uint32_t)) {
+    struct Call {
+        Controllers& controllers;
+        std::uint32_t robot;
+        void (Controllers::*part)(std::uint32_t);
+    };
+    Call call{*this, robot, part};
+    Fiber& fiber = free_fiber();
+    auto const body = [](void* argument) {
+        Call const copy = *static_cast<Call*>(argument);  // which the robot may outlive
+        (copy.controllers.*copy.part)(copy.robot);
+    };
+    if (run_on(fiber, body, &call)) {
+        fibers_.put_back(fiber);
+    }
+}
+
+Fiber& Controllers::free_fiber() {
+    Fiber* fiber = nullptr;
+    without_exceptions([&] { fiber = &fibers_.take(); });
+    return *fiber;
+}
+
+void Controllers::wait() {
+    if (is_forked_child()) {
+        end_forked_child(0);  // what comes now is the parent's
+    }
+    std::uint32_t const robot = context.robot;
+    Controller& self = controllers_[robot];
+    self.waits_in = context.phase;
+    self.waits_on = pthread_self();
+    self.fiber = running_fiber();
+    has_waited_ = true;
+    leave();
+    if (self.waits_in == Phase::main) {
+        note_callbacks(self.program);
+        warn_of_late_callbacks();
+        drift(self, self.went_on_us);
+    }
+    command_motors(robot);
+    leave_fiber();
+}
+
+void Controllers::go_on(std::uint32_t robot) {
+    Controller& self = controllers_[robot];
+    measure_velocity(world_, robot, self);
+    int const calls = self.calls;
+    enter(robot, self.waits_in);
+    if (!can_change_threads() && pthread_equal(self.waits_on, pthread_self()) == 0) {
+        refuse_user_code(
+            "a robot that waits in the middle of its program can only go on in the thread in which it began to (on "
+            "this processor): run it with threads: 1, and let one thread of Python step it");
+    }
+    self.calls = calls;
+    context.waiting = Waiting::always;
+    self.went_on_us = self.clock_us;
+    if (self.waits_in == Phase::main) {
+        set_callbacks(self.program);
+    }
+    if (resume(*self.fiber)) {
+        fibers_.put_back(*std::exchange(self.fiber, nullptr));
+    }
+}
+
+/// Robots that take their steps, one after the other, on a fiber: when one of them waits, the fiber is its own until
+/// its step is over, and the others go on on another one.
+struct Controllers::Turns {
+    Controllers& controllers;
+    std::uint32_t next;
+    std::uint32_t last;  // not one of them
+};
+
+void Controllers::run_robots(std::uint32_t first, std::uint32_t last) {
+    Turns turns{*this, first, last};
+    while (turns.next < last) {
+        if (is_waiting(turns.next)) {
+            go_on(turns.next);
+            turns.next += is_due(turns.next) ? 0 : 1;
+            continue;
+        }
+        Fiber& fiber = free_fiber();
+        if (run_on(
+                fiber,
+                [](void* argument) {
+                    static_cast<Turns*>(argument)->controllers.take_turns(*static_cast<Turns*>(argument));
+                },
+                &turns)) {
+            fibers_.put_back(fiber);
+        }
+    }
+}
+
+bool Controllers::is_due(std::uint32_t robot) const {
+    return step_us_ >= controllers_[robot].clock_us;
+}
+
+bool Controllers::is_waiting(std::uint32_t robot) const {
+    return is_due(robot) && controllers_[robot].fiber != nullptr;
+}
+
+void Controllers::take_turns(Turns& turns) {
+    for (; turns.next < turns.last; ++turns.next) {
+        std::uint32_t const robot = turns.next;
+        Controller& self = controllers_[robot];
+        if (!is_due(robot)) {
+            continue;
+        }
+        if (self.fiber != nullptr) {
+            return;  // it goes on with its own
+        }
+        if (self.loop.loop_hz == 0) {
+            self.clock_us = step_us_;  // without a sleep the clock follows the steps
+        }
+        tick(robot);
+        if (self.fiber != nullptr) {
+            return;  // it has waited: the turns have long gone on without it
+        }
+    }
+}
+
+}  // namespace pogosim
