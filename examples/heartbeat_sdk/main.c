@@ -3,8 +3,8 @@
 // Shows: a program for the robots' SDK that runs in the simulator as it is: pogobot.h, an endless loop in main(),
 // variables that are globals, messages that are taken out of the queue, a rate held with a stopwatch and msleep().
 //
-// Each robot sends its id in every second turn of its loop, and counts what it hears. What the simulator needs to record
-// that is between #ifdef SIMULATOR and #endif; the program runs without it, too.
+// Each robot sends its id in every second turn of its loop, and counts what it hears. What the simulator needs to
+// record that is between #ifdef SIMULATOR and #endif; the program runs without it, too.
 //
 //     ./examples/heartbeat_sdk/heartbeat_sdk -c conf/heartbeat.yaml
 #include "pogobot.h"

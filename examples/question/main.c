@@ -1,11 +1,11 @@
 // Questions and answers: robots that wait for a reply.
 //
-// Shows: a program for the robots' SDK that waits in the middle of what it does: for an answer, with a limit in time, and
-// for a moment to pass. While one robot waits, the others go on.
+// Shows: a program for the robots' SDK that waits in the middle of what it does: for an answer, with a limit in time,
+// and for a moment to pass. While one robot waits, the others go on.
 //
 // A robot with an even id asks "who is there?", and waits up to half a second for an answer; then it takes a break of a
-// random time. One with an odd id answers each question after a moment, as long as it takes to make up its mind. The LED
-// is blue while a robot waits, green after an answer, and red if there was none.
+// random time. One with an odd id answers each question after a moment, as long as it takes to make up its mind. The
+// LED is blue while a robot waits, green after an answer, and red if there was none.
 //
 //     ./examples/question/question -c conf/question.yaml
 #include "pogobot.h"

@@ -51,8 +51,8 @@ std::span<Key<Scenario> const> scenario_keys() {
           "objects, up to the number of processors. Many runs at a time are faster with one thread each."},
         K{"seed", &Scenario::seed, any(), "", "Random seed; if omitted, each run draws a new one."},
         K{"user_code_timeout", &Scenario::user_code_timeout_s, between(0, 1e6), "s",
-          "Limit on the processor time of one call to user code, or between two of its waits (excluding other threads of the program), and on its "
-          "wall-clock time once a signal has requested a stop; 0: no limit."},
+          "Limit on the processor time of one call to user code, or between two of its waits (excluding other threads "
+          "of the program), and on its wall-clock time once a signal has requested a stop; 0: no limit."},
         K{"robot_memory",
           one_of(&Scenario::robot_memory, {{"auto", RobotMemoryKind::automatic},
                                            {"shared", RobotMemoryKind::shared},

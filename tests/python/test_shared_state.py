@@ -90,7 +90,8 @@ def test_variables_of_sanitizers_are_not_the_programs(
 def test_robots_of_the_examples_share_nothing_by_mistake(main: Path, tmp_path: Path) -> None:
     sources = sorted([*main.parent.glob("*.c"), *main.parent.glob("*.cpp")], key=lambda path: path != main)
     flags = ["-std=gnu++20" if main.suffix == ".cpp" else "-std=gnu11", "-g", f"-I{main.parent}"]
-    program = compile_program(tmp_path / "program", *sources, flags=flags)
+    package = "pogosim-sdk" if '#include "pogobot.h"' in main.read_text() else "pogosim"
+    program = compile_program(tmp_path / "program", *sources, flags=flags, package=package)
     assert (check(program, "-Werror=shared-state").text, check(program).code) == ("", 0)
 
 

@@ -35,7 +35,8 @@ TEST(AddressSpace, AnyOtherAddressCountsTheSame) {
 
 TEST(AddressSpace, NumbersCountAsTheyAre) {
     AddressSpace const space(testing::test_program());
-    for (std::uint64_t const number : {std::uint64_t{0}, std::uint64_t{7}, std::uint64_t{1} << 40U, ~std::uint64_t{0}}) {
+    constexpr std::uint64_t kOne = 1;
+    for (std::uint64_t const number : {std::uint64_t{0}, kOne, 7 * kOne, kOne << 40U, ~std::uint64_t{0}}) {
         EXPECT_EQ(space.without_place(number), number);
     }
 }

@@ -1,6 +1,6 @@
 /// @file
-/// Registers of the robot's hardware, which are not simulated: a program that uses one does not compile or link. Programs that
-/// include this header and use no register run.
+/// Registers of the robot's hardware, which are not simulated: a program that uses one does not compile or link.
+/// Programs that include this header and use no register run.
 #ifndef POGOSIM_SDK_CSR_H
 #define POGOSIM_SDK_CSR_H
 
