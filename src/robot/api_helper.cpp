@@ -1,5 +1,5 @@
-// pogolib/helper.h, and what the program's part of the simulator (src/program) makes of three functions of the C
-// library: rand() and srand() draw from the robot's own stream, as they do on real robots, and exit() ends the run so
+// pogolib/helper.h, and what the program's part of the simulator (src/program) makes of functions of the C library:
+// rand() and srand() draw from the robot's own stream, as they do on real robots, and exit() ends the run so
 // that its data file is complete.
 #include <cstdint>
 #include <cstdio>

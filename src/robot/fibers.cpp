@@ -228,10 +228,9 @@ Fiber& FiberPool::take() {
     if (unused_.empty()) {
         auto const purpose = [&] {
             return fmt::format(
-                "the stack of {:g} KiB of one more robot that waits in the middle of its program: {} have theirs. "
-                "Make stacks smaller (robot_stack_size), or allow the process more memory (ulimit -v) or pieces of it "
-                "(sysctl vm.max_map_count)",
-                static_cast<double>(stack_bytes_) / kBytesPerKib, all_.size());
+                "the stack of one more robot that waits in the middle of its program, after {} others (robot_stack_size: "
+                "{:g} KiB; the system allows only so many: sysctl vm.max_map_count)",
+                all_.size(), static_cast<double>(stack_bytes_) / kBytesPerKib);
         };
         allocate_for(purpose, std::nullopt, [&] {
             all_.push_back(std::make_unique<Fiber>(stack_bytes_));

@@ -27,7 +27,11 @@ struct FreeMemory {
     void operator()(void* memory) const { std::free(memory); }
 };
 
-/// The headers rename the program's main().
+/// What has called the simulator: no code of the user's is under way. The headers rename the program's main().
+bool is_start_of_process(std::string const& function) {
+    return function == "_start" || function == "main";
+}
+
 std::string own_name(std::string const& function) {
     return function == "robot_main" ? "main" : function;
 }
@@ -111,6 +115,9 @@ std::string place_by_debug_information(std::string const& file, std::uintptr_t a
         return "";
     }
     std::string const function = function_in(&*unit, address);
+    if (is_start_of_process(function)) {
+        return "";
+    }
     return fmt::format("at {}:{}{}", file_of(line, &*unit), number,
                        function.empty() ? "" : fmt::format(" in {}()", own_name(function)));
 }
@@ -134,7 +141,7 @@ std::string place_in_source(ProgramImage const& image, void const* place) {
     std::string text = place_by_debug_information(image.file.string(), address);
     if (text.empty()) {
         std::string const function = function_at(bytes, address);
-        text = function.empty() ? "" : "in " + written_name(function);
+        text = function.empty() || is_start_of_process(function) ? "" : "in " + written_name(function);
     }
     return escaped(text);
 }
