@@ -88,6 +88,7 @@ def take(display: Display, program: Path, folder: Path, name: str) -> Picture:
                 window.keys(key)
         time.sleep(0.3)
         window.move_mouse(first.shape[1] - 2, first.shape[0] / 2)
+        time.sleep(0.5)  # what was under the mouse goes dark again, on a busy machine not at once
         return settled(window)
 
 
