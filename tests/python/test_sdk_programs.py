@@ -263,10 +263,12 @@ def test_gdb_shows_the_variables_of_the_running_robot(tmp_path: Path) -> None:
             "continue",
             "print program_pogobot_ticks",
             "backtrace",
+            "print $data(5)",
         ],
         tmp_path,
     )
     assert re.search(r"^\$1 = 20$", shown, re.MULTILINE), shown
+    assert "The program has no USERDATA. With pogobot.h" in shown
     assert re.search(r"^#0 +send \(\) at .*endless.c", shown, re.MULTILINE)
     assert re.search(r"robot_main \(\) at .*endless.c", shown)
 

@@ -281,7 +281,13 @@ class UserData(gdb.Function):
         super().__init__("data")
 
     def invoke(self, robot: gdb.Value) -> gdb.Value:
-        mine = gdb.parse_and_eval("mydata")
+        try:
+            mine = gdb.parse_and_eval("mydata")
+        except gdb.error as error:
+            raise gdb.GdbError(
+                "The program has no USERDATA. With pogobot.h or robot_memory: own, print the variables of the robot "
+                "that runs by their names."
+            ) from error
         if mine.type.strip_typedefs().target().strip_typedefs().code == gdb.TYPE_CODE_VOID:
             raise gdb.GdbError("The program has no user data with debug information: compile it with -g.")
         return controller_of(int(robot))["user_data"].cast(mine.type).dereference()

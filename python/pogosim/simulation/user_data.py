@@ -109,7 +109,7 @@ def user_data_type(program: Path, size_bytes: int) -> np.dtype[Any]:
         SimulationError: The program has no user data, or no debug information about them.
     """
     if size_bytes == 0:
-        raise SimulationError(f"{program} has no user data (REGISTER_USERDATA)")
+        raise SimulationError(f"{program} has no user data (REGISTER_USERDATA); use columns of the data file")
     try:
         status = program.stat()
         found = type_in(program, (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns))
