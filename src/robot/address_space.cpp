@@ -31,13 +31,14 @@ AddressSpace::AddressSpace(ProgramImage const& image)
     for (std::span<std::byte> const piece : image.variables) {
         program_.end = std::max(program_.end, reinterpret_cast<std::uint64_t>(piece.data() + piece.size()));
     }
-    // The heap of a program without random addresses (-no-pie) begins behind it.
+    // The heap of a process without random addresses (-no-pie) begins behind its executable. It may be in pieces, some
+    // of which somebody has given other properties (madvise).
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
         Range range;
         if (line.ends_with("[heap]") &&
             std::sscanf(line.c_str(), "%" SCNx64 "-%" SCNx64, &range.begin, &range.end) == 2) {
-            heap_ = range;
+            heap_ = {.begin = heap_.end == 0 ? range.begin : heap_.begin, .end = range.end};
         }
     }
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -81,6 +82,31 @@ def test_state_hash_has_the_memory_of_robots(endless: Path, tmp_path: Path) -> N
     assert len(hashes("first", 9)) == 4
     assert hashes("again", 9) == hashes("first_again", 9)
     assert hashes("other", 8) != hashes("third", 9)
+
+
+def test_state_hash_is_the_same_where_numpy_has_cut_the_heap_into_pieces(tmp_path: Path) -> None:
+    text = """#include "pogobot.h"
+#include <stdlib.h>
+char* text;
+int main(void) { text = malloc(9); for (;;) msleep(9); }
+"""
+    flags = ["-g", "-fPIC", "-shared"]
+    library = compiled(tmp_path, text, flags=flags)
+    script = tmp_path / "hash.py"
+    script.write_text(
+        "import sys\nimport numpy\nfrom pogosim import Simulation\n"
+        "for _ in range(20): numpy.ones(3_000_000)\n"  # from then on, malloc takes large arrays from the heap
+        "kept = [numpy.ones(2_000_000) for _ in range(int(sys.argv[1]))]\n"
+        "with Simulation(sys.argv[2], sys.argv[3]) as run:\n    run.step(10)\n    print(run.state_hash)\n"
+    )
+    configuration = write_scene(tmp_path, {})
+    hashes = {
+        subprocess.run(
+            [sys.executable, str(script), arrays, str(library), str(configuration)], capture_output=True, check=True
+        ).stdout
+        for arrays in ("0", "4", "4")
+    }
+    assert len(hashes) == 1
 
 
 def test_python_runs_them(tmp_path: Path) -> None:
