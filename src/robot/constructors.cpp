@@ -68,8 +68,9 @@ void pogosim_before_constructors(pogosim_program const* program, void (*self)())
     }
     Constructors constructors{.before = {}, .functions = std::move(after)};
     for (std::span<std::byte> const piece : object.writable) {
-        auto& [place, bytes] = constructors.before.emplace_back(piece.data(), std::vector<std::byte>(piece.size()));
-        copy_program_bytes(bytes.data(), place, bytes.size());
+        Constructors::Piece kept{.place = piece.data(), .bytes = std::vector<std::byte>(piece.size())};
+        copy_program_bytes(kept.bytes.data(), kept.place, kept.bytes.size());
+        constructors.before.push_back(std::move(kept));
     }
     std::lock_guard const lock(noted().mutex);
     noted().of_program[program] = std::make_shared<Constructors const>(std::move(constructors));
