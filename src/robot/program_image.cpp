@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -34,6 +34,15 @@ constexpr std::uint32_t kVersionsPerMinor = 1000;  // POGOSIM_VERSION_ENCODE: pa
 
 std::string version_text(std::uint32_t encoded) {
     return fmt::format("{}.{}.{}", encoded / 1000000, encoded / 1000 % 1000, encoded % 1000);
+}
+
+/// In one go: programs with debug information are large. Absent: it cannot be read, see errno.
+std::optional<std::vector<char>> read_file(std::filesystem::path const& file) {
+    std::ifstream input(file, std::ios::binary | std::ios::ate);
+    std::vector<char> content(input ? static_cast<std::size_t>(std::max<std::streamoff>(0, input.tellg())) : 0);
+    input.seekg(0);
+    input.read(content.data(), static_cast<std::streamsize>(content.size()));
+    return input ? std::optional(std::move(content)) : std::nullopt;
 }
 
 [[noreturn]] void fail(std::filesystem::path const& file, std::string const& problem) {
@@ -57,11 +66,11 @@ std::vector<char> content_of(std::filesystem::path const& file) {
     if (std::filesystem::is_directory(file, error)) {
         fail(file, "is a folder: name the shared object in it, such as hanabi.so");
     }
-    std::ifstream input(file, std::ios::binary);
-    if (!input) {
+    std::optional<std::vector<char>> content = read_file(file);
+    if (!content) {
         fail(file, fmt::format("cannot be read: {}", std::strerror(errno)));
     }
-    return {std::istreambuf_iterator<char>(input), {}};
+    return *std::move(content);
 }
 
 /// What keeps a file from being loaded; empty: nothing.
@@ -207,8 +216,7 @@ std::vector<char> ProgramImage::bytes_of_file() const {
     if (loaded && (std::filesystem::last_write_time(file, error) != file_time || error)) {
         return {};
     }
-    std::ifstream input(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(input), {}};
+    return read_file(file).value_or(std::vector<char>());
 }
 
 ProgramSymbols ProgramImage::symbols() const {
