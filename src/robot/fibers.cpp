@@ -228,8 +228,8 @@ Fiber& FiberPool::take() {
     if (unused_.empty()) {
         auto const purpose = [&] {
             return fmt::format(
-                "the stack of one more robot that waits in the middle of its program, after {} others (robot_stack_size: "
-                "{:g} KiB; the system allows only so many: sysctl vm.max_map_count)",
+                "the stack of one more robot that waits in the middle of its program, after {} others "
+                "(robot_stack_size: {:g} KiB; the system allows only so many: sysctl vm.max_map_count)",
                 all_.size(), static_cast<double>(stack_bytes_) / kBytesPerKib);
         };
         allocate_for(purpose, std::nullopt, [&] {
