@@ -57,6 +57,7 @@ void construct_again(Constructors const& constructors, std::span<std::span<std::
 void pogosim_before_constructors(pogosim_program const* program, void (*self)()) {
     using namespace pogosim;
     constexpr std::size_t kCompilersOwn = 1;  // the last one, in C as well, which does nothing
+    forget_constructors_of(*program);         // of one that was there before it, and did not fit
     LoadedObject const object = loaded_object_at(program);
     auto const first = std::ranges::find(object.initializers, self);
     std::vector<void (*)()> after;
