@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +16,6 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "robot/assert_controllers.hpp"
-#include "robot/forked_child.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/sensing.hpp"
@@ -399,7 +397,6 @@ void Controllers::start_sdk_program() {
         }
     }
     begun_with_ = callbacks_of_thread();
-    has_begun_ = true;
     run_global_setup();
     warn_of_missing_init(controllers_);
 }
@@ -419,9 +416,9 @@ void Controllers::warn_of_late_callbacks() {
                                 name);
         }
     };
-    if (has_begun_) {
-        warn_if(callback_global_setup != nullptr && begun_with_.global_setup == nullptr, "callback_global_setup");
-        warn_if(callback_create_data_schema != nullptr && begun_with_.create_data_schema == nullptr,
+    if (begun_with_) {
+        warn_if(callback_global_setup != nullptr && begun_with_->global_setup == nullptr, "callback_global_setup");
+        warn_if(callback_create_data_schema != nullptr && begun_with_->create_data_schema == nullptr,
                 "callback_create_data_schema");
     }
 }

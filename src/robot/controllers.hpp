@@ -197,8 +197,7 @@ private:
 
     ProgramImage image_;
     Callbacks callbacks_;
-    Callbacks begun_with_;    // of a program for the SDK: those that its main() has set before it waited
-    bool has_begun_ = false;  // these are known
+    std::optional<Callbacks> begun_with_;  // of a program for the SDK: those that its main() has set before it waited
     World& world_;
     RunServices& services_;
     std::vector<Controller> controllers_;

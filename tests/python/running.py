@@ -91,6 +91,13 @@ def write_scene(folder: Path, settings: Settings) -> Path:
     return path
 
 
+def compile_text(folder: Path, text: str, name: str = "main.c", **options: Any) -> Path:
+    """Compile the text of a program to `prog` in a folder; `options` are those of compile_program()."""
+    source = folder / name
+    source.write_text(text)
+    return compile_program(folder / "prog", source, **options)
+
+
 def start(program: Path, folder: Path, settings: Settings | None = None) -> subprocess.Popen[str]:
     """Start a program headless in a folder, to be disturbed while it runs."""
     write_scene(folder, settings or {})

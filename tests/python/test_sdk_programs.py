@@ -12,7 +12,7 @@ import pytest
 from debugger import PRINTERS, debug, needs_gdb
 from pogosim import Simulation
 from project import made, write
-from running import PROGRAMS, Run, build_folder, compile_program, compiler, pkg_config, run, write_scene
+from running import PROGRAMS, Run, build_folder, compile_program, compile_text, compiler, pkg_config, run, write_scene
 from test_template import project
 
 __all__ = ["project"]
@@ -21,10 +21,8 @@ NEAR: dict[str, Any] = {"objects.robots.communication_radius": 3000, "objects.ro
 
 
 def compiled(folder: Path, text: str, name: str = "main.c", **options: Any) -> Path:
-    """Compile the text of a program."""
-    source = folder / name
-    source.write_text(text)
-    return compile_program(folder / "prog", source, package="pogosim-sdk", **options)
+    """Compile the text of a program for the robots alone."""
+    return compile_text(folder, text, name, package="pogosim-sdk", **options)
 
 
 @pytest.fixture(scope="module")

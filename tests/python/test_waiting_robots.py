@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from pogosim import Simulation
-from running import Run, compile_program, run, write_scene
+from running import Run, compile_text, run, write_scene
 
 # A robot waits for 20 ms and more, 37 ms more than the one before it.
 EACH_ITS_OWN = """#include "pogobase.h"
@@ -47,19 +46,13 @@ WAYS = {
 }
 
 
-def built(folder: Path, text: str, name: str = "main.c", **options: Any) -> Path:
-    source = folder / name
-    source.write_text(text)
-    return compile_program(folder / "prog", source, **options)
-
-
 def sdk(folder: Path, text: str, name: str = "main.c") -> Path:
-    return built(folder, text, name, flags=["-g"], package="pogosim-sdk")
+    return compile_text(folder, text, name, flags=["-g"], package="pogosim-sdk")
 
 
 @pytest.mark.parametrize("way", WAYS)
 def test_each_robot_waits_as_long_as_it_wants_whatever_the_threads(way: str, tmp_path: Path) -> None:
-    program = built(tmp_path, EACH_ITS_OWN.replace("WAIT", WAYS[way]))
+    program = compile_text(tmp_path, EACH_ITS_OWN.replace("WAIT", WAYS[way]))
     scene = {"objects.robots.nb": 200, "arena_surface": 4e6, "simulation_time": 1.0}
     data = set()
     for threads in (1, 2, 3):
@@ -77,7 +70,7 @@ def test_how_often_rows_are_saved_changes_nothing(tmp_path: Path) -> None:
         "static void save(void) {",
         "static void save(void) { for (int i = 0; i < 3000; i++) current_time_milliseconds();",
     )
-    program = built(tmp_path, text.replace("WAIT", WAYS["stopwatch"]))
+    program = compile_text(tmp_path, text.replace("WAIT", WAYS["stopwatch"]))
     found = set()
     for period in (0.5, 0.1, 0.02):
         result = run(program, tmp_path / str(period), {"simulation_time": 1.0, "save_data_period": period})
@@ -96,7 +89,7 @@ int main() { for (;;) { rand(); msleep(20); } }
 def test_static_objects_of_one_run_are_destroyed_as_no_robot_of_another(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    library = built(tmp_path, LEFT_BEHIND, "main.cpp", flags=["-shared", "-fPIC"], package="pogosim-sdk")
+    library = compile_text(tmp_path, LEFT_BEHIND, "main.cpp", flags=["-shared", "-fPIC"], package="pogosim-sdk")
     configuration = write_scene(tmp_path, {"data_filename": str(tmp_path / "data.feather")})
     with Simulation(library, configuration) as undisturbed:
         undisturbed.step(50)
