@@ -97,7 +97,9 @@ protected:
     }
 
     ExitCode run_until_end(WindowScript const& script, RunOptions options = {}) {
-        window_script = [script](WindowSetup const& setup, Exchange& exchange) {
+        bool is_shown = false;
+        window_script = [&is_shown, script](WindowSetup const& setup, Exchange& exchange) {
+            is_shown = true;
             try {
                 return script(setup, exchange);
             } catch (std::exception const& error) {
@@ -108,7 +110,9 @@ protected:
         };
         options.window = true;
         simulation_ = std::make_unique<Simulation>(test_program(), scenario_, std::move(options));
-        return simulation_->run();
+        ExitCode const code = simulation_->run();
+        EXPECT_TRUE(is_shown) << "the run had no window";
+        return code;
     }
 
     Scenario scenario_ = square_scene({robot_at({200, 500})});
@@ -170,7 +174,7 @@ TEST_F(WindowDriver, PauseTakesBackTheStepsThatWereAskedFor) {
     gate = &here;
     use_program(idle, [] {
         gate->is_reached = true;
-        while (!gate->is_open) {
+        for (auto const end = Exchange::Clock::now() + 60s; !gate->is_open && Exchange::Clock::now() < end;) {
             std::this_thread::sleep_for(1ms);
         }
     });
