@@ -75,6 +75,17 @@ float probability_of(World const& world, Transmission const& transmission, std::
 
 }  // namespace
 
+void split_by_sender(std::span<Transmission const> transmissions, std::span<std::uint32_t> ends) {
+    auto const count = static_cast<std::uint32_t>(transmissions.size());
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        auto end = static_cast<std::uint32_t>(std::uint64_t{count} * (i + 1) / ends.size());
+        while (end < count && end > 0 && transmissions[end].robot == transmissions[end - 1].robot) {
+            ++end;
+        }
+        ends[i] = end;
+    }
+}
+
 void IrChannel::deliver(World& world, DeliveryLog* log, WorkerPool* workers) {
     if (log == nullptr) {
         // Robots draw from their streams in the order of their transmissions, so each needs one worker for all of them.
@@ -171,15 +182,12 @@ void IrChannel::part_transmissions(World const& world, WorkerPool const& workers
     auto const count = static_cast<std::uint32_t>(transmissions.size());
     std::uint32_t const blocks = workers.range_count(static_cast<std::uint32_t>(world.robots.size()), kLeastReceivers);
     parts_.resize(workers.range_count(count, kLeastTransmissions));
-    std::uint32_t first = 0;
+    ends_.resize(parts_.size());
+    split_by_sender(transmissions, ends_);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-        auto last = static_cast<std::uint32_t>(std::uint64_t{count} * (i + 1) / parts_.size());
-        while (last < count && last > 0 && transmissions[last].robot == transmissions[last - 1].robot) {
-            ++last;
-        }
         Part& part = parts_[i];
-        part.first = first;
-        part.last = first = std::max(first, last);
+        part.first = i == 0 ? 0 : ends_[i - 1];
+        part.last = ends_[i];
         part.arrivals.resize(blocks);
     }
 }

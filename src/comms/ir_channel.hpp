@@ -14,6 +14,11 @@
 
 namespace pogosim {
 
+/// Splits transmissions that are sorted by sender into as many parts as `ends` has places, of about the same size, some of
+/// them empty. Part i ends before transmission ends[i]. All transmissions of a robot are in the same part, since they draw
+/// from the robot's stream in their order.
+void split_by_sender(std::span<Transmission const> transmissions, std::span<std::uint32_t> ends);
+
 class IrChannel {
 public:
     /// Delivers every transmission on the air, in the order in which they were made, and clears the air. Each robot in
@@ -71,6 +76,7 @@ private:
     void send_one(World& world, std::uint32_t transmission, Part& part, Desk& desk) const;
 
     std::vector<Part> parts_;
+    std::vector<std::uint32_t> ends_;  // of the parts, see split_by_sender()
     std::vector<Desk> desks_;
 
     Visibility visibility_;

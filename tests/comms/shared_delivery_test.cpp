@@ -99,6 +99,39 @@ Outcome delivered_by(std::uint32_t threads, Swarm const& swarm) {
     return outcome_of(world, channel);
 }
 
+TEST(SharedDelivery, EachRobotsTransmissionsAreInOnePart) {
+    // Robots with many transmissions, with few, and one with nearly all of them.
+    for (std::vector<std::uint32_t> const& counts :
+         {std::vector<std::uint32_t>{1, 1, 1, 1, 1, 1, 1, 1}, std::vector<std::uint32_t>{7, 2, 9, 1, 1, 30, 3},
+          std::vector<std::uint32_t>{1, 200, 1}, std::vector<std::uint32_t>{50}}) {
+        std::vector<Transmission> transmissions;
+        for (std::uint32_t robot = 0; robot < counts.size(); ++robot) {
+            transmissions.insert(transmissions.end(), counts[robot], Transmission{.robot = robot});
+        }
+        for (std::size_t const parts : {1U, 2U, 3U, 8U}) {
+            std::vector<std::uint32_t> ends(parts);
+            split_by_sender(transmissions, ends);
+            EXPECT_EQ(ends.back(), transmissions.size());
+            EXPECT_TRUE(std::ranges::is_sorted(ends));
+            for (std::uint32_t const end : ends) {
+                EXPECT_TRUE(end == transmissions.size() || transmissions[end - 1].robot != transmissions[end].robot);
+            }
+        }
+    }
+}
+
+TEST(SharedDelivery, PartsHaveAboutTheSameSize) {
+    std::vector<Transmission> transmissions;
+    for (std::uint32_t robot = 0; robot < 1000; ++robot) {
+        transmissions.insert(transmissions.end(), robot % 3, Transmission{.robot = robot});
+    }
+    std::array<std::uint32_t, 4> ends{};
+    split_by_sender(transmissions, ends);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        EXPECT_NEAR(ends[i], static_cast<double>(transmissions.size() * (i + 1)) / 4.0, 2.0);
+    }
+}
+
 TEST(SharedDelivery, GivesEverybodyTheSameMessagesWithAnyNumberOfWorkers) {
     for (Swarm const& swarm : {Swarm{}, Swarm{.moves = true}, Swarm{.is_periodic = true, .moves = true},
                                Swarm{.moves = true, .has_outlines = true}, Swarm{.range_mm = 900.0F}}) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <vector>
@@ -73,6 +76,21 @@ TEST(Visibility, EachEmitterShinesToItsOwnSide) {
     EXPECT_EQ(reached(world, 0, kBack), Robots{3});
     EXPECT_EQ(reached(world, 0, kLeft), Robots{4});
     EXPECT_EQ(reached(world, 0, kAllFaces), (Robots{1, 2, 3, 4}));
+}
+
+TEST(Visibility, EmitterReachesCentresInFrontOfTheTangentAtItsPlace) {
+    // The half plane of an emitter begins where it sits, 26.5 mm from the robot's centre.
+    std::array const emitters{kFront, kRight, kBack, kLeft};
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
+        float const direction = static_cast<float>(i) * kPi / 2.0F;
+        for (float const ahead_mm : {-0.05F, 0.05F}) {
+            World world = square_world();
+            add_robot(world, {500, 500});
+            add_robot(world,
+                      Vec2{500, 500} + rotate({kRadius + ahead_mm, 60.0F}, {std::cos(direction), std::sin(direction)}));
+            EXPECT_EQ(reached(world, 0, emitters[i]), ahead_mm > 0.0F ? Robots{1} : Robots{}) << i << ": " << ahead_mm;
+        }
+    }
 }
 
 TEST(Visibility, EmittersTurnWithTheRobot) {
@@ -176,6 +194,16 @@ TEST(Faces, EmitterStraightAheadIsSeenByTheFrontFaceOnly) {
     EXPECT_EQ(faces_that_see({0, 60}, kRadius, 80.0F), kRight);
     EXPECT_EQ(faces_that_see({-60, 0}, kRadius, 80.0F), kBack);
     EXPECT_EQ(faces_that_see({0, -60}, kRadius, 80.0F), kLeft);
+}
+
+TEST(Faces, SeeWhatIsInFrontOfTheTangentAtTheirPlace) {
+    for (float const across_mm : {-40.0F, 40.0F}) {
+        unsigned const beside = across_mm > 0.0F ? kRight : kLeft;
+        EXPECT_EQ(faces_that_see({kRadius + 0.05F, across_mm}, kRadius, 80.0F), kFront | beside);
+        EXPECT_EQ(faces_that_see({kRadius - 0.05F, across_mm}, kRadius, 80.0F), beside);
+        EXPECT_EQ(faces_that_see({-kRadius - 0.05F, across_mm}, kRadius, 80.0F), kBack | beside);
+        EXPECT_EQ(faces_that_see({-kRadius + 0.05F, across_mm}, kRadius, 80.0F), beside);
+    }
 }
 
 TEST(Faces, EmitterOnTheDiagonalIsSeenByBothFacesBesideIt) {

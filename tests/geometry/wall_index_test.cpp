@@ -22,6 +22,34 @@ Vec2 random_place(Arena const& arena, RandomStream& random) {
     return {random.uniform(-0.2F * size.x, 1.2F * size.x), random.uniform(-0.2F * size.y, 1.2F * size.y)};
 }
 
+/// The arena with the corners of all polygons in the opposite order.
+Arena walked_the_other_way(Arena const& arena) {
+    std::vector<Polygon> polygons = arena.polygons;
+    for (Polygon& polygon : polygons) {
+        std::ranges::reverse(polygon);
+    }
+    return make_arena(polygons);
+}
+
+TEST(WallIndex, EachEdgeBeginsWhereThePreviousOneEndsAndHasFreeSpaceOnItsRight) {
+    for (char const* const name : {"square", "disk", "annulusBarred", "arena8", "star8", "H"}) {
+        Arena const arena = bundled_arena(name);
+        for (Arena const& walked : {arena, walked_the_other_way(arena)}) {
+            WallIndex const walls(walked);
+            for (std::uint32_t number = 0; number < walls.edges().size(); ++number) {
+                WallEdge const& edge = walls.edges()[number];
+                EXPECT_EQ(edge.number, number);
+                EXPECT_EQ(walls.edges()[edge.previous].to, edge.from) << name << ", edge " << number;
+                Vec2 const way = edge.to - edge.from;
+                Vec2 const right = (1.0F / length(way)) * Vec2{-way.y, way.x};  // y points down
+                Vec2 const middle = 0.5F * (edge.from + edge.to);
+                EXPECT_TRUE(walked.contains(middle + 0.1F * right)) << name << ", edge " << number;
+                EXPECT_FALSE(walked.contains(middle - 0.1F * right)) << name << ", edge " << number;
+            }
+        }
+    }
+}
+
 TEST(WallIndex, KnowsTheDistanceToTheNearestWall) {
     RandomStream random(1, 0);
     for (char const* const name : {"square", "disk", "annulusBarred", "arena8", "star8", "H"}) {

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pytest
 import yaml
 from conftest import Compile
-from running import Run, example, run
+from running import Run, compile_text, example, run
 
 NB = 7
 BUILT_IN = ["time", "robot_category", "robot_id", "pogobot_ticks", "x", "y", "angle"]
@@ -58,6 +58,67 @@ def test_columns_have_the_names_order_and_types_of_the_format(program: Compile, 
         ("f32", "float"),
         ("never_set", "int32"),
     ]
+
+
+TURNING = """
+#include "pogobase.h"
+
+DECLARE_USERDATA(int);
+REGISTER_USERDATA(int);
+
+static void init(void) { main_loop_hz = 50; }
+
+// 2 rad/s, to the right and to the left.
+static void step(void) {
+    pogobot_motor_set(pogobot_helper_getid() % 2 == 0 ? motorL : motorR, motorFull);
+    pogobot_led_setColor(255, 0, 128);
+}
+
+int main(void) {
+    pogobot_init();
+    pogobot_start(init, step);
+    return 0;
+}
+"""
+
+
+def test_values_of_columns_are_in_the_ranges_that_the_page_gives(tmp_path: Path) -> None:
+    settings: dict[str, object] = {
+        "simulation_time": 8.0,
+        "data_logger_led": True,
+        "objects.robots.nb": 4,
+        "objects.ball": {"type": "passive_object", "nb": 2, "geometry": "disk", "radius": 20},
+        "objects.ring": {"type": "membrane", "nb": 1, "geometry": "disk", "radius": 60, "serialize_dot_pose": True},
+    }
+    result = run(compile_text(tmp_path, TURNING), tmp_path, settings)
+    assert result.code == 0, result.errors
+    frame = result.frame()
+    side_mm = np.sqrt(4e6 / np.pi)  # the bounding box of a disk of 1e6 mm2
+
+    assert frame["time"].between(0, 8).all()
+    assert frame["time"].is_monotonic_increasing
+    assert set(frame["robot_category"]) == {"robots", "ball", "ring"}
+    assert frame["robot_id"].between(0, 65535).all()
+    assert (frame.loc[frame["robot_category"] == "ball", "pogobot_ticks"]).isna().all()
+    assert frame.loc[frame["robot_category"] == "robots", "pogobot_ticks"].between(0, 401).all()
+    for axis in ("x", "y"):
+        assert frame[axis].between(0, side_mm).all()
+    headings = frame.loc[frame["robot_category"] != "ring", "angle"]
+    assert (-np.pi < headings).all()
+    assert (headings <= np.float32(np.pi)).all()
+    assert frame.loc[frame["robot_category"] == "ring", "angle"].isna().all()
+    assert set(frame["subpart_id"]) == {-1, *range(100)}
+    lit = frame[(frame["time"] > 0) & (frame["robot_category"] == "robots")]
+    assert set(lit["led_rgb"]) == {0xFF0080}
+    assert set(frame.loc[frame["robot_category"] == "ball", "led_rgb"]) == {0}
+
+    # Several turns were made, and the angle is the heading of each moment.
+    robots = frame[frame["robot_category"] == "robots"]
+    for robot in range(4):
+        rows = robots[robots["robot_id"] == robot]
+        turned = np.unwrap(rows["angle"].to_numpy(float))
+        rate = 2.0 if robot % 2 == 0 else -2.0  # rad/s: twice max_angular_speed
+        np.testing.assert_allclose(turned - turned[0], rate * rows["time"].to_numpy(float), atol=0.05)
 
 
 def test_pandas_reads_the_file(program: Compile, tmp_path: Path) -> None:

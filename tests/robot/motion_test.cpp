@@ -21,6 +21,23 @@ TEST(Motion, RobotAt100MmPerSecondIsOneMetreAwayAfterTenSeconds) {
     EXPECT_NEAR(simulation->world().bodies.position_mm[0].y, 2500.0F, 0.1F);
 }
 
+TEST(Motion, PowersBeyondFullAreFull) {
+    static uint16_t power = 0;
+    auto const drive = [] {
+        pogobot_motor_set(motorL, power);
+        pogobot_motor_set(motorR, power);
+    };
+    for (auto const& [set, speed_mm_s] : {std::pair<uint16_t, float>{1022, 100.0F * 1022.0F / 1023.0F},
+                                          {1023, 100.0F},
+                                          {1024, 100.0F},
+                                          {5000, 100.0F},
+                                          {65535, 100.0F}}) {
+        power = set;
+        auto const simulation = run_alone(testing::article_robot(), drive, nullptr, 1.0);
+        EXPECT_NEAR(simulation->world().bodies.position_mm[0].x, 2500.0F + speed_mm_s, 0.05F) << set;
+    }
+}
+
 TEST(Motion, PowerSetOnceDrivesAgainstDampingUntilItIsChanged) {
     ObjectSpec spec = testing::article_robot();
     spec.body->linear_damping = 0.3F;

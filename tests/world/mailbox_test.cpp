@@ -42,6 +42,25 @@ std::vector<std::vector<std::byte>> payloads_of(std::array<std::span<std::byte c
     return payloads;
 }
 
+TEST(Mailbox, CopiesThatFindNoRoomAreCountedOneByOne) {
+    std::array const sizes{3};
+    Mailboxes boxes(sizes, kMaxPayload);
+    EXPECT_EQ(boxes.push_copies(0, FrameHeader{}, {}, 0b0101), 2U);
+    EXPECT_EQ(boxes.dropped(0), 0U);
+    EXPECT_EQ(boxes.push_copies(0, FrameHeader{}, {}, 0b1111), 1U);
+    EXPECT_EQ(boxes.dropped(0), 3U);
+    EXPECT_EQ(boxes.push_copies(0, FrameHeader{}, {}, 0b1010), 0U);
+    EXPECT_EQ(boxes.dropped(0), 5U);
+    EXPECT_FALSE(push(boxes, 0, payload_of(1, 1)));
+    EXPECT_EQ(boxes.dropped(0), 6U);
+    // Those that found room name their faces, lowest first.
+    FrameHeader header;
+    for (int const face : {0, 2, 0}) {
+        ASSERT_TRUE(boxes.pop(0, header, {}));
+        EXPECT_EQ(header.receiver_ir_index, face);
+    }
+}
+
 TEST(Mailbox, GivesMessagesBackFirstInFirstOut) {
     std::array const sizes{3};
     Mailboxes boxes(sizes, kMaxPayload);
