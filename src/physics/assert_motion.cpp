@@ -10,7 +10,7 @@ namespace pogosim {
 
 namespace {
 
-constexpr float kTolerance = 1e-3F;  // of an axis
+constexpr float kTolerance = 1e-3F;  // of the length of a unit vector
 
 }  // namespace
 

@@ -14,7 +14,6 @@
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
 #include "physics/coinciding_centres.hpp"
-#include "physics/containment.hpp"
 #include "physics/known_motion.hpp"
 #include "physics/membrane_area.hpp"
 #include "physics/membrane_filter.hpp"
@@ -22,6 +21,7 @@
 #include "physics/membrane_sides.hpp"
 #include "physics/membrane_steps.hpp"
 #include "physics/physics_engine.hpp"
+#include "physics/position_correction.hpp"
 #include "physics/wrap_objects.hpp"
 
 namespace pogosim {
@@ -33,7 +33,7 @@ struct Iterations {
     int position;
 };
 constexpr Iterations kContactIterations{6, 3};
-constexpr Iterations kJointIterations{12, 6};  // a pull has to go round a membrane
+constexpr Iterations kJointIterations{12, 6};  // an impulse has to travel round a membrane
 // Box2D detects a contact only once it exists, so a pair overlaps by the distance travelled since. Steps are cut into
 // sub-steps in which no two robots at full speed approach by more than this, as long as that is not too many.
 constexpr float kApproachMm = 1.0F;
@@ -41,16 +41,17 @@ constexpr int kMaxSubsteps = 8;
 // Box2D cuts off what a body moves or turns beyond these in one step.
 constexpr float kMostMotionMm = 0.99F * b2_maxTranslation * kMmPerUnit;
 constexpr float kMostTurnRad = 0.99F * b2_maxRotation;
-// Bodies that get their shapes in the order of the bodies, at most: see order_of_shapes().
+// Up to this many bodies get their shapes in the order of the bodies: see order_of_shapes().
 constexpr std::size_t kMostInOrder = 65536;
 // Box2D calls slower collisions inelastic; its own limit of 1 unit/s is the full speed of a robot.
 constexpr float kRestitutionThreshold = 0.05F;  // units/s
-// A body that crosses more than this share of its radius in one step could jump a wall, so it is swept.
+// A body that crosses more than this share of its radius in one step could pass through a wall, so it gets continuous
+// collision detection.
 constexpr float kSweptShare = 0.5F;
 
-/// In which order bodies get their shapes. Box2D's tree of shapes becomes lopsided when neighbours are put into it one
-/// after the other, as formations place them: looking for pairs among 70000 robots on a grid then takes minutes. In a
-/// scattered order it does not; smaller swarms keep the order of the bodies, which decides about the last bits.
+/// The order in which bodies get their shapes. Box2D's tree of shapes becomes unbalanced if neighbours are inserted one
+/// after the other, in the order in which formations place them: finding pairs among 70000 robots on a grid then takes
+/// minutes. A shuffled order avoids this. Smaller swarms keep the order of the bodies, on which the last bits depend.
 std::vector<std::uint32_t> order_of_shapes(std::size_t count) {
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0U);
@@ -70,8 +71,8 @@ struct Fastest {
     }
 };
 
-/// What the motors ask for; collisions make few bodies a little faster. Also the velocities in the world, if others
-/// than the motors have set some.
+/// The highest speed that motors command; collisions make only few bodies faster than that. Includes the velocities in
+/// the world if something other than the motors has set them.
 Fastest fastest_of(World const& world, bool others_set_velocities) {
     Fastest fastest;
     for (VelocityCommand const& command : world.robots.command) {
@@ -87,7 +88,7 @@ Fastest fastest_of(World const& world, bool others_set_velocities) {
 int substeps_for(Fastest const& fastest, float most_motion_mm, double time_step_s) {
     auto const step_s = static_cast<float>(time_step_s);
     float const motion_mm = std::sqrt(fastest.mm2_s2) * step_s;
-    // Speeds are round numbers, give or take a rounding.
+    // Speeds are round numbers, apart from rounding errors.
     constexpr float tolerance = 1e-3F;
     float const fine = std::ceil(2.0F * motion_mm / kApproachMm - tolerance);
     float const needed = std::ceil(std::max(motion_mm / most_motion_mm, fastest.rad_s * step_s / kMostTurnRad));
@@ -140,12 +141,12 @@ public:
         engine_->SetContactFilter(&filter_);
         if (!world.periodic) {
             add_walls(world.arena, walls);
-            containment_.emplace(world);
+            position_correction_.emplace(world);
         }
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
             bodies_.push_back(add_body(world.bodies, i));
         }
-        if (containment_) {
+        if (position_correction_) {
             contain_from_here();
         }
         for (std::uint32_t const i : order_of_shapes(world.bodies.size())) {
@@ -168,7 +169,7 @@ public:
         take_over(world);
         impose_commands(world);
         if (!any_awake_) {
-            return;  // nothing moves, as in a swarm that only talks
+            return;  // nothing moves, as in a swarm that only communicates
         }
         int const substeps =
             substeps_for(fastest_of(world, others_set_velocities_), most_motion_mm_, world.time_step_s);
@@ -178,7 +179,7 @@ public:
             push_areas(world, dt_s);
             step(dt_s, iterations);
         }
-        if (containment_) {
+        if (position_correction_) {
             hold_in_walls();
         }
         any_awake_ = false;
@@ -207,7 +208,8 @@ public:
     }
 
 private:
-    /// Poses and velocities of others than this engine are compared with what it has read or written last.
+    /// Finds the poses and velocities that something other than this engine has written, by comparison with what the
+    /// engine read or wrote last.
     void take_over(World& world) {
         Bodies& bodies = world.bodies;
         if (known_.is_of(bodies)) {
@@ -254,8 +256,8 @@ private:
         for (std::uint32_t const i : put_back) {
             bodies_[i]->SetLinearVelocity(b2Vec2_zero);
             bodies_[i]->SetAngularVelocity(0.0F);
-            if (containment_) {
-                containment_->start_from(i, world.bodies.position_mm[i]);
+            if (position_correction_) {
+                position_correction_->start_from(i, world.bodies.position_mm[i]);
             }
         }
     }
@@ -280,7 +282,7 @@ private:
             body->SetAwake(true);
         }
         any_awake_ = true;
-        if (containment_) {
+        if (position_correction_) {
             contain_from_here();
         }
         if (sides_) {
@@ -312,22 +314,22 @@ private:
                 continue;
             }
             if (!is_finite(body)) {
-                body.SetTransform(to_box2d(containment_->last(i)), 0.0F);
+                body.SetTransform(to_box2d(position_correction_->last(i)), 0.0F);
                 body.SetLinearVelocity(b2Vec2_zero);
                 body.SetAngularVelocity(0.0F);
             }
             Vec2 const place_mm = from_box2d(body.GetPosition());
-            Vec2 const held_mm = containment_->hold(i, place_mm);
+            Vec2 const held_mm = position_correction_->hold(i, place_mm);
             if (held_mm != place_mm) {
                 body.SetTransform(to_box2d(held_mm), body.GetAngle());
-                containment_->start_from(i, from_box2d(body.GetPosition()));
+                position_correction_->start_from(i, from_box2d(body.GetPosition()));
             }
         }
     }
 
     void contain_from_here() {
         for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-            containment_->start_from(i, from_box2d(bodies_[i]->GetPosition()));
+            position_correction_->start_from(i, from_box2d(bodies_[i]->GetPosition()));
         }
     }
 
@@ -396,7 +398,7 @@ private:
         }
     }
 
-    /// Continuous collision detection costs, so only those use it who need it.
+    /// Continuous collision detection is expensive, so only the bodies that need it use it.
     void sweep_if_fast(b2Body& body, Vec2 velocity_mm_s, float radius_mm, double time_step_s) {
         double const step_mm = length(velocity_mm_s) * time_step_s;
         if (step_mm > kSweptShare * radius_mm) {
@@ -447,12 +449,12 @@ private:
 
     Filter filter_;
     std::unique_ptr<b2World> engine_;
-    float most_motion_mm_;                    // in a sub-step
-    std::optional<Containment> containment_;  // nobody leaves a periodic world
-    std::optional<MembraneSides> sides_;      // when there are membranes
+    float most_motion_mm_;                                   // in a sub-step
+    std::optional<PositionCorrection> position_correction_;  // none in a periodic world, which has no walls
+    std::optional<MembraneSides> sides_;                     // when there are membranes
     KnownMotion known_;
     bool any_awake_ = true;
-    bool others_set_velocities_ = false;  // so far, not only the motors
+    bool others_set_velocities_ = false;  // up to now, something other than the motors has set some
     std::vector<MembraneArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
 };

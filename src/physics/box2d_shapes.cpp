@@ -14,12 +14,12 @@ namespace pogosim {
 namespace {
 
 // Box2D lets shapes sink into each other by its tolerance, half of it on either side. Shapes are larger by that half,
-// so that they rest at their true distance. A chain has a skin of b2_polygonRadius, 1 mm, which Box2D gives every copy
-// of it: bodies rest 0.5 to 1.25 mm before walls.
+// so that bodies come to rest at their true distance. A chain has a skin of b2_polygonRadius, 1 mm, which Box2D gives
+// every copy of it: bodies rest 0.5 to 1.25 mm before walls.
 constexpr float kSkin = b2_linearSlop / 2.0F;
 // Corners of a wall that lie closer together than this are joined; Box2D's tolerance is 0.5 mm.
 constexpr float kShortestEdgeMm = 1.0F;
-// Box2D takes bodies without any mass, to which specks are rounded, for ones of mass 1.
+// Box2D treats a body of mass 0, to which the mass of a tiny one is rounded, as a body of mass 1.
 constexpr float kLightest = 1e-15F;
 
 std::vector<b2Vec2> wall_corners(Polygon const& polygon, bool outer) {
@@ -65,7 +65,7 @@ void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef fixture) 
     for (std::size_t i = 0; i < corners_mm.size(); ++i) {
         Vec2 const edge = corners_mm[(i + 1) % corners_mm.size()] - corners_mm[i];
         polygon.m_vertices[i] = to_box2d(corners_mm[i]);
-        float const edge_mm = exact::hypot(edge.x, edge.y);  // squares of specks would be 0
+        float const edge_mm = exact::hypot(edge.x, edge.y);  // the square of a tiny length would be 0
         polygon.m_normals[i] = {edge.y / edge_mm, -edge.x / edge_mm};
     }
     polygon.m_radius = kSkin;

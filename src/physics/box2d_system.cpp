@@ -1,7 +1,8 @@
-// What Box2D takes from the system, replaced where it is a shared library: the definitions here come before its own.
+// Replacements of the functions with which Box2D uses the system. They take effect where Box2D is a shared library,
+// since our definitions precede its own.
 //
-// Its own allocation does not look whether there was memory, and it reads the clock for each island of touching bodies,
-// a quarter of the time of a swarm that is spread out, to measure what nobody asks for.
+// Box2D's own allocation function does not check whether malloc() failed. Its timer reads the clock for each island of
+// touching bodies, which takes a quarter of the time of a sparse swarm, for measurements that are not used.
 #ifdef B2_SHARED
 
 #include <cstdlib>

@@ -14,7 +14,7 @@ void part_coinciding_centres(std::vector<Vec2>& position_mm, std::span<std::uint
     auto const x_before = [&](std::uint32_t body) { return before[body].x; };
     for (std::uint32_t const body : moved) {
         Vec2 const place = before[body];
-        int others = 0;  // that are there and stay there, or were moved on less
+        int others = 0;  // at the same place: those that stay there, and those moved by fewer multiples
         for (auto next = std::ranges::lower_bound(by_x, place.x - kApartMm, {}, x_before);
              next != by_x.end() && x_before(*next) <= place.x + kApartMm; ++next) {
             bool const goes_first = *next < body || !std::ranges::binary_search(moved, *next);

@@ -11,24 +11,24 @@ class Damping {
 public:
     explicit Damping(Bodies const& bodies);
 
-    /// Makes the velocities the means of those in the step to come, so that bodies moved by them go as far as they
-    /// should.
+    /// Replaces each velocity by its mean over the coming step, so that a body that moves at it covers the exact
+    /// distance.
     void begin_step(Bodies& bodies, float dt_s);
 
-    /// Makes them those at the end of the step.
+    /// Replaces the mean velocities by those at the end of the step.
     void end_step(Bodies& bodies) const;
 
 private:
-    /// In parts of the velocity at the start of a step.
+    /// Factors of the velocity.
     struct Decay {
-        float mean = 1.0F;  // in the step
-        float rest = 1.0F;  // at its end, in parts of the mean
+        float mean = 1.0F;  // mean over the step, relative to its start
+        float rest = 1.0F;  // end of the step, relative to the mean
     };
 
     static Decay decay(float damping_per_s, float dt_s);
     void multiply(Bodies& bodies, float Decay::*by) const;
 
-    bool is_damped_;  // some body
+    bool is_damped_;  // at least one body is
     float dt_s_ = 0.0F;
     std::vector<Decay> linear_;
     std::vector<Decay> angular_;

@@ -51,7 +51,7 @@ DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
     }
 }
 
-/// The disk around a polygon may be much larger than it.
+/// The bounding disk of a polygon may be much larger than the polygon.
 void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm) {
     if (!polygons_.is_one(fixed) ||
         polygons_.gap_to(world, fixed, world.bodies.position_mm[disk]).distance_mm < disks_[disk].radius_mm + skin_mm) {
@@ -59,7 +59,7 @@ void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32
     }
 }
 
-void DiskContacts::build(World const& world, NearPairs const& pairs, NearWalls const& walls) {
+void DiskContacts::build(World const& world, NeighbourList const& pairs, WallNeighbourList const& walls) {
     walls_ = &walls;
     keep_impulses();
     near_.clear();
@@ -85,7 +85,7 @@ void DiskContacts::build(World const& world, NearPairs const& pairs, NearWalls c
     give_impulses();
 }
 
-/// The same whichever of two disks comes first.
+/// Symmetric in the two disks.
 std::uint64_t DiskContacts::things_of(std::uint32_t contact) const {
     auto const [a, b, law] = near_[contact];
     constexpr std::uint64_t walls = std::uint64_t{1} << 63U;

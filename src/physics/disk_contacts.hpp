@@ -1,4 +1,4 @@
-// What disks can touch in the steps to come, and how: other disks and walls.
+// The contacts that disks can make in the coming steps, with other disks, obstacles and walls.
 #pragma once
 
 #include <cstdint>
@@ -7,19 +7,19 @@
 
 #include "physics/fixed_polygons.hpp"
 #include "physics/membrane_filter.hpp"
-#include "physics/near_pairs.hpp"
-#include "physics/near_walls.hpp"
+#include "physics/neighbour_list.hpp"
 #include "physics/soft_membranes.hpp"
+#include "physics/wall_neighbour_list.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
-/// Smaller overlaps, mm, may stay: who overlaps by less does not touch.
+/// Overlaps up to this, in mm, are left as they are; they count as no contact.
 inline constexpr float kContactToleranceMm = 0.05F;
 
-/// What two things are to each other when they touch.
+/// Constants of a contact.
 struct ContactLaw {
-    float radius_mm;    // the sum of both
+    float radius_mm;    // sum of the two radii
     float normal_mass;  // impulse that changes the speed of separation by 1 mm/s
     float inverse_normal_mass;
     float tangent_mass;  // the same for the slip, with the disks' turning
@@ -27,14 +27,14 @@ struct ContactLaw {
     float restitution;   // 0 to 1
 };
 
-/// A disk that moves and what it may touch.
+/// A movable disk and the thing that it may touch.
 struct NearContact {
     std::uint32_t a;
-    std::uint32_t b;  // another disk that moves, a fixed body, or an edge of a wall: see DiskContacts
+    std::uint32_t b;  // another movable disk, a fixed body, or an edge of a wall: see DiskContacts
     ContactLaw law;
 };
 
-/// What a body is to the contacts, for the whole run.
+/// Constants of a body, for the whole run.
 struct Disk {
     float radius_mm;        // 0 for a polygon
     float inverse_mass;     // 0: fixed
@@ -43,7 +43,7 @@ struct Disk {
     float restitution;
 };
 
-/// Of a point, `way` from the centre of a disk. Disks at the same place are parted along x.
+/// Gap between a point, at `way` from the centre of a disk, and that disk. Coinciding centres are separated along x.
 inline Gap gap_to_centre(Vec2 way) {
     float const distance_mm = length(way);
     return {distance_mm, distance_mm > 0.0F ? (1.0F / distance_mm) * way : Vec2{1.0F, 0.0F}};
@@ -53,19 +53,20 @@ class DiskContacts {
 public:
     DiskContacts(World const& world, WallSpec const& walls);
 
-    /// Takes over what is near. The walls are used later, too.
-    void build(World const& world, NearPairs const& pairs, NearWalls const& walls);
+    /// Builds the contacts from the neighbour lists. Keeps a reference to the walls.
+    void build(World const& world, NeighbourList const& pairs, WallNeighbourList const& walls);
 
-    /// Pairs of disks that move, then disks with fixed bodies, then disks with walls.
+    /// First pairs of movable disks, then disks with fixed bodies, then disks with walls.
     std::vector<NearContact> const& near() const { return near_; }
 
-    /// Number of pairs of disks that move.
+    /// Number of pairs of movable disks.
     std::uint32_t pair_count() const { return pair_count_; }
 
-    /// Impulse of each contact when motors drove it last, 0 if it is new: a first guess for the next time.
+    /// Impulse of each contact at the last step in which motors drove it, 0 for a new one: the initial guess for the
+    /// next such step.
     std::vector<float>& driven_impulse() { return driven_impulse_; }
 
-    /// The same of each joint of the world, a spring.
+    /// The same for each joint of the world, which is a spring.
     std::vector<SpringImpulse>& spring_impulse() { return spring_impulse_; }
     std::vector<SpringImpulse> const& spring_impulse() const { return spring_impulse_; }
 
@@ -73,14 +74,14 @@ public:
 
     Disk const& disk(std::uint32_t body) const { return disks_[body]; }
 
-    /// How far the fixed thing of a contact, pair_count() or later, is from a point. Nothing if it has nothing to do
-    /// with it, see gap_to().
+    /// Gap between a point and the fixed thing of a contact (index pair_count() or above). None if they cannot touch,
+    /// see gap_to().
     std::optional<Gap> gap_to_fixed(World const& world, std::uint32_t contact, Vec2 point_mm) const;
 
 private:
     bool is_fixed(std::uint32_t body) const { return disks_[body].inverse_mass == 0.0F; }
 
-    /// A contact that pushes, by its things.
+    /// A contact with an impulse, identified by its two things.
     struct Pushing {
         std::uint64_t things;
         float impulse;
@@ -96,13 +97,13 @@ private:
     std::vector<Disk> disks_;
     Disk wall_;
     std::vector<NearContact> near_;
-    std::vector<NearContact> with_fixed_;  // while near_ is built anew
+    std::vector<NearContact> with_fixed_;  // scratch, while near_ is rebuilt
     std::vector<float> driven_impulse_;
     std::vector<SpringImpulse> spring_impulse_;
-    std::vector<Pushing> pushing_;  // while near_ is built anew
+    std::vector<Pushing> pushing_;  // scratch, while near_ is rebuilt
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_
-    NearWalls const* walls_ = nullptr;
+    WallNeighbourList const* walls_ = nullptr;
 };
 
 }  // namespace pogosim

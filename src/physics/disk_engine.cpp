@@ -1,6 +1,6 @@
-// Rigid disks, ours: a structure of arrays, a list of near pairs that is kept while nobody has moved far, and a solver
-// that sub-steps only bodies in contact. All others move on a straight line, at the cost of reading and writing them.
-// Soft membranes are disks that springs hold together. Obstacles, which never move, may have corners.
+// Our own engine for rigid disks: a structure of arrays, a neighbour list that stays valid until a body has moved far,
+// and a solver that sub-steps only bodies in contact. All other bodies move on a straight line, at the cost of reading
+// and writing them. Soft membranes are disks joined by springs. Obstacles, which never move, may be polygons.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 #include "base/worker_pool.hpp"
 #include "physics/assert_motion.hpp"
 #include "physics/coinciding_centres.hpp"
-#include "physics/containment.hpp"
+#include "physics/continuous_collision.hpp"
 #include "physics/damping.hpp"
 #include "physics/disk_contacts.hpp"
 #include "physics/island_solver.hpp"
@@ -25,30 +25,32 @@
 #include "physics/known_motion.hpp"
 #include "physics/membrane_sides.hpp"
 #include "physics/membrane_steps.hpp"
-#include "physics/near_pairs.hpp"
-#include "physics/near_walls.hpp"
+#include "physics/neighbour_list.hpp"
 #include "physics/physics_engine.hpp"
-#include "physics/sweep.hpp"
+#include "physics/position_correction.hpp"
+#include "physics/wall_neighbour_list.hpp"
 #include "physics/wrap_objects.hpp"
 
 namespace pogosim {
 
 namespace {
 
-// Contacts are looked for as far as bodies can come together in a step, if an impact makes them so much faster.
+// Contacts are sought within the distance that two bodies can close in a step, if an impact speeds them up by this
+// factor.
 constexpr float kReserve = 1.5F;
 constexpr float kLeastReachMm = 0.5F;
-// Who moves further than this share of the smallest radius in a step is swept. Membranes are not looked at for that:
-// what passes one goes back.
+// Bodies that move further than this share of the smallest radius in a step get continuous collision detection.
+// The bodies of membranes are not counted in that: a body that passes through one is put back.
 constexpr float kSweptShare = 0.5F;
-// Of a range that one worker takes.
+// Smallest size of a range that one worker takes.
 constexpr std::uint32_t kLeastIslands = 64;
 constexpr std::uint32_t kLeastBodies = 1024;
-// A membrane that has been slower than this for so long comes to rest; a robot's full speed is a hundred times as much.
+// A membrane that has been slower than this for kCalmAfterS is put to rest; a robot's full speed is a hundred times as
+// high.
 constexpr float kCalmMmS = 1.0F;
 constexpr double kCalmAfterS = 0.5;
 
-/// The smallest of what is not part of a membrane, if there is something.
+/// Of the bodies that are not part of a membrane; of all bodies if there are no others.
 float smallest_radius_mm(World const& world) {
     float smallest_mm = std::numeric_limits<float>::max();
     for (Object const& object : world.objects) {
@@ -63,14 +65,14 @@ class DiskEngine final : public PhysicsEngine {
 public:
     DiskEngine(World const& world, WallSpec const& walls, WorkerPool& workers)
         : workers_(workers),
-          containment_(world),
-          near_walls_(world, containment_.walls()),
-          near_pairs_(world),
+          position_correction_(world),
+          wall_neighbour_list_(world, position_correction_.walls()),
+          neighbour_list_(world),
           contacts_(world, walls),
           damping_(world.bodies),
           islands_(world),
           solvers_(workers.size(), IslandSolver(world)),
-          sweep_(world) {
+          continuous_collision_(world) {
         Bodies const& bodies = world.bodies;
         if (bodies.size() > 0) {
             ordinary_mm_ = kSweptShare * smallest_radius_mm(world);
@@ -96,15 +98,15 @@ public:
         damping_.begin_step(bodies, dt_s);
         float const fastest_mm_s = fastest(bodies);
         if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_) {
-            return;  // nothing moves, as in a swarm that only talks
+            return;  // nothing moves, as in a swarm that only communicates
         }
         float const reach_mm = 2.0F * std::min(std::max(kReserve * fastest_mm_s * dt_s, kLeastReachMm), ordinary_mm_);
-        if (moved_ || !near_pairs_.covers(world, reach_mm, workers_)) {
-            near_pairs_.build(world, reach_mm, workers_);
-            near_walls_.build(world, containment_.walls(), near_pairs_.skin_mm());
-            contacts_.build(world, near_pairs_, near_walls_);
+        if (moved_ || !neighbour_list_.covers(world, reach_mm, workers_)) {
+            neighbour_list_.build(world, reach_mm, workers_);
+            wall_neighbour_list_.build(world, position_correction_.walls(), neighbour_list_.skin_mm());
+            contacts_.build(world, neighbour_list_, wall_neighbour_list_);
         }
-        somebody_is_fast_ = fastest_mm_s * dt_s > ordinary_mm_;
+        some_are_fast_ = fastest_mm_s * dt_s > ordinary_mm_;
         islands_.find(world, contacts_, {.reach_mm = reach_mm, .wakes_membranes = moved_}, workers_);
         moved_ = false;
         solve_islands(world, is_driven);
@@ -127,7 +129,7 @@ public:
     }
 
 private:
-    /// Islands have nothing to do with each other, so that nobody knows who solved which.
+    /// Islands do not interact, so results do not depend on which worker solves which island.
     void solve_islands(World& world, bool is_driven) {
         std::span<Island const> const islands = islands_.islands();
         auto const count = static_cast<std::uint32_t>(islands.size());
@@ -158,8 +160,8 @@ private:
         }
     }
 
-    /// A body without a contact moves on a straight line. All are held inside the arena, in a periodic one but
-    /// for the fast ones. Those are found, and who may have met one.
+    /// Moves a body without contacts on a straight line, and keeps any body inside the arena; in a periodic arena, fast
+    /// bodies are wrapped later. Appends to `fast` the fast bodies and those that may have met one.
     void move_other(World& world, std::uint32_t i, float dt_s, std::vector<std::uint32_t>& fast) {
         Bodies& bodies = world.bodies;
         Vec2 const velocity_mm_s = bodies.velocity_mm_s[i];
@@ -174,12 +176,12 @@ private:
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
         }
         float const moved2 = squared_length(place_mm - known_.position_mm(i));
-        bool const is_fast = moved2 > ordinary_mm_ * ordinary_mm_ || (has_contact && somebody_is_fast_);
+        bool const is_fast = moved2 > ordinary_mm_ * ordinary_mm_ || (has_contact && some_are_fast_);
         if (is_fast) {
             fast.push_back(i);
         }
         if (!world.periodic) {
-            place_mm = is_fast ? containment_.hold_fast(i, place_mm) : containment_.hold(i, place_mm);
+            place_mm = is_fast ? position_correction_.hold_fast(i, place_mm) : position_correction_.hold(i, place_mm);
         } else if (!is_fast) {
             place_mm = wrapped_alone(world, place_mm);
         }
@@ -187,9 +189,10 @@ private:
     }
 
     void hold_fast(World& world) {
-        for (std::uint32_t const i : sweep_.stop_at_impacts(world, contacts_.polygons(), fast_, known_)) {
+        for (std::uint32_t const i :
+             continuous_collision_.stop_at_impacts(world, contacts_.polygons(), fast_, known_)) {
             Vec2& place_mm = world.bodies.position_mm[i];
-            place_mm = world.periodic ? wrapped_alone(world, place_mm) : containment_.hold_fast(i, place_mm);
+            place_mm = world.periodic ? wrapped_alone(world, place_mm) : position_correction_.hold_fast(i, place_mm);
         }
         if (world.periodic) {
             for (std::uint32_t const i : fast_) {
@@ -198,12 +201,12 @@ private:
         }
     }
 
-    /// Where there are membranes, who is in one comes back at the other side together with it: see wrap_objects().
+    /// With membranes in the world, a body inside one is wrapped together with it: see wrap_objects().
     Vec2 wrapped_alone(World const& world, Vec2 place_mm) const { return sides_ ? place_mm : wrapped(world, place_mm); }
 
     void hold_by_membranes(World& world) {
         for (std::uint32_t const i : sides_->hold(world)) {
-            containment_.start_from(i, world.bodies.position_mm[i]);
+            position_correction_.start_from(i, world.bodies.position_mm[i]);
         }
         if (world.periodic) {
             wrap_objects(world);
@@ -227,7 +230,8 @@ private:
         }
     }
 
-    /// Poses and velocities of others than this engine are compared with what it has written last.
+    /// Finds the poses and velocities that something other than this engine has written, by comparison with what the
+    /// engine wrote last.
     void take_over(World& world) {
         Bodies& bodies = world.bodies;
         if (known_.is_of(bodies)) {
@@ -246,7 +250,7 @@ private:
         }
         for (std::uint32_t const i : moved) {
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
-            containment_.start_from(i, bodies.position_mm[i]);
+            position_correction_.start_from(i, bodies.position_mm[i]);
         }
         if (sides_ && !moved.empty()) {
             sides_->look_again(world);
@@ -254,7 +258,7 @@ private:
         known_.copy(bodies);
     }
 
-    /// Returns whether there were some.
+    /// Returns whether any command was pending.
     static bool impose_commands(World& world) {
         Robots& robots = world.robots;
         bool is_driven = false;
@@ -287,14 +291,14 @@ private:
     }
 
     WorkerPool& workers_;
-    Containment containment_;
-    NearWalls near_walls_;
-    NearPairs near_pairs_;
+    PositionCorrection position_correction_;
+    WallNeighbourList wall_neighbour_list_;
+    NeighbourList neighbour_list_;
     DiskContacts contacts_;
     Damping damping_;
     Islands islands_;
-    std::vector<IslandSolver> solvers_;  // of each worker
-    Sweep sweep_;
+    std::vector<IslandSolver> solvers_;  // one for each worker
+    ContinuousCollision continuous_collision_;
     KnownMotion known_;
     std::optional<MembraneSides> sides_;  // when there are membranes
     std::vector<double> calm_s_;          // of each membrane: how long it has been slow
@@ -302,10 +306,10 @@ private:
     std::vector<std::uint32_t> fast_;     // bodies in this step
     std::vector<std::vector<std::uint32_t>> fast_in_range_;
     float most_motion_mm_ = std::numeric_limits<float>::max();  // in a step
-    float ordinary_mm_ = 1.0F;                                  // who goes further in a step is fast
-    bool somebody_is_fast_ = false;                             // before contacts slow him down
+    float ordinary_mm_ = 1.0F;                                  // a body that moves further in a step is fast
+    bool some_are_fast_ = false;                                // before contacts slow them down
     bool has_overlaps_ = false;                                 // some disks overlapped after the last step
-    bool moved_ = true;                                         // somebody was put elsewhere, perhaps into others
+    bool moved_ = true;                                         // some body was moved from outside, perhaps into others
 };
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace pogosim {
 
 namespace {
 
-// A search for the touch ends so near to it, or after so many steps along the motion.
+// The search for the first touch ends at this distance, or after this many steps along the motion.
 constexpr float kTouchMm = 0.01F;
 constexpr int kMostSteps = 64;
 
@@ -38,7 +38,7 @@ Gap FixedPolygons::gap_to(World const& world, std::uint32_t body, Vec2 point_mm)
     Vec2 const aside{-ahead.y, ahead.x};
     Vec2 const way_mm = minimum_image(world, world.bodies.position_mm[body], point_mm);
     Vec2 const place_mm{dot(way_mm, ahead), dot(way_mm, aside)};
-    // Over the side that is farthest in front of the point, or, before a corner, from the nearest point of a side.
+    // From the side with the largest signed distance, or, in front of a corner, from the nearest point of a side.
     Gap inside{-std::numeric_limits<float>::max(), {}};
     Gap outside{std::numeric_limits<float>::max(), {}};
     Polygon const& polygon = polygons_[body];
@@ -60,7 +60,8 @@ Gap FixedPolygons::gap_to(World const& world, std::uint32_t body, Vec2 point_mm)
     return {gap.distance_mm, gap.normal.x * ahead + gap.normal.y * aside};
 }
 
-/// In steps as long as nothing can be met: J. C. Hart, "Sphere tracing", The Visual Computer 12 (1996) 527.
+/// Sphere tracing, in steps of the distance to the nearest side: J. C. Hart, "Sphere tracing", The Visual Computer 12
+/// (1996) 527.
 float FixedPolygons::fraction_to_touch(World const& world, std::uint32_t body, Vec2 from_mm, Vec2 motion_mm,
                                        float radius_mm) const {
     float const motion_length_mm = length(motion_mm);

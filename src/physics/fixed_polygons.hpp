@@ -1,26 +1,26 @@
-// Obstacles with corners, as disks meet them.
+// Polygonal obstacles, and how disks touch them.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "physics/near_walls.hpp"
+#include "physics/wall_neighbour_list.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
-/// The bodies that never move and are no disks: rectangles and triangles, which are convex. They are where the world
-/// has them now.
+/// The fixed bodies that are not disks: rectangles and triangles, which are convex. Their poses are read from the world
+/// at each call.
 class FixedPolygons {
 public:
     explicit FixedPolygons(World const& world);
 
     bool is_one(std::uint32_t body) const { return !polygons_.empty() && polygons_[body].count > 0; }
 
-    /// Of a point from a body that is one: negative inside, and the way out then is over the nearest side.
+    /// Gap between a point and a polygon: negative inside, where the normal points out through the nearest side.
     Gap gap_to(World const& world, std::uint32_t body, Vec2 point_mm) const;
 
-    /// The fraction of its motion after which a disk touches a body that is one; 1 if it never does, or does at first.
+    /// The fraction of its motion after which a disk touches a polygon; 1 if it never does, or touches it at the start.
     float fraction_to_touch(World const& world, std::uint32_t body, Vec2 from_mm, Vec2 motion_mm,
                             float radius_mm) const;
 

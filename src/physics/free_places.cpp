@@ -9,7 +9,7 @@ namespace pogosim {
 namespace {
 
 constexpr float kTolerance = 0.01F;  // of the inner radius
-constexpr int kMostWalls = 3;        // a motion along walls ends at the third one that it meets, or in a corner
+constexpr int kMostWalls = 3;        // a motion along walls ends at the third one, or in a corner
 
 }  // namespace
 

@@ -16,8 +16,8 @@ public:
     /// `centre_mm`: of the object, as centre_mm().
     bool is_free(Object const& object, Vec2 centre_mm) const;
 
-    /// `target_mm` if that is free. Else where the object comes on its way there from where it is now, when it is
-    /// stopped by walls and slides along them; where that is not free either, where it is now.
+    /// `target_mm` if that is free. Otherwise the place that the object reaches on its way there from its present
+    /// place, if it slides along walls; if that is not free either, its present place.
     Vec2 nearest(Object const& object, Vec2 target_mm) const;
 
 private:

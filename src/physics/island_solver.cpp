@@ -15,23 +15,23 @@ namespace pogosim {
 namespace {
 
 constexpr int kSubsteps = 4;
-// Passes through the contacts of an island end when none of them changes a gap at the end of the sub-step by more.
+// Iterations over the contacts of an island end when none of them changes a gap at the end of the sub-step by more.
 constexpr float kConvergedMm = 0.005F;
 constexpr int kMostPasses = 8;
-constexpr int kMostSoftPasses = 6;  // a pull has to go round a membrane
+constexpr int kMostSoftPasses = 6;  // an impulse has to travel round a membrane
 // Slower impacts are inelastic.
 constexpr float kRestitutionThresholdMmS = 5.0F;
-// Soft constraint: natural frequency in parts of the rate of sub-steps, and damping ratio, see Catto, "Solver2D".
+// Soft constraint: natural frequency relative to the rate of sub-steps, and damping ratio; see Catto, "Solver2D".
 constexpr float kStiffness = 0.25F;
 constexpr float kDampingRatio = 3.0F;
 constexpr float kFastestPushMmS = 500.0F;
-// What soft membranes throw is at most so many times as fast as the fastest before, and never faster than sub-steps can
-// follow: crushed ones would go wild.
+// A soft membrane accelerates bodies to at most this multiple of the highest speed before, and never beyond the speed
+// that sub-steps can follow: a crushed membrane would explode.
 constexpr float kMostThrown = 4.0F;
-// Impacts may be this late.
+// Largest delay of an impact.
 constexpr float kMostLateMm = 0.5F;
 
-// Smaller ones need no first guess of their impulses: a pass or two are enough.
+// Smaller islands need no initial guess of their impulses: they converge in one or two iterations.
 constexpr std::uint32_t kLargeIsland = 32;
 
 constexpr float kNever = std::numeric_limits<float>::max();
@@ -122,7 +122,7 @@ void IslandSolver::scatter(World& world) const {
     }
 }
 
-/// It has to be solved.
+/// Marks a contact as one that has to be solved.
 void IslandSolver::mark(Contact& contact) {
     contact.solved = -1;
     dirty_ |= std::uint64_t{1} << (static_cast<std::size_t>(&contact - contacts_.data()) >> block_shift_);
@@ -136,8 +136,8 @@ void IslandSolver::mark_overlaps() {
     }
 }
 
-/// Where the contacts are at the start of a sub-step, and what they demand: bodies that meet within it bounce at once,
-/// others come as near as they can, and those that overlap are pushed apart.
+/// Measures the contacts at the start of a sub-step, and sets the speeds that they demand: bodies that meet within it
+/// bounce at once, others may close their gap, and those that overlap are pushed apart.
 IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts const& contacts, Times const& times) {
     Four least_gap_mm = all_four(kNever);
     FourInts meets = {};
@@ -157,7 +157,8 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
             (speed_mm_s < -kRestitutionThresholdMmS) & is_elastic & (gap_mm + speed_mm_s * times.h_s <= 0.0F);
         Four const least_mm_s = bounces ? bouncing_mm_s : is_free ? meeting_mm_s : pushed_mm_s;
         Four const relaxed_mm_s = bounces ? bouncing_mm_s : is_free ? meeting_mm_s : Four{};
-        // Who is thrown here in this sub-step bounces in the next one, unless that were deep in the other body.
+        // A body that is thrown against another one in this sub-step bounces in the next one, unless it would be deep
+        // in the other body by then.
         Four const late_mm_s = -(gap_mm + kMostLateMm) * times.per_h;
         Four const latest_mm_s = (is_elastic & is_free & ~bounces) ? late_mm_s : all_four(kNever);
         FourInts const demands = speed_mm_s < least_mm_s;
@@ -178,7 +179,7 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
     return {.overlaps = is_any(least_gap_mm < -kContactToleranceMm), .meets = is_any(meets)};
 }
 
-/// Of up to four contacts, of which `first` is the first. Lanes without a contact are far away.
+/// Places of up to four contacts, the first of which has the index `first`. Unused lanes have a large gap.
 IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts const& contacts,
                                                std::span<Contact const> four, std::uint32_t first) const {
     std::array<Four, kLanes> motion;
@@ -197,7 +198,7 @@ IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts 
     auto const [x_mm, y_mm, velocity_x_mm_s, velocity_y_mm_s] =
         transposed({motion[0], motion[1], motion[2], motion[3]});
     Four const distance_mm = square_root(x_mm * x_mm + y_mm * y_mm);
-    FourInts const is_apart = distance_mm > 0.0F;  // disks at the same place are parted along x
+    FourInts const is_apart = distance_mm > 0.0F;  // coinciding centres are separated along x
     Four const per_mm = 1.0F / distance_mm;
     places.normal_x = is_apart ? per_mm * x_mm : all_four(1.0F);
     places.normal_y = is_apart ? per_mm * y_mm : Four{};
@@ -205,7 +206,7 @@ IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts 
     for (std::uint32_t i = pair_count_ - std::min(first, pair_count_); i < four.size(); ++i) {
         Contact const& contact = four[i];
         std::optional<Gap> const gap = contacts.gap_to_fixed(world, contact.near, movers_[contact.a].position_mm);
-        // Without a gap, the disk is before another edge of the wall.
+        // None: the disk faces another edge of the wall.
         places.normal_x[i] = gap ? gap->normal.x : 0.0F;
         places.normal_y[i] = gap ? gap->normal.y : 0.0F;
         places.gap_mm[i] = gap ? gap->distance_mm - contact.law.radius_mm : kNever;
@@ -226,7 +227,7 @@ float IslandSolver::solve_contact(Contact& contact, float demanded_mm_s) {
     float const speed_mm_s = dot(velocity, normal);
     float const normal_before = contact.normal_impulse;
     if (normal_before == 0.0F && speed_mm_s >= demanded_mm_s) {
-        return 0.0F;  // most are only near
+        return 0.0F;  // most contacts are close but do not touch
     }
     bool const waits = speed_mm_s > contact.latest_mm_s && speed_mm_s < -kRestitutionThresholdMmS;
     float const change_mm_s = waits ? 0.0F : demanded_mm_s - speed_mm_s;
@@ -253,7 +254,7 @@ float IslandSolver::solve_contact(Contact& contact, float demanded_mm_s) {
     return std::abs(push) * contact.law.inverse_normal_mass;
 }
 
-/// `clean_block`: that of the contact if it has no others.
+/// `clean_block`: the bit of the contact's block if no other contact of that block is dirty.
 void IslandSolver::solve_if_changed(Contact& contact, std::uint64_t clean_block, float h_s, bool pushes) {
     Mover& a = movers_[contact.a];
     Mover& b = movers_[contact.b];
@@ -268,8 +269,8 @@ void IslandSolver::solve_if_changed(Contact& contact, std::uint64_t clean_block,
     }
 }
 
-/// In both directions by turns: contacts are in the order of their places, walls last, so that the resistance of a wall
-/// reaches the crowd before it.
+/// Forwards and backwards in turn: contacts are ordered by place, walls last, so that the resistance of a wall reaches
+/// the whole crowd in front of it.
 void IslandSolver::solve_velocities(float h_s, bool pushes) {
     for (int pass = 0; pass < kMostPasses && dirty_ != 0; ++pass) {
         if (pass % 2 == 0) {
@@ -295,7 +296,7 @@ void IslandSolver::solve_block(std::uint32_t block, bool backwards, float h_s, b
         solve_if_changed(contacts_[block], bit, h_s, pushes);
         return;
     }
-    // A contact leaves its block dirty for the others in it.
+    // The block stays dirty if other contacts in it are.
     auto const count = static_cast<std::uint32_t>(contacts_.size());
     std::uint32_t const first = block << block_shift_;
     std::uint32_t const last = std::min(first + (1U << block_shift_), count);
@@ -311,7 +312,7 @@ void IslandSolver::move(float time_s) {
     }
 }
 
-/// Number of sub-steps before the one in which the first two meet, if nobody has to change its velocity before.
+/// Number of sub-steps before the first impact, if no velocity has to change before.
 int IslandSolver::substeps_to_impact(Times const& times) const {
     float earliest_s = times.rest_s;
     for (Contact const& contact : contacts_) {
@@ -324,7 +325,7 @@ int IslandSolver::substeps_to_impact(Times const& times) const {
     return std::max(static_cast<int>(earliest_s * times.per_h), 1);
 }
 
-/// Warm starting. What has changed since is found by the passes.
+/// Warm starting. The iterations correct what has changed since.
 void IslandSolver::push_as_before(std::vector<float> const& driven_impulse) {
     for (Contact& contact : contacts_) {
         mark(contact);
@@ -351,7 +352,7 @@ float IslandSolver::fastest_mm_s() const {
     return std::sqrt(fastest2);
 }
 
-/// Returns whether somebody was faster.
+/// Returns whether any body was faster.
 bool IslandSolver::limit_speeds(float most_mm_s) {
     bool is_limited = false;
     for (Mover& mover : movers_) {
@@ -364,7 +365,7 @@ bool IslandSolver::limit_speeds(float most_mm_s) {
     return is_limited;
 }
 
-/// Springs first: contacts, which must hold, have the last word.
+/// Springs before contacts: contacts, which must hold, are solved last.
 void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
     for (int pass = 0; pass < kMostSoftPasses; ++pass) {
         bool const backwards = pass % 2 == 0;
@@ -384,7 +385,7 @@ void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
 bool IslandSolver::solve_soft(World const& world, DiskContacts const& contacts) {
     auto const dt_s = static_cast<float>(world.time_step_s);
     float const fastest_mm_s = this->fastest_mm_s();
-    // Nobody goes further in a sub-step than membranes can hold back, see membrane_steps.hpp.
+    // No body moves further in a sub-step than membranes can hold back, see membrane_steps.hpp.
     float const needed = std::ceil(fastest_mm_s * dt_s / most_motion_mm_);
     auto const substeps =
         static_cast<int>(std::clamp(needed, static_cast<float>(kSubsteps), static_cast<float>(kMostSubsteps)));
@@ -401,7 +402,7 @@ bool IslandSolver::solve_soft(World const& world, DiskContacts const& contacts) 
         bool const is_limited = limit_speeds(most_mm_s);
         move(h_s);
         if (is_limited) {
-            membranes_.forget_impulses();  // guesses that fail grow with each sub-step
+            membranes_.forget_impulses();  // bad initial guesses would grow with each sub-step
         } else if (overlaps || is_too_long) {
             solve_velocities_softly(h_s, /*pushes=*/false);
         }

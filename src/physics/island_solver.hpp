@@ -5,9 +5,9 @@
 // Animation 2019. Overlaps are pushed apart by soft constraints, whose speed is taken back after the positions have
 // moved ("relaxation"), so that they add no energy: E. Catto, "Solver2D" (2024).
 //
-// The solver works on a copy, in which the bodies and contacts of the island lie side by side, and looks again only at
-// contacts whose bodies have changed their velocities since it looked last. In an island with soft membranes, it looks
-// at all contacts and springs in each pass, and fast bodies have more sub-steps.
+// The solver works on a contiguous copy of the bodies and contacts of the island, and solves a contact again only if
+// the velocity of one of its bodies has changed since. In an island with soft membranes, each iteration solves all
+// contacts and springs, and fast bodies have more sub-steps.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ class IslandSolver {
 public:
     explicit IslandSolver(World const& world);
 
-    /// Moves the bodies of an island by one time step: poses, but for heading_dir, and velocities. Returns whether some
-    /// of them overlap in the end. `is_driven`: motors have just changed velocities.
+    /// Moves the bodies of an island by one time step: poses (except heading_dir) and velocities. Returns whether any
+    /// of them overlap at the end. `is_driven`: motors have just changed velocities.
     bool solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island, bool is_driven);
 
 private:
@@ -37,32 +37,32 @@ private:
         std::uint32_t b;     // the same; kStill: something fixed
         std::uint32_t near;  // into DiskContacts::near()
         ContactLaw law;
-        Vec2 seam_mm;   // to be added to the way from `b` to `a` in a periodic world
-        Vec2 normal{};  // to `a`, from `b`
+        Vec2 seam_mm;   // periodic world: to be added to the vector from `b` to `a`
+        Vec2 normal{};  // unit vector from `b` to `a`
         float gap_mm = 0.0F;
-        float least_mm_s = 0.0F;    // speed of separation that it demands in this sub-step
-        float relaxed_mm_s = 0.0F;  // the same once overlaps have been pushed apart
-        float latest_mm_s = 0.0F;   // faster impacts than this, which is negative, cannot wait for the next sub-step
+        float least_mm_s = 0.0F;    // smallest speed of separation in this sub-step
+        float relaxed_mm_s = 0.0F;  // the same after overlaps have been pushed apart
+        float latest_mm_s = 0.0F;   // < 0; faster impacts cannot wait for the next sub-step
         float normal_impulse = 0.0F;
         float tangent_impulse = 0.0F;
-        std::int32_t solved = 0;  // when, on the clock of the sub-step; -1: never, and it demands something
+        std::int32_t solved = 0;  // at which count of clock_; -1: not yet, and it has to be
     };
 
-    /// Of a sub-step, and what follows from it.
+    /// Length of a sub-step, and what follows from it.
     struct Times {
         float h_s;
-        float rest_s;     // of the whole step
+        float rest_s;     // left of the whole step
         float per_h;      // 1/s
-        float push_rate;  // speed, per mm of overlap, with which a soft constraint pushes, 1/s
+        float push_rate;  // speed at which a soft constraint pushes, per mm of overlap, 1/s
     };
 
-    /// What the contacts say at the start of a sub-step.
+    /// State of the contacts at the start of a sub-step.
     struct Survey {
         bool overlaps = false;
-        bool meets = false;  // before the end of the step, if nobody turns
+        bool meets = false;  // before the end of the step, on straight lines
     };
 
-    /// Where the things of four contacts are, and how fast they part.
+    /// Geometry of four contacts, and their speeds of separation.
     struct Places {
         Four normal_x;
         Four normal_y;
@@ -94,18 +94,18 @@ private:
     void solve_if_changed(Contact& contact, std::uint64_t clean_block, float h_s, bool pushes);
     float solve_contact(Contact& contact, float demanded_mm_s);
 
-    std::vector<Mover> movers_;  // the first one stands for all that is fixed
+    std::vector<Mover> movers_;  // the first one represents everything that is fixed
     std::vector<Contact> contacts_;
-    std::uint32_t pair_count_ = 0;  // contacts of two movers, which come first
+    std::uint32_t pair_count_ = 0;  // contacts between two movable bodies, which come first
     SoftMembranes membranes_;
-    float most_motion_mm_;  // in a sub-step, where there are membranes
+    float most_motion_mm_;  // in a sub-step, in worlds with membranes
 
-    // Contacts lie in up to 64 blocks of 2^block_shift_. A dirty block has contacts to look at again.
+    // Contacts lie in up to 64 blocks of 2^block_shift_. A dirty block has contacts to solve again.
     std::uint64_t dirty_ = 0;
     std::uint32_t block_shift_ = 0;
     std::int32_t clock_ = 0;  // counts solved contacts in a sub-step
 
-    std::vector<std::uint32_t> mover_;  // of each body; true if movers_ has it there
+    std::vector<std::uint32_t> mover_;  // of each body; valid only if that mover is the body's
 };
 
 }  // namespace pogosim

@@ -22,8 +22,8 @@ Islands::Islands(World const& world) : alone_(world.bodies.size()) {
     }
 }
 
-/// Of a forest whose ways are made shorter as they are walked: R. E. Tarjan, "Efficiency of a good but not linear set
-/// union algorithm", Journal of the ACM 22 (1975) 215.
+/// The root of a body's tree, with path halving: R. E. Tarjan, "Efficiency of a good but not linear set union
+/// algorithm", Journal of the ACM 22 (1975) 215.
 std::uint32_t Islands::root_of(std::uint32_t body) {
     while (parent_[body] != body) {
         body = parent_[body] = parent_[parent_[body]];
@@ -31,7 +31,7 @@ std::uint32_t Islands::root_of(std::uint32_t body) {
     return body;
 }
 
-/// Without branches: whether bodies are close can hardly be predicted.
+/// Branch-free, since whether bodies are close is hard to predict.
 void Islands::find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
                          std::vector<Close>& found) {
     auto const dt_s = static_cast<float>(world.time_step_s);
@@ -80,7 +80,7 @@ void Islands::find_fixed(World const& world, DiskContacts const& contacts, Reach
     }
 }
 
-/// Makes links of what was found, and trees of bodies that are close to each other.
+/// Turns the close contacts into links, and joins the trees of their bodies.
 void Islands::unite(DiskContacts const& contacts) {
     for (std::vector<Close> const& found : close_) {
         for (Close const& close : found) {
@@ -115,7 +115,8 @@ void Islands::link(DiskContacts const& contacts) {
     }
 }
 
-/// Puts each soft membrane on the list of its island. One that moves keeps its island active, or becomes one.
+/// Appends each soft membrane to the list of its island. A moving membrane keeps its island active; without contacts,
+/// it is an island of its own.
 void Islands::link_membranes(World const& world, Reach const& reach) {
     next_membrane_.assign(world.membranes.size(), kNone);
     for (std::uint32_t i = 0; i < world.membranes.size(); ++i) {

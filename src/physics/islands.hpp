@@ -1,6 +1,6 @@
 // Bodies that touch, directly or through others, are an island: D. Baraff, "Rigid body simulation", SIGGRAPH course
-// notes 1997. What happens in one island has nothing to do with the others within a time step. Walls and fixed bodies
-// do not connect those that touch them; the bodies of a soft membrane are always of one island.
+// notes 1997. Within a time step, islands do not interact. Walls and fixed bodies do not connect the bodies that touch
+// them; the bodies of a soft membrane are always in one island.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ namespace pogosim {
 
 /// Contacts of one island: a list in Islands::links(). Its membranes: a list in Islands::next_membranes().
 struct Island {
-    std::uint32_t first = kNone;  // no contacts: a membrane that is on its way
+    std::uint32_t first = kNone;  // kNone: no contacts, only a moving membrane
     std::uint32_t last = kNone;
     std::uint32_t contact_count = 0;
     std::uint32_t first_membrane = kNone;
-    bool is_active = false;  // somebody touches within this step, or a membrane is on its way
+    bool is_active = false;  // bodies touch within this step, or a membrane moves
 };
 
 struct IslandLink {
@@ -28,23 +28,23 @@ struct IslandLink {
 };
 
 struct Reach {
-    float reach_mm;                // bodies with smaller gaps are of one island
-    bool wakes_membranes = false;  // those at rest, too, are on their way
+    float reach_mm;                // bodies with smaller gaps are in one island
+    bool wakes_membranes = false;  // membranes at rest count as moving
 };
 
 class Islands {
 public:
     explicit Islands(World const& world);
 
-    /// Finds the islands of bodies as they are now.
+    /// Finds the islands for the present positions and velocities.
     void find(World const& world, DiskContacts const& contacts, Reach const& reach, WorkerPool& workers);
 
-    /// In the order of their first contacts, then those of a membrane alone. Contacts of each are in the order of
-    /// DiskContacts::near().
+    /// Sorted by their first contacts; islands that are a single membrane come last. The contacts of each are in the
+    /// order of DiskContacts::near().
     std::span<Island const> islands() const { return islands_; }
     std::span<IslandLink const> links() const { return links_; }
 
-    /// Of each membrane of the world, the next one in its island; kNone: the last one.
+    /// For each membrane of the world, the next one in the same island; kNone: it is the last one.
     std::span<std::uint32_t const> next_membranes() const { return next_membrane_; }
 
     /// Whether the body is in an active island.
@@ -68,13 +68,13 @@ private:
     void mark_bodies(DiskContacts const& contacts);
     void mark_membranes(World const& world);
 
-    std::vector<std::uint32_t> alone_;   // of each body: itself, or the first body of its soft membrane
-    std::vector<std::uint32_t> parent_;  // of each body, in the forest of islands
-    std::vector<std::uint32_t> island_;  // of each root; kNone: none
+    std::vector<std::uint32_t> alone_;   // for each body: itself, or the first body of its soft membrane
+    std::vector<std::uint32_t> parent_;  // for each body, in the disjoint-set forest
+    std::vector<std::uint32_t> island_;  // for each root; kNone: none
     std::vector<std::uint8_t> has_contact_;
-    std::vector<std::vector<Close>> close_;  // of each range of contacts, while they are looked for
+    std::vector<std::vector<Close>> close_;  // for each range of contacts, during the search
     std::vector<IslandLink> links_;          // in the order of DiskContacts::near()
-    std::vector<std::uint8_t> meets_;        // of each link: they touch within this step
+    std::vector<std::uint8_t> meets_;        // for each link: its bodies touch within this step
     std::vector<std::uint32_t> next_membrane_;
     std::vector<Island> islands_;
 };

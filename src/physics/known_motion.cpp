@@ -7,7 +7,7 @@ namespace pogosim {
 
 namespace {
 
-/// As fast as memory; other bits of an equal number, as of -0, do no harm.
+/// A bitwise comparison, as fast as memory. A false alarm, such as 0 against -0, does no harm.
 template <class T>
 bool has_same_bytes(std::vector<T> const& a, std::vector<T> const& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);

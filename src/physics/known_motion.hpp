@@ -1,4 +1,4 @@
-// Poses and velocities of the bodies as an engine has read or written them last, to find what others write.
+// Poses and velocities of the bodies as an engine last read or wrote them, to detect changes made from outside.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ class KnownMotion {
 public:
     void copy(Bodies const& bodies);
 
-    /// True when nobody has written anything since copy().
+    /// True if nothing has been written since copy().
     bool is_of(Bodies const& bodies) const;
 
-    /// Takes back what others have written that is not finite. Returns the bodies with another pose, ascending.
+    /// Reverts values that are not finite. Returns the bodies whose pose has changed since copy(), ascending.
     std::vector<std::uint32_t> find_moved(Bodies& bodies) const;
 
     Vec2 position_mm(std::uint32_t body) const { return position_mm_[body]; }

@@ -10,7 +10,7 @@
 
 namespace pogosim {
 
-/// The bodies of a membrane, in their order, whatever engine has them.
+/// The bodies of a membrane in their order along it, in either engine.
 template <class T>
 concept MembraneLine = requires(T line, std::size_t i, Vec2 change) {
     { line.size() } -> std::same_as<std::size_t>;
@@ -25,7 +25,7 @@ concept MembraneLine = requires(T line, std::size_t i, Vec2 change) {
 /// Developers Conference, 2011. Lengths in any unit.
 class MembraneArea {
 public:
-    /// The membrane is at rest.
+    /// Takes the present area as that at rest.
     template <MembraneLine Line>
     explicit MembraneArea(Line const& line) : area_(enclosed(line)) {}
 
@@ -34,9 +34,10 @@ public:
     void push(Line const& line, float dt_s) const;
 
 private:
-    // As stiff as the time step allows: a lost area is back within a few steps.
+    // As stiff as the time step allows: a change of area is undone within a few steps.
     static constexpr float kSwingsPerStep = 0.25F;
-    // A membrane whose area is and stays as right as this is left alone: a push, even of nothing, would keep it moving.
+    // No push while area and predicted area are within this tolerance: even a push of zero would keep the membrane
+    // awake.
     static constexpr float kTolerance = 1e-4F;  // of the area
 
     /// Signed, positive when the bodies run clockwise on the screen.
@@ -62,8 +63,8 @@ private:
 
 template <MembraneLine Line>
 void MembraneArea::push(Line const& line, float dt_s) const {
-    float inverse_mass = 0.0F;  // of the area as a coordinate
-    float growth = 0.0F;        // of the area, per second
+    float inverse_mass = 0.0F;  // of the area as a generalised coordinate
+    float growth = 0.0F;        // rate of change of the area
     for (std::size_t i = 0; i < line.size(); ++i) {
         Vec2 const way = gradient(line, i);
         inverse_mass += dot(way, way) * line.inverse_mass(i);

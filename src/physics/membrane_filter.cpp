@@ -7,7 +7,7 @@ namespace pogosim {
 
 namespace {
 
-/// Along a straight line, bodies further on than this do not touch when the membrane is at rest.
+/// On a straight piece of a membrane at rest, bodies that are more places apart than this do not touch.
 std::uint32_t touching_neighbours(Bodies const& bodies, Membrane const& membrane) {
     float shortest_step_mm = std::numeric_limits<float>::infinity();
     float largest_mm = 0.0F;

@@ -12,10 +12,10 @@ namespace pogosim {
 /// each other away; the others of a membrane collide, so that it does not cross itself.
 class MembraneFilter {
 public:
-    /// The membranes are at rest.
+    /// Takes the present shapes of the membranes as those at rest.
     explicit MembraneFilter(World const& world);
 
-    /// Whether two bodies, members of membranes or not, may collide.
+    /// Whether two bodies may collide; they may be bodies of membranes or not.
     bool may_collide(std::uint32_t body_a, std::uint32_t body_b) const;
 
 private:
@@ -23,11 +23,11 @@ private:
         std::uint32_t membrane = kNone;
         std::uint32_t number = 0;
         std::uint32_t count = 0;
-        std::uint32_t neighbours = 0;  // those up to so many places on do not collide
+        std::uint32_t neighbours = 0;  // the bodies up to this many places further on do not collide
         Vec2 at_rest_mm;
         float radius_mm = 0.0F;
     };
-    std::vector<PlaceInRing> places_;  // of each body; empty without membranes
+    std::vector<PlaceInRing> places_;  // for each body; empty without membranes
 };
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-// What the bodies of a soft membrane weigh in the engines.
+// Masses of the bodies of soft membranes in the engines.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace pogosim {
 
-/// Mass scaling: a solver cannot hold back a heavy body by a chain of light ones, so those of membranes get more mass
-/// where a robot with wheels weighs more than 30 times as much. `mass`: of each body, in any unit.
+/// Mass scaling: a solver cannot hold back a heavy body by a chain of light ones, so the bodies of membranes get more
+/// mass if a robot with wheels has more than 30 times theirs. `mass`: of each body, in any unit.
 void add_mass_to_membranes(World const& world, std::vector<float>& mass);
 
 }  // namespace pogosim

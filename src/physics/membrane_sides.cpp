@@ -38,7 +38,7 @@ MembraneSides::MembraneSides(World const& world) {
 std::vector<std::uint32_t> const& MembraneSides::hold(World& world) {
     put_back_.clear();
     is_back_.clear();
-    // Each pass puts somebody back who was not yet, so that there is an end: when all are, nobody has crossed.
+    // Each iteration puts back at least one more body, so the loop ends: when all are back, none has crossed.
     while (somebody_crossed(world)) {
         is_back_.resize(world.bodies.size());
         for (Side const& side : sides_) {
@@ -49,7 +49,8 @@ std::vector<std::uint32_t> const& MembraneSides::hold(World& world) {
     return put_back_;
 }
 
-/// Who has crossed goes back; if all of them have been already, the membrane moved over them, and goes back itself.
+/// Puts back the bodies that have crossed. If all of them are back already, the membrane has moved over them: then it
+/// is put back itself.
 void MembraneSides::put_back_crossed(Bodies& bodies, Side const& side) {
     crossed_.clear();
     std::ranges::set_symmetric_difference(side.was_inside, side.is_inside, std::back_inserter(crossed_));
@@ -88,7 +89,7 @@ void MembraneSides::find_lines(World const& world) {
     }
 }
 
-/// Bodies are asked for those membranes only whose boxes are where they are.
+/// Tests a body only against membranes whose bounding boxes contain it.
 void MembraneSides::find_sides(World const& world) {
     find_lines(world);
     float widest_mm = 0.0F;

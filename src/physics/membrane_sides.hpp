@@ -11,19 +11,18 @@ namespace pogosim {
 
 /// An engine's contacts and joints give way under blows and crowds that are too strong for its few iterations, and a
 /// body whose centre is past the middle of a membrane is pushed on to the wrong side. So the sides are compared after
-/// each step: a body that has changed sides goes back to where it was before the step, at rest. When somebody is on the
-/// wrong side of a membrane even so, because the membrane moved over him, the membrane goes back, too. All others move
-/// on.
-/// Bodies that fit through the gaps between those of a membrane may pass.
+/// each step: a body that has changed sides is put back to its place before the step, at rest. If a body is still on
+/// the wrong side, because the membrane has moved over it, the membrane is put back, too. All other bodies keep their
+/// motion. Bodies that fit through the gaps between the bodies of a membrane may pass.
 class MembraneSides {
 public:
-    /// Takes sides and poses as they are now.
+    /// Stores the present sides and poses.
     explicit MembraneSides(World const& world);
 
     /// To be called after a step of the engine. Returns the bodies that were put back.
     std::vector<std::uint32_t> const& hold(World& world);
 
-    /// Takes sides and poses anew: when objects were put elsewhere.
+    /// Stores sides and poses anew, after objects were moved from outside.
     void look_again(World const& world);
 
 private:
@@ -32,11 +31,11 @@ private:
         float heading_rad = 0.0F;
         Vec2 heading_dir;
     };
-    /// A membrane, and who that cannot pass it is inside: indices into World::bodies, ascending.
+    /// A membrane, and the bodies inside it that cannot pass: indices into World::bodies, ascending.
     struct Side {
         Membrane membrane;
-        float least_radius_mm = 0.0F;             // who is smaller may pass
-        Polygon line{};                           // the middle of the membrane now
+        float least_radius_mm = 0.0F;             // smaller bodies may pass
+        Polygon line{};                           // the present middle line of the membrane
         Box box{};                                // around it
         std::vector<std::uint32_t> was_inside{};  // before the step
         std::vector<std::uint32_t> is_inside{};   // and now
@@ -50,11 +49,11 @@ private:
     void remember_poses(Bodies const& bodies);
 
     std::vector<Side> sides_;
-    std::vector<std::vector<std::uint32_t>> sides_in_cell_;  // whose boxes touch a cell of a grid
+    std::vector<std::vector<std::uint32_t>> sides_in_cell_;  // for each cell of a grid, those whose boxes touch it
     std::vector<Pose> poses_;                                // of all bodies, before the step
     std::vector<std::uint32_t> crossed_;                     // scratch
     std::vector<std::uint32_t> put_back_;
-    std::vector<bool> is_back_;  // of all bodies, while somebody is put back
+    std::vector<bool> is_back_;  // of all bodies, while bodies are put back
 };
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-// How far bodies may move in a sub-step, and springs swing, for soft membranes to hold them back.
+// Limits of motions and of spring frequencies in a sub-step, within which soft membranes hold bodies back.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,13 @@ namespace pogosim {
 /// thickness per sub-step (found by trial with robots of 5 to 40 mm), or as far as in the sub-steps of slow robots.
 inline constexpr float kMembraneShare = 0.2F;
 inline constexpr float kLeastMembraneMotionMm = 0.5F;
-/// A spring that swings more often than this per step cannot be followed and would shake; it is taken for one that
-/// swings just so often.
+/// Highest frequency of a spring, in oscillations per step. A stiffer spring cannot be integrated and would shake; its
+/// frequency is reduced to this one.
 inline constexpr float kMostSwingsPerStep = 0.5F;
-/// Speeds that need more sub-steps get them, up to as many as these.
+/// Largest number of sub-steps, for the highest speeds.
 inline constexpr int kMostSubsteps = 100;
 
-/// What a body may move in a sub-step with these membranes in the world; `without_mm` if there are none.
+/// Largest motion of a body in a sub-step with the membranes of this world; `without_mm` if there are none.
 inline float most_motion_mm(World const& world, float without_mm) {
     float most_mm = without_mm;
     for (Membrane const& membrane : world.membranes) {

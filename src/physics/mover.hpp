@@ -1,4 +1,4 @@
-// A body as the solvers of an island have it.
+// A body in the copy on which the solvers of an island work.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Mover {
     float inverse_mass = 0.0F;
     float inverse_inertia = 0.0F;
     std::uint32_t body = kNone;
-    std::uint64_t blocks = 0;  // that have a contact of it, see IslandSolver
+    std::uint64_t blocks = 0;  // blocks with contacts of this body, see IslandSolver
     std::int32_t changed = 0;  // when a contact last changed its velocity, on the clock of the sub-step
 };
 

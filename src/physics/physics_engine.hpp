@@ -12,7 +12,7 @@
 
 namespace pogosim {
 
-/// What an engine can follow in one time step.
+/// Largest motions that an engine can follow in one time step.
 struct MotionLimits {
     float motion_mm;
     float turn_rad;
@@ -23,7 +23,7 @@ class PhysicsEngine {
 public:
     virtual ~PhysicsEngine() = default;
 
-    /// Takes over what others have written to the bodies of the world, see world.hpp, imposes pending velocity
+    /// Takes over what was written to the bodies of the world from outside, see world.hpp, imposes pending velocity
     /// commands, advances all bodies by one time step and writes their poses and velocities back. Bodies that overlap
     /// are pushed apart in the next steps.
     virtual void advance(World& world) = 0;
@@ -34,10 +34,10 @@ public:
 /// Stands for the fastest engine that can move what is in the world.
 inline constexpr std::string_view kAutomaticEngine = "auto";
 
-/// What make_physics_engine() knows: kAutomaticEngine, then the engines.
+/// Names that make_physics_engine() knows: kAutomaticEngine, then the engines.
 std::vector<std::string> const& physics_engine_names();
 
-/// The engine that a name stands for in this world: another one than `name` for kAutomaticEngine only.
+/// The engine that a name stands for in this world: `name` itself, unless it is kAutomaticEngine.
 std::string const& physics_engine_behind(std::string const& name, World const& world);
 
 /// Why this engine cannot move what is in the world: "moves disks only, but ...". Empty if it can.

@@ -1,4 +1,4 @@
-// The springs and the areas of the membranes of an island, for one sub-step after the other.
+// Springs and areas of the membranes of an island, solved sub-step by sub-step.
 //
 // Springs are soft constraints, stable at every stiffness; with a limit to how far they stretch: E. Catto, "Soft
 // Constraints", Game Developers Conference, 2011.
@@ -14,18 +14,18 @@
 
 namespace pogosim {
 
-/// What the spring of a joint has pulled with in the last sub-step: a first guess for the next one.
+/// Impulses of the spring of a joint in the last sub-step: the initial guess for the next one.
 struct SpringImpulse {
     float spring = 0.0F;
-    float limit = 0.0F;  // more, because it would have become too long
+    float limit = 0.0F;  // added because it would have become too long
 };
 
 class SoftMembranes {
 public:
-    /// The membranes are at rest.
+    /// Takes the present shapes of the membranes as those at rest.
     explicit SoftMembranes(World const& world);
 
-    /// Forgets the island before.
+    /// Begins a new island.
     void clear();
 
     /// Adds a membrane, an index into World::membranes, whose bodies are `movers[first]` and those that follow.
@@ -38,12 +38,12 @@ public:
 
     bool empty() const { return springs_.empty(); }
 
-    /// Presses on the membranes for what they enclose, and looks where the springs are. `push_rate`: speed with which
-    /// a spring that is too long is pulled back, in 1/s of what it is too long. Returns whether some are.
+    /// Pushes the membranes towards their areas, and measures the springs. `push_rate`: speed at which a spring that is
+    /// too long is pulled back, per mm of excess length, 1/s. Returns whether any spring is too long.
     bool begin_substep(std::span<Mover> movers, float h_s, float push_rate);
 
-    /// A pass through all springs. Returns the largest change of a speed, mm/s. `relaxes`: springs that are too long
-    /// stay so.
+    /// One iteration over all springs. Returns the largest change of a speed, mm/s. `relaxes`: springs that are too
+    /// long are not pulled back.
     float solve(std::span<Mover> movers, bool backwards, bool relaxes);
 
 private:
@@ -54,13 +54,13 @@ private:
         float longest_mm;  // 0: no limit
         float omega;       // 2 pi times the natural frequency, 1/s
         float damping_ratio;
-        Vec2 along{};  // to `b`, from `a`
+        Vec2 along{};  // unit vector from `a` to `b`
         float mass = 0.0F;
         float soft_mass = 0.0F;
-        float softness = 0.0F;      // speed that the spring leaves, per impulse in it
+        float softness = 0.0F;      // speed left by the spring, per impulse
         float bias_mm_s = 0.0F;     // speed at which it shortens
-        float most_mm_s = 0.0F;     // speed at which it may become longer
-        float relaxed_mm_s = 0.0F;  // the same once it has been pulled back
+        float most_mm_s = 0.0F;     // highest speed at which it may lengthen
+        float relaxed_mm_s = 0.0F;  // the same after it has been pulled back
         SpringImpulse impulse;
     };
 
@@ -78,8 +78,8 @@ private:
 
     float solve(Spring& spring, std::span<Mover> movers, bool relaxes);
 
-    std::vector<MembraneArea> areas_;  // of each membrane of the world
-    std::vector<Joints> joints_;       // the same: in World::joints
+    std::vector<MembraneArea> areas_;  // for each membrane of the world
+    std::vector<Joints> joints_;       // for each membrane, in World::joints
     std::vector<Spring> springs_;
     std::vector<Added> added_;
 };

@@ -8,9 +8,9 @@
 
 namespace pogosim {
 
-/// Takes objects whose centre is out of the bounds to the other side, as a whole. What a soft membrane encloses goes
-/// with the membrane and not before, so that the seam does not take it out of there; it may be out of the bounds
-/// meanwhile, as parts of the membrane are. Returns the bodies that were moved.
+/// Moves objects whose centre is out of bounds to the opposite side, as a whole. Bodies inside a soft membrane move
+/// together with the membrane, so that the seam does not separate them; until then they may be out of bounds, as parts
+/// of the membrane are. Returns the bodies that were moved.
 std::vector<std::uint32_t> wrap_objects(World& world);
 
 }  // namespace pogosim

@@ -10,8 +10,8 @@
 
 #include "base/random.hpp"
 #include "physics/disk_contacts.hpp"
-#include "physics/near_pairs.hpp"
-#include "physics/near_walls.hpp"
+#include "physics/neighbour_list.hpp"
+#include "physics/wall_neighbour_list.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
@@ -25,14 +25,14 @@ using Group = std::set<std::uint32_t>;
 /// All that is needed to find islands in a world.
 struct Finder {
     explicit Finder(World const& world)
-        : walls(world.arena), pairs(world), near_walls(world, walls), contacts(world, {}), islands(world) {
+        : walls(world.arena), pairs(world), wall_neighbour_list(world, walls), contacts(world, {}), islands(world) {
         build(world);
     }
 
     void build(World const& world) {
         pairs.build(world, kReachMm, workers);
-        near_walls.build(world, walls, pairs.skin_mm());
-        contacts.build(world, pairs, near_walls);
+        wall_neighbour_list.build(world, walls, pairs.skin_mm());
+        contacts.build(world, pairs, wall_neighbour_list);
     }
 
     void find(World const& world) { islands.find(world, contacts, {.reach_mm = kReachMm}, workers); }
@@ -51,8 +51,8 @@ struct Finder {
 
     WorkerPool workers;
     WallIndex walls;
-    NearPairs pairs;
-    NearWalls near_walls;
+    NeighbourList pairs;
+    WallNeighbourList wall_neighbour_list;
     DiskContacts contacts;
     Islands islands;
 };

@@ -1,4 +1,4 @@
-#include "physics/sweep.hpp"
+#include "physics/continuous_collision.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@ namespace pogosim {
 
 namespace {
 
-constexpr float kRoundingMm = 1.0F;  // of places far from the origin
-// Disks may overlap by so much, and then come nearer by the other in a step: those that slide along each other are not
-// held.
+constexpr float kRoundingMm = 1.0F;  // of positions far from the origin
+// Disks may overlap by this much, and may then approach by kNearerMm in a step, so that disks that slide along each
+// other are not stopped.
 constexpr float kOverlapMm = 0.25F;
 constexpr float kNearerMm = 0.01F;
-// Whose way was cut so often stays where he was: others then have a fixed obstacle to stop at.
+// A body whose motion has been shortened this often stays at its start, as a fixed obstacle for the others.
 constexpr int kMostCuts = 20;
 
 /// The fraction of a relative motion after which two disks touch; 1 if they never do. `way_mm`: from one centre to the
@@ -32,15 +32,15 @@ float fraction_to_touch(Vec2 way_mm, Vec2 motion_mm, float radius_mm) {
 
 }  // namespace
 
-Sweep::Sweep(World const& world) : is_of_membrane_(world.bodies.size(), 0) {
+ContinuousCollision::ContinuousCollision(World const& world) : is_of_membrane_(world.bodies.size(), 0) {
     for (Membrane const& membrane : world.membranes) {
         std::fill_n(is_of_membrane_.begin() + membrane.body, membrane.body_count, 1);
     }
 }
 
-std::vector<std::uint32_t> const& Sweep::stop_at_impacts(World& world, FixedPolygons const& polygons,
-                                                         std::span<std::uint32_t const> fast,
-                                                         KnownMotion const& before) {
+std::vector<std::uint32_t> const& ContinuousCollision::stop_at_impacts(World& world, FixedPolygons const& polygons,
+                                                                       std::span<std::uint32_t const> fast,
+                                                                       KnownMotion const& before) {
     Bodies& bodies = world.bodies;
     find_ways(world, fast, before);
     stopped_.clear();
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> const& Sweep::stop_at_impacts(World& world, FixedPoly
     for (std::uint32_t const i : fast) {
         is_waiting_[i] = 1;
     }
-    // In the order of arrival. Fractions only become smaller, so this ends.
+    // First in, first out. Fractions only decrease, so the loop ends.
     for (std::size_t next = 0; next < waiting_.size(); ++next) {
         std::uint32_t const i = waiting_[next];
         is_waiting_[i] = 0;
@@ -65,7 +65,8 @@ std::vector<std::uint32_t> const& Sweep::stop_at_impacts(World& world, FixedPoly
     return stopped_;
 }
 
-void Sweep::find_ways(World const& world, std::span<std::uint32_t const> fast, KnownMotion const& before) {
+void ContinuousCollision::find_ways(World const& world, std::span<std::uint32_t const> fast,
+                                    KnownMotion const& before) {
     Bodies const& bodies = world.bodies;
     starts_mm_.resize(bodies.size());
     motions_mm_.resize(bodies.size());
@@ -87,13 +88,13 @@ void Sweep::find_ways(World const& world, std::span<std::uint32_t const> fast, K
     grid_.build(starts_mm_, world.arena.bounds, 2.0F * (farthest_mm_ + largest_mm_), world.periodic);
 }
 
-/// Between the starts of a body and of whoever it can meet in the step.
-float Sweep::reach_mm(Bodies const& bodies, std::uint32_t i) const {
+/// Largest distance between the starting points of a body and of another one that it can meet in the step.
+float ContinuousCollision::reach_mm(Bodies const& bodies, std::uint32_t i) const {
     return length(motions_mm_[i]) + farthest_mm_ + bodies.radius_mm[i] + largest_mm_ + kRoundingMm;
 }
 
-/// Of its motion, before it meets somebody.
-float Sweep::free_fraction(World const& world, FixedPolygons const& polygons, std::uint32_t i) const {
+/// The fraction of its motion that a body can make before it meets another one.
+float ContinuousCollision::free_fraction(World const& world, FixedPolygons const& polygons, std::uint32_t i) const {
     Bodies const& bodies = world.bodies;
     float fraction = fractions_[i];
     grid_.for_each_near(starts_mm_[i], reach_mm(bodies, i), [&](std::uint32_t k, Vec2 /*start_mm*/) {
@@ -107,8 +108,9 @@ float Sweep::free_fraction(World const& world, FixedPolygons const& polygons, st
     return fraction;
 }
 
-/// Both move until one of them stops; then the other one goes on alone.
-float Sweep::fraction_before(World const& world, std::uint32_t i, std::uint32_t k) const {
+/// The fraction that body i can make before it meets body k. Both move until one of them stops; then the other one
+/// continues alone.
+float ContinuousCollision::fraction_before(World const& world, std::uint32_t i, std::uint32_t k) const {
     float const radius_mm = world.bodies.radius_mm[i] + world.bodies.radius_mm[k];
     Vec2 const way_mm = minimum_image(world, starts_mm_[i], starts_mm_[k]);
     Vec2 const together_mm = motions_mm_[k] - motions_mm_[i];
@@ -122,8 +124,8 @@ float Sweep::fraction_before(World const& world, std::uint32_t i, std::uint32_t 
     return together + alone * fraction_to_touch(rest_mm, -alone * motions_mm_[i], radius_mm);
 }
 
-/// All that may meet it where it stands now.
-void Sweep::look_at_again(World const& world, std::uint32_t i) {
+/// Queues all bodies that may meet body i where it has been stopped.
+void ContinuousCollision::look_at_again(World const& world, std::uint32_t i) {
     grid_.for_each_near(starts_mm_[i], reach_mm(world.bodies, i), [&](std::uint32_t k, Vec2 /*start_mm*/) {
         if (k != i && is_waiting_[k] == 0 && fractions_[k] > fractions_[i] && !world.bodies.spec[k].fixed) {
             is_waiting_[k] = 1;

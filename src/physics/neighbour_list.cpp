@@ -1,4 +1,4 @@
-#include "physics/near_pairs.hpp"
+#include "physics/neighbour_list.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,14 @@ namespace pogosim {
 
 namespace {
 
-// Of the largest radius in the cells: a wider skin is built less often, and has more pairs.
+// Width of the skin relative to the largest radius in the cells: a list with a wider skin is rebuilt less often, but
+// has more pairs.
 constexpr float kSkinShare = 0.6F;
-// Cells are as wide as two of the largest disks in them. Disks that are larger than this share of all are not in cells.
+// Cells are as wide as two of the largest disks in them. Disks larger than this quantile of all radii are not in cells.
 constexpr double kInCells = 0.98;
-// Not many more cells than bodies.
+// Largest number of cells per body.
 constexpr double kCellsPerBody = 2.0;
-// Of a range that one worker takes.
+// Smallest size of a range that one worker takes.
 constexpr std::uint32_t kLeastBodies = 8192;
 constexpr std::uint32_t kLeastCells = 256;
 
@@ -25,7 +26,7 @@ float radius_in_cells(Bodies const& bodies) {
     }
     auto const place = static_cast<std::size_t>(kInCells * static_cast<double>(radii.size() - 1));
     std::ranges::nth_element(radii, radii.begin() + static_cast<std::ptrdiff_t>(place));
-    // Twice as large costs less than to be looked for one by one.
+    // Cells for disks of up to twice the size cost less than testing the large disks one by one.
     return 2.0F * radii[place] >= std::ranges::max(radii) ? std::ranges::max(radii) : radii[place];
 }
 
@@ -35,14 +36,14 @@ int cell_count(float length_mm, float cell_mm, double most) {
 
 }  // namespace
 
-NearPairs::NearPairs(World const& world) : largest_mm_(radius_in_cells(world.bodies)) {
+NeighbourList::NeighbourList(World const& world) : largest_mm_(radius_in_cells(world.bodies)) {
     for (BodySpec const& spec : world.bodies.spec) {
         is_fixed_.push_back(spec.fixed ? 1 : 0);
     }
 }
 
-/// As many cells as the skin allows, and who is in them.
-void NearPairs::lay_cells(World const& world) {
+/// Chooses as many cells as the skin allows, and the bodies that go into them.
+void NeighbourList::lay_cells(World const& world) {
     Bodies const& bodies = world.bodies;
     double const most = std::max(1.0, std::sqrt(kCellsPerBody * static_cast<double>(bodies.size())));
     float const cell_mm = 2.0F * largest_mm_ + skin_mm_;
@@ -66,7 +67,7 @@ void NearPairs::lay_cells(World const& world) {
     items_.resize(bodies.size() - large_.size());
 }
 
-bool NearPairs::covers(World const& world, float reach_mm, WorkerPool& workers) const {
+bool NeighbourList::covers(World const& world, float reach_mm, WorkerPool& workers) const {
     if (!is_built_ || reach_mm > skin_mm_) {
         return false;
     }
@@ -82,7 +83,7 @@ bool NearPairs::covers(World const& world, float reach_mm, WorkerPool& workers) 
     return 2.0F * std::sqrt(farthest2) + reach_mm <= skin_mm_;
 }
 
-std::uint32_t NearPairs::cell_at(World const& world, Vec2 point_mm) const {
+std::uint32_t NeighbourList::cell_at(World const& world, Vec2 point_mm) const {
     auto const at = [](float place, int count) {
         return static_cast<std::uint32_t>(std::clamp(place, 0.0F, static_cast<float>(count - 1)));
     };
@@ -91,7 +92,7 @@ std::uint32_t NearPairs::cell_at(World const& world, Vec2 point_mm) const {
            at(offset.x * columns_per_mm_, columns_);
 }
 
-void NearPairs::sort_into_cells(World const& world) {
+void NeighbourList::sort_into_cells(World const& world) {
     Bodies const& bodies = world.bodies;
     // Counting sort by cell.
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -109,7 +110,7 @@ void NearPairs::sort_into_cells(World const& world) {
     start_.back() = static_cast<std::uint32_t>(items_.size());
 }
 
-void NearPairs::add_if_near(Item const& a, Item const& b, Vec2 shift_mm, std::vector<NearPair>& pairs) const {
+void NeighbourList::add_if_near(Item const& a, Item const& b, Vec2 shift_mm, std::vector<NeighbourPair>& pairs) const {
     float const reach_mm = a.radius_mm + b.radius_mm + skin_mm_;
     if (squared_length(b.position_mm + shift_mm - a.position_mm) < reach_mm * reach_mm &&
         (is_fixed_[a.body] & is_fixed_[b.body]) == 0) {
@@ -117,8 +118,8 @@ void NearPairs::add_if_near(Item const& a, Item const& b, Vec2 shift_mm, std::ve
     }
 }
 
-/// Pairs of a cell with itself, its right neighbour and the three below: those of each item are in two rows of cells.
-void NearPairs::find_around(std::uint32_t cell, std::vector<NearPair>& pairs) const {
+/// Finds the pairs of a cell with itself, its right neighbour and the three below, which lie in two contiguous rows.
+void NeighbourList::find_around(std::uint32_t cell, std::vector<NeighbourPair>& pairs) const {
     auto const columns = static_cast<std::uint32_t>(columns_);
     std::uint32_t const column = cell % columns;
     bool const has_right = column + 1 < columns;
@@ -140,7 +141,7 @@ void NearPairs::find_around(std::uint32_t cell, std::vector<NearPair>& pairs) co
     }
 }
 
-void NearPairs::find_between(std::uint32_t cell, std::uint32_t other, Vec2 shift_mm) {
+void NeighbourList::find_between(std::uint32_t cell, std::uint32_t other, Vec2 shift_mm) {
     for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
         for (std::uint32_t k = start_[other]; k < start_[other + 1]; ++k) {
             add_if_near(items_[i], items_[k], shift_mm, pairs_);
@@ -148,8 +149,8 @@ void NearPairs::find_between(std::uint32_t cell, std::uint32_t other, Vec2 shift
     }
 }
 
-/// Across the seams of a periodic world, which has at least three columns and rows.
-void NearPairs::find_across_seams(Vec2 size_mm) {
+/// Finds pairs across the seams of a periodic world, which has at least three columns and rows.
+void NeighbourList::find_across_seams(Vec2 size_mm) {
     auto const cell_at = [&](int column, int row) { return static_cast<std::uint32_t>(row * columns_ + column); };
     for (int row = 0; row < rows_; ++row) {
         bool const is_last = row + 1 == rows_;
@@ -166,9 +167,9 @@ void NearPairs::find_across_seams(Vec2 size_mm) {
     }
 }
 
-/// Calls visit(first, last) for the rows of items in the cells around a disk, which are not across a seam.
+/// Calls visit(first, last) for each row of items in the cells around a disk, without crossing a seam.
 template <class Visit>
-void NearPairs::for_each_row_near(World const& world, Item const& disk, Visit const& visit) const {
+void NeighbourList::for_each_row_near(World const& world, Item const& disk, Visit const& visit) const {
     float const reach_mm = disk.radius_mm + largest_mm_ + skin_mm_;
     Vec2 const reach{reach_mm, reach_mm};
     std::uint32_t const first = cell_at(world, disk.position_mm - reach);
@@ -179,8 +180,8 @@ void NearPairs::for_each_row_near(World const& world, Item const& disk, Visit co
     }
 }
 
-/// Disks that are too large for the cells, with all others.
-void NearPairs::find_of_large(World const& world) {
+/// Finds the pairs of disks that are too large for the cells.
+void NeighbourList::find_of_large(World const& world) {
     Bodies const& bodies = world.bodies;
     auto const item_of = [&](std::uint32_t i) {
         return Item{wrapped(world, bodies.position_mm[i]), bodies.radius_mm[i], i};
@@ -206,23 +207,23 @@ void NearPairs::find_of_large(World const& world) {
     }
 }
 
-/// In the order of the cells, whoever looks at which.
-void NearPairs::find_in_cells(WorkerPool& workers) {
+/// In the order of the cells, whichever worker searches which.
+void NeighbourList::find_in_cells(WorkerPool& workers) {
     auto const cells = static_cast<std::uint32_t>(start_.size() - 1);
     more_.resize(workers.range_count(cells, kLeastCells) - 1);
     workers.run_ranges(cells, kLeastCells, [&](WorkRange range) {
-        std::vector<NearPair>& pairs = range.part == 0 ? pairs_ : more_[range.part - 1];
+        std::vector<NeighbourPair>& pairs = range.part == 0 ? pairs_ : more_[range.part - 1];
         pairs.clear();
         for (std::uint32_t cell = range.first; cell < range.last; ++cell) {
             find_around(cell, pairs);
         }
     });
-    for (std::vector<NearPair> const& pairs : more_) {
+    for (std::vector<NeighbourPair> const& pairs : more_) {
         pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
     }
 }
 
-void NearPairs::build(World const& world, float reach_mm, WorkerPool& workers) {
+void NeighbourList::build(World const& world, float reach_mm, WorkerPool& workers) {
     skin_mm_ = reach_mm + kSkinShare * largest_mm_;
     lay_cells(world);
     sort_into_cells(world);

@@ -1,4 +1,4 @@
-#include "physics/near_walls.hpp"
+#include "physics/wall_neighbour_list.hpp"
 
 #include <algorithm>
 
@@ -38,7 +38,7 @@ std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm) {
     return far > 0.0F ? Gap{far, (1.0F / far) * offset} : Gap{0.0F, side.normal};
 }
 
-NearWalls::NearWalls(World const& world, WallIndex const& walls) {
+WallNeighbourList::WallNeighbourList(World const& world, WallIndex const& walls) {
     if (world.periodic) {
         return;
     }
@@ -54,7 +54,7 @@ NearWalls::NearWalls(World const& world, WallIndex const& walls) {
     }
 }
 
-void NearWalls::build(World const& world, WallIndex const& walls, float skin_mm) {
+void WallNeighbourList::build(World const& world, WallIndex const& walls, float skin_mm) {
     near_.clear();
     if (sides_.empty()) {
         return;

@@ -1,4 +1,4 @@
-// Bodies that go so far in one step that they could jump over others.
+// Continuous collision detection: keeps fast bodies from passing through others within one step.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace pogosim {
 
-class Sweep {
+class ContinuousCollision {
 public:
-    explicit Sweep(World const& world);
+    explicit ContinuousCollision(World const& world);
 
-    /// Stops disks where they meet others on their ways through the step, from where they were `before` it; the next
-    /// step makes the impact. Looks at the ways of `fast` bodies, which go further than others, and of all that meet
-    /// one of those that have been stopped. Returns the bodies whose way was cut, some of them perhaps twice.
-    /// Two that overlap at the start come no nearer to each other. Bodies of membranes do not stop each other.
+    /// Stops disks where they first touch others on their straight paths from `before` to the end of the step; the
+    /// impact itself happens in the next step. Tests the paths of the `fast` bodies, and of all bodies that meet one
+    /// that has been stopped. Returns the bodies whose motion was shortened; some may be listed twice. Two bodies that
+    /// overlap at the start do not approach further. Bodies of membranes do not stop each other.
     std::vector<std::uint32_t> const& stop_at_impacts(World& world, FixedPolygons const& polygons,
                                                       std::span<std::uint32_t const> fast, KnownMotion const& before);
 
@@ -32,13 +32,13 @@ private:
 
     std::vector<char> is_of_membrane_;  // all bodies
     std::vector<Vec2> starts_mm_;       // of all bodies
-    std::vector<Vec2> motions_mm_;      // of all, to where they are now
-    std::vector<float> fractions_;      // of its motion that each makes
+    std::vector<Vec2> motions_mm_;      // of all bodies, from start to end of the step
+    std::vector<float> fractions_;      // of its motion that each body makes
     std::vector<std::uint32_t> waiting_;
     std::vector<char> is_waiting_;  // of all bodies
-    std::vector<int> cuts_;         // of the way of each body
+    std::vector<int> cuts_;         // how often the motion of each body was shortened
     std::vector<std::uint32_t> stopped_;
-    UniformGrid grid_;  // of the starts
+    UniformGrid grid_;  // of starts_mm_
     float farthest_mm_ = 0.0F;
     float largest_mm_ = 0.0F;
 };

@@ -1,5 +1,5 @@
 // Walls hold bodies that are moved by hand, without an engine that pushes them out.
-#include "physics/containment.hpp"
+#include "physics/position_correction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,17 +21,17 @@ public:
         ObjectSpec spec = testing::pogobot_spec();
         spec.shape.radius_mm = radius_mm;
         testing::add_robot(world, place_mm, 0.0F, spec);
-        containment_.emplace(world);
+        position_correction_.emplace(world);
     }
 
     /// Moves it and returns where it is then.
-    Vec2 move(Vec2 by_mm) { return place_mm_ = containment_->hold(0, place_mm_ + by_mm); }
+    Vec2 move(Vec2 by_mm) { return place_mm_ = position_correction_->hold(0, place_mm_ + by_mm); }
 
     Vec2 place() const { return place_mm_; }
 
 private:
     Vec2 place_mm_;
-    std::optional<Containment> containment_;
+    std::optional<PositionCorrection> position_correction_;
 };
 
 Arena square() {
@@ -43,18 +43,18 @@ void expect_at(Vec2 place, Vec2 expected_mm) {
     EXPECT_NEAR(place.y, expected_mm.y, 0.01F);
 }
 
-TEST(Containment, LeavesBodiesAloneThatDoNotSinkIntoAWall) {
+TEST(PositionCorrection, LeavesBodiesAloneThatDoNotSinkIntoAWall) {
     Held disk(square(), {500, 500}, 20.0F);
     expect_at(disk.move({300, -100}), {800, 400});
     expect_at(disk.move({185, 0}), {985, 400});  // by a quarter of its radius
 }
 
-TEST(Containment, PutsBackWhatJumpsAWall) {
+TEST(PositionCorrection, PutsBackWhatJumpsAWall) {
     Held disk(square(), {500, 500}, 20.0F);
     expect_at(disk.move({5000, 0}), {980, 500});
 }
 
-TEST(Containment, HoldsWhatCreepsThroughAWallInStepsMuchSmallerThanItself) {
+TEST(PositionCorrection, HoldsWhatCreepsThroughAWallInStepsMuchSmallerThanItself) {
     Held disk(square(), {500, 500}, 20.0F);
     for (int i = 0; i < 2000; ++i) {
         Vec2 const place = disk.move({0.5F, 0});
@@ -63,17 +63,17 @@ TEST(Containment, HoldsWhatCreepsThroughAWallInStepsMuchSmallerThanItself) {
     EXPECT_GT(disk.place().x, 975.0F);
 }
 
-TEST(Containment, LetsWhatHitsAWallAtAnAngleGoOnAlongIt) {
+TEST(PositionCorrection, LetsWhatHitsAWallAtAnAngleGoOnAlongIt) {
     Held disk(square(), {500, 900}, 20.0F);
     expect_at(disk.move({300, 400}), {800, 980});
 }
 
-TEST(Containment, StopsInACornerWhatSlidesAlongOneWallToTheNext) {
+TEST(PositionCorrection, StopsInACornerWhatSlidesAlongOneWallToTheNext) {
     Held disk(square(), {500, 900}, 20.0F);
     expect_at(disk.move({2000, 400}), {980, 980});
 }
 
-TEST(Containment, HoldsSpecksInAnArenaWhereNumbersAreCoarse) {
+TEST(PositionCorrection, HoldsSpecksInAnArenaWhereNumbersAreCoarse) {
     // A float has steps of 0.06 mm here, and the walls are oblique.
     constexpr float kSide = 1e6F;
     Arena const arena =

@@ -1,5 +1,5 @@
 // The list of near pairs against all pairs.
-#include "physics/near_pairs.hpp"
+#include "physics/neighbour_list.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,23 +47,23 @@ Pairs all_nearer_than(World const& world, float gap_mm) {
     return pairs;
 }
 
-Pairs listed(NearPairs const& near) {
+Pairs listed(NeighbourList const& near) {
     Pairs pairs;
-    for (NearPair const& pair : near.pairs()) {
+    for (NeighbourPair const& pair : near.pairs()) {
         pairs.emplace_back(std::min(pair.a, pair.b), std::max(pair.a, pair.b));
     }
     std::ranges::sort(pairs);
     return pairs;
 }
 
-class NearPairsOf : public ::testing::TestWithParam<bool> {};
+class NeighbourListOf : public ::testing::TestWithParam<bool> {};
 
-TEST_P(NearPairsOf, AreAllThatAreNearEachOnce) {
+TEST_P(NeighbourListOf, AreAllThatAreNearEachOnce) {
     WorkerPool workers;
     RandomStream random(7, 0);
     for (int scene = 0; scene < 60; ++scene) {
         World const world = random_world(random, random.uniform(100.0F, 3000.0F), GetParam());
-        NearPairs near(world);
+        NeighbourList near(world);
         near.build(world, random.uniform(0.1F, 20.0F), workers);
         Pairs const pairs = listed(near);
         EXPECT_TRUE(std::ranges::adjacent_find(pairs) == pairs.end());
@@ -75,12 +75,12 @@ TEST_P(NearPairsOf, AreAllThatAreNearEachOnce) {
     }
 }
 
-TEST_P(NearPairsOf, AreValidUntilSomebodyHasGoneHalfTheSkin) {
+TEST_P(NeighbourListOf, AreValidUntilSomebodyHasGoneHalfTheSkin) {
     WorkerPool workers;
     RandomStream random(8, 0);
     for (int scene = 0; scene < 30; ++scene) {
         World world = random_world(random, 1000.0F, GetParam());
-        NearPairs near(world);
+        NeighbourList near(world);
         constexpr float reach_mm = 2.0F;
         EXPECT_FALSE(near.covers(world, reach_mm, workers));
         near.build(world, reach_mm, workers);
@@ -97,7 +97,7 @@ TEST_P(NearPairsOf, AreValidUntilSomebodyHasGoneHalfTheSkin) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(World, NearPairsOf, ::testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(World, NeighbourListOf, ::testing::Bool(),
                          [](::testing::TestParamInfo<bool> const& info) { return info.param ? "periodic" : "solid"; });
 
 }  // namespace
