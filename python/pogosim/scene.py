@@ -219,6 +219,13 @@ def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
         name: Category(
             name,
             type_of(settings),
+def read_top_speed(configuration: dict[str, Any]) -> float | None:
+    """Return how fast the fastest robots of a configuration drive, mm/s; None if it does not say."""
+    drivers = [settings for _, settings in entries(configuration) if type_of(settings) == "pogobot"]
+    speeds = [number(own.get("max_linear_speed"), math.nan) for own in drivers]
+    return max((speed for speed in speeds if math.isfinite(speed)), default=None)
+
+
             shape_of(settings),
             half_thickness_of(settings),
             position_of(settings),

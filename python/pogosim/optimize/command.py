@@ -20,7 +20,7 @@ from pogosim.batch.names import NamesError
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
 from pogosim.batch.tasks import check_logs_data
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, warnings_told
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
@@ -31,6 +31,7 @@ from pogosim.optimize.search import Search, description_of
 from pogosim.optimize.settings import SECTION, Settings, settings_from
 from pogosim.optimize.variables import Space
 from pogosim.outputs import OutputError
+from pogosim.periodic import AmbiguousStepsWarning
 
 DONE = 0
 WRONG = 2
@@ -222,7 +223,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
     start_logging(parsed.verbose)
     catch_signals()
     try:
-        return optimize(parsed)
+        with warnings_told(prog, AmbiguousStepsWarning):
+            return optimize(parsed)
     except (OptimizeError, BatchError, OutputError, NamesError) as error:
         log.error("%s", error)
     except OSError as error:

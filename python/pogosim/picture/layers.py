@@ -77,6 +77,7 @@ def draw_arena(axes: Axes, polygons: list[Floats]) -> PathPatch:
 
 def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float, max_snapshots: int = MAX_SNAPSHOTS) -> None:
     """Draw the last `tail_s` seconds of all trajectories, fading into the past, from so many snapshots at most."""
+    swarm.check_steps()
     start_s = swarm.end_s - tail_s
     rows = swarm.rows[~is_membrane(swarm)]  # the pose of those is their first dot's
     recent = rows[rows["time"] >= start_s]

@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from pogosim.command.parser import complain, warn
+from pogosim.command.parser import complain, warn, warnings_told
 from pogosim.outputs import OutputError
+from pogosim.periodic import AmbiguousStepsWarning
 from pogosim.picture.errors import PictureError
 from pogosim.picture.swarm import Recording, read_recording
 
@@ -50,7 +51,10 @@ def load(options: argparse.Namespace, prog: str) -> Recording:
         warnings.simplefilter("always", RuntimeWarning)
         recording = read_recording(options.data, options.run, options.color_by, options.combination)
     for warning in caught:
-        warn(prog, warning.message)
+        if issubclass(warning.category, AmbiguousStepsWarning):
+            warnings.warn(warning.message, stacklevel=2)  # which may come again: see report()
+        else:
+            warn(prog, warning.message)
     if recording.left_out:
         warn(prog, f"{options.data} holds {recording.left_out}")
     return recording
@@ -75,7 +79,8 @@ def sayings(data: str) -> Iterator[None]:
 def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
     """Make an output; returns the exit code: 0, or 2 after a line that says why it could not be made."""
     try:
-        make()
+        with warnings_told(prog, AmbiguousStepsWarning):
+            make()
     except (PictureError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
