@@ -260,7 +260,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });
     warn_of_repeated_ids(world);
     make_mailboxes(world);
-    world.light = make_light_map(world.arena, scenario.light_map_columns, scenario.light_map_rows);
+    world.light = make_light_map(world.arena, world.periodic, scenario.light_map_columns, scenario.light_map_rows);
     assert_structure(world);
     return world;
 }

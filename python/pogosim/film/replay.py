@@ -245,7 +245,7 @@ def light_tables(packer: Packer, recording: Recording, bodies: Timeline) -> list
         if key == before:
             continue
         before = key
-        opacity = layers.light_opacity(swarm.lamps, swarm.polygons, time_s, LIGHT_CELLS)
+        opacity = layers.light_opacity(swarm, time_s, LIGHT_CELLS)
         lights.append([int(index), packer.add(np.round(opacity * 255.0).astype(np.uint16).reshape(1, -1))])
     return lights
 
