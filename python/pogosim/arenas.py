@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pogosim.batch.option_words import OptionsError
+from pogosim.batch.options import single_value
 from pogosim.command.main import ended
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser
@@ -52,11 +54,6 @@ def read_configuration(path: Path) -> dict[str, Any]:
     return entries
 
 
-def default_option(value: Any) -> Any:
-    """Return the value that the simulator takes of an entry with options for batches."""
-    return value.get("default_option") if isinstance(value, dict) else value
-
-
 def find_arena(name: str, configuration: Path) -> Path:
     """Return an arena file, looked for as the simulator does: here, next to the configuration, in Pogosim's own folder.
 
@@ -90,15 +87,22 @@ def selected(options: argparse.Namespace) -> tuple[Outline, Outline]:
         ArenaError, OSError: Says what is wrong.
     """
     path = Path(options.config)
+
+    def entry(name: str) -> Any:
+        try:
+            return single_value(entries.get(name))
+        except OptionsError as error:
+            raise ArenaError(f"{path}: {name}: {error}") from None
+
     # With all that is needed on the command line, no configuration is.
     is_needed = options.arena_file is None or path.is_file()
     entries = read_configuration(path) if is_needed else {}
-    name = options.arena_file or default_option(entries.get("arena_file"))
+    name = options.arena_file or entry("arena_file")
     if not isinstance(name, str) or not name:
         raise ArenaError(f"{path} has no arena_file; give one with --arena-file")
     outline = read_arena(find_arena(name, path))
-    area_mm2 = options.arena_surface or area_of(default_option(entries.get("arena_surface")), path)
-    return outline, scaled(outline, area_mm2, stretch=default_option(entries.get("arena_stretch")) is True)
+    area_mm2 = options.arena_surface or area_of(entry("arena_surface"), path)
+    return outline, scaled(outline, area_mm2, stretch=entry("arena_stretch") is True)
 
 
 def run(prog: str, options: argparse.Namespace) -> int:

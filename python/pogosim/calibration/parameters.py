@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from pogosim.arenas import default_option
+from pogosim.batch.options import single_value
 from pogosim.calibration.errors import CalibrationError
 from pogosim.scene import number
 
@@ -89,12 +89,12 @@ def chosen(text: str | None) -> list[str]:
 
 def start_values(settings: dict[str, Any]) -> dict[str, float]:
     """Return the values of a category's entry, or the defaults of the simulator."""
-    return {key: number(default_option(settings.get(key)), parameter.default) for key, parameter in PARAMETERS.items()}
+    return {key: number(single_value(settings.get(key)), parameter.default) for key, parameter in PARAMETERS.items()}
 
 
 def start_bias(settings: dict[str, Any]) -> tuple[int, int]:
     """Return the range of the bias of a category's entry."""
-    domain = default_option(settings.get(BIAS))
+    domain = single_value(settings.get(BIAS))
     if not isinstance(domain, list) or len(domain) != 2:
         return 0, 0
     return round(number(domain[0], 0.0)), round(number(domain[1], 0.0))

@@ -10,9 +10,10 @@ import numpy as np
 import shapely
 import shapely.ops
 
-from pogosim.arenas import area_of, default_option, find_arena
+from pogosim.arenas import area_of, find_arena
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
+from pogosim.batch.options import single_value
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks
@@ -69,6 +70,7 @@ def read_scene(path: Path, category: str | None) -> Scene:
     """
     try:
         configuration = Configuration(path)
+        configuration.check_options()
     except BatchError as error:
         raise CalibrationError(str(error)) from None
     entries = configuration.entries
@@ -94,10 +96,10 @@ def arena_of(entries: dict[str, Any], path: Path) -> Outline:
     Raises:
         CalibrationError: They cannot be read.
     """
-    name = default_option(entries.get("arena_file"))
+    name = single_value(entries.get("arena_file"))
     if not isinstance(name, str):
         raise CalibrationError(f"{path} has no arena_file; expected the arena in which the robots were tracked")
-    area_mm2, stretch = (default_option(entries.get(key)) for key in ("arena_surface", "arena_stretch"))
+    area_mm2, stretch = (single_value(entries.get(key)) for key in ("arena_surface", "arena_stretch"))
     try:
         outline = scaled(read_arena(find_arena(name, path)), area_of(area_mm2, path), stretch=stretch is True)
     except ArenaError as error:

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pogosim
 from pogosim.batch.backends import Workers
-from pogosim.batch.combinations import CombinationsError
 from pogosim.batch.command_line import add_slurm_options, catch_signals, slurm_jobs
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
+from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
 from pogosim.batch.tasks import check_logs_data
@@ -160,7 +160,7 @@ def optimize(arguments: argparse.Namespace) -> int:
     try:
         space = Space(configuration.entries)
     except CombinationsError as error:
-        raise OptimizeError(f"{configuration.where(error.path)}: {error.args[0]}") from None
+        raise configuration.error(error) from None
     objective = objective_of(settings)
     with_features = settings.optimizer in WITH_FEATURES
     if with_features and settings.qd_init_samples >= settings.max_evals:
