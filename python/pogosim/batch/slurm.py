@@ -24,6 +24,7 @@ from pogosim.batch.errors import BatchError, one_line, tell
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm_jobs import Jobs, check_commands, counted, own_folder
 from pogosim.batch.slurm_worker import do_in_job
+from pogosim.extras import installing
 
 JOBS = 8
 CORES = 1
@@ -180,9 +181,7 @@ def imported_jobqueue() -> Any:
         return importlib.import_module("dask_jobqueue")
     except ImportError as error:
         package = "cryptography" if error.name == "cryptography" else "dask-jobqueue"
-        raise BatchError(
-            f"--slurm needs the Python package '{package}'; install it: pip install 'pogosim[slurm]'"
-        ) from None
+        raise BatchError(f"--slurm needs the Python package '{package}'; install it: {installing('slurm')}") from None
     finally:
         signal.signal(signal.SIGINT, on_interrupt)  # dask_jobqueue puts its own
 
