@@ -106,7 +106,9 @@ def main() -> int:
     parser.add_argument("--robots", type=int, nargs="+", default=[100, 1000, 10_000, 100_000])
     parser.add_argument("--programs", nargs="+", choices=PROGRAMS, default=PROGRAMS)
     parser.add_argument("--threads", type=int, nargs="+", default=[1, 2], help="of the disk engine")
-    parser.add_argument("--most-box2d", type=int, default=10_000, help="most robots that Box2D moves, default 10000")
+    parser.add_argument(
+        "--most-box2d", type=int, default=10_000, help="most robots that Box2D moves, default %(default)s"
+    )
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     measurements = []

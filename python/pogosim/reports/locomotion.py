@@ -42,12 +42,16 @@ def parse(arguments: Sequence[str] | None, prog: str) -> argparse.Namespace:
         "Computes speeds, displacements, diffusion, persistence and densities of robots: tables in DIR/stats, figures "
         "(PDF, PNG) in DIR, and DIR/SUMMARY.txt.",
     )
-    parser.add_argument("--window", type=positive, default=2.0, metavar="S", help="sliding window of speeds (2 s)")
+    parser.add_argument(
+        "--window", type=positive, default=2.0, metavar="S", help="sliding window of speeds (%(default)g s)"
+    )
     parser.add_argument(
         "--characteristic-length", type=positive, metavar="MM", help="length of the Peclet number (2 radius)"
     )
-    parser.add_argument("--bins", type=whole(1, 2000), default=30, metavar="N", help="bins of heat maps (30)")
-    parser.add_argument("--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (20)")
+    parser.add_argument("--bins", type=whole(1, 2000), default=30, metavar="N", help="bins of heat maps (%(default)s)")
+    parser.add_argument(
+        "--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (%(default)s)"
+    )
     parser.add_argument("--gif", action="store_true", help="make films of the traces, too: traces/*.gif")
     return parser.parse_args(arguments)
 

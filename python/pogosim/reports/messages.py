@@ -135,7 +135,9 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze me
     )
     parser.add_argument("-o", "--output-dir", default=".", metavar="DIR", help="folder for tables and figures (.)")
     parser.add_argument("--category", metavar="NAME", help="senders to analyse (all)")
-    parser.add_argument("--bin", type=positive, default=10.0, metavar="MM", help="width of the bins of distance (10)")
+    parser.add_argument(
+        "--bin", type=positive, default=10.0, metavar="MM", help="width of the bins of distance (%(default)g)"
+    )
     options = parser.parse_args(arguments)
     return reported(prog, options, analyze)
 

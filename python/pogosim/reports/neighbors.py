@@ -56,7 +56,9 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze ne
         metavar="COLUMN",
         help=f"neighbours are the robots whose ids are listed there ({LISTS}, if the data have it)",
     )
-    parser.add_argument("--k", type=at_least(1), default=3, metavar="K", help="without lists: the K nearest (3)")
+    parser.add_argument(
+        "--k", type=at_least(1), default=3, metavar="K", help="without lists: the K nearest (%(default)s)"
+    )
     parser.add_argument(
         "--statBasis",
         "--stat-basis",

@@ -40,7 +40,11 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze ne
     """Run the command line. Returns the exit code, which is 2 for what cannot be analysed."""
     parser = analysis_parser(prog, "Components, degrees and Laplacian spectra of the proximity graph of robots.")
     parser.add_argument(
-        "--k-first", type=whole(1, 10_000), default=5, metavar="K", help="how many small non-zero eigenvalues (5)"
+        "--k-first",
+        type=whole(1, 10_000),
+        default=5,
+        metavar="K",
+        help="how many small non-zero eigenvalues (%(default)s)",
     )
     parser.add_argument(
         "--avg-window-s",
@@ -49,7 +53,11 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze ne
         help="graphs are averaged over windows of this many seconds (auto: rc / mean speed, and 10 save periods)",
     )
     parser.add_argument(
-        "--zero-tol", type=positive, default=1e-10, metavar="X", help="eigenvalues up to this count as zero (1e-10)"
+        "--zero-tol",
+        type=positive,
+        default=1e-10,
+        metavar="X",
+        help="eigenvalues up to this count as zero (%(default)g)",
     )
     options = parser.parse_args(arguments)
     return reported(prog, options, analyze)
