@@ -8,13 +8,17 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import tuning
 import validation
 from pictures import ROOT, Picture, fingerprint, from_figure
 from quotes import Quote, paragraph
 
-sys.path.append(str(ROOT / "examples" / "learning"))
+sys.path += [str(ROOT / "examples" / "learning"), str(ROOT / "bench")]
+
+ROBOTS = 300  # of the comparison of engines
+TIMELESS = 4  # of its columns, the last one is a time
 
 
 @dataclass(frozen=True)
@@ -109,7 +113,43 @@ def learn(_folder: Path) -> dict[str, Picture | Quote]:
     }
 
 
+def engine_table(title: str, arenas: Sequence[str], seeds: int, time_step_s: float, columns: int) -> Quote:
+    """Compare how swarms move with both engines: means and standard deviations between seeds, in Markdown."""
+    import compare_engines
+
+    lines = [f"| arena | engine | {' | '.join(compare_engines.COLUMNS[:columns])} |", "|---" * (columns + 2) + "|"]
+    for arena in arenas:
+        for engine in ("box2d", "disk"):
+            runs = np.array(
+                [compare_engines.figures(engine, arena, seed, ROBOTS, time_step_s) for seed in range(1, seeds + 1)]
+            )
+            cells = [
+                f"{mean:.3g} ± {spread:.2g}"
+                for mean, spread in zip(runs.mean(0)[:columns], runs.std(0)[:columns], strict=True)
+            ]
+            lines.append(f"| {arena}{title} | {engine} | {' | '.join(cells)} |")
+    return Quote(tuple(lines))
+
+
+def compare_engines_a_little(_folder: Path) -> str:
+    """Run few robots with both engines."""
+    import compare_engines
+
+    engines = ("box2d", "disk")
+    rows = [compare_engines.figures(engine, "disk", 1, ROBOTS // 10, 0.01)[:TIMELESS] for engine in engines]
+    return fingerprint(pd.DataFrame(np.round(rows, 9)).rename(columns=str))
+
+
+def compare_both_engines(_folder: Path) -> dict[str, Picture | Quote]:
+    """Compare the engines as the page says."""
+    return {
+        "physics.md: engines": engine_table("", ("disk", "annulus", "H"), 6, 0.01, TIMELESS),
+        "physics.md: small_steps": engine_table(", steps of 1 ms", ("disk",), 6, 0.001, TIMELESS - 1),
+    }
+
+
 STUDIES = {
+    "engines": Study("physics.md: engines", (), compare_engines_a_little, compare_both_engines),
     "learning": Study("learning.md: returns", ("learning.png",), learn_a_little, learn),
     **{
         f"tuning_{scene}": Study(

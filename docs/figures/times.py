@@ -127,6 +127,7 @@ def aligned(table: list[str]) -> list[str]:
 TIMES = {
     "batch_overhead": Times("../bench/README.md: batch_overhead", printed(PYTHON, "bench/batch_overhead.py")),
     "draw": Times("../bench/README.md: draw", printed(f"{BENCH}draw")),
+    "films": Times("pictures.md: films", printed(PYTHON, "bench/films.py")),
     "first_start": Times("../README.md: first_start", first_start),
     "environments": Times("learning.md: environments", printed(PYTHON, "bench/environments.py")),
     "large": Times("../bench/README.md: large", printed(f"{BENCH}large")),
