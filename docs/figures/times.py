@@ -76,14 +76,11 @@ def swarms(folder: Path) -> tuple[list[str], dict[str, Picture]]:
 
 def added_megabytes(packages: list[str]) -> int:
     """Return what installing Debian packages takes on a system without any, by apt."""
-    with tempfile.NamedTemporaryFile() as nothing:
-        command = ["apt-get", "-o", f"Dir::State::status={nothing.name}", "--no-install-recommends", "--assume-no"]
+    with tempfile.TemporaryDirectory() as folder:
+        (status := Path(folder, "status")).touch()
+        command = ["apt-get", "-o", f"Dir::State::status={status}", "--no-install-recommends", "--assume-no", "install"]
         done = subprocess.run(
-            [*command, "install", *packages],
-            env={**os.environ, "LC_ALL": "C"},
-            stdout=subprocess.PIPE,
-            text=True,
-            check=False,
+            [*command, *packages], env={**os.environ, "LC_ALL": "C"}, stdout=subprocess.PIPE, text=True, check=False
         )
     found = re.search(r"operation, ([\d.,]+) (k|M|G)B of additional", done.stdout)
     if found is None:
