@@ -84,16 +84,16 @@ def differences(made: Mapping[str, Picture | Quote]) -> list[str]:
 
 def renew(name: str, is_asked_for: bool) -> None:
     """Make anew what a script, a study or a measurement makes; a study only if it is out of date or asked for."""
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as other_folder:
         if name in SCRIPTS:
             keep_in_docs(SCRIPTS[name].draw(Path(folder)))
         elif name in TIMES:
             keep_in_docs(TIMES[name].measured(Path(folder)))
         else:
             study = STUDIES[name]
-            short = study.short(Path(folder, "short"))
+            short = study.short(Path(folder))
             if is_asked_for or differences({study.quote: Quote((), short)}):
-                keep_in_docs(study.renewed(Path(folder, "whole"), short))
+                keep_in_docs(study.renewed(Path(other_folder), short))
 
 
 def check(name: str) -> list[str]:
