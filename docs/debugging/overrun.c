@@ -1,4 +1,4 @@
-// A robot that writes behind the last array of its USERDATA, into the variables of the next robot: see docs/debugging.md.
+// A robot that writes behind the last array of its USERDATA, into the next robot's variables; see docs/debugging.md.
 #include "pogobase.h"
 
 typedef struct {

@@ -96,9 +96,10 @@ void pogo_main_loop_step(void (*user_step)(void));
 // ---- Entry point ----
 
 /// Says which functions control the objects of a category: `pogobot_start(user_init, user_step)` or
-/// `pogobot_start(user_init, user_step, "category")`, called by main() once per category of objects the program controls
-/// (default "robots"). user_init runs once, user_step in each tick; both may be NULL. On a real robot, the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns;
-/// in the simulator all calls return, and objects of a category without a call do nothing, with a warning.
+/// `pogobot_start(user_init, user_step, "category")`, called by main() once per category of objects the program
+/// controls (default "robots"). user_init runs once, user_step in each tick; both may be NULL. On a real robot, the
+/// call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in the simulator all calls return,
+/// and objects of a category without a call do nothing, with a warning.
 #define pogobot_start(...) POGO_START_PICK(__VA_ARGS__, pogobot_start_3, pogobot_start_2, )(__VA_ARGS__)
 #define POGO_START_PICK(init, step, category, chosen, ...) chosen
 #define pogobot_start_2(init, step) pogobot_start_3(init, step, "robots")

@@ -134,8 +134,8 @@ uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t
 /// @range message_size: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size);
 /// Sends a long message unchanged, through the emitters whose power in `_emitting_power_list` is not 0. If all are 0,
-/// nothing is sent, with a warning. The range is that of the largest of these powers. Sets type and sender. Returns 0, or
-/// 1 if nothing was sent because the message is NULL or `payload_length` is above 382.
+/// nothing is sent, with a warning. The range is that of the largest of these powers. Sets type and sender. Returns 0,
+/// or 1 if nothing was sent because the message is NULL or `payload_length` is above 382.
 /// @range payload_length: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message);
 /// Sends a short message unchanged, through one emitter or, with `ir_all`, all. Sets the type. Same return values as
