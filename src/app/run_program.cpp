@@ -18,6 +18,7 @@
 #include "app/restart.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
+#include "base/floating_point.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/scenario.hpp"
@@ -149,6 +150,7 @@ int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
         end_forked_child(0);  // forked by a constructor; the run belongs to the parent
     }
     enter_stage(RunStage::preparing);
+    StandardFloatingPoint const mode;  // a program that was compiled with -Ofast has set another one
     ParsedCommandLine const parsed = parse_command_line(argc, argv);
     if (parsed.exit_code) {
         return *parsed.exit_code;

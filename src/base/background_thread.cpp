@@ -6,6 +6,8 @@
 #include <csignal>
 #include <utility>
 
+#include "base/floating_point.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -38,6 +40,7 @@ std::thread start_background_thread(char const* activity, std::function<void()> 
     BlockedSignals const during_the_start;  // threads inherit the mask
     return std::thread([activity, body = std::move(body)] {
         activity_of_thread = activity;
+        StandardFloatingPoint const mode;  // threads inherit that, too
         body();
     });
 }

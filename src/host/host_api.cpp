@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/floating_point.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
 #include "pogosim/version.h"
@@ -138,6 +139,7 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
 }
 
 void pogosim_run_light_levels(pogosim_run const* run, double* levels) {
+    StandardFloatingPoint const mode;
     World const& world = run->simulation().world();
     for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
         std::uint32_t const body = world.robots.body[robot];

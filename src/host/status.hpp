@@ -5,6 +5,7 @@
 #include <new>
 #include <string>
 
+#include "base/floating_point.hpp"
 #include "base/memory.hpp"
 #include "host/hosted_run.hpp"
 
@@ -24,6 +25,7 @@ inline int failed(std::string const& what, int status = POGOSIM_USAGE) {
 /// Runs what may throw, and returns its status.
 template <class Body>
 int with_status(Body const& body) {
+    StandardFloatingPoint const mode;
     try {
         return body();
     } catch (RunFailure const& failure) {

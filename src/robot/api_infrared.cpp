@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/robot_floating_point.hpp"
 #include "robot/user_guard.hpp"
 #include "robot/waiting.hpp"
 
@@ -67,6 +68,7 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
     if (!context.has_robot() || emitters == 0 || power == 0) {
         return kSent;
     }
+    pogosim::take_back_floating_point();
     ++context.controller->messages_sent;
     pogosim::TransmissionQueue& air = pogosim::current_air();
     air.transmissions.push_back({.robot = context.robot,

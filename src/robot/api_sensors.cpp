@@ -5,6 +5,7 @@
 
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
 #include "robot/waiting.hpp"
 
@@ -26,6 +27,7 @@ constexpr float kMaxTemperature = 85.0F;
 int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     require_robot(__func__);
     pogosim::note_call();
+    pogosim::take_back_floating_point();
     if (sensor_number >= pogosim::kPhotosensorCount) {
         context.services->warn_once(
             "pogobot_photosensors_read: no light sensor {}; returning -1 (valid: 0 back, 1 front left, 2 front right)",
@@ -50,6 +52,7 @@ void pogobot_imu_read(float* acc, float* gyro) {
     require_argument(acc, __func__, "acc");
     require_argument(gyro, __func__, "gyro");
     pogosim::note_call();
+    pogosim::take_back_floating_point();
     std::fill_n(acc, 3, 0.0F);
     std::fill_n(gyro, 3, 0.0F);
     if (!context.has_body()) {

@@ -13,6 +13,7 @@
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
 #include "robot/user_guard.hpp"
 
@@ -34,6 +35,7 @@ namespace {
 /// Refuses the call outside of the callbacks that may see the world.
 void require_world(char const* function) {
     require_robot(function);
+    pogosim::take_back_floating_point();
     if (!context.sees_world) {
         without_exceptions([&] {
             throw ConfigError(fmt::format(

@@ -18,6 +18,7 @@
 #include "robot/assert_controllers.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
 #include "robot/user_guard.hpp"
 #include "robot/velocity_command.hpp"
@@ -252,6 +253,7 @@ void Controllers::enter_as_system(std::uint32_t robot, Phase phase) {
 
 void Controllers::leave() {
     context.controller->loop = stored_globals();
+    take_back_floating_point();
 }
 
 /// A robot that is switched off is as it was before, for the call; it sends nothing.

@@ -21,6 +21,7 @@
 
 #include "base/error.hpp"
 #include "base/escaped.hpp"
+#include "base/floating_point.hpp"
 #include "pogosim/version.h"
 #include "robot/context.hpp"
 #include "robot/elf_file.hpp"
@@ -52,6 +53,7 @@ std::optional<std::vector<char>> read_file(std::filesystem::path const& file) {
 // Constructors and destructors of static objects are of no robot, although one may have run last in this thread.
 void* loaded(std::filesystem::path const& file) {
     WithoutRobot const nobody;
+    StandardFloatingPoint const mode;  // which constructors may change
     return dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 void unload(void* library) {

@@ -150,6 +150,7 @@ std::string text_of(std::exception const& error) {
 UserFailure exception_failure(RunGuard& guard, std::string const& what) {
     guard.inside = false;
     if (is_forked_child()) {
+    set_floating_point_mode(kStandardMode);
         end_forked_child(static_cast<int>(ExitCode::user_program));
     }
     return {what, ExitCode::user_program};
@@ -319,6 +320,7 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
     }
     if (sigsetjmp(guard.return_point, 0) != 0) {
         forget_running_fiber();
+        set_floating_point_mode(kStandardMode);
         RunGuard& run = *active_guard;
         EndRequest const* const request = end_request(run);
         return request != nullptr ? requested_failure(run, *request)

@@ -20,6 +20,7 @@
 #include <optional>
 #include <string>
 
+#include "base/floating_point.hpp"
 #include "base/memory.hpp"
 #include "robot/fenced_memory.hpp"
 #include "robot/other_threads.hpp"
@@ -106,6 +107,7 @@ private:
     RunGuard& guard_;
     RunGuard* before_;
     std::optional<SignalStackScope> stack_{};
+    StandardFloatingPoint mode_{};
 };
 
 /// As long as this lives, signals that ask this process to end are for that run, and so are crashes in threads that the
