@@ -31,8 +31,8 @@ std::string with_robot_longs(std::string_view format) {
         if (format[i] != '%') {
             continue;
         }
-        // Flags, width and precision are between '%' and the length.
-        std::size_t const length = std::min(format.find_first_not_of("-+ #0123456789.*'", i + 1), format.size());
+        // Flags, width and precision, or the number of an argument, are between '%' and the length.
+        std::size_t const length = std::min(format.find_first_not_of("-+ #0123456789.*'$", i + 1), format.size());
         result += format.substr(i + 1, length - i - 1);
         bool const single_l =
             length + 1 < format.size() && format[length] == 'l' && std::strchr("diouxX", format[length + 1]) != nullptr;
