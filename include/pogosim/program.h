@@ -38,11 +38,12 @@ void pogosim_before_constructors(struct pogosim_program const* program, void (*s
 /// object of a robot that has variables of its own. Returns 0 unless memory is short.
 int pogosim_at_end(void (*destroy)(void*), void* object, void* library);
 
-// What a program's calls of rand(), srand(), exit() and usleep() become.
+// What a program's calls of rand(), srand(), exit(), usleep() and sleep() become.
 int pogosim_rand(void);
 void pogosim_srand(unsigned seed);
 void pogosim_exit(int status) __attribute__((noreturn));
-void pogosim_usleep(unsigned microseconds);
+void pogosim_usleep(int microseconds);
+void pogosim_sleep(int seconds);
 
 /// What msleep() is in the simulator's main loop: nothing of the tick is left to go on with after it.
 void pogosim_sleep_after_tick(int milliseconds);

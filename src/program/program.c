@@ -35,7 +35,13 @@ POGO_WITHIN_PROGRAM void srand(unsigned seed) {
 }
 
 POGO_WITHIN_PROGRAM int usleep(unsigned microseconds) {
-    pogosim_usleep(microseconds);
+    pogosim_usleep((int)microseconds);
+    return 0;
+}
+
+// Weak, since a file of the program that knows nothing of robots may have a function of this name.
+__attribute__((weak)) POGO_WITHIN_PROGRAM unsigned sleep(unsigned seconds) {
+    pogosim_sleep((int)seconds);
     return 0;
 }
 

@@ -17,6 +17,7 @@ using pogosim::require_robot;
 namespace {
 
 constexpr std::int64_t kMicrosecondsPerMillisecond = 1000;
+constexpr std::int64_t kMicrosecondsPerSecond = 1000000;
 
 std::int64_t now_us() {
     pogosim::Controller& self = *context.controller;
@@ -32,6 +33,16 @@ int32_t saturate(std::int64_t us) {
 void set_origin(time_reference_t* reference, std::int64_t origin_us) {
     reference->origin_us = origin_us;
     reference->hardware_value_at_time_origin = static_cast<uint32_t>(origin_us);
+}
+
+/// Negative times take none. In a thread that the program has started, the thread sleeps.
+void sleep_for(std::int64_t time_us) {
+    time_us = std::max<std::int64_t>(0, time_us);
+    if (context.controller == nullptr) {
+        std::this_thread::sleep_for(std::chrono::microseconds(time_us));
+    } else {
+        pogosim::sleep_until(context.controller->clock_us + time_us);
+    }
 }
 
 }  // namespace
@@ -94,15 +105,15 @@ void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t m
 
 void msleep(int milliseconds) {
     require_robot(__func__);
-    pogosim::sleep_until(context.controller->clock_us + std::max(0, milliseconds) * kMicrosecondsPerMillisecond);
+    sleep_for(milliseconds * kMicrosecondsPerMillisecond);
 }
 
-void pogosim_usleep(unsigned microseconds) {
-    if (context.controller == nullptr) {  // in a thread that the program has started
-        std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
-        return;
-    }
-    pogosim::sleep_until(context.controller->clock_us + microseconds);
+void pogosim_usleep(int microseconds) {
+    sleep_for(microseconds);
+}
+
+void pogosim_sleep(int seconds) {
+    sleep_for(seconds * kMicrosecondsPerSecond);
 }
 
 void pogosim_let_time_pass() {
