@@ -56,7 +56,35 @@ _Unwind_Reason_Code look_at_frame(_Unwind_Context* frame, void* of_search) {
     return ++search.frames < kMostFrames ? _URC_NO_REASON : _URC_END_OF_STACK;
 }
 
+struct FunctionSearch {
+    void const* function;
+    bool found = false;
+    int frames = 0;
+};
+
+_Unwind_Reason_Code look_at_function(_Unwind_Context* frame, void* of_search) {
+    auto& search = *static_cast<FunctionSearch*>(of_search);
+    search.found = _Unwind_GetRegionStart(frame) == reinterpret_cast<std::uintptr_t>(search.function);
+    return !search.found && ++search.frames < kMostFrames ? _URC_NO_REASON : _URC_END_OF_STACK;
+}
+
 }  // namespace
+
+void const* object_of(void const* code) {
+    Dl_info object;
+    return code != nullptr && dladdr(code, &object) != 0 ? object.dli_fbase : nullptr;
+}
+
+bool is_being_called(void const* function) {
+    static thread_local FunctionSearch search;  // where a jump does not lose it
+    search = {.function = function};
+    is_searching = true;
+    if (sigsetjmp(way_back, 0) == 0) {
+        _Unwind_Backtrace(look_at_function, &search);
+    }
+    is_searching = false;
+    return search.found;
+}
 
 void const* place_in_program(void const* program_base, void const* signal_context, int callees) {
     static thread_local Search search;  // where a jump does not lose it

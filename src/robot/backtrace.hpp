@@ -8,6 +8,12 @@ namespace pogosim {
 /// unknown, as when the stack is destroyed. Also for signal handlers.
 void const* place_in_program(void const* program_base, void const* signal_context = nullptr, int callees = 0);
 
+/// Where the program or library with this code is loaded; null: unknown.
+void const* object_of(void const* code);
+
+/// Whether this function, which has a frame on the stack of this thread, has called what runs here.
+bool is_being_called(void const* function);
+
 /// For handlers of crashes: goes back to place_in_program() if that is what crashed, as on a destroyed stack.
 void go_on_after_crash_of_backtrace();
 

@@ -90,7 +90,10 @@ struct Controller {
     int calls = 0;                    // of what programs wait with in a loop, see waiting.hpp
     Fiber* fiber = nullptr;           // on which its program waits in the middle; null: it does not
     Phase waits_in = Phase::none;
-    pthread_t waits_on{};  // the thread in which it began to
+    int waits = 0;                     // in the call of its program that runs
+    std::int64_t call_began_us = 0;    // when that began; time of the step
+    std::int64_t longest_call_us = 0;  // of those that have waited and returned
+    pthread_t waits_on{};              // the thread in which it began to
     Program program;
     std::byte* user_data = nullptr;
     LoopGlobals loop;

@@ -449,6 +449,7 @@ void Controllers::end_step() const {
 
 void Controllers::begin_step() {
     step_us_ = now_us();
+    warn_of_unreturned_calls_if_due();
     if (callback_global_step != nullptr && step_us_ >= system_.clock_us) {
         enter(kNone, Phase::global_step);
         context.sees_world = true;

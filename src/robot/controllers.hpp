@@ -116,6 +116,9 @@ public:
     /// Clock of a robot between two of its ticks, us; of one that is switched off, when that happened.
     std::int64_t clock_us(std::uint32_t robot) const;
 
+    /// Warns, once for each category, of functions of robots that have not returned for long.
+    void warn_of_unreturned_calls_at_end();
+
     /// Warns about messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
     void warn_of_messages(std::uint64_t arrivals) const;
 
@@ -176,6 +179,9 @@ private:
     void run_on_fiber(std::uint32_t robot, void (Controllers::*part)(std::uint32_t));
     Fiber& free_fiber();
     void go_on(std::uint32_t robot);
+    void warn_of_unreturned_calls_if_due();
+    void warn_of_unreturned_calls(std::int64_t least_us, bool all);
+    void warn_of_unreturned_call(std::uint32_t robot, std::uint32_t count, std::uint32_t alive) const;
     bool is_due(std::uint32_t robot) const;
     bool is_waiting(std::uint32_t robot) const;
     struct Turns;
@@ -207,6 +213,8 @@ private:
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step
     std::atomic<bool> has_waited_ = false;
+    std::int64_t next_look_us_ = 0;  // at calls that do not return
+    std::vector<bool> is_warned_;    // of them, for each category
     std::vector<std::span<std::byte>> own_variables_;
     std::unique_ptr<RobotMemory> own_memory_;  // copies: of each robot, and of the global step
     struct MainArguments {

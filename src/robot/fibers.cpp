@@ -112,11 +112,13 @@ public:
     }
     bool enter();
     void leave();
+    void visit(void (*body)(void*), void* argument);
     void forget();
     std::span<std::byte const> stack() const { return stack_.bytes(); }
 
 private:
     [[noreturn]] static void main_of_fiber(transfer_t from);
+    void switch_to_outside();
     void note_entry();
 
     Stack stack_;
@@ -124,6 +126,8 @@ private:
     fcontext_t outside_ = nullptr;  // where whoever has resumed it goes on
     void (*body_)(void*) = nullptr;
     void* argument_ = nullptr;
+    void (*visitor_)(void*) = nullptr;
+    void* argument_of_visitor_ = nullptr;
     bool has_returned_ = true;
     std::exception_ptr thrown_;
     HandledExceptions handled_{};  // while it is left: its own; else those of whoever has resumed it
@@ -190,7 +194,7 @@ bool Fiber::enter() {
 }
 
 // Nothing of the thread may be used after the jump: it may be another one.
-void Fiber::leave() {
+void Fiber::switch_to_outside() {
     if (__sanitizer_start_switch_fiber != nullptr) {
         __sanitizer_start_switch_fiber(&fake_stack_, outside_stack_, outside_stack_bytes_);
     }
@@ -199,6 +203,20 @@ void Fiber::leave() {
     }
     outside_ = jump_fcontext(outside_, this).fctx;
     note_entry();
+}
+
+void Fiber::leave() {
+    switch_to_outside();
+    while (visitor_ != nullptr) {
+        std::exchange(visitor_, nullptr)(argument_of_visitor_);
+        switch_to_outside();
+    }
+}
+
+void Fiber::visit(void (*body)(void*), void* argument) {
+    visitor_ = body;
+    argument_of_visitor_ = argument;
+    enter();
 }
 
 void Fiber::forget() {
@@ -255,6 +273,10 @@ bool run_on(Fiber& fiber, void (*body)(void*), void* argument) {
 
 bool resume(Fiber& fiber) {
     return fiber.enter();
+}
+
+void visit(Fiber& fiber, void (*body)(void*), void* argument) {
+    fiber.visit(body, argument);
 }
 
 void leave_fiber() {

@@ -47,6 +47,9 @@ bool resume(Fiber& fiber);
 /// Back to whoever called run_on() or resume(). Returns when the fiber is resumed, perhaps in another thread.
 void leave_fiber();
 
+/// Calls body(argument) on the stack of a fiber that was left, beyond the code that has left it.
+void visit(Fiber& fiber, void (*body)(void*), void* argument);
+
 /// The one on which this thread runs, or null.
 Fiber* running_fiber();
 

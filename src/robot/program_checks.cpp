@@ -154,7 +154,9 @@ void warn_of_unused_messages(World const& world, std::span<Controller const> con
                 name);
         }
     }
-    auto const reads = [](Controller const& controller) { return controller.program.reads_messages; };
+    auto const reads = [](Controller const& controller) {
+        return controller.program.reads_messages || controller.loop.receive != nullptr;  // at its next tick
+    };
     if (arrivals > 0 && std::ranges::none_of(controllers, reads) && std::ranges::none_of(deaf, std::identity())) {
         log().warn(
             "{} messages arrived, but no robot reads them: set msg_rx_fn in user_init, or look for them with "

@@ -10,6 +10,7 @@
 // there, and so do the rest of its tick and of take_turns(), which sees that the turns have gone on without it.
 #include <pthread.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -64,6 +65,11 @@ void Controllers::wait() {
     }
     std::uint32_t const robot = context.robot;
     Controller& self = controllers_[robot];
+    if (self.fiber == nullptr) {
+        self.waits = 0;
+        self.call_began_us = step_us_;
+    }
+    ++self.waits;
     self.waits_in = context.phase;
     self.waits_on = pthread_self();
     self.fiber = running_fiber();
@@ -96,6 +102,7 @@ void Controllers::go_on(std::uint32_t robot) {
     }
     if (resume(*self.fiber)) {
         fibers_.put_back(*std::exchange(self.fiber, nullptr));
+        self.longest_call_us = std::max(self.longest_call_us, step_us_ - self.call_began_us);
     }
 }
 

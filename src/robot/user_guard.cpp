@@ -156,11 +156,6 @@ UserFailure exception_failure(RunGuard& guard, std::string const& what) {
     return {what, ExitCode::user_program};
 }
 
-void const* base_of(void const* code) {
-    Dl_info program;
-    return code != nullptr && dladdr(code, &program) != 0 ? program.dli_fbase : nullptr;
-}
-
 }  // namespace
 
 void catch_crashes_of_process() {
@@ -168,7 +163,7 @@ void catch_crashes_of_process() {
 }
 
 RunGuard::RunGuard(void const* code, double timeout_s)
-    : program_base(base_of(code)),
+    : program_base(object_of(code)),
       busy{.timeout_s = timeout_s},
       processor_timer(TimerClock::processor, SIGPROF, this),
       wall_timer(TimerClock::wall, SIGALRM, this) {}

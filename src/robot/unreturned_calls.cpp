@@ -1,0 +1,154 @@
+// A warning about functions of robots that do not return: an endless loop in user_step, most often, as programs for the
+// robots' SDK have it in main(). Each wait in it gives control back to the simulator, so the run goes on without a tick.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/log.hpp"
+#include "robot/backtrace.hpp"
+#include "robot/controllers.hpp"
+#include "robot/source_place.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::int64_t kUsPerS = 1000000;
+constexpr std::int64_t kLongUs = 60 * kUsPerS;  // during the run, when all robots of a category are in it
+constexpr std::int64_t kLookPeriodUs = 10 * kUsPerS;
+// At the end of the run, for each robot. A robot that waits for something may be long in one call, too: compared with
+// what was usual in its category, not so much longer.
+constexpr std::int64_t kLongAtEndUs = 10 * kUsPerS;
+constexpr std::int64_t kPartOfRunAtEnd = 4;
+constexpr std::int64_t kTimesTheUsual = 10;
+constexpr int kWaitsOfLoop = 5;  // fewer may be a few long sleeps, one after the other
+
+/// Robots of one category that are in a call for long.
+struct Unreturned {
+    std::uint32_t alive = 0;
+    std::uint32_t count = 0;
+    std::uint32_t first = kNone;       // the robot that is so the longest
+    std::int64_t longest_call_us = 0;  // that has returned
+};
+
+/// What a look at the stack of a robot that waits finds.
+struct Wait {
+    Controller const* robot = nullptr;
+    void const* program = nullptr;  // any place in its code
+    char const* function = "";      // of the program, that the main loop has called
+    void const* place = nullptr;    // where it waits
+    void const* caller = nullptr;   // of the function there
+};
+
+void look_at_stack(void* of_wait) {
+    Wait& wait = *static_cast<Wait*>(of_wait);
+    LoopGlobals const& loop = wait.robot->loop;
+    auto const is_on_stack = [](auto* function) {
+        return function != nullptr && is_being_called(reinterpret_cast<void const*>(function));
+    };
+    wait.function = wait.robot->waits_in == Phase::user_step && is_on_stack(loop.receive) ? "msg_rx_fn"
+                    : wait.robot->waits_in == Phase::user_step && is_on_stack(loop.send)
+                        ? "msg_tx_fn"
+                        : name_of(wait.robot->waits_in);
+    void const* const program = object_of(wait.program);
+    wait.place = place_in_program(program);
+    wait.caller = place_in_program(program, nullptr, /*callees=*/1);
+}
+
+/// What does not happen while the function does not return.
+std::string consequences(Controller const& robot, std::string_view function) {
+    std::vector<std::string> parts;
+    if (function == "user_init") {
+        return "user_step is never called";
+    }
+    parts.emplace_back(robot.loop.ticks == 0 ? "pogobot_ticks stays 0" : "pogobot_ticks stays as it is");
+    if (function != "user_step") {
+        parts.emplace_back("user_step is not called again");
+    }
+    if (robot.loop.send != nullptr && function == "user_step") {
+        parts.emplace_back("msg_tx_fn sends nothing");
+    }
+    if (robot.loop.receive != nullptr && function != "msg_rx_fn") {
+        parts.emplace_back("msg_rx_fn gets no message");
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+void Controllers::warn_of_unreturned_calls_if_due() {
+    if (step_us_ < next_look_us_) {
+        return;
+    }
+    next_look_us_ = std::max(step_us_ + kLookPeriodUs, kLongUs);
+    if (step_us_ >= kLongUs) {
+        warn_of_unreturned_calls(kLongUs, /*all=*/true);
+    }
+}
+
+void Controllers::warn_of_unreturned_calls_at_end() {
+    warn_of_unreturned_calls(std::min(kLongAtEndUs, now_us() / kPartOfRunAtEnd), /*all=*/false);
+}
+
+/// `least_us`: how long a call takes at least. `all`: only of categories in which all robots are in one.
+void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool all) {
+    if (!has_waited_ || image_.is_for_sdk) {
+        return;
+    }
+    is_warned_.resize(world_.categories.size());
+    std::vector<Unreturned> categories(world_.categories.size());
+    std::int64_t const now_us = this->now_us();
+    for (Controller const& self : controllers_) {
+        Unreturned& category = categories[world_.robots.category[&self - controllers_.data()]];
+        category.longest_call_us = std::max(category.longest_call_us, self.longest_call_us);
+    }
+    for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
+        if (!is_alive(world_, i)) {
+            continue;
+        }
+        Controller const& self = controllers_[i];
+        Unreturned& category = categories[world_.robots.category[i]];
+        ++category.alive;
+        std::int64_t const limit_us = std::max(least_us, kTimesTheUsual * category.longest_call_us);
+        bool const is_loop = self.fiber != nullptr && self.waits >= kWaitsOfLoop;
+        if (is_loop && now_us - self.call_began_us >= limit_us) {
+            ++category.count;
+            if (category.first == kNone || self.call_began_us < controllers_[category.first].call_began_us) {
+                category.first = i;
+            }
+        }
+    }
+    for (std::size_t i = 0; i < categories.size(); ++i) {
+        Unreturned const& category = categories[i];
+        if (category.count > 0 && !is_warned_[i] && (!all || category.count == category.alive)) {
+            is_warned_[i] = true;
+            warn_of_unreturned_call(category.first, category.count, category.alive);
+        }
+    }
+}
+
+/// `robot`: one of `count` of the `alive` robots of its category.
+void Controllers::warn_of_unreturned_call(std::uint32_t robot, std::uint32_t count, std::uint32_t alive) const {
+    Controller const& self = controllers_[robot];
+    Wait wait{.robot = &self, .program = reinterpret_cast<void const*>(image_.main)};
+    visit(*self.fiber, look_at_stack, &wait);
+    std::string place = place_in_source(image_, wait.place);
+    if (place.ends_with("in sleep()") || place.ends_with("in usleep()")) {  // the part of ours in the program
+        place = place_in_source(image_, wait.caller);
+    }
+    std::string const robots = count < alive ? fmt::format("{} of {} robots", count, alive)
+                               : alive == 1  ? "its robot"
+                                             : fmt::format("all {} robots", alive);
+    log().warn(
+        "category '{}': {} of {} has not returned since t = {:.4g} s (robot #{} waits{}{}): {}. Let it return: the main "
+        "loop calls user_step at each tick. An endless loop as on the robot belongs into main(), with pogobot.h "
+        "(docs/porting.md)",
+        world_.categories[world_.robots.category[robot]].name, wait.function, robots,
+        static_cast<double>(self.call_began_us) / static_cast<double>(kUsPerS), world_.robots.id[robot],
+        place.empty() ? "" : " ", place, consequences(self, wait.function));
+}
+
+}  // namespace pogosim
