@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pthread.h>
+#include <sys/types.h>
 
 #include <array>
 #include <atomic>
@@ -58,6 +59,8 @@ struct DataFileNote {
     std::array<char, 1024> path{};
 };
 
+struct Context;
+
 struct RunGuard {
     RunGuard(void const* code, double timeout_s);
 
@@ -100,6 +103,12 @@ struct RunGuard {
     RescueWatch rescue;
     ThreadTimer processor_timer;
     ThreadTimer wall_timer;
+
+    // The watch over calls that block, see blocked_watch.hpp: of the thread that runs user code.
+    pid_t thread_id = 0;
+    Context const* context = nullptr;
+    std::uint32_t const* ticks = nullptr;
+    bool is_told_of_blocked = false;
 
     // Last words.
     DataFileNote data_file;

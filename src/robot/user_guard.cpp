@@ -9,6 +9,7 @@
 
 #include "base/background_thread.hpp"
 #include "robot/backtrace.hpp"
+#include "robot/blocked_watch.hpp"
 #include "robot/caught_signals.hpp"
 #include "robot/crash_name.hpp"
 #include "robot/fibers.hpp"
@@ -149,8 +150,8 @@ std::string text_of(std::exception const& error) {
 
 UserFailure exception_failure(RunGuard& guard, std::string const& what) {
     guard.inside = false;
-    if (is_forked_child()) {
     set_floating_point_mode(kStandardMode);
+    if (is_forked_child()) {
         end_forked_child(static_cast<int>(ExitCode::user_program));
     }
     return {what, ExitCode::user_program};
@@ -191,12 +192,14 @@ GuardedThread::GuardedThread(UserGuard& guard) : guard_(*guard.state_), before_(
         guard_.thread = pthread_self();
         guard_.inside = false;
         start_watch(guard_);
+        watch_over_blocked(guard_);
     }
     active_guard = &guard_;
 }
 
 GuardedThread::~GuardedThread() {
     if (--guard_.depth == 0) {
+        end_watch_over_blocked(guard_);
         stop_watch(guard_);
         caught_signals.need_no_more();
     }
@@ -217,6 +220,7 @@ HelperGuard::~HelperGuard() {
         link = &link->load()->next_helper;
     }
     *link = self.next_helper.load();
+    end_watch_over_blocked(self);
     stop_watch(self);
     if (is_entered_) {
         caught_signals.need_no_more();
@@ -234,6 +238,7 @@ void HelperGuard::enter() {
     active_guard = &self;
     caught_signals.need();
     start_watch(self);
+    watch_over_blocked(self);
     sigset_t watch;
     sigemptyset(&watch);
     sigaddset(&watch, SIGALRM);
@@ -365,7 +370,7 @@ void restart_watch() {
         end_forked_child(0);  // the next robot is the parent's
     }
     std::atomic<unsigned long>& calls = active_guard->calls;
-    calls.store(calls.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    calls.store(calls.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
 bool inside_user_code() {

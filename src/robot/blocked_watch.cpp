@@ -1,0 +1,227 @@
+#include "robot/blocked_watch.hpp"
+
+#ifdef __linux__
+
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "base/background_thread.hpp"
+#include "robot/context.hpp"
+#include "robot/controllers.hpp"
+#include "robot/guard_state.hpp"
+#include "robot/last_words.hpp"
+#include "robot/source_place.hpp"
+#include "robot/stack_of_thread.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLookPeriod{250};
+constexpr int kBlockedLooks = 8;  // 2 s. Not by a clock: time in which this process is stopped does not count
+constexpr int kIdleLooks = 40;    // without any run, until this thread sleeps for good
+
+/// What a thread waits for in the kernel.
+struct SystemCall {
+    long number = -1;
+    std::uintptr_t stack_pointer = 0;
+    std::uintptr_t program_counter = 0;
+};
+
+std::string content_of(pid_t thread, char const* file) {
+    std::array<char, 64> path{};
+    std::snprintf(path.data(), path.size(), "/proc/self/task/%d/%s", static_cast<int>(thread), file);
+    std::array<char, 512> text{};
+    int const descriptor = open(path.data(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) {
+        return "";
+    }
+    ssize_t const bytes = read(descriptor, text.data(), text.size());
+    close(descriptor);
+    return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, bytes))};
+}
+
+/// Sleeping, as the system calls it; not if it is stopped, say by a debugger, or waits for a disk or a processor.
+bool is_sleeping(pid_t thread) {
+    std::string const stat = content_of(thread, "stat");
+    std::size_t const end_of_name = stat.rfind(") ");
+    return end_of_name != std::string::npos && stat.compare(end_of_name + 2, 1, "S") == 0;
+}
+
+std::optional<SystemCall> system_call_of(pid_t thread) {
+    // "number argument ... argument stack-pointer program-counter", or "running".
+    std::string const text = content_of(thread, "syscall");
+    std::size_t const before_counter = text.rfind(' ');
+    if (before_counter == std::string::npos || before_counter == 0) {
+        return std::nullopt;
+    }
+    std::size_t const before_pointer = text.rfind(' ', before_counter - 1);
+    if (before_pointer == std::string::npos) {
+        return std::nullopt;
+    }
+    constexpr int base = 16;
+    return SystemCall{.number = std::atol(text.c_str()),
+                      .stack_pointer = std::strtoull(text.c_str() + before_pointer + 1, nullptr, base),
+                      .program_counter = std::strtoull(text.c_str() + before_counter + 1, nullptr, base)};
+}
+
+/// Whoever reads what robots print may be slow.
+bool writes(SystemCall const& call) {
+    constexpr std::array<long, 5> writing{SYS_write, SYS_writev, SYS_pwrite64, SYS_fsync, SYS_fdatasync};
+    return std::ranges::find(writing, call.number) != writing.end();
+}
+
+class BlockedWatch {
+public:
+    BlockedWatch() : process_(getpid()) {}
+
+    bool is_of_this_process() const { return process_ == getpid(); }
+
+    void begin(RunGuard& guard) {
+        std::lock_guard const lock(mutex_);
+        watched_.push_back({.guard = &guard});
+        if (!has_thread_) {
+            has_thread_ = true;
+            try {
+                start_background_thread("watching over blocked calls", [this] { serve(); }).detach();
+            } catch (std::system_error const&) {  // then nothing is said
+            }
+        } else if (is_idle_) {
+            has_run_.notify_one();
+        }
+    }
+
+    void end(RunGuard& guard) {
+        std::lock_guard const lock(mutex_);
+        std::erase_if(watched_, [&](Watched const& watched) { return watched.guard == &guard; });
+    }
+
+private:
+    struct Watched {
+        RunGuard* guard = nullptr;
+        unsigned long calls = 0;  // of user code, at the last look
+        int blocked_looks = 0;    // in the present one
+    };
+
+    [[noreturn]] void serve() {
+        std::unique_lock lock(mutex_);
+        int looks_in_vain = 0;
+        for (;;) {
+            looks_in_vain = watched_.empty() ? looks_in_vain + 1 : 0;
+            if (looks_in_vain > kIdleLooks) {
+                is_idle_ = true;
+                has_run_.wait(lock, [this] { return !watched_.empty(); });
+                is_idle_ = false;
+            }
+            // Whatever wakes this thread in between is no matter.
+            has_run_.wait_for(lock, kLookPeriod, [] { return false; });
+            for (Watched& watched : watched_) {
+                look(watched);
+            }
+        }
+    }
+
+    static void look(Watched& watched) {
+        RunGuard const& guard = *watched.guard;
+        unsigned long const calls = guard.calls.load(std::memory_order_acquire);
+        if (!guard.inside || calls != watched.calls) {
+            watched.calls = calls;
+            watched.blocked_looks = 0;
+            return;
+        }
+        RunGuard& run = guard.helped != nullptr ? *guard.helped : *watched.guard;
+        if (run.is_told_of_blocked || !is_sleeping(guard.thread_id)) {
+            return;
+        }
+        std::optional<SystemCall> const call = system_call_of(guard.thread_id);
+        if (!call || writes(*call) || ++watched.blocked_looks < kBlockedLooks) {
+            return;
+        }
+        run.is_told_of_blocked = true;
+        tell(guard, *call, calls);
+    }
+
+    /// The thread may go on meanwhile, but not end its run.
+    static void tell(RunGuard const& guard, SystemCall const& call, unsigned long calls) {
+        void const* const place =
+            place_in_stack({call.stack_pointer, call.program_counter, guard.thread_id}, guard.program_base);
+        RunningRobot const robot{.its_context = *guard.context, .ticks = *guard.ticks};
+        if (!guard.inside || guard.calls.load(std::memory_order_acquire) != calls ||
+            robot.its_context.world == nullptr) {
+            return;
+        }
+        set_running_robot(robot);
+        std::string const source = place_in_source(context.services->access.controllers->image(), place);
+        SignalText<1024> text;
+        text << "pogosim: warning: " << running_place().c_str() << (source.empty() ? "" : ", ") << source.c_str()
+             << ", has blocked for 2 s of wall-clock time, and the run with it. Robots wait in simulated time, "
+                "with msleep(), usleep() or sleep() (docs/porting.md)\n";
+        text.write_to_stderr();
+        context = {};
+    }
+
+    pid_t process_;
+    std::mutex mutex_;
+    std::condition_variable has_run_;
+    std::vector<Watched> watched_;
+    bool has_thread_ = false;
+    bool is_idle_ = false;
+};
+
+/// Never destroyed, since its thread does not end. A child of fork() has no such thread.
+std::atomic<BlockedWatch*> watch_of_process = nullptr;
+
+}  // namespace
+
+void watch_over_blocked(RunGuard& guard) {
+    static std::mutex making;
+    guard.thread_id = static_cast<pid_t>(syscall(SYS_gettid));
+    guard.context = &context;
+    guard.ticks = &pogobot_ticks;
+    BlockedWatch* watch = watch_of_process;
+    if (watch == nullptr || !watch->is_of_this_process()) {
+        std::lock_guard const lock(making);
+        watch = watch_of_process;
+        if (watch == nullptr || !watch->is_of_this_process()) {
+            watch = new BlockedWatch;
+            watch_of_process = watch;
+        }
+    }
+    watch->begin(guard);
+}
+
+void end_watch_over_blocked(RunGuard& guard) {
+    BlockedWatch* const watch = watch_of_process;
+    if (watch != nullptr && watch->is_of_this_process()) {
+        watch->end(guard);
+    }
+}
+
+}  // namespace pogosim
+
+#else
+
+namespace pogosim {
+
+void watch_over_blocked(RunGuard& /*guard*/) {}
+void end_watch_over_blocked(RunGuard& /*guard*/) {}
+
+}  // namespace pogosim
+
+#endif
