@@ -7,6 +7,7 @@
 
 #include "pogosim/program.h"
 #include "robot/context.hpp"
+#include "robot/forked_child.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/waiting.hpp"
 
@@ -35,10 +36,10 @@ void set_origin(time_reference_t* reference, std::int64_t origin_us) {
     reference->hardware_value_at_time_origin = static_cast<uint32_t>(origin_us);
 }
 
-/// Negative times take none. In a thread that the program has started, the thread sleeps.
+/// Negative times take none. A thread or a process that the program has started sleeps in wall-clock time.
 void sleep_for(std::int64_t time_us) {
     time_us = std::max<std::int64_t>(0, time_us);
-    if (context.controller == nullptr) {
+    if (context.controller == nullptr || pogosim::is_forked_child()) {
         std::this_thread::sleep_for(std::chrono::microseconds(time_us));
     } else {
         pogosim::sleep_until(context.controller->clock_us + time_us);

@@ -1,5 +1,5 @@
 // A warning about functions of robots that do not return: an endless loop in user_step, most often, as programs for the
-// robots' SDK have it in main(). Each wait in it gives control back to the simulator, so the run goes on without a tick.
+// robots' SDK have it in main(). Each wait in it gives control back to the simulator, so the run goes on without ticks.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -143,8 +143,8 @@ void Controllers::warn_of_unreturned_call(std::uint32_t robot, std::uint32_t cou
                                : alive == 1  ? "its robot"
                                              : fmt::format("all {} robots", alive);
     log().warn(
-        "category '{}': {} of {} has not returned since t = {:.4g} s (robot #{} waits{}{}): {}. Let it return: the main "
-        "loop calls user_step at each tick. An endless loop as on the robot belongs into main(), with pogobot.h "
+        "category '{}': {} of {} has not returned since t = {:.4g} s (robot #{} waits{}{}): {}. Let it return: the "
+        "main loop calls user_step at each tick. An endless loop as on the robot belongs into main(), with pogobot.h "
         "(docs/porting.md)",
         world_.categories[world_.robots.category[robot]].name, wait.function, robots,
         static_cast<double>(self.call_began_us) / static_cast<double>(kUsPerS), world_.robots.id[robot],

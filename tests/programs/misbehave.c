@@ -61,7 +61,7 @@ static void print_for_ever(void) {
 
 static void sleep_for_ever(void) {
     for (;;) {
-        sleep(1000000);
+        pause();
     }
 }
 

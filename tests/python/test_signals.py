@@ -260,7 +260,7 @@ def start_blocked(program: Path, folder: Path, timeout_s: float) -> subprocess.P
 def test_time_that_a_step_has_after_a_signal_counts_from_its_start(build: Build, tmp_path: Path) -> None:
     steps = """
     void user_init(void) {}
-    void user_step(void) { printf("here it comes\\n"); for (;;) { sleep(1000); } }
+    void user_step(void) { printf("here it comes\\n"); for (;;) { pause(); } }
     """
     process = start_blocked(build(steps), tmp_path, 8.0)
     time.sleep(7.0)

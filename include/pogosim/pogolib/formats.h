@@ -1,7 +1,7 @@
 /// @file
 /// PRIu64 and its relatives of <inttypes.h>, which is included here. Where `long` has 64 bits, that header makes them
-/// "lu" and the like, which printf() of the robots takes for 32 bits. Here they are "ju": the same type for the compiler,
-/// and 64 bits for printf() of the robots and of the C library.
+/// "lu" and the like, which printf() of the robots takes for 32 bits. Here they are "ju": the same type for the
+/// compiler, and 64 bits for printf() of the robots and of the C library.
 #ifndef POGOSIM_POGOLIB_FORMATS_H
 #define POGOSIM_POGOLIB_FORMATS_H
 

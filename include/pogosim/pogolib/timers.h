@@ -47,8 +47,8 @@ void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t m
 void msleep(int milliseconds);
 
 ///@{
-/// The same in microseconds, and in seconds. As on the robot, the argument is an `int`: negative values take no time. It
-/// is declared as in <unistd.h>, which may be included, too. Both return 0.
+/// The same in microseconds, and in seconds. As on the robot, the argument is an `int`: negative values take no time.
+/// They are declared as in <unistd.h>, which may be included, too. Both return 0.
 int usleep(unsigned microseconds);
 unsigned sleep(unsigned seconds);
 ///@}
