@@ -29,7 +29,8 @@ def type_of(conversion: str, family: str) -> str:
 
 def bits_of(family: str) -> int:
     """How many bits that type has at least."""
-    return int(family.lstrip("LEASTF") or 64) if family not in ("MAX", "PTR") else 64
+    digits = "".join(letter for letter in family if letter.isdigit())
+    return int(digits or "64")
 
 
 def value_of(conversion: str, family: str) -> int:
