@@ -36,7 +36,7 @@ def bits_of(family: str) -> int:
 def value_of(conversion: str, family: str) -> int:
     """One whose upper half matters."""
     bits = bits_of(family)
-    return -(2 ** (bits - 1)) + 5 if CONVERSIONS[conversion] == "int" else 2**bits - 3
+    return 5 - (1 << (bits - 1)) if CONVERSIONS[conversion] == "int" else (1 << bits) - 3
 
 
 def literal(value: int) -> str:

@@ -123,3 +123,42 @@ int main(void) { pogobot_init(); pogobot_start(user_init, NULL); return 0; }
     result = run(program, tmp_path / "run", {"objects.robots.nb": 1, "simulation_time": 0.1})
     assert result.robot_lines == ["[ROBOT #0] [PRINTF] done"]
     assert time.monotonic() - began > 0.2
+
+
+# Statements, and what they print: times in us by the robot's clock, which stands still in between.
+TIMERS = {
+    "pogobot_timer_init(&t, 5000); show(left(&t))": 5000,
+    "pogobot_timer_init(&t, -5000); show(left(&t))": -5000,
+    "pogobot_timer_init(&t, INT32_MAX); show(left(&t))": 2**31 - 1,
+    "pogobot_timer_init(&t, INT32_MIN); show(left(&t))": -(2**31),
+    "pogobot_timer_init(&t, -1); show(pogobot_timer_has_expired(&t))": 1,
+    "pogobot_timer_init(&t, 1); show(pogobot_timer_has_expired(&t))": 0,
+    "pogobot_timer_init(&t, 1); usleep(2); show(pogobot_timer_has_expired(&t))": 1,
+    "start(&w); pogobot_timer_init(&t, 300); pogobot_timer_wait_for_expiry(&t); show(elapsed(&w))": 300,
+    "start(&w); pogobot_timer_init(&t, -9); pogobot_timer_wait_for_expiry(&t); show(elapsed(&w))": 0,
+    "start(&w); pogobot_stopwatch_offset_origin_microseconds(&w, 700); show(elapsed(&w))": -700,
+    "start(&w); pogobot_stopwatch_offset_origin_microseconds(&w, -700); show(elapsed(&w))": 700,
+    "start(&w); msleep(3); show(pogobot_stopwatch_lap(&w))": 3000,
+    "start(&w); msleep(3); pogobot_stopwatch_lap(&w); show(elapsed(&w))": 0,
+    "pogobot_timer_init(&t, 0); pogobot_timer_offset_origin_microseconds(&t, 250); show(left(&t))": 250,
+}
+
+
+def test_timers_take_zero_negative_and_large_times(tmp_path: Path) -> None:
+    text = """#include "pogobase.h"
+#define start pogobot_stopwatch_reset
+#define elapsed pogobot_stopwatch_get_elapsed_microseconds
+#define left pogobot_timer_get_remaining_microseconds
+static void show(int32_t number) { printf("%%ld\\n", (long)number); }
+void user_init(void) {
+    time_reference_t t, w;
+    pogobot_stopwatch_reset(&w);
+    pogobot_stopwatch_reset(&t);
+%s}
+int main(void) { pogobot_init(); pogobot_start(user_init, NULL); return 0; }
+"""
+    program = compile_text(tmp_path, text % "".join(f"    {statements};\n" for statements in TIMERS))
+    result = run(program, tmp_path / "run", {"objects.robots.nb": 1, "simulation_time": 0.1})
+    assert (result.code, result.errors) == (0, "")
+    numbers = [int(line.rsplit(" ", 1)[1]) for line in result.robot_lines]
+    assert dict(zip(TIMERS, numbers, strict=True)) == TIMERS
