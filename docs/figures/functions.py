@@ -40,7 +40,7 @@ TABLES = {
 NAMES = tuple(f"api.md: {table}" for table in TABLES)
 LONGEST = 100  # characters of a sentence; a longer one loses its brackets, and ends at its first colon or semicolon
 RANGE = re.compile(r"\s*\bRange: (.*)", re.DOTALL)
-UNITS = {"milliseconds": "ms", "microseconds": "us", "_mm": "mm", "_rad": "rad", "_deg": "degrees"}
+UNITS = {"milliseconds": "ms", "microseconds": "us", "seconds": "s", "_mm": "mm", "_rad": "rad", "_deg": "degrees"}
 
 
 def headers(folder: Path) -> dict[str, Header]:

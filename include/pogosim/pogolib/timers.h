@@ -46,12 +46,12 @@ void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t m
 /// take no time.
 void msleep(int milliseconds);
 
-///@{
-/// The same in microseconds, and in seconds. As on the robot, the argument is an `int`: negative values take no time.
-/// They are declared as in <unistd.h>, which may be included, too. Both return 0.
+/// The same in microseconds. Declared as in <unistd.h>, which may be included, too; returns 0.
+/// @range taken as an int, as on the robot
 int usleep(unsigned microseconds);
+/// The same in seconds. Declared as in <unistd.h>, which may be included, too; returns 0.
+/// @range taken as an int, as on the robot
 unsigned sleep(unsigned seconds);
-///@}
 
 /// Initialises the clock of a real robot; does nothing in the simulator.
 void pli_timer_sleep_stopwatch_init(void);
