@@ -1,7 +1,6 @@
 #include "base/locked_file.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -41,8 +40,8 @@ std::filesystem::path real_path(std::filesystem::path const& path) {
     return error ? target : real;
 }
 
-bool try_lock(int descriptor) {
-    while (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+bool try_lock(int descriptor, int kind) {
+    while (flock(descriptor, kind | LOCK_NB) != 0) {
         if (errno != EINTR) {
             return errno != EWOULDBLOCK;  // else: no locks on this file system
         }
@@ -59,7 +58,7 @@ LockedFile::LockedFile(std::filesystem::path const& path)
         if (!try_lock(descriptor_)) {
             made_here_ = false;
             close_file();
-            throw FileError("in use by another run; wait for it to finish, or give each run its own file");
+            throw FileInUse();
         }
         if (is_still_there()) {
             return;

@@ -1,6 +1,7 @@
 // Files that a run writes: where a path really leads, and a lock that keeps a second run from writing the same file.
 #pragma once
 
+#include <sys/file.h>
 #include <sys/types.h>
 
 #include <filesystem>
@@ -13,6 +14,12 @@ namespace pogosim {
 class FileError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
+};
+
+/// Another run has locked it.
+class FileInUse : public FileError {
+public:
+    FileInUse() : FileError("in use by another run; wait for it to finish, or give each run its own file") {}
 };
 
 /// Throws FileError with the system's text for `error_number` (errno).
@@ -29,7 +36,7 @@ class LockedFile {
 public:
     LockedFile() = default;  // no file
 
-    /// Opens or creates the file for writing. Throws FileError, also if another run has locked it.
+    /// Opens or creates the file for writing. Throws FileError; FileInUse if another run has locked it.
     explicit LockedFile(std::filesystem::path const& path);
 
     /// Releases the lock. A file that was made here is removed again unless keep() was called.
@@ -57,7 +64,8 @@ private:
     pid_t owner_ = 0;
 };
 
-/// Locks an open file; false if another process has the lock, true also if locks are not supported.
-bool try_lock(int descriptor);
+/// Locks an open file or folder (LOCK_EX: alone, LOCK_SH: with others that do so); false if another run has a lock that
+/// does not allow it, true also if locks are not supported.
+bool try_lock(int descriptor, int kind = LOCK_EX);
 
 }  // namespace pogosim

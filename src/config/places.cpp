@@ -83,6 +83,8 @@ std::string key_of(Setting setting) {
             return "console_filename";
         case Setting::data_filename:
             return "data_filename";
+        case Setting::delete_old_files:
+            return "delete_old_files";
         case Setting::formation_filename:
             return "formation_filename";
         case Setting::formation_root:

@@ -15,6 +15,7 @@ enum class Setting {
     boundary_condition,
     console_filename,
     data_filename,
+    delete_old_files,
     formation_filename,
     formation_root,
     frames_name,

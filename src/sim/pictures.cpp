@@ -17,6 +17,7 @@
 #include "base/background_thread.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
+#include "base/locked_file.hpp"
 #include "base/log.hpp"
 #include "config/places.hpp"
 #include "render/film_file.hpp"
@@ -108,6 +109,39 @@ void check_frames(Scenario const& scenario, FrameNames const& names) {
     }
 }
 
+/// Keeps the names of the frames, and their folder, for this run. Null if it draws none.
+std::unique_ptr<FrameLock> lock_frames(Scenario const& scenario, FrameNames const& names) {
+    if (!makes_frames(scenario)) {
+        return nullptr;
+    }
+    std::string const first = names.at(scenario.view.save_video_period_s).string();
+    std::unique_ptr<FrameLock> lock;
+    try {
+        lock = std::make_unique<FrameLock>(names, scenario.view.delete_old_files);
+    } catch (FileError const& error) {
+        refuse_frames_name(scenario, fmt::format("the frame '{}' cannot be written: {}; choose another name or folder",
+                                                 first, error.what()));
+    }
+    switch (lock->conflict()) {
+        case FrameConflict::none:
+            break;
+        case FrameConflict::same_names:
+            refuse_frames_name(scenario, fmt::format("another run is drawing frames of these names, such as '{}'; wait "
+                                                     "for it to finish, or give each run its own names",
+                                                     first));
+        case FrameConflict::others_draw:
+            throw ConfigError(
+                fmt::format("{}: another run is drawing frames in the folder '{}', which would be "
+                            "deleted; wait for it to finish, or give each run its own folder",
+                            place_of(scenario, Setting::delete_old_files), names.folder()->string()));
+        case FrameConflict::other_deletes:
+            refuse_frames_name(scenario, fmt::format("another run is about to delete all frames in the folder '{}' "
+                                                     "(delete_old_files); give each run its own folder",
+                                                     names.folder()->string()));
+    }
+    return lock;
+}
+
 std::unique_ptr<PictureWriter> make_writer(PictureFormat const& format, std::string const& film) {
     auto film_file = film.empty() ? nullptr : std::make_unique<FilmFile>(film, format.size);
     return std::make_unique<PictureWriter>(format, drawing_threads(format.size), std::move(film_file));
@@ -166,6 +200,7 @@ Pictures::Pictures(Scenario const& scenario, World const& world, Controllers con
     : scenario_(scenario),
       world_(world),
       names_(scenario.view.frames_name),
+      lock_(lock_frames(scenario, names_)),
       film_(film),
       taker_(world, controllers, lighting),
       parts_(parts_for(picture_format(scenario, world).paint)),
@@ -176,6 +211,7 @@ Pictures::Pictures(Scenario const& scenario, World const& world, Controllers con
 void Pictures::record_if_due() {
     if (world_.step == 0 && makes_frames(scenario_) && scenario_.view.delete_old_files) {
         delete_old_frames();
+        lock_->share_folder();
     }
     if (parts_.trails) {
         taker_.follow_trails();
@@ -236,6 +272,7 @@ bool Pictures::finish() {
         return false;
     }
     PictureErrors const& errors = writer_->finish();
+    lock_.reset();
     if (!errors.lost_frame.empty()) {
         log().error("the frame '{}' could not be written: {}; {} of {} frames were written",
                     escaped(errors.lost_frame.string()), errors.frame_error, errors.frames_written, errors.frames);

@@ -7,6 +7,7 @@
 
 #include "config/scenario.hpp"
 #include "light/lighting.hpp"
+#include "render/frame_lock.hpp"
 #include "render/frame_names.hpp"
 #include "render/picture_writer.hpp"
 #include "robot/controllers.hpp"
@@ -43,6 +44,7 @@ private:
     Scenario const& scenario_;
     World const& world_;
     FrameNames names_;
+    std::unique_ptr<FrameLock> lock_;  // null: no frames, or all are written
     std::string film_;
     SnapshotTaker taker_;
     SnapshotParts parts_;
