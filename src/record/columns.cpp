@@ -15,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "base/rounded_time.hpp"
 #include "base/utf8.hpp"
 #include "record/half.hpp"
 #include "record/table_memory.hpp"
@@ -86,8 +87,17 @@ Status append_ticks(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
     return Status::OK();
 }
 
+Status append_time(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
+    auto& times = static_cast<arrow::DoubleBuilder&>(builder);
+    ARROW_RETURN_NOT_OK(times.Reserve(std::ssize(rows)));
+    for (ObjectRow const& row : rows) {
+        times.UnsafeAppend(rounded_to_ns(row.time_s));
+    }
+    return Status::OK();
+}
+
 constexpr std::array<BuiltInColumn, 9> kBuiltInColumns{{
-    {"time", arrow::float32, append_member<arrow::FloatBuilder, &ObjectRow::time_s>, nullptr},
+    {"time", arrow::float64, append_time, nullptr},
     {"robot_category", arrow::utf8, append_category, nullptr},
     {"robot_id", arrow::int32, append_member<arrow::Int32Builder, &ObjectRow::id>, nullptr},
     {"pogobot_ticks", arrow::int64, append_ticks, nullptr},
@@ -174,7 +184,18 @@ std::vector<BuiltInColumn const*> enabled_built_ins(DataFileOptions const& optio
     return enabled;
 }
 
-/// Names of all columns in their order. Throws ConfigError if one is empty or repeated.
+/// Columns by which the tools tell runs apart, see docs/data_file.md and python/pogosim/run_columns.py.
+constexpr std::array<std::string_view, 3> kColumnsOfRuns{"run", "seed", "arena_file"};
+constexpr std::array<std::string_view, 2> kKeysOfRuns{"objects.", "parameters."};
+
+bool tells_runs_apart(std::string_view name) {
+    return std::ranges::find(kColumnsOfRuns, name) != kColumnsOfRuns.end() ||
+           std::ranges::any_of(kKeysOfRuns, [name](std::string_view key) { return name.starts_with(key); });
+}
+
+/// Names of all columns in their order. Throws ConfigError if one of the user's is empty, repeated or that of a
+/// built-in column, whether this file has it or not: tools would take the one for the other. Warns about names by which
+/// tools tell runs apart.
 std::vector<std::string> checked_names(std::span<BuiltInColumn const* const> built_ins,
                                        std::span<ColumnSpec const> user_columns) {
     std::vector<std::string> names;
@@ -185,12 +206,18 @@ std::vector<std::string> checked_names(std::span<BuiltInColumn const* const> bui
         if (name.empty()) {
             throw ConfigError("the user program adds a data column without a name (data_add_column_*): name it");
         }
-        auto const twin = std::find(names.begin(), names.end(), name);
-        if (twin != names.end()) {
-            bool const built_in = std::distance(names.begin(), twin) < std::ssize(built_ins);
+        bool const is_built_in =
+            std::ranges::any_of(kBuiltInColumns, [&name](BuiltInColumn const& column) { return column.name == name; });
+        if (is_built_in || std::ranges::find(names, name) != names.end()) {
             throw ConfigError("the user program adds the data column '" + name + "' (data_add_column_*), but " +
-                              (built_in ? "the simulator has a column of that name" : "it was added before") +
+                              (is_built_in ? "the simulator has a column of that name" : "it was added before") +
                               ": choose another name");
+        }
+        if (tells_runs_apart(name)) {
+            log().warn(
+                "the user program adds the data column '{}' (data_add_column_*), but tools tell runs apart by columns "
+                "of that name, so they will not join this file with others: choose another name",
+                replace_malformed(name));
         }
         names.push_back(name);
     }

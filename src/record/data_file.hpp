@@ -30,7 +30,7 @@ struct DataFileOptions {
 
 /// Built-in part of one row.
 struct ObjectRow {
-    float time_s = 0.0F;
+    double time_s = 0.0;
     std::string_view category;
     std::int32_t id = 0;
     std::optional<std::int64_t> ticks{};  // null for objects without a program
@@ -41,8 +41,8 @@ struct ObjectRow {
     std::int32_t led_rgb = 0;  // head LED as 0xRRGGBB
 };
 
-/// Columns: time float32, robot_category utf8, robot_id int32, pogobot_ticks int64, x, y, angle float32,
-/// [subpart_id int16], [led_rgb int32], then the user's. Every failure to write throws OutputError naming the path and
+/// Columns: time float64 (rounded to 1 ns), robot_category utf8, robot_id int32, pogobot_ticks int64, x, y, angle
+/// float32, [subpart_id int16], [led_rgb int32], then the user's. Every failure to write throws OutputError naming the path and
 /// the system's reason; nothing is lost silently.
 ///
 /// In a child after fork(), it writes nothing.
@@ -54,6 +54,9 @@ public:
 
     /// The file beside that of `path` in which a run puts the complete file together, if nothing else stands there.
     static std::filesystem::path path_beside(std::string const& path);
+
+    /// The file in which the metadata of `path` are, if that is a CSV file.
+    static std::optional<std::filesystem::path> metadata_beside(std::string const& path);
 
     explicit DataFile(DataFileOptions const& options) : DataFile(options, reserve(options.path)) {}
 

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "base/rounded_time.hpp"
 #include "record/complete_file.hpp"
 #include "record/table_file.hpp"
 #include "record/table_memory.hpp"
@@ -39,7 +40,7 @@ struct RobotCells {
 };
 
 struct Cells {
-    arrow::FloatBuilder time{table_memory()};
+    arrow::DoubleBuilder time{table_memory()};
     arrow::Int64Builder step{table_memory()};
     arrow::Int64Builder message{table_memory()};
     RobotCells sender;
@@ -104,7 +105,7 @@ struct Cells {
     }
 
     Status append(MessageRow const& row) {
-        ARROW_RETURN_NOT_OK(time.Append(row.time_s));
+        ARROW_RETURN_NOT_OK(time.Append(rounded_to_ns(row.time_s)));
         ARROW_RETURN_NOT_OK(step.Append(row.step));
         ARROW_RETURN_NOT_OK(message.Append(row.message));
         ARROW_RETURN_NOT_OK(sender.append(row.sender));
@@ -160,6 +161,10 @@ LockedFile MessageLog::reserve(std::string const& path) {
 
 std::filesystem::path MessageLog::path_beside(std::string const& path) {
     return CompleteFile::path_beside(path);
+}
+
+std::optional<std::filesystem::path> MessageLog::metadata_beside(std::string const& path) {
+    return TableFile::metadata_beside(path);
 }
 
 MessageLog::MessageLog(MessageLogOptions const& options, LockedFile file)

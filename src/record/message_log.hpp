@@ -45,7 +45,7 @@ struct LoggedReception {
 };
 
 struct MessageRow {
-    float time_s = 0.0F;
+    double time_s = 0.0;
     std::int64_t step = 0;
     std::int64_t message = 0;  // number of the transmission in the run
     LoggedRobot sender;
@@ -62,6 +62,7 @@ class MessageLog {
 public:
     static LockedFile reserve(std::string const& path);
     static std::filesystem::path path_beside(std::string const& path);
+    static std::optional<std::filesystem::path> metadata_beside(std::string const& path);
 
     explicit MessageLog(MessageLogOptions const& options) : MessageLog(options, reserve(options.path)) {}
     MessageLog(MessageLogOptions const& options, LockedFile file);

@@ -19,9 +19,12 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/save_progress.hpp"
+#include "base/table_format.hpp"
 #include "base/utf8.hpp"
 #include "record/complete_file.hpp"
+#include "record/metadata_beside.hpp"
 #include "record/table_memory.hpp"
+#include "record/table_writer.hpp"
 #include "record/unfinished_file.hpp"
 
 namespace pogosim {
@@ -70,6 +73,23 @@ void check_type_of_file(TableKind const& kind, std::string const& path) {
     }
 }
 
+/// Throws OutputError if the format that the name says cannot be written, or the place of the metadata is taken.
+void check_format(TableKind const& kind, std::string const& path) {
+    auto const format = table_format(path);
+    if (!format) {
+        fail(kind, path, fmt::format("its format is unknown; expected a name that ends in {}", kTableEndings));
+    }
+    if (auto const status = check_can_write(*format); !status.ok()) {
+        fail(kind, path, status.message());
+    }
+    if (*format == TableFormat::csv && MetadataBeside::is_taken(path)) {
+        fail(kind, path,
+             fmt::format("its metadata go to '{}', and the file that is there is none of Pogosim; move it, or choose "
+                         "another name",
+                         MetadataBeside::path_of(path).string()));
+    }
+}
+
 std::shared_ptr<arrow::KeyValueMetadata> make_metadata(TableFileOptions const& options) {
     auto metadata = std::make_shared<arrow::KeyValueMetadata>();
     for (auto const& [key, value] : options.metadata) {
@@ -113,7 +133,7 @@ struct Pieces {
 
 /// The rows of one time.
 struct Moment {
-    float time_s;
+    double time_s;
     std::int64_t row_end;  // rows of the whole run up to and with these
 };
 
@@ -156,6 +176,7 @@ constexpr std::int64_t kMostBufferedRows = 4096;
 struct TableFile::Impl {
     TableKind kind;
     std::string path;  // as the user wrote it
+    TableFormat format;
     LockedFile file;
     pid_t owner = getpid();
     std::int64_t flush_row_count;
@@ -164,20 +185,22 @@ struct TableFile::Impl {
     std::shared_ptr<arrow::Schema> final_schema;  // of the complete file: with metadata added during the run
     std::vector<std::string> added_keys;
     std::unique_ptr<UnfinishedFile> unfinished;
-    std::unique_ptr<CompleteFile> complete;  // from the first full batch on
-    Pieces unsaved;                          // not yet in the unfinished file
-    Pieces uncompleted;                      // not yet in the complete file
-    std::vector<Moment> unsaved_moments;     // those of the unsaved rows and of the buffered ones
+    std::unique_ptr<CompleteFile> complete;    // from the first full batch on
+    std::unique_ptr<MetadataBeside> metadata;  // of a CSV file that is complete, until it has taken its place
+    Pieces unsaved;                            // not yet in the unfinished file
+    Pieces uncompleted;                        // not yet in the complete file
+    std::vector<Moment> unsaved_moments;       // those of the unsaved rows and of the buffered ones
     SaveClock clock;
     std::int64_t row_count = 0;
     std::int64_t buffered_rows = 0;
     std::int64_t saved_rows = 0;
-    float saved_time_s = 0.0F;
+    double saved_time_s = 0.0;
     bool open = false;  // also false after the first failure
 
     Impl(TableFileOptions const& options, LockedFile locked, arrow::FieldVector const& fields, TakeCells take)
         : kind(options.kind),
           path(options.path),
+          format(table_format(options.path).value_or(TableFormat::feather)),
           file(std::move(locked)),
           flush_row_count(options.flush_row_count),
           take_cells(std::move(take)) {
@@ -206,7 +229,7 @@ struct TableFile::Impl {
 
     std::int64_t room() const { return flush_row_count - buffered_rows - uncompleted.row_count; }
 
-    void count_rows(float time_s, std::int64_t count) {
+    void count_rows(double time_s, std::int64_t count) {
         buffered_rows += count;
         row_count += count;
         if (unsaved_moments.empty() || unsaved_moments.back().time_s != time_s) {
@@ -313,20 +336,26 @@ struct TableFile::Impl {
         return Status::OK();
     }
 
-    Status finish() {
+    /// `is_converted`: into the format that the user wants.
+    Status finish(bool is_converted) {
         ARROW_RETURN_NOT_OK(cut());
         bool const lacks_metadata = complete && !added_keys.empty();
         ARROW_RETURN_NOT_OK(add_to_complete(final_schema));
         ARROW_RETURN_NOT_OK(complete->finish(clock.run_is_long()));
-        if (lacks_metadata) {
+        if (is_converted && format != TableFormat::feather) {
+            ARROW_ASSIGN_OR_RAISE(complete, complete->copy_with(final_schema, format, file, clock.run_is_long()));
+        } else if (lacks_metadata) {
             replace_schema_of_complete();
+        }
+        if (is_converted && format == TableFormat::csv) {
+            ARROW_ASSIGN_OR_RAISE(metadata, MetadataBeside::write(file.path(), *final_schema, clock.run_is_long()));
         }
         return Status::OK();
     }
 
     /// What was begun without the metadata is copied. Where that is impossible, all rows are there nevertheless.
     void replace_schema_of_complete() {
-        auto copy = complete->copy_with(final_schema, file, clock.run_is_long());
+        auto copy = complete->copy_with(final_schema, TableFormat::feather, file, clock.run_is_long());
         if (copy.ok()) {
             complete = std::move(copy).ValueUnsafe();
         } else {
@@ -359,6 +388,9 @@ struct TableFile::Impl {
     [[noreturn]] void fail_beside(std::string const& reason) {
         auto const kept = complete->keep_beside(file);
         complete.reset();
+        if (kept.ok() && metadata) {
+            [[maybe_unused]] Status const last_try = metadata->belong_to(*kept);
+        }
         if (!kept.ok()) {
             fail(kind, path,
                  fmt::format("{}. The rows of this run are lost: they cannot be written next to it: {}", reason,
@@ -371,11 +403,16 @@ struct TableFile::Impl {
 LockedFile TableFile::reserve(TableKind const& kind, std::string const& path) {
     make_parent_folder(kind, path);
     check_type_of_file(kind, path);
+    check_format(kind, path);
     try {
         return LockedFile(path);
     } catch (FileError const& error) {
         fail(kind, path, error.what());
     }
+}
+
+std::optional<std::filesystem::path> TableFile::metadata_beside(std::string const& path) {
+    return table_format(path) == TableFormat::csv ? std::optional(MetadataBeside::path_of(path)) : std::nullopt;
 }
 
 TableFile::TableFile(TableFileOptions const& options, LockedFile file, arrow::FieldVector const& fields, TakeCells take)
@@ -393,7 +430,7 @@ std::size_t TableFile::room() const {
     return static_cast<std::size_t>(std::max<std::int64_t>(impl_->room(), 1));  // a forked child saves nothing
 }
 
-void TableFile::count_rows(float time_s, std::size_t count, Status const& added) {
+void TableFile::count_rows(double time_s, std::size_t count, Status const& added) {
     assert(impl_->open);
     impl_->check([&] { return added; });
     impl_->count_rows(time_s, static_cast<std::int64_t>(count));
@@ -437,7 +474,7 @@ void TableFile::close() {
     if (is_ours) {
         impl_->check([&] { return impl_->save(); });
     }
-    impl_->check([&] { return impl_->finish(); });
+    impl_->check([&] { return impl_->finish(/*is_converted=*/is_ours); });
     impl_->open = false;
     if (!is_ours) {
         impl_->fail_beside("its size is not what was written; did another program change it?");
@@ -448,6 +485,9 @@ void TableFile::close() {
     }
     if (auto const status = impl_->complete->take_the_place_of(impl_->file); !status.ok()) {
         impl_->fail_beside(reason_of(status));
+    }
+    if (impl_->metadata) {
+        impl_->check([&] { return impl_->metadata->belong_to(impl_->file.path()); });
     }
 }
 

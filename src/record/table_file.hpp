@@ -1,9 +1,9 @@
-// A table that a run writes, row by row: Apache Feather V2 (Arrow IPC, zstd).
+// A table that a run writes, row by row, in the format that its name says (base/table_format.hpp).
 //
 //     rows ──► cells ──► batches that are not yet ... ──► saved      unfinished_file.hpp, every few seconds
 //                                                     └─► complete   complete_file.hpp, flush_row_count rows each
 //
-// Until the end, the path refers to the unfinished file, which can be read whenever the run is killed. The contents of
+// Until the end, the path refers to the unfinished file, an Arrow file, which can be read whenever the run is killed. The contents of
 // the complete one depend on the rows alone, not on the clock.
 #pragma once
 
@@ -12,9 +12,11 @@
 #include <arrow/type.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,6 +50,9 @@ public:
     /// OutputError.
     static LockedFile reserve(TableKind const& kind, std::string const& path);
 
+    /// The file in which the metadata of a table are; none where they are in the table.
+    static std::optional<std::filesystem::path> metadata_beside(std::string const& path);
+
     /// Empties the file and writes its head.
     TableFile(TableFileOptions const& options, LockedFile file, arrow::FieldVector const& fields, TakeCells take);
 
@@ -62,7 +67,7 @@ public:
 
     /// To be called for rows of one time, in the order of time, with what came of adding their cells. `count`: up to
     /// room().
-    void count_rows(float time_s, std::size_t count, arrow::Status const& added);
+    void count_rows(double time_s, std::size_t count, arrow::Status const& added);
 
     // As those of DataFile.
     void save_if_due();

@@ -7,12 +7,11 @@
 #include <utility>
 
 #include "base/locked_file.hpp"
+#include "base/rounded_time.hpp"
 
 namespace pogosim {
 
 namespace {
-
-constexpr double kNsPerS = 1e9;
 
 /// The path with its folder as it really is, but without following the last component.
 std::filesystem::path with_real_folder(std::filesystem::path const& path) {
@@ -28,8 +27,7 @@ FrameNames::FrameNames(std::string pattern)
       after_(pattern_.substr(pattern_.find('}') + 1)) {}
 
 std::filesystem::path FrameNames::at(double time_s) const {
-    double const rounded_s = std::round(time_s * kNsPerS) / kNsPerS;  // 0.3, not 0.30000000000000004
-    return fmt::format(fmt::runtime(pattern_), rounded_s);
+    return fmt::format(fmt::runtime(pattern_), rounded_to_ns(time_s));
 }
 
 std::optional<std::filesystem::path> FrameNames::folder() const {

@@ -46,7 +46,7 @@ void MessageRecorder::record() {
     TransmissionQueue const& air = deliveries_.air;
     for (Delivery const& delivery : deliveries_.deliveries) {
         Transmission const& transmission = air.transmissions[delivery.transmission];
-        MessageRow row{.time_s = static_cast<float>(static_cast<double>(deliveries_.step) * world_.time_step_s),
+        MessageRow row{.time_s = static_cast<double>(deliveries_.step) * world_.time_step_s,
                        .step = deliveries_.step,
                        .message = messages_ + delivery.transmission,
                        .sender = named(world_, transmission.robot),

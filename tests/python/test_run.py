@@ -63,7 +63,7 @@ def test_pandas_reads_the_columns_in_their_order_and_types(data: Path) -> None:
     assert list(frame.columns) == columns.split()
     types = {name: str(dtype) for name, dtype in frame.dtypes.items() if name != "robot_category"}
     assert types == {
-        "time": "float32",
+        "time": "float64",
         "robot_id": "int32",
         "pogobot_ticks": "int64",
         "x": "float32",

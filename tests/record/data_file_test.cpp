@@ -34,7 +34,7 @@ std::vector<ColumnSpec> const kOneColumnOfEachType{
 };
 
 ObjectRow robot_row(int id, double time_s) {
-    return {.time_s = static_cast<float>(time_s),
+    return {.time_s = time_s,
             .category = "robots",
             .id = id,
             .ticks = 60 * id,
@@ -307,7 +307,7 @@ TEST_F(DataFileColumns, HaveTheDocumentedOrderAndTypes) {
 
     auto const data = read_back(path("a.feather"));
     std::vector<std::pair<std::string, std::shared_ptr<arrow::DataType>>> const expected{
-        {"time", arrow::float32()},   {"robot_category", arrow::utf8()},
+        {"time", arrow::float64()},   {"robot_category", arrow::utf8()},
         {"robot_id", arrow::int32()}, {"pogobot_ticks", arrow::int64()},
         {"x", arrow::float32()},      {"y", arrow::float32()},
         {"angle", arrow::float32()},  {"subpart_id", arrow::int16()},

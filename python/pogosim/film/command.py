@@ -58,7 +58,7 @@ def span(recording: Recording, options: argparse.Namespace) -> tuple[float, floa
     end_s = times_s[-1] if options.end is None else min(options.end, times_s[-1])
     if start_s > end_s:
         raise PictureError(
-            f"it has rows from {times_s[0]:g} s to {times_s[-1]:g} s; --from and --to leave nothing of that"
+            f"it has rows from {times_s[0]:.9g} s to {times_s[-1]:.9g} s; --from and --to leave nothing of that"
         )
     return float(start_s), float(end_s)
 
@@ -96,7 +96,8 @@ def make_film(options: argparse.Namespace, prog: str) -> None:
             told = encode_film(
                 recording, path, suffix, frame_times(start_s, end_s, options.speed, options.fps), options
             )
-    say(f"{options.output}: {told}")
+    if not options.quiet:
+        say(f"{options.output}: {told}")
 
 
 def encode_film(

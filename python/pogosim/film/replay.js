@@ -75,7 +75,7 @@ class Track {
     // Number of the last time at or before a time.
     indexAt(time) {
         let first = 0, end = this.times.length;
-        const slack = 1e-6 * Math.max(1, Math.abs(time));
+        const slack = 1e-9 * Math.max(1, Math.abs(time));
         while (end - first > 1) {
             const middle = (first + end) >> 1;
             if (this.times[middle] <= time + slack) first = middle; else end = middle;

@@ -14,6 +14,7 @@ from pogosim.periodic import minimum_image
 from pogosim.picture.errors import PictureError
 from pogosim.picture.swarm import Recording
 from pogosim.scene import Floats, bounds
+from pogosim.times import slack_s
 
 MAX_CELLS = 200_000_000  # objects times times
 
@@ -35,8 +36,7 @@ class Timeline:
 
     def index_at(self, time_s: float) -> int:
         """Number of the last time of the file at or before a time; 0 before the first."""
-        slack_s = 1e-6 * max(1.0, abs(time_s))  # times of the file have 24 bits
-        return max(int(np.searchsorted(self.times_s, time_s + slack_s, side="right")) - 1, 0)
+        return max(int(np.searchsorted(self.times_s, time_s + slack_s(time_s), side="right")) - 1, 0)
 
     def column(self, name: str) -> tuple[npt.NDArray[Any], Bools]:
         """Values of a column at all times, shape (t, n), and where there are any."""
@@ -135,7 +135,7 @@ def timeline_of(
     whole = Timeline(times_s, rows, known, rows.iloc[first], low, high, recording.last.is_periodic)
     start = 0 if from_s is None else whole.index_at(from_s)
     end = len(times_s) - 1 if to_s is None else whole.index_at(to_s)
-    if to_s is not None and times_s[end] < to_s - 1e-6 * max(1.0, abs(to_s)):
+    if to_s is not None and times_s[end] < to_s - slack_s(to_s):
         end = min(end + 1, len(times_s) - 1)
     whole.times_s, whole.known = times_s[start : end + 1], known[start : end + 1]
     return whole
