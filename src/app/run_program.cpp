@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -42,6 +43,7 @@ struct Ended {
     ExitCode code = ExitCode::usage;
     std::optional<Restart> restart{};
     bool user_code_was_aborted = false;
+    std::string summary{};  // empty: nothing is to be said
 };
 
 /// When user code was aborted, memory may be corrupted, or a lock of the heap held for ever by a thread that crashed:
@@ -120,8 +122,11 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                         .restarted = restarted,
                         .restart_problem = [&] { return restart_problem(options, folder); }}));
     ProcessRun const scope(simulation->guard());
+    auto const begin = std::chrono::steady_clock::now();
     ExitCode const code = simulation->run();
-    return {code, simulation->restart(), simulation->guard().was_left_by_force()};
+    std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - begin;
+    return {code, simulation->restart(), simulation->guard().was_left_by_force(),
+            options.quiet ? "" : simulation->summary(wall.count())};
 }
 
 /// Prints an error. Returns the exit code of a run that would otherwise have ended with `code`.
@@ -172,6 +177,9 @@ int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
         code = report(escaped(error.what()).c_str(), code);
     }
     flush_logs();
+    if (code == ExitCode::done && !ended.summary.empty()) {
+        std::fprintf(stderr, "%s\n", ended.summary.c_str());  // with the progress bar, apart from what robots print
+    }
     if (ended.restart && (code == ExitCode::done || code == ExitCode::interrupted)) {
         std::fflush(nullptr);
         restart_program(argv, folder, *ended.restart);

@@ -31,7 +31,7 @@ constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 /// A rigid body has a place and a heading, a membrane the place of its first body, a wall its centre and heading 0.
 ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
-    ObjectRow row{.time_s = static_cast<float>(world.time_s()),
+    ObjectRow row{.time_s = world.time_s(),
                   .category = world.categories[object.category].name,
                   .id = static_cast<std::int32_t>(object.id),
                   .ticks = ticks,
@@ -265,6 +265,10 @@ void Recorder::close() {
     if (messages_ && messages_->is_open()) {
         messages_->close();
     }
+}
+
+std::optional<std::int64_t> Recorder::row_count() const {
+    return data_file_ ? std::optional(data_file_->row_count()) : std::nullopt;
 }
 
 std::string Recorder::note() const {

@@ -66,6 +66,9 @@ public:
         messages_.reset();
     }
 
+    /// Rows of the data file so far; none if there is no data file.
+    std::optional<std::int64_t> row_count() const;
+
     /// Behind a message about a run that ended early: where its data is. Empty before close() has completed the file.
     std::string note() const;
 

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/places.hpp"
@@ -197,7 +198,8 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     if (!all_pictures_written) {
         return ExitCode::usage;
     }
-    return interrupted() ? ExitCode::interrupted : ExitCode::done;
+    is_complete_ = !interrupted();
+    return is_complete_ ? ExitCode::done : ExitCode::interrupted;
 }
 
 void Simulation::report_unread_parameters() const {
@@ -266,6 +268,19 @@ void Simulation::open_window() {
         log().warn("the run has no window: {} (-g runs without one)", error.what());
         stop_inspecting();
     }
+}
+
+std::string Simulation::summary(double wall_s) const {
+    if (!is_complete_ || window_) {
+        return "";
+    }
+    auto const robots = world_.robots.size();
+    auto const rows = recorder_.row_count();
+    std::string const record =
+        rows ? fmt::format("{} row{} in '{}'", *rows, *rows == 1 ? "" : "s", escaped(scenario_.output.data_filename))
+             : "no data file (enable_data_logging: false)";
+    return fmt::format("{:.9g} s of {} robot{} simulated in {:.2f} s, {:.3g} x real time; {}", world_.time_s(), robots,
+                       robots == 1 ? "" : "s", wall_s, world_.time_s() / wall_s, record);
 }
 
 std::optional<Restart> Simulation::restart() {

@@ -119,6 +119,10 @@ public:
     /// Brings the file of a run that goes on up to date. Throws OutputError.
     void save_now();
 
+    /// After run(): one line about a run without a window that came to its end, which took `wall_s`; empty otherwise,
+    /// when the user has seen it, or has been told how it ended.
+    std::string summary(double wall_s) const;
+
     /// After run(): how the user wants the run again; absent otherwise.
     std::optional<Restart> restart();
 
@@ -203,6 +207,7 @@ private:
     std::optional<FreePlaces> free_places_;  // from the first move by hand on
     Touches touches_;
     std::unique_ptr<WindowDriver> window_;  // null without a window
+    bool is_complete_ = false;              // it came to its end, and all is written
 };
 
 }  // namespace pogosim

@@ -38,6 +38,8 @@ SCENE: dict[str, Any] = {
 
 Settings = Mapping[str, object]
 
+SUMMARY = re.compile(r"^\S+ s of \d+ robots? simulated in \S+ s, \S+ x real time; .*\n", re.MULTILINE)
+
 
 def scene(settings: Settings) -> dict[str, Any]:
     """Return the scene with some keys (dotted paths) changed; None takes a key out."""
@@ -60,8 +62,15 @@ class Run:
 
     code: int
     output: str
-    errors: str
+    errors: str  # without the summary
     folder: Path
+    summary: str = ""  # the line that a run says at its end
+
+    def __post_init__(self) -> None:
+        """Take the summary out of the errors."""
+        if found := SUMMARY.search(self.errors):
+            object.__setattr__(self, "summary", found[0].rstrip("\n"))
+            object.__setattr__(self, "errors", SUMMARY.sub("", self.errors))
 
     @property
     def text(self) -> str:

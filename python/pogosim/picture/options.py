@@ -43,6 +43,7 @@ def add_what_to_draw(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--combination", type=int, metavar="N", help="of a batch with several combinations of options, this one (0)"
     )
+    parser.add_argument("-q", "--quiet", action="store_true", help="do not say what was written")
 
 
 def load(options: argparse.Namespace, prog: str) -> Recording:
