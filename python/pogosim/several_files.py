@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.outputs import PathLike
+from pogosim.run_columns import is_one_run, tells_runs_apart
 
 Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
 
@@ -125,6 +126,17 @@ def combinations_of_file(
     return [{**arena, **entry, "columns": {**columns, **entry.get("columns", {})}} for entry in entries]
 
 
+def check_own_columns(path: Path, rows: pd.DataFrame, metadata: Mapping[str, Any]) -> None:
+    """Raise ValueError if the program of a single run wrote a column that would say which run its rows are of."""
+    own = [name for name in map(str, rows.columns) if tells_runs_apart(name)]
+    if own and is_one_run(rows, metadata):
+        raise ValueError(
+            f"{path}: its program writes a column '{own[0]}', and columns of that name tell apart the runs of files "
+            "that are read together; choose another name in the program (data_add_column_*), or read the files one by "
+            "one and rename the column"
+        )
+
+
 def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Join the rows of several data files.
 
@@ -141,7 +153,7 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
         their arenas; a file of one run is a combination of its own.
 
     Raises:
-        ValueError: There are no files.
+        ValueError: There are no files; or the program of one has a column by which files are told apart.
     """
     if not files:
         raise ValueError("there are no files to read: the list is empty")
@@ -154,7 +166,8 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
         del added["seed"]  # of files of results: each of their runs has its own
     added |= varied_parameters(configurations)
     parts, combinations = [], []
-    for number, (_, rows, own) in enumerate(files):
+    for number, (path, rows, own) in enumerate(files):
+        check_own_columns(path, rows, own)
         missing = {name: scalar(found[number]) for name, found in added.items() if name not in rows.columns}
         parts.append(rows.assign(**missing))
         combinations += combinations_of_file(rows, own, missing)

@@ -3,6 +3,7 @@
 #include <arrow/api.h>
 #include <arrow/io/api.h>
 #include <arrow/ipc/api.h>
+#include <arrow/util/key_value_metadata.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 
@@ -80,7 +81,10 @@ void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& b
     }
     auto const xs = numbers_of(path, *x, "x");
     auto const ys = numbers_of(path, *y, "y");
-    auto const angle = find_column(batch, {"theta", "angle"});
+    // In a data file of ours, theta is a column of the program: a phase, for instance.
+    auto const metadata = batch.schema()->metadata();
+    bool const is_ours = metadata && metadata->Contains("program_version");
+    auto const angle = is_ours ? find_column(batch, {"angle"}) : find_column(batch, {"theta", "angle"});
     auto const angles = angle ? numbers_of(path, *angle, "angle") : std::vector<double>();
     auto const time = find_column(batch, {"time"});
     auto const times = time ? numbers_of(path, *time, "time") : std::vector<double>();

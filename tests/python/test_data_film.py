@@ -17,7 +17,7 @@ from pogosim.film.stills import Look, Stills, size_for
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.picture import layers
 from pogosim.picture.links import links_at_end
-from pogosim.picture.swarm import Recording, read_recording
+from pogosim.picture.swarm import OBJECT, Recording, read_recording
 from recordings import walkers, write
 
 
@@ -58,7 +58,7 @@ def test_times_of_frames_follow_speed_and_rate(
 
 def line_of(rows: pd.DataFrame, folder: Path, **settings: str) -> Timeline:
     recording = read_recording(write(folder / "line.feather", rows, None, **settings))
-    return timeline_of(recording, recording.last.rows, ["object"])
+    return timeline_of(recording, recording.last.rows, [OBJECT])
 
 
 def steps(x: list[float], angle: list[float]) -> pd.DataFrame:

@@ -14,7 +14,7 @@ from pogosim.picture.figure import draw, draw_series
 from pogosim.picture.links import link_segments, links_at_end, proximity_pairs
 from pogosim.picture.palette import NO_LED
 from pogosim.picture.selection import one_run
-from pogosim.picture.swarm import RGB, read_recording
+from pogosim.picture.swarm import OBJECT, RGB, read_recording
 from pogosim.swarm_picture import main
 from recordings import walkers, write
 
@@ -33,7 +33,7 @@ def texts(figure: Figure) -> str:
 def test_state_at_a_time_is_the_last_one_saved(data: Path, time_s: float, record: int) -> None:
     swarm = read_recording(data).until(time_s)
     assert swarm.end_s == record * 0.5
-    last = swarm.rows.groupby("object").tail(1)
+    last = swarm.rows.groupby(OBJECT).tail(1)
     assert last["y"].tolist() == [100.0 + 50.0 * record] * 3
 
 
@@ -82,7 +82,7 @@ def test_names_have_a_colour_each(values: object, labels: tuple[str, ...]) -> No
 
 def test_column_colours_robots_and_their_key_names_it(data: Path) -> None:
     recording = read_recording(data, color_by="heard")
-    last = recording.until().rows.groupby("object").tail(1)
+    last = recording.until().rows.groupby(OBJECT).tail(1)
     assert last[RGB].to_numpy()[2].tolist() == recording.last.colouring.shades[-1].tolist()  # type: ignore[union-attr]
     assert "heard" in draw(recording.until()).axes[1].get_ylabel()
     figure = draw(read_recording(data, color_by="state").until())
@@ -147,8 +147,8 @@ def test_objects_without_a_program_are_not_linked(tmp_path: Path) -> None:
 def test_run_is_chosen_by_its_number(tmp_path: Path) -> None:
     rows = pd.concat([walkers(2).assign(run=3), walkers(4).assign(run=5)])
     data = write(tmp_path / "a.feather", rows)
-    assert read_recording(data).last.rows["object"].nunique() == 2
-    assert read_recording(data, run=5).last.rows["object"].nunique() == 4
+    assert read_recording(data).last.rows[OBJECT].nunique() == 2
+    assert read_recording(data, run=5).last.rows[OBJECT].nunique() == 4
     with pytest.raises(PictureError, match="it has no run 4, only 3 to 5"):
         read_recording(data, run=4)
 

@@ -13,6 +13,7 @@ import pyarrow as pa
 import pytest
 import yaml
 from pogosim import swarm_picture
+from pogosim.picture.swarm import OBJECT
 from pogosim.swarm_picture import led_brightness, led_colours, main, read_swarm, round_length, thinned
 from pyarrow import feather
 
@@ -109,7 +110,7 @@ def test_column_run_in_the_file_of_one_run_hides_no_robot(tmp_path: Path, severa
 
 def test_same_id_in_two_categories_means_two_objects(tmp_path: Path) -> None:
     frame = rows(robot_id=np.array([0, 0, 0, 0], np.int32), robot_category=["a", "b", "a", "b"])
-    assert read_swarm(write(tmp_path, frame)).rows["object"].tolist() == [0, 1, 0, 1]
+    assert read_swarm(write(tmp_path, frame)).rows[OBJECT].tolist() == [0, 1, 0, 1]
 
 
 def test_without_polygons_the_floor_is_the_box_around_all_robots(tmp_path: Path) -> None:
@@ -129,14 +130,14 @@ def test_thinning_keeps_the_first_and_last_time() -> None:
 
 
 def test_step_across_the_seam_of_a_periodic_arena_is_no_line() -> None:
-    frame = pd.DataFrame({"object": 0, "time": range(4), "x": [300.0, 390.0, 10.0, 60.0], "y": 5.0})
+    frame = pd.DataFrame({OBJECT: 0, "time": range(4), "x": [300.0, 390.0, 10.0, 60.0], "y": 5.0})
     segments, ends = swarm_picture.trail_segments(frame, np.array([400.0, 400.0]))
     np.testing.assert_array_equal(segments[:, :, 0], [[300, 390], [10, 60]])
     assert ends["time"].tolist() == [1, 3]
 
 
 def test_trails_do_not_join_different_objects() -> None:
-    frame = pd.DataFrame({"object": [0, 1, 0, 1], "time": [0, 0, 1, 1], "x": [0.0, 9.0, 1.0, 8.0], "y": 0.0})
+    frame = pd.DataFrame({OBJECT: [0, 1, 0, 1], "time": [0, 0, 1, 1], "x": [0.0, 9.0, 1.0, 8.0], "y": 0.0})
     segments, _ = swarm_picture.trail_segments(frame, np.array([400.0, 400.0]))
     np.testing.assert_array_equal(segments[:, :, 0], [[0, 1], [9, 8]])
 

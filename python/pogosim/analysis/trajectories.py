@@ -23,6 +23,7 @@ from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.errors import AnalysisError
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.periodic import steps_of
+from pogosim.run_columns import is_one_run
 from pogosim.scene import POGOBOT_RADIUS_MM, number, read_categories
 from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
@@ -119,18 +120,6 @@ def trajectories_of(
         for values, own in rows.groupby(names, sort=True, dropna=False, observed=True)
     ]
     return with_arenas_told_apart(runs)
-
-
-def is_one_run(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> bool:
-    """Tell whether the rows are of one run, whatever its own columns are called.
-
-    What a single run writes says its version, has no combinations, and has each object once at each time.
-    """
-    configuration = metadata.get("configuration")
-    is_batch = isinstance(configuration, dict) and "result_new_columns" in configuration
-    if is_batch or "files" in metadata or combinations_of(metadata) or "program_version" not in metadata:
-        return False
-    return not rows.duplicated(["time", *OBJECT]).any()
 
 
 def with_arenas_told_apart(runs: Sequence[Trajectories]) -> list[Trajectories]:

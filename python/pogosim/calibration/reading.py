@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.calibration.errors import CalibrationError
+from pogosim.run_columns import RUN, is_one_run
 from pogosim.utils import load_dataframe
 
 SYNONYMS = {
@@ -25,6 +26,8 @@ SYNONYMS = {
 UNITS = ("mm", "cm", "m", "px", "rad", "deg", "s", "ms")
 WITH_UNIT = re.compile(rf"^(.+?)\s*(?:_|\(|\[|\s)\s*({'|'.join(UNITS)}|pixels?|degrees?|radians?)\s*[)\]]?$")
 LONG_UNITS = {"pixel": "px", "pixels": "px", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad"}
+# Columns of the simulator that make tracks; others in its files are the program's.
+OF_DATA_FILES = ("time", "robot_id", "x", "y", "angle")
 EXPECTED = "expected the columns time (or frame), id, x, y and angle"
 
 Warn = Callable[[str], None]
@@ -93,7 +96,7 @@ def read_run(path: Path, category: str, warn: Warn) -> TrackTable:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RuntimeWarning)
         try:
-            table, _ = load_dataframe(path)
+            table, metadata = load_dataframe(path)
         except ValueError as error:
             raise CalibrationError(str(error)) from None
     for warning in caught:
@@ -104,9 +107,11 @@ def read_run(path: Path, category: str, warn: Warn) -> TrackTable:
             found = ", ".join(sorted(set(table["robot_category"].astype(str))))
             raise CalibrationError(f"{path} has no robots of the category {category}; found {found} (--category NAME)")
         table = kept
-    if "run" in table and table["run"].nunique() > 1:
-        warn(f"{path} has {table['run'].nunique()} runs; the first one is used")
-        table = table[table["run"] == table["run"].iloc[0]]
+    if RUN in table and table[RUN].nunique() > 1 and not is_one_run(table, metadata):
+        warn(f"{path} has {table[RUN].nunique()} runs; the first one is used")
+        table = table[table[RUN] == table[RUN].iloc[0]]
+    if "robot_category" in table:
+        table = table[[name for name in OF_DATA_FILES if name in table]]
     read = named(table, path)
     units = {"time": "s", "x": "mm", "y": "mm", "angle": "rad"} if "robot_category" in table else read.units
     return TrackTable(read.rows, read.source, units)

@@ -15,7 +15,7 @@ from pogosim.film.timeline import Rows, timeline_of
 from pogosim.picture import layers
 from pogosim.picture.links import box_of, link_segments, proximity_pairs
 from pogosim.picture.palette import DARK_LED, EDGE, LINK, PAPER
-from pogosim.picture.swarm import RGB, Recording
+from pogosim.picture.swarm import OBJECT, RGB, Recording
 from pogosim.scene import MEMBRANES, TALKERS, Category, Floats
 
 Numbers = npt.NDArray[np.int64]
@@ -59,7 +59,7 @@ class Moving:
         self.has_links = links
         self.swarm = swarm
         self.glows = swarm.colouring is None
-        self.bodies = timeline_of(recording, swarm.rows, ["object"])
+        self.bodies = timeline_of(recording, swarm.rows, [OBJECT])
         self.extent_mm = layers.extent_of(swarm)
         self.box = box_of(swarm)
 

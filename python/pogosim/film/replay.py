@@ -22,11 +22,11 @@ from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import notes, title
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.speed import with_speed
-from pogosim.picture.swarm import RGB, Recording, coloured
+from pogosim.picture.swarm import OBJECT, RGB, Recording, coloured
 from pogosim.scene import MEMBRANES, TALKERS, Category, Shape
 
 FOLDER = Path(__file__).parent
-OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", "object", "led_rgb", *RGB}
+OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", OBJECT, "led_rgb", *RGB}
 LIGHT_CELLS = 144
 MAX_LIGHTS = 100  # pictures of lamps that move
 DEFAULT_TAIL_S = 5.0
@@ -63,7 +63,7 @@ def write_replay(
     with partial_output(path) as partial:
         partial.write_bytes(page)
     count, times = len(head["objects"]), head["times"]
-    return f"{count} objects from {times[0]:g} s to {times[-1]:g} s, {len(page) / 1e6:.2f} MB", warnings
+    return f"{count} objects from {times[0]:.9g} s to {times[-1]:.9g} s, {len(page) / 1e6:.2f} MB", warnings
 
 
 def page_of(head: dict[str, Any], data: str, name: str) -> str:
@@ -85,13 +85,13 @@ def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict
     """Return what the page knows of the run: its description, its tables as text, and what had to be left out."""
     swarm = recording.last
     swarm.check_steps()
-    bodies = timeline_of(recording, swarm.rows, ["object"], *span_s)
+    bodies = timeline_of(recording, swarm.rows, [OBJECT], *span_s)
     packer = Packer()
     columns, warnings = column_tables(packer, bodies, recording)
     head: dict[str, Any] = {
         "title": title(swarm, 1000.0).rsplit(" after ", 1)[0],
         "notes": notes(swarm),
-        "times": [float(f"{time:.7g}") for time in bodies.times_s],
+        "times": [float(f"{time:.12g}") for time in bodies.times_s],
         "polygons": [np.round(polygon, 3).tolist() for polygon in swarm.polygons],
         "low": bodies.low_mm.tolist(),
         "high": bodies.high_mm.tolist(),
@@ -257,12 +257,12 @@ def membrane_tables(
     dots = recording.last.dots
     if dots.empty:
         return None
-    timeline = timeline_of(recording, dots, ["object", "subpart_id"], *span_s)
-    object_number = {int(own): i for i, own in enumerate(bodies.objects["object"].to_numpy(dtype=int))}
+    timeline = timeline_of(recording, dots, [OBJECT, "subpart_id"], *span_s)
+    object_number = {int(own): i for i, own in enumerate(bodies.objects[OBJECT].to_numpy(dtype=int))}
     groups = []
-    for _, rows in timeline.objects.reset_index(drop=True).groupby("object"):
+    for _, rows in timeline.objects.reset_index(drop=True).groupby(OBJECT):
         category = recording.last.category(str(rows["robot_category"].iloc[0]))
-        number = int(rows["object"].iloc[0])
+        number = int(rows[OBJECT].iloc[0])
         groups.append(
             {
                 "object": object_number.get(number),
@@ -272,5 +272,5 @@ def membrane_tables(
                 "segments": category.type == "rectmembrane",
             }
         )
-    times = [float(f"{time:.7g}") for time in timeline.times_s]
+    times = [float(f"{time:.12g}") for time in timeline.times_s]
     return {"times": times, "dots": len(timeline.objects), "groups": groups, "poses": pose_tables(packer, timeline)}

@@ -19,7 +19,7 @@ from pogosim.picture import layers
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw_key, draw_notes, draw_scale_bar, notes, title, width_of_key
 from pogosim.picture.palette import INK, PAPER
-from pogosim.picture.swarm import Recording, Swarm
+from pogosim.picture.swarm import OBJECT, Recording, Swarm
 from pogosim.scene import Floats, bounds
 
 DPI = 100.0
@@ -59,7 +59,7 @@ class Stills:
         self.recording = recording
         self.moving = Moving(recording, look.tail_s, look.links)
         dots = recording.last.dots
-        self.dots = timeline_of(recording, dots, ["object", "subpart_id"]) if len(dots) else None
+        self.dots = timeline_of(recording, dots, [OBJECT, "subpart_id"]) if len(dots) else None
         self.has_membranes = self.dots is not None or bool(layers.is_membrane(recording.last).any())
         self.figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, facecolor=PAPER)
         self.canvas: Any = FigureCanvasAgg(self.figure)

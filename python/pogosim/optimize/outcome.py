@@ -12,7 +12,6 @@ import pandas as pd
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import cannot
-from pogosim.batch.results import RUN
 from pogosim.confidence import mean_over_runs
 from pogosim.optimize.archive import write_archive
 from pogosim.optimize.history import Evaluation
@@ -33,6 +32,7 @@ from pogosim.optimize.results import (
 )
 from pogosim.optimize.search import Search
 from pogosim.optimize.variables import as_json
+from pogosim.run_columns import RUN
 
 log = logging.getLogger("pogosim.optimize")
 

@@ -88,15 +88,21 @@ def label_of(value: object) -> str:
     return str(value)
 
 
+def is_internal(name: object) -> bool:
+    """Tell whether a column is one that pictures add to those of the file."""
+    return str(name).startswith("\0")
+
+
 def checked_column(rows: pd.DataFrame, name: str) -> pd.Series[Any]:
     """Return a column whose values can be told apart.
 
     Raises:
         PictureError: There is none of this name, or several, or it holds lists, maps or the like.
     """
-    found = [own for own in rows.columns if own == name]
+    found = [own for own in rows.columns if own == name and not is_internal(own)]
     if not found:
-        raise PictureError(f"it has no column {name}; it has {', '.join(map(str, rows.columns))}")
+        there = ", ".join(str(own) for own in rows.columns if not is_internal(own))
+        raise PictureError(f"it has no column {name}; it has {there}")
     if len(found) > 1:
         raise PictureError(f"it has several columns {name}")
     values = rows[name]

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from pogosim.picture import layers
 from pogosim.picture.colouring import MAX_LABELS, Colouring, Legend, Scale
 from pogosim.picture.palette import EDGE, INK, PAPER
-from pogosim.picture.swarm import Swarm
+from pogosim.picture.swarm import OBJECT, Swarm
 from pogosim.scene import Floats, bounds
 
 MAX_COLUMNS = 4  # of panels
@@ -76,9 +76,9 @@ def counted(category: str, count: int) -> str:
 
 def title(swarm: Swarm, width_inches: float) -> str:
     """Return what the picture shows, in lines that fit into it: objects by category, and the time."""
-    counts = swarm.rows.groupby("robot_category")["object"].nunique()
+    counts = swarm.rows.groupby("robot_category")[OBJECT].nunique()
     parts = [f"{count}\u00a0{counted(str(category), int(count))}" for category, count in counts.items()]
-    text = ", ".join(parts) + f" after {swarm.end_s:g} s"
+    text = ", ".join(parts) + f" after {swarm.end_s:.9g} s"
     return textwrap.fill(text, width=max(int(8.5 * width_inches), 20), break_long_words=False)
 
 
@@ -137,7 +137,7 @@ def draw_series(swarms: Sequence[Swarm], tail_s: float | None = None, links: boo
         bottom = height - above_height - (i // columns + 1) * panel[1]
         axes = figure.add_axes((left / width, bottom / height, (panel[0] - 0.1) / width, (panel[1] - 0.45) / height))
         layers.draw_scene(axes, swarm, tail_s, links)
-        axes.set_title(f"{swarm.end_s:g} s", color=INK, fontsize=12, pad=4)
+        axes.set_title(f"{swarm.end_s:.9g} s", color=INK, fontsize=12, pad=4)
         if i % columns == 0 and i // columns == lines - 1:
             draw_scale_bar(axes, low, high)
     middle = (width - beside) / 2 / width

@@ -13,7 +13,7 @@ from matplotlib.path import Path as Outline
 
 from pogosim.picture.links import links_at_end
 from pogosim.picture.palette import DARK_LED, DARK_WALL, EDGE, FLOOR, LAMPLIGHT, LINK, MAX_LAMPLIGHT, PAPER, WALL
-from pogosim.picture.swarm import RGB, Swarm
+from pogosim.picture.swarm import OBJECT, RGB, Swarm
 from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, light_levels
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
@@ -44,9 +44,9 @@ def trail_segments(rows: pd.DataFrame, extent_mm: Floats) -> tuple[Floats, pd.Da
     Returns:
         The steps, shape (n, 2, 2): from and to, x and y. And the n rows that they lead to.
     """
-    ordered = rows.sort_values(["object", "time"], kind="stable")
+    ordered = rows.sort_values([OBJECT, "time"], kind="stable")
     position = ordered[["x", "y"]].to_numpy(dtype=float)
-    same_object = np.diff(ordered["object"].to_numpy()) == 0
+    same_object = np.diff(ordered[OBJECT].to_numpy()) == 0
     inside = (np.abs(np.diff(position, axis=0)) <= extent_mm / 2.0).all(axis=1)
     kept = same_object & inside
     segments = np.stack([position[:-1], position[1:]], axis=1)
@@ -213,13 +213,13 @@ def draw_membranes(axes: Axes, swarm: Swarm) -> None:
 
 def marked_membranes(swarm: Swarm) -> pd.DataFrame:
     """Last rows of the membranes whose dots the file does not have."""
-    last = swarm.rows[is_membrane(swarm)].groupby("object").tail(1)
-    return last[~last["object"].isin(swarm.dots["object"])]
+    last = swarm.rows[is_membrane(swarm)].groupby(OBJECT).tail(1)
+    return last[~last[OBJECT].isin(swarm.dots[OBJECT])]
 
 
 def draw_bodies(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw every rigid object at its last pose: its shape, and a tick where it heads."""
-    last = swarm.rows[~is_membrane(swarm)].groupby("object").tail(1)
+    last = swarm.rows[~is_membrane(swarm)].groupby(OBJECT).tail(1)
     for name, rows in last.groupby("robot_category"):
         draw_category(axes, swarm.category(str(name)), rows, floor, glows=swarm.colouring is None)
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pandas as pd
 from scipy.spatial import KDTree
 
-from pogosim.picture.swarm import Swarm
+from pogosim.picture.swarm import OBJECT, Swarm
 from pogosim.scene import TALKERS, Floats, bounds
 
 Pairs = npt.NDArray[np.int64]
@@ -81,7 +81,7 @@ def box_of(swarm: Swarm) -> tuple[Floats, Floats] | None:
 
 def links_at_end(swarm: Swarm) -> Floats:
     """Lines of all links at the end of the run, shape (k, 2, 2), mm."""
-    last = swarm.rows.groupby("object").tail(1)
+    last = swarm.rows.groupby(OBJECT).tail(1)
     return links_between(swarm, last)
 
 

@@ -7,13 +7,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from pogosim.picture.colouring import is_internal
 from pogosim.picture.errors import PictureError
+from pogosim.run_columns import RUN, is_one_run
 from pogosim.scene import Floats
 
 # Columns of the file that pictures use, by what they hold.
 NUMBERS = ("time", "x", "y", "angle")
 INTEGERS = ("led_rgb", "subpart_id")
-USED = {*NUMBERS, *INTEGERS, "robot_category", "robot_id", "run"}
+USED = {*NUMBERS, *INTEGERS, "robot_category", "robot_id", RUN}
 
 
 def checked(rows: pd.DataFrame) -> pd.DataFrame:
@@ -32,6 +34,7 @@ def checked(rows: pd.DataFrame) -> pd.DataFrame:
         kinds = {"string", "categorical", "integer", "floating", "integer-na", "empty"}
         if name in rows and pd.api.types.infer_dtype(rows[name], skipna=True) not in kinds:
             raise PictureError(f"its column {name} does not hold {'names' if name == 'robot_category' else 'numbers'}")
+    rows = rows.loc[:, [not is_internal(name) for name in rows.columns]]
     strange = [name for name in INTEGERS if name in rows and not pd.api.types.is_integer_dtype(rows[name])]
     rows = rows.drop(columns=strange)
     if "robot_category" in rows:
@@ -39,15 +42,9 @@ def checked(rows: pd.DataFrame) -> pd.DataFrame:
     return rows
 
 
-def tells_runs_apart(rows: pd.DataFrame, metadata: dict[str, Any]) -> bool:
-    """Tell whether there is a column run that numbers runs, as batches of runs write it, and is not the program's own.
-
-    What a single run writes says its version, and has each object once at each time.
-    """
-    if "run" not in rows or not pd.api.types.is_integer_dtype(rows["run"]):
-        return False
-    names = [name for name in ("time", "robot_category", "robot_id", "subpart_id") if name in rows]
-    return "program_version" not in metadata or bool(rows.duplicated(names).any())
+def numbers_runs(rows: pd.DataFrame, metadata: dict[str, Any]) -> bool:
+    """Tell whether there is a column run that numbers runs, as batches write it, and is not the program's own."""
+    return RUN in rows and pd.api.types.is_integer_dtype(rows[RUN]) and not is_one_run(rows, metadata)
 
 
 def one_run(
@@ -68,6 +65,7 @@ def one_run(
     Raises:
         PictureError: There is no such run or combination, or the metadata are not those of a run.
     """
+    several = numbers_runs(rows, metadata)
     combinations = told_combinations(rows, metadata)
     if combination is not None and not 0 <= combination < len(combinations):
         numbers = f"0 to {len(combinations) - 1}" if combinations else "none"
@@ -82,11 +80,11 @@ def one_run(
         polygons = combinations[chosen].get("arena_polygons", polygons)
         if combination is None and len(combinations) > 1:
             left_out = f"{len(combinations)} combinations of options; --combination chooses another one"
-    if tells_runs_apart(rows, metadata):
-        runs = np.unique(rows["run"].to_numpy())
+    if several:
+        runs = np.unique(rows[RUN].to_numpy())
         if run is not None and run not in runs:
             raise PictureError(f"it has no run {run}, only {runs[0]} to {runs[-1]}")
-        rows = rows[rows["run"] == (run if run is not None else runs.min())]
+        rows = rows[rows[RUN] == (run if run is not None else runs.min())]
     elif run not in (None, 0):
         raise PictureError(f"it has no run {run}: no column run numbers several runs")
     return rows, checked_polygons(polygons), left_out

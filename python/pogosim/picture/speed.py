@@ -9,6 +9,7 @@ from pogosim.periodic import steps_of
 from pogosim.scene import Floats
 
 SPEED = "speed"  # mm/s
+OBJECT = "\0object"  # tells objects apart, see swarm.py
 
 
 def object_steps(
@@ -17,7 +18,7 @@ def object_steps(
     """Return the steps of all objects since their record before; see `steps_of` for the warning.
 
     Args:
-        rows: With columns object, time, x and y.
+        rows: With columns OBJECT, time, x and y.
         period_mm: Width and height of a periodic arena, across whose borders the shorter way counts. None: walls.
         top_speed_mm_s: Of the objects. None: unknown.
 
@@ -25,10 +26,10 @@ def object_steps(
         The rows by object and time, n of them; their steps, shape (n, 2), mm, and the time since the record before,
         shape (n,), s; NaN in the first record of each object.
     """
-    ordered = rows.sort_values(["object", "time"], kind="stable")
+    ordered = rows.sort_values([OBJECT, "time"], kind="stable")
     offset = np.diff(ordered[["x", "y"]].to_numpy(dtype=float), axis=0, prepend=np.nan)
     duration = np.diff(ordered["time"].to_numpy(dtype=float), prepend=np.nan)
-    is_first = np.diff(ordered["object"].to_numpy(), prepend=-1) != 0
+    is_first = np.diff(ordered[OBJECT].to_numpy(), prepend=-1) != 0
     offset[is_first], duration[is_first] = np.nan, np.nan
     return ordered, steps_of(offset, duration, period_mm, top_speed_mm_s), duration
 
@@ -37,7 +38,7 @@ def with_speed(rows: pd.DataFrame, period_mm: Floats | None, top_speed_mm_s: flo
     """Add a column `speed`: the distance from an object's place in the record before, by the time since then, mm/s.
 
     Args:
-        rows: With columns object, time, x and y; a column `speed` of the file's own stays as it is.
+        rows: With columns OBJECT, time, x and y; a column `speed` of the file's own stays as it is.
         period_mm: Width and height of a periodic arena, across whose borders the shorter way counts. None: walls.
         top_speed_mm_s: Of the objects. None: unknown.
 

@@ -15,6 +15,7 @@ from pogosim.picture.colouring import Colouring, colouring_of
 from pogosim.picture.errors import PictureError
 from pogosim.picture.palette import NO_LED, led_colours
 from pogosim.picture.selection import checked, one_run
+from pogosim.picture.speed import OBJECT as OBJECT_COLUMN
 from pogosim.picture.speed import SPEED, object_steps, with_speed
 from pogosim.scene import (
     COMMUNICATION_RADIUS_MM,
@@ -30,6 +31,7 @@ from pogosim.scene import (
     read_periodic,
     read_top_speed,
 )
+from pogosim.times import slack_s
 from pogosim.utils import load_dataframe
 
 # Robots of the real swarm, where a file does not say.
@@ -37,14 +39,16 @@ UNKNOWN = Category(
     "robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM), communication_radius_mm=COMMUNICATION_RADIUS_MM
 )
 
-RGB = ["rgb_0", "rgb_1", "rgb_2"]  # columns of colours
+# Columns that are added to those of the file. No program's column has such a name: it would end at its first character.
+OBJECT = OBJECT_COLUMN
+RGB = ["\0rgb_0", "\0rgb_1", "\0rgb_2"]
 
 
 @dataclass
 class Swarm:
     """One run up to a time, ready to be drawn. Lengths in mm, y downwards; times in s."""
 
-    rows: pd.DataFrame  # finite poses of objects, ordered by time; columns object, rgb_0 to rgb_2 (0 to 1) added
+    rows: pd.DataFrame  # finite poses of objects, ordered by time; columns OBJECT and RGB (0 to 1) added
     dots: pd.DataFrame  # the same of the parts of membranes, at the end; columns subpart_id, too
     wall_colours: dict[str, Floats]  # of pogowalls at the end, by category
     polygons: list[Floats]  # each of shape (vertices, 2), at least one; the outer wall first
@@ -98,10 +102,12 @@ class Recording:
         end_s = self.last.end_s
         if time_s is not None:
             known_s = self.times_s
-            slack_s = 1e-6 * max(1.0, abs(time_s))  # times of the file have 24 bits
-            if not known_s[0] - slack_s <= time_s <= known_s[-1] + slack_s:
-                raise PictureError(f"it has rows from {known_s[0]:g} s to {known_s[-1]:g} s, none at {time_s:g} s")
-            end_s = float(known_s[np.searchsorted(known_s, time_s + slack_s, side="right") - 1])
+            slack = slack_s(time_s)
+            if not known_s[0] - slack <= time_s <= known_s[-1] + slack:
+                raise PictureError(
+                    f"it has rows from {known_s[0]:.9g} s to {known_s[-1]:.9g} s, none at {time_s:.9g} s"
+                )
+            end_s = float(known_s[np.searchsorted(known_s, time_s + slack, side="right") - 1])
             rows = rows[rows["time"] <= end_s]
         return replace(
             self.last,
@@ -191,7 +197,7 @@ def with_defaults(rows: pd.DataFrame) -> pd.DataFrame:
 def completed(rows: pd.DataFrame) -> pd.DataFrame:
     """Order rows by time, and number the objects."""
     rows = rows.sort_values("time", kind="stable").reset_index(drop=True)
-    return rows.assign(object=rows.groupby(["robot_category", "robot_id"], sort=True).ngroup())
+    return rows.assign(**{OBJECT: rows.groupby(["robot_category", "robot_id"], sort=True).ngroup()})
 
 
 def coloured(

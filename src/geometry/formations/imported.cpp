@@ -49,7 +49,8 @@ Columns columns_of_header(std::vector<std::string_view> const& names, std::strin
                         "wanted), found {}",
                         where, in_quotes(fmt::format("{}", fmt::join(names, ",")))));
     }
-    auto const theta = find_column(names, "theta");
+    // In a data file of ours, theta is a column of the program: a phase, for instance.
+    auto const theta = find_column(names, "robot_category") ? std::nullopt : find_column(names, "theta");
     auto const angle = theta ? theta : find_column(names, "angle");
     return {*x, *y, angle, find_column(names, "time"), names.size()};
 }

@@ -1,0 +1,32 @@
+"""Columns by which the tools tell runs apart. A program's own columns need other names where runs are joined."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+RUN = "run"  # the number of the run in a batch, or of the file among several
+NAMES = (RUN, "seed", "arena_file")  # kColumnsOfRuns in src/record/columns.cpp
+KEYS = ("objects.", "parameters.")  # how dotted paths of configuration keys begin; kKeysOfRuns there
+
+# What an object has in one row at each time.
+OBJECT_AND_TIME = ("time", "robot_category", "robot_id", "subpart_id")
+
+
+def tells_runs_apart(name: str) -> bool:
+    """Tell whether a column of this name says which run a row is of."""
+    return name in NAMES or name.startswith(KEYS)
+
+
+def is_one_run(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> bool:
+    """Tell whether the rows are those that a single run wrote, so that all their columns are the program's or ours.
+
+    The file of a single run says its version, has no combinations, and has each object once at each time.
+    """
+    configuration = metadata.get("configuration")
+    is_batch = isinstance(configuration, dict) and "result_new_columns" in configuration
+    if is_batch or metadata.get("combinations") or "files" in metadata or "program_version" not in metadata:
+        return False
+    return not rows.duplicated([name for name in OBJECT_AND_TIME if name in rows]).any()
