@@ -6,17 +6,22 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+if(TARGET pogosim_parquet)
+    set(parquet pogosim_parquet)
+endif()
+
 if(SKBUILD)
     # A Python package: in site-packages/pogosim/simulator/lib, with pyarrow beside pogosim. Wheels cannot hold links, so the
     # library has no versions in its name.
-    set_target_properties(pogosim_library PROPERTIES
+    set_target_properties(pogosim_library ${parquet} PROPERTIES
         INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>/../../../pyarrow")
 else()
     # The installed library finds what is not in a system folder where it was at build time. CMake leaves folders inside of
     # the project out of that, such as the one of the Arrow in .venv, so this one is named.
     set_target_properties(pogosim_library PROPERTIES
         VERSION "${PROJECT_VERSION}"
-        SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+        SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+    set_target_properties(pogosim_library ${parquet} PROPERTIES
         INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}"
         INSTALL_RPATH_USE_LINK_PATH ON)
 endif()
@@ -26,7 +31,7 @@ install(TARGETS pogosim pogosim_part_of_programs pogosim_library EXPORT pogosimT
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-install(TARGETS pogosim_window LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")  # libpogosim looks for it beside itself
+install(TARGETS pogosim_window ${parquet} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")  # libpogosim looks for it beside itself
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
     FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/arenas" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"

@@ -82,7 +82,7 @@ def make_wheel(output: Path, with_environment: bool) -> Path:
         (folder / "patched").mkdir()
         command("wheel", "pack", unpacked, "--dest-dir", folder / "patched")
         (patched,) = (folder / "patched").glob("*.whl")
-        excluded = ["--exclude", "libarrow.so.*", "--exclude", SDL_THERE]
+        excluded = ["--exclude", "libarrow.so.*", "--exclude", "libparquet.so.*", "--exclude", SDL_THERE]
         command("auditwheel", "repair", *excluded, "--wheel-dir", folder / "repaired", patched)
         (repaired,) = (folder / "repaired").glob("*.whl")
         output.mkdir(parents=True, exist_ok=True)

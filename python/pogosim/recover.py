@@ -1,4 +1,4 @@
-"""Make a complete Feather file of a data file whose run was killed.
+"""Make a complete file of a data file whose run was killed, in the format that its name says.
 
     pogosim-recover data.feather                    # in its place
     pogosim-recover data.feather -o rescued.feather
@@ -26,6 +26,18 @@ import pyarrow.compute as pc
 from pyarrow import ipc
 
 from pogosim.outputs import OutputError, PathLike, leads_to, real_output, say
+from pogosim.tables import (
+    CSV,
+    EXPECTED,
+    FEATHER,
+    PARQUET,
+    format_in,
+    format_of,
+    is_our_metadata,
+    metadata_path,
+    table_writer,
+    write_metadata_beside,
+)
 
 # An Arrow file begins with this; behind it stands a stream of record batches.
 MAGIC = b"ARROW1\0\0"
@@ -56,7 +68,7 @@ class Unfinished:
         """How far the rows go: "37 rows, up to t = 1.5 s"."""
         rows = f"{self.table.num_rows} row{'' if self.table.num_rows == 1 else 's'}"
         time_s = self.last_time_s
-        return rows if time_s is None else f"{rows}, up to t = {time_s:g} s"
+        return rows if time_s is None else f"{rows}, up to t = {time_s:.9g} s"
 
     @property
     def last_time_s(self) -> float | None:
@@ -197,6 +209,8 @@ def recovered_schema(unfinished: Unfinished) -> pa.Schema:
 
 def check_replaceable(target: Path) -> None:
     """Raise RecoverError for a file that is none of the simulator's: it is not ours to write over."""
+    if is_ours_in_other_format(target):
+        return
     with target.open("rb") as file:
         try:
             open_rows(target, file)
@@ -204,8 +218,31 @@ def check_replaceable(target: Path) -> None:
             raise RecoverError(f"{error}; it will not be overwritten: choose another file with -o") from None
 
 
+def check_metadata_beside(target: Path) -> None:
+    """Raise RecoverError if the place of the metadata of a CSV file is taken."""
+    beside = metadata_path(target)
+    if format_of(target) == CSV and beside.exists() and not is_our_metadata(beside):
+        raise RecoverError(f"{beside} is no file of the simulator; it will not be overwritten: choose another output")
+
+
+def is_ours_in_other_format(path: Path) -> bool:
+    """Tell whether a file is a complete table of the simulator in another format than Feather."""
+    kind = format_in(path)
+    if kind == CSV:
+        return is_our_metadata(metadata_path(path))
+    if kind == PARQUET:
+        import pyarrow.parquet as pq  # takes a while
+
+        try:
+            metadata = pq.read_schema(path).metadata or {}
+        except DAMAGED:
+            return False
+        return any(key in metadata for key in OURS)
+    return False
+
+
 def recover(path: PathLike, output: PathLike | None = None) -> Unfinished:
-    """Make a complete Feather file of an unfinished data file.
+    """Make a complete file of an unfinished data file, in the format that the name of the output says.
 
     Args:
         path: Data file of a run that was killed.
@@ -224,6 +261,11 @@ def recover(path: PathLike, output: PathLike | None = None) -> Unfinished:
     check_is_file(source)
     in_place = output is None or leads_to(output, source)
     target = real_output(source if output is None else output)
+    if format_of(target) is None:
+        raise RecoverError(f"{target}: its format is unknown; expected {EXPECTED}")
+    if source.exists() and is_ours_in_other_format(source):
+        raise RecoverError(f"{source} is already complete; nothing to recover")
+    check_metadata_beside(target)
     exists = target.exists()
     if exists and not in_place:
         check_replaceable(target)
@@ -246,11 +288,12 @@ def write_recovered(unfinished: Unfinished, target: Path, like: os.stat_result) 
     with tempfile.NamedTemporaryFile(dir=target.parent, prefix=".pogosim-recover-", delete=False) as file:
         scratch = Path(file.name)
         try:
-            options = ipc.IpcWriteOptions(compression="zstd")
-            with ipc.new_file(file, table.schema, options=options) as writer:
+            kind = format_of(target) or FEATHER
+            with contextlib.closing(table_writer(file, kind, table.schema)) as writer:
                 writer.write_table(table)
             file.flush()
             os.fsync(file.fileno())
+            write_metadata_beside(target, kind, table.schema)
             if must_be_written_in_place(target, scratch):
                 copy_over(scratch, target)
                 scratch.unlink()
@@ -291,7 +334,7 @@ def copy_over(scratch: Path, target: Path) -> None:
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") -> int:
     """Run the command. Returns its exit code: 0 done, 2 nothing could be done, or nothing be said of it."""
     parser = argparse.ArgumentParser(
-        prog=prog, description="Makes a complete Feather file of a data file whose run was killed."
+        prog=prog, description="Makes a complete file of a data file whose run was killed."
     )
     parser.add_argument("file", help="data file of the run")
     parser.add_argument("-o", "--output", help="file to write; without it, the data file is replaced")

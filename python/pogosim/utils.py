@@ -23,6 +23,8 @@ from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
 from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
 from pogosim.shared_metadata import shared
+from pogosim.tables import read_other
+from pogosim.times import as_float64
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 
@@ -32,12 +34,12 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
     The file of an active or killed run is read up to its last complete rows, with a warning (RuntimeWarning).
 
     Args:
-        path: Feather file, written by the simulator or by a batch of runs. Several files, as a list or as a pattern
-            such as "results/*.feather" (`**` also searches subfolders), are joined, see
+        path: Feather, Parquet or CSV file, written by the simulator or by a batch of runs. Several files, as a list or
+            as a pattern such as "results/*.feather" (`**` also searches subfolders), are joined, see
             `pogosim.several_files.join_files`: they get columns with their number, seed and varied parameters.
 
     Returns:
-        The rows (one per object and save time; lengths in mm, times in s, angles in rad), and the
+        The rows (one per object and save time; lengths in mm, times in s as 64 bits, angles in rad), and the
         metadata of the file. All metadata are strings, except:
         "configuration": a dictionary; empty if the file has none or it cannot be parsed.
         "resolved_configuration": a dictionary of every key with its value in the run, defaults
@@ -73,6 +75,8 @@ def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
         rows = table.to_pandas()
     except DAMAGED as error:
         raise ValueError(f"{path} is damaged: its rows cannot be read: {error}") from error
+    if list(rows.columns).count("time") == 1 and rows["time"].dtype == np.float32:
+        rows["time"] = as_float64(rows["time"].to_numpy())
     metadata: dict[str, Any] = {
         key.decode("utf-8", "replace"): value.decode("utf-8", "replace")
         for key, value in (table.schema.metadata or {}).items()
@@ -89,6 +93,12 @@ def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
 
 def read_table(path: Path) -> pyarrow.Table:
     """Read a data file as load_dataframe does, keeping the types and metadata of the file."""
+    try:
+        other = read_other(path)
+    except (pyarrow.ArrowException, ValueError) as error:
+        raise ValueError(f"{path} is damaged, or no data file: {error}") from error
+    if other is not None:
+        return other
     with path.open("rb") as file:
         try:
             return feather.read_table(file, memory_map=False)

@@ -150,7 +150,7 @@ std::span<Key<OutputConfig> const> output_keys() {
     static std::array const keys{
         K{"enable_data_logging", &OutputConfig::enable_data_logging, any(), "", "Write the data file."},
         K{"data_filename", &OutputConfig::data_filename, any(), "",
-          "Data file (Feather); missing folders are created."},
+          "Data file; the ending says the format: .feather, .parquet or .csv. Missing folders are created."},
         K{"save_data_period", &OutputConfig::save_data_period_s, between(-1e9, 1e9), "s",
           "Time between records; shorter than time_step: a record at every step; 0 or less: only record time 0."}
             .only_if(has_data),
@@ -163,7 +163,7 @@ std::span<Key<OutputConfig> const> output_keys() {
         K{"data_logger_led", &OutputConfig::led_column, any(), "",
           "Add the column led_rgb, the colour of the head LED."},
         K{"message_log", &OutputConfig::message_log, any(), "",
-          "Message log (Feather), a row for each message and robot in reach; missing folders are created. Empty: none."}
+          "Message log, a row for each message and robot in reach; format as that of the data file. Empty: none."}
             .only_if([](OutputConfig const& output) { return !output.message_log.empty(); }),
         K{"enable_console_logging", &OutputConfig::enable_console_logging, any(), "", "Write the console file."},
         K{"console_filename", &OutputConfig::console_filename, any(), "", "Console file; missing folders are created."},

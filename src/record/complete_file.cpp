@@ -2,7 +2,6 @@
 
 #include <arrow/io/file.h>
 #include <arrow/ipc/reader.h>
-#include <arrow/util/compression.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -18,7 +17,7 @@
 
 #include "base/scratch_file.hpp"
 #include "record/leftover.hpp"
-#include "record/table_memory.hpp"
+#include "record/table_writer.hpp"
 
 namespace pogosim {
 
@@ -107,13 +106,10 @@ arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::make(LockedFile const
 }
 
 arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::start(LockedFile const& unfinished,
-                                                                 std::shared_ptr<arrow::Schema> const& schema) {
+                                                                 std::shared_ptr<arrow::Schema> const& schema,
+                                                                 TableFormat format) {
     ARROW_ASSIGN_OR_RAISE(auto file, make(unfinished));
-    auto options = arrow::ipc::IpcWriteOptions::Defaults();
-    ARROW_ASSIGN_OR_RAISE(options.codec, arrow::util::Codec::Create(arrow::Compression::ZSTD));
-    options.memory_pool = table_memory();
-    options.use_threads = false;  // the process stays single-threaded
-    ARROW_ASSIGN_OR_RAISE(file->writer_, arrow::ipc::MakeFileWriter(file->stream_, schema, options));
+    ARROW_ASSIGN_OR_RAISE(file->writer_, make_table_writer(format, file->stream_, schema));
     return file;
 }
 
@@ -128,7 +124,8 @@ Status CompleteFile::finish(bool sync) {
 }
 
 arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::copy_with(std::shared_ptr<arrow::Schema> const& schema,
-                                                                     LockedFile const& unfinished, bool sync) {
+                                                                     TableFormat format, LockedFile const& unfinished,
+                                                                     bool sync) {
     int const duplicate = fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
     if (duplicate < 0) {
         return system_error(errno);
@@ -140,7 +137,7 @@ arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::copy_with(std::shared
     // Without a name, this one goes with the process.
     scratch_.reset();
     path_.clear();
-    ARROW_ASSIGN_OR_RAISE(auto copy, start(unfinished, schema));
+    ARROW_ASSIGN_OR_RAISE(auto copy, start(unfinished, schema, format));
     for (int i = 0; i < reader->num_record_batches(); ++i) {
         ARROW_ASSIGN_OR_RAISE(auto const batch, reader->ReadRecordBatch(i));
         ARROW_RETURN_NOT_OK(copy->append(*batch));

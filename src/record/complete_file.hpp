@@ -1,5 +1,5 @@
-// The complete data file in progress: a Feather file that is written next to the unfinished one and replaces it at the
-// end, so that at any time one of the two contains all rows.
+// The complete data file in progress: a file that is written next to the unfinished one and replaces it at the end, so
+// that at any time one of the two contains all rows. It is a Feather file; other formats are made of that one at the end.
 #pragma once
 
 #include <arrow/ipc/writer.h>
@@ -13,6 +13,7 @@
 
 #include "base/locked_file.hpp"
 #include "base/scratch_file.hpp"
+#include "base/table_format.hpp"
 #include "record/descriptor_stream.hpp"
 
 namespace pogosim {
@@ -25,7 +26,8 @@ public:
     /// Makes an empty file beside `unfinished`, else one without a name in the folder for temporary files. Removes what
     /// a killed run has left at that place, and nothing else.
     static arrow::Result<std::unique_ptr<CompleteFile>> start(LockedFile const& unfinished,
-                                                              std::shared_ptr<arrow::Schema> const& schema);
+                                                              std::shared_ptr<arrow::Schema> const& schema,
+                                                              TableFormat format = TableFormat::feather);
 
     /// Removes the file, unless it has taken its place.
     ~CompleteFile();
@@ -38,10 +40,10 @@ public:
     /// Writes the footer; afterwards all rows are in the file. `sync`: waits until it is on the disk.
     arrow::Status finish(bool sync);
 
-    /// The same finished file with a schema that has other metadata. It gets the name of this one, which has none
-    /// afterwards, even on failure.
+    /// The same rows as those of this finished Feather file, in another format, and with a schema that may have other
+    /// metadata. The copy gets the name of this file, which has none afterwards, even on failure.
     arrow::Result<std::unique_ptr<CompleteFile>> copy_with(std::shared_ptr<arrow::Schema> const& schema,
-                                                           LockedFile const& unfinished, bool sync);
+                                                           TableFormat format, LockedFile const& unfinished, bool sync);
 
     /// Replaces the unfinished file, even if that was removed, with the finished one: by renaming it, or else by
     /// copying its bytes. Fails if another file is there now.

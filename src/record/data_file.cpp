@@ -33,6 +33,10 @@ std::filesystem::path DataFile::path_beside(std::string const& path) {
     return CompleteFile::path_beside(path);
 }
 
+std::optional<std::filesystem::path> DataFile::metadata_beside(std::string const& path) {
+    return TableFile::metadata_beside(path);
+}
+
 LockedFile DataFile::reserve(std::string const& path) {
     return TableFile::reserve(kKind, path);
 }

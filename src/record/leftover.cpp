@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
+#include <string>
 #include <string_view>
 
 #include "base/locked_file.hpp"
@@ -20,6 +20,8 @@ namespace pogosim {
 namespace {
 
 constexpr std::string_view kFooterEnd = "ARROW1";
+constexpr std::string_view kParquet = "PAR1";         // at the begin, and at the end of what is complete
+constexpr std::string_view kCsvHeader = "\"time\",";  // unless a run records no times; its leftover then stays
 
 class OpenFile {
 public:
@@ -39,10 +41,16 @@ private:
     int descriptor_;
 };
 
-bool ends_with_a_footer(int descriptor, off_t size) {
-    std::array<char, kFooterEnd.size()> end{};
+bool ends_with(int descriptor, off_t size, std::string_view expected) {
+    std::string end(expected.size(), '\0');
     auto const count = pread(descriptor, end.data(), end.size(), size - static_cast<off_t>(end.size()));
-    return count != static_cast<ssize_t>(end.size()) || std::string_view(end.data(), end.size()) == kFooterEnd;
+    return count != static_cast<ssize_t>(end.size()) || end == expected;
+}
+
+bool begins_with(int descriptor, std::string_view expected) {
+    std::string begin(expected.size(), '\0');
+    auto const count = pread(descriptor, begin.data(), begin.size(), 0);
+    return count == static_cast<ssize_t>(begin.size()) && begin == expected;
 }
 
 bool begins_like_ours(std::filesystem::path const& path) {
@@ -71,7 +79,10 @@ bool is_leftover(std::filesystem::path const& path) {
         found.st_nlink != 1 || !try_lock(file.descriptor())) {
         return false;
     }
-    return found.st_size == 0 || (!ends_with_a_footer(file.descriptor(), found.st_size) && begins_like_ours(path));
+    int const descriptor = file.descriptor();
+    bool const is_parquet = begins_with(descriptor, kParquet) && !ends_with(descriptor, found.st_size, kParquet);
+    return found.st_size == 0 || is_parquet || begins_with(descriptor, kCsvHeader) ||
+           (!ends_with(descriptor, found.st_size, kFooterEnd) && begins_like_ours(path));
 }
 
 }  // namespace pogosim

@@ -25,7 +25,7 @@ struct UsedFile {
     std::optional<Setting> setting;  // empty: the configuration, or the film
     std::filesystem::path path;      // as the run opens it
     bool is_output = false;          // without a setting: the film
-    bool is_beside = false;          // the data file, the message log or the film is put together there
+    bool is_beside = false;          // beside the data file, the message log or the film, and written with it
 };
 
 /// Files that this run does not use are omitted.
@@ -44,6 +44,11 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     auto const add_beside = [&](std::optional<Setting> setting, std::filesystem::path const& path) {
         files.push_back({setting, path, /*is_output=*/true, /*is_beside=*/true});
     };
+    auto const add_metadata = [&](Setting setting, std::optional<std::filesystem::path> const& path) {
+        if (path) {
+            add_beside(setting, *path);
+        }
+    };
     OutputConfig const& output = scenario.output;
     add_input(Setting::arena_file, scenario.arena_file, true);
     add_input(Setting::formation_filename, scenario.formation.filename, scenario.formation.name == kImportedFormation);
@@ -53,9 +58,11 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     add_output(std::nullopt, film, true);
     if (output.enable_data_logging && !output.data_filename.empty()) {
         add_beside(Setting::data_filename, DataFile::path_beside(output.data_filename));
+        add_metadata(Setting::data_filename, DataFile::metadata_beside(output.data_filename));
     }
     if (!output.message_log.empty()) {
         add_beside(Setting::message_log, MessageLog::path_beside(output.message_log));
+        add_metadata(Setting::message_log, MessageLog::metadata_beside(output.message_log));
     }
     if (!film.empty()) {
         add_beside(std::nullopt, FilmFile::path_beside(film));
@@ -103,8 +110,7 @@ char const* purpose_of_file_beside(UsedFile const& file) {
     if (!file.setting) {
         return " (used to assemble the film)";
     }
-    return file.setting == Setting::message_log ? " (used to assemble the message log)"
-                                                : " (used to assemble the data file)";
+    return file.setting == Setting::message_log ? " (used for the message log)" : " (used for the data file)";
 }
 
 void check_frames_name(Scenario const& scenario, std::vector<UsedFile> const& files) {

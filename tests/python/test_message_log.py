@@ -175,7 +175,7 @@ def test_columns_are_those_of_the_documentation(busy: Run) -> None:
         for name in re.findall(r"`(\w+)`", names)
     ]
     schema = busy.table("m.feather").schema
-    names = {"float": "float32"}
+    names = {"float": "float32", "double": "float64"}
     written = [(field.name, names.get(str(field.type), str(field.type))) for field in schema]
     assert written == documented
 

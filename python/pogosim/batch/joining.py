@@ -10,6 +10,7 @@ from pogosim.batch.reports import Failure
 from pogosim.batch.results import Part, RunFile, check_output, write_results
 from pogosim.batch.run import Outcome
 from pogosim.batch.tasks import Combination
+from pogosim.tables import CSV, format_of, metadata_path
 
 log = logging.getLogger("pogobatch")
 
@@ -24,6 +25,8 @@ def remove_stale(output: str) -> None:
     try:
         if real.exists():
             real.unlink()
+            if format_of(real) == CSV:
+                metadata_path(real).unlink(missing_ok=True)
             tell(f"Removed stale result file: {output}")
     except OSError as error:
         raise cannot("remove", output, error) from None

@@ -11,12 +11,13 @@ from typing import Any
 from pogosim.batch.errors import is_text
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.paths import get_by_dotted_path
+from pogosim.tables import EXPECTED, format_of
 from pogosim.yaml_1_2 import dump_yaml
 
 FORMAT = "result_filename_format"
 COLUMNS = "result_new_columns"
 DEFAULT_FORMAT = "result.feather"
-FILE_SUFFIXES = {".csv", ".feather", ".json", ".png", ".svg", ".txt", ".yaml", ".yml"}
+FILE_SUFFIXES = {".csv", ".feather", ".parquet", ".json", ".png", ".svg", ".txt", ".yaml", ".yml"}
 
 
 WIDE = re.compile(r"\d{4}")  # of a field: {objects.robots.nb:1000d}
@@ -98,6 +99,8 @@ def file_name(combination: dict[str, Any]) -> str:
         raise NamesError(FORMAT, f"'{pattern}' gives no name of a file")
     if not is_text(name):
         raise NamesError(FORMAT, f"'{pattern}' gives a name that is no text in UTF-8")
+    if format_of(name) is None:
+        raise NamesError(FORMAT, f"the format of '{shown(name)}' is unknown; expected {EXPECTED}")
     return name
 
 

@@ -19,10 +19,12 @@ from pyarrow import ipc
 
 from pogosim.batch.errors import BatchError, cannot, one_line
 from pogosim.outputs import OutputError, real_output
-from pogosim.recover import DAMAGED, RecoverError, check_replaceable, reraise_system_error
+from pogosim.recover import DAMAGED, RecoverError, check_metadata_beside, check_replaceable, reraise_system_error
+from pogosim.run_columns import RUN, tells_runs_apart
+from pogosim.tables import FEATHER, TableWriter, format_of, table_writer, write_metadata_beside
+from pogosim.times import as_float64
 from pogosim.yaml_1_2 import dump_yaml, parse_yaml
 
-RUN = "run"
 ROWS_PER_BATCH = 65536
 RESOLVED = "resolved_configuration"
 POLYGONS = "arena_polygons"
@@ -82,15 +84,24 @@ def schema_of(path: Path) -> pa.Schema:
 
 
 def check_columns(schema: pa.Schema, columns: Sequence[str], program: str) -> None:
-    """Check that constant columns take the place of none of the program's own.
+    """Check that no column of the program would be taken for one that tells runs apart.
 
     Raises:
-        BatchError: There is one of that name.
+        BatchError: There is one of such a name.
     """
-    for name in (RUN, *columns):
-        if name in schema.names:
-            what = "a batch adds" if name == RUN else "result_new_columns adds"
-            raise BatchError(f"{program} writes a column '{name}', and {what} one of that name; rename one of them")
+    for name in schema.names:
+        if name == RUN:
+            raise BatchError(
+                f"{program} writes a column 'run', and a batch adds one of that name; rename the program's"
+            )
+        if name in columns:
+            raise BatchError(
+                f"{program} writes a column '{name}', and result_new_columns adds one of that name; rename one of them"
+            )
+        if tells_runs_apart(name):
+            raise BatchError(
+                f"{program} writes a column '{name}', and columns of that name tell runs apart; rename the program's"
+            )
 
 
 def column_type(values: Sequence[Any]) -> pa.DataType:
@@ -149,7 +160,11 @@ def with_columns(batch: pa.RecordBatch, schema: pa.Schema, constants: dict[str, 
             columns.append(pa.repeat(pa.scalar(constants[field.name], field.type), batch.num_rows))
         elif field.name in own:
             column = own[field.name]
-            columns.append(column if column.type == field.type else column.cast(field.type))
+            is_old_time = field.name == "time" and column.type == pa.float32() and field.type == pa.float64()
+            if is_old_time:
+                columns.append(pa.array(as_float64(column.to_numpy(zero_copy_only=False))))
+            else:
+                columns.append(column if column.type == field.type else column.cast(field.type))
         else:
             columns.append(pa.nulls(batch.num_rows, field.type))
     return pa.RecordBatch.from_arrays(columns, schema=schema)
@@ -158,7 +173,7 @@ def with_columns(batch: pa.RecordBatch, schema: pa.Schema, constants: dict[str, 
 class Pieces:
     """Writes rows in batches of a fixed size, so that the bytes depend on the rows alone."""
 
-    def __init__(self, writer: ipc.RecordBatchFileWriter) -> None:
+    def __init__(self, writer: TableWriter) -> None:
         self.writer = writer
         self.waiting: list[pa.RecordBatch] = []
         self.rows = 0
@@ -263,6 +278,7 @@ def check_output(path: str) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         real = real_output(path)
+        check_metadata_beside(real)
         if real.exists() and real.stat().st_size > 0:
             check_replaceable(real)
         with tempfile.TemporaryFile(dir=real.parent):
@@ -271,7 +287,9 @@ def check_output(path: str) -> Path:
         raise cannot("write", path, error) from None
     except OutputError as error:
         raise BatchError(str(error)) from None
-    except RecoverError:
+    except RecoverError as error:
+        if not real.exists():
+            raise BatchError(str(error)) from None
         raise BatchError(
             f"{path} is there and is no data file of the simulator; it will not be overwritten: choose another output"
         ) from None
@@ -309,10 +327,11 @@ def replacement(path: Path) -> Iterator[Any]:
 
 
 def write_results(path: str, parts: Sequence[Part], text: str) -> Written:
-    """Join runs into one Feather file.
+    """Join runs into one file.
 
     Args:
-        path: File of results. It appears complete or not at all; a data file that is there is replaced.
+        path: File of results, in the format that its name says. It appears complete or not at all; a data file that is
+            there is replaced.
         parts: Combinations, each with its finished runs; at least one run in all.
         text: Configuration with all options, for the metadata.
 
@@ -333,8 +352,8 @@ def write_results(path: str, parts: Sequence[Part], text: str) -> Written:
         metadata = metadata_of(schemas, text)
         schema = schema.with_metadata({**metadata, "combinations": summary(parts, schemas, rows)})
         with replacement(real) as file:
-            options = ipc.IpcWriteOptions(compression="zstd")
-            with ipc.new_file(file, schema, options=options) as writer:
+            kind = format_of(real) or FEATHER
+            with contextlib.closing(table_writer(file, kind, schema)) as writer:
                 pieces = Pieces(writer)
                 for part in parts:
                     constants = {name: as_type(part.columns.get(name), kind) for name, kind in types.items()}
@@ -342,6 +361,7 @@ def write_results(path: str, parts: Sequence[Part], text: str) -> Written:
                         for batch in batches_of(run.path):
                             pieces.add(with_columns(batch, schema, {**constants, RUN: run.run}))
                 pieces.finish()
+            write_metadata_beside(real, kind, schema)
     except OSError as error:
         raise cannot("write", path, error) from None
     return Written(path, rows)

@@ -12,6 +12,7 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import run_key, world_digest
 from pogosim.batch.run import Task
 from pogosim.batch.temporary import TemporaryFolder
+from pogosim.tables import FEATHER, format_of
 
 OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
 MESSAGE_LOG = "message_log"  # an output only of runs that ask for it
@@ -58,6 +59,8 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
         if key in world:
             world[key] = found_beside(world[key], settings.configuration_folder)
     outputs = {key: basename(entries.get(key), default) for key, default in OUTPUTS.items()}
+    if format_of(outputs["data_filename"]) != FEATHER:  # that of the results is another matter
+        outputs["data_filename"] = f"{Path(outputs['data_filename']).stem}.feather"
     if entries.get(MESSAGE_LOG):
         outputs[MESSAGE_LOG] = basename(entries[MESSAGE_LOG], "messages.feather")
     text = dump_configuration(world) if world else ""

@@ -1,0 +1,38 @@
+// The metadata of a CSV file, which has no place for them: a YAML file beside it, d.csv.yaml of d.csv, with the types of
+// the columns.
+#pragma once
+
+#include <arrow/result.h>
+#include <arrow/status.h>
+#include <arrow/type.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "base/scratch_file.hpp"
+
+namespace pogosim {
+
+class MetadataBeside {
+public:
+    /// Where the metadata of a table are.
+    static std::filesystem::path path_of(std::filesystem::path const& table);
+
+    /// True if a file is there that is none of ours: it must not be overwritten.
+    static bool is_taken(std::filesystem::path const& table);
+
+    /// Writes the metadata of a schema to a file of another name beside the table. `sync`: waits until it is on the disk.
+    static arrow::Result<std::unique_ptr<MetadataBeside>> write(std::filesystem::path const& table,
+                                                                arrow::Schema const& schema, bool sync);
+
+    /// Makes it the metadata of a table in the same folder. Otherwise it goes with this object.
+    arrow::Status belong_to(std::filesystem::path const& table);
+
+private:
+    explicit MetadataBeside(std::filesystem::path const& path) : path_(path), scratch_(path) {}
+
+    std::filesystem::path path_;
+    ScratchFile scratch_;
+};
+
+}  // namespace pogosim
