@@ -188,14 +188,25 @@ std::vector<BuiltInColumn const*> enabled_built_ins(DataFileOptions const& optio
 constexpr std::array<std::string_view, 3> kColumnsOfRuns{"run", "seed", "arena_file"};
 constexpr std::array<std::string_view, 2> kKeysOfRuns{"objects.", "parameters."};
 
-bool tells_runs_apart(std::string_view name) {
-    return std::ranges::find(kColumnsOfRuns, name) != kColumnsOfRuns.end() ||
-           std::ranges::any_of(kKeysOfRuns, [name](std::string_view key) { return name.starts_with(key); });
+/// What tools take a user's column of this name for; empty: for what it is.
+std::string_view meaning_for_tools(std::string_view name) {
+    bool const tells_runs_apart =
+        std::ranges::find(kColumnsOfRuns, name) != kColumnsOfRuns.end() ||
+        std::ranges::any_of(kKeysOfRuns, [name](std::string_view key) { return name.starts_with(key); });
+    if (tells_runs_apart) {
+        return "tools tell runs apart by columns of that name, so they will not join this file with others";
+    }
+    return name == "led_rgb" ? "tools take a column of that name for the colour of the head LED (0xRRGGBB)" : "";
 }
 
-/// Names of all columns in their order. Throws ConfigError if one of the user's is empty, repeated or that of a
-/// built-in column, whether this file has it or not: tools would take the one for the other. Warns about names by which
-/// tools tell runs apart.
+/// True if tools would take rows for others. A column of colours, in a file without those of the simulator, does no harm.
+bool is_reserved(std::string_view name, std::span<BuiltInColumn const* const> built_ins) {
+    return name == "subpart_id" ||
+           std::ranges::any_of(built_ins, [name](BuiltInColumn const* column) { return column->name == name; });
+}
+
+/// Names of all columns in their order. Throws ConfigError if one of the user's is empty, repeated or reserved. Warns
+/// about names that mean something to tools.
 std::vector<std::string> checked_names(std::span<BuiltInColumn const* const> built_ins,
                                        std::span<ColumnSpec const> user_columns) {
     std::vector<std::string> names;
@@ -206,18 +217,15 @@ std::vector<std::string> checked_names(std::span<BuiltInColumn const* const> bui
         if (name.empty()) {
             throw ConfigError("the user program adds a data column without a name (data_add_column_*): name it");
         }
-        bool const is_built_in =
-            std::ranges::any_of(kBuiltInColumns, [&name](BuiltInColumn const& column) { return column.name == name; });
+        bool const is_built_in = is_reserved(name, built_ins);
         if (is_built_in || std::ranges::find(names, name) != names.end()) {
             throw ConfigError("the user program adds the data column '" + name + "' (data_add_column_*), but " +
                               (is_built_in ? "the simulator has a column of that name" : "it was added before") +
                               ": choose another name");
         }
-        if (tells_runs_apart(name)) {
-            log().warn(
-                "the user program adds the data column '{}' (data_add_column_*), but tools tell runs apart by columns "
-                "of that name, so they will not join this file with others: choose another name",
-                replace_malformed(name));
+        if (auto const meaning = meaning_for_tools(name); !meaning.empty()) {
+            log().warn("the user program adds the data column '{}' (data_add_column_*), but {}: choose another name",
+                       replace_malformed(name), meaning);
         }
         names.push_back(name);
     }

@@ -387,6 +387,7 @@ TEST_F(DataFileColumns, NameUsedTwiceIsRefused) {
     auto const built_in = config_error({.path = path("a.feather"), .user_columns = {{"x", ColumnType::int8}}});
     EXPECT_NE(built_in.find("the simulator has a column of that name"), std::string::npos) << built_in;
 
+    EXPECT_NE(config_error({.path = path("a.feather"), .user_columns = {{"subpart_id", ColumnType::int8}}}), "");
     EXPECT_NE(config_error({.path = path("a.feather"), .user_columns = {{"", ColumnType::int8}}}), "");
 }
 

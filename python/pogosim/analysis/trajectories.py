@@ -183,7 +183,8 @@ def label_columns(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> list[str]:
     configuration = metadata.get("configuration")
     named = configuration.get("result_new_columns") if isinstance(configuration, dict) else None
     names = ["run", "arena_file", *(named if isinstance(named, list) else [])]
-    maps = {"objects", "parameters", *(configuration if isinstance(configuration, dict) else [])}
+    entries = configuration if isinstance(configuration, dict) else {}
+    maps = {"objects", "parameters", *(key for key, value in entries.items() if isinstance(value, dict))}
     names += [name for name in rows.columns if str(name).partition(".")[0] in maps and "." in str(name)]
     names += [name for entry in combinations_of(metadata) for name in entry.get("columns", {})]
     return [name for name in dict.fromkeys(map(str, names)) if name in rows]

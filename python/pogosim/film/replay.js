@@ -703,7 +703,9 @@ function valuesOf(object) {
         if (value === value) values[name] = Number(value.toFixed(name === "angle" ? 4 : 2));
     }
     for (const column of columns) {
-        if (column.codes && !(column.base && !column.led)) values[column.name] = column.value(object, index);
+        if (!column.codes || (column.base && !column.led)) continue;
+        const name = column.name in values ? `${column.name} (column)` : column.name;
+        values[name] = column.value(object, index);
     }
     return values;
 }

@@ -193,6 +193,7 @@ def base_table(packer: Packer, bodies: Timeline, recording: Recording) -> dict[s
     shown = [hex_colour(colour) for colour in led_colours(different)] if has_leds else labels
     table = packer.add(spread(codes.astype(np.uint16), bodies))
     name = "LED" if has_leds else "category"
+    name += " of the simulator" if name in rows else ""  # a column of the program has its name for itself
     return {"name": name, "led": has_leds, "base": True, "labels": labels, "colours": shown, "table": table}
 
 
