@@ -12,6 +12,7 @@ import pandas as pd
 
 from pogosim.outputs import PathLike
 from pogosim.run_columns import is_one_run, tells_runs_apart
+from pogosim.times import with_exact_times
 
 Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
 
@@ -170,6 +171,8 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
         check_own_columns(path, rows, own)
         missing = {name: scalar(found[number]) for name, found in added.items() if name not in rows.columns}
         parts.append(rows.assign(**missing))
+    if len({str(rows["time"].dtype) for rows in parts if list(rows.columns).count("time") == 1}) > 1:
+        parts = [with_exact_times(rows) for rows in parts]
         combinations += combinations_of_file(rows, own, missing)
     metadata: dict[str, Any] = in_common([metadata for _, _, metadata in files])
     metadata = {} if metadata is MISSING else metadata

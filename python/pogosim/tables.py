@@ -91,7 +91,7 @@ def metadata_beside(table: Path) -> dict[str, Any]:
             f"{table} has no metadata: there is no {Path(path).name} of a run beside it, so configuration, arena and "
             "types of columns are unknown",
             RuntimeWarning,
-            stacklevel=6,
+            stacklevel=7,
         )
         return {}
     try:

@@ -24,7 +24,6 @@ from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished,
 from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
 from pogosim.shared_metadata import shared
 from pogosim.tables import read_other
-from pogosim.times import as_float64
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 
@@ -39,7 +38,7 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
             `pogosim.several_files.join_files`: they get columns with their number, seed and varied parameters.
 
     Returns:
-        The rows (one per object and save time; lengths in mm, times in s as 64 bits, angles in rad), and the
+        The rows (one per object and save time; lengths in mm, times in s, angles in rad), and the
         metadata of the file. All metadata are strings, except:
         "configuration": a dictionary; empty if the file has none or it cannot be parsed.
         "resolved_configuration": a dictionary of every key with its value in the run, defaults
@@ -75,8 +74,6 @@ def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
         rows = table.to_pandas()
     except DAMAGED as error:
         raise ValueError(f"{path} is damaged: its rows cannot be read: {error}") from error
-    if list(rows.columns).count("time") == 1 and rows["time"].dtype == np.float32:
-        rows["time"] = as_float64(rows["time"].to_numpy())
     metadata: dict[str, Any] = {
         key.decode("utf-8", "replace"): value.decode("utf-8", "replace")
         for key, value in (table.schema.metadata or {}).items()

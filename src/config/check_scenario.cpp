@@ -15,7 +15,6 @@
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
-#include "base/table_format.hpp"
 #include "config/source.hpp"
 #include "config/values.hpp"
 
@@ -84,23 +83,13 @@ void require_name(Scenario const& scenario, char const* key, std::string const& 
     }
 }
 
-/// The ending of a name says the format of a table.
-void require_table_format(Scenario const& scenario, char const* key, std::string const& name) {
-    if (!table_format(name)) {
-        fail_at(place_of(scenario, key), fmt::format("the format of {} is unknown; expected a name that ends in {}",
-                                                     shown(name), kTableEndings));
-    }
-}
-
 void check_file_names(Scenario const& scenario) {
     if (source_of(scenario).tree.find("arena_file") != nullptr) {
         require_name(scenario, "arena_file", scenario.arena_file, "arena_surface");
     }
     if (scenario.output.enable_data_logging) {
         require_name(scenario, "data_filename", scenario.output.data_filename, "enable_data_logging");
-        require_table_format(scenario, "data_filename", scenario.output.data_filename);
     }
-    require_table_format(scenario, "message_log", scenario.output.message_log);
     if (scenario.output.enable_console_logging) {
         require_name(scenario, "console_filename", scenario.output.console_filename, "enable_console_logging");
     }

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/locked_file.hpp"
+#include "base/table_format.hpp"
 #include "config/places.hpp"
 #include "record/data_file.hpp"
 #include "record/message_log.hpp"
@@ -25,7 +26,7 @@ struct UsedFile {
     std::optional<Setting> setting;  // empty: the configuration, or the film
     std::filesystem::path path;      // as the run opens it
     bool is_output = false;          // without a setting: the film
-    bool is_beside = false;          // beside the data file, the message log or the film, and written with it
+    char const* purpose = "";        // of a file beside the data file, the message log or the film, for messages
 };
 
 /// Files that this run does not use are omitted.
@@ -41,12 +42,10 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
             files.push_back({setting, name, /*is_output=*/true});
         }
     };
-    auto const add_beside = [&](std::optional<Setting> setting, std::filesystem::path const& path) {
-        files.push_back({setting, path, /*is_output=*/true, /*is_beside=*/true});
-    };
-    auto const add_metadata = [&](Setting setting, std::optional<std::filesystem::path> const& path) {
+    auto const add_beside = [&](std::optional<Setting> setting, std::optional<std::filesystem::path> const& path,
+                                char const* purpose) {
         if (path) {
-            add_beside(setting, *path);
+            files.push_back({setting, *path, /*is_output=*/true, purpose});
         }
     };
     OutputConfig const& output = scenario.output;
@@ -57,15 +56,19 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     add_output(Setting::message_log, output.message_log, true);
     add_output(std::nullopt, film, true);
     if (output.enable_data_logging && !output.data_filename.empty()) {
-        add_beside(Setting::data_filename, DataFile::path_beside(output.data_filename));
-        add_metadata(Setting::data_filename, DataFile::metadata_beside(output.data_filename));
+        add_beside(Setting::data_filename, DataFile::path_beside(output.data_filename),
+                   " (used to assemble the data file)");
+        add_beside(Setting::data_filename, DataFile::metadata_beside(output.data_filename),
+                   " (the metadata of the data file)");
     }
     if (!output.message_log.empty()) {
-        add_beside(Setting::message_log, MessageLog::path_beside(output.message_log));
-        add_metadata(Setting::message_log, MessageLog::metadata_beside(output.message_log));
+        add_beside(Setting::message_log, MessageLog::path_beside(output.message_log),
+                   " (used to assemble the message log)");
+        add_beside(Setting::message_log, MessageLog::metadata_beside(output.message_log),
+                   " (the metadata of the message log)");
     }
     if (!film.empty()) {
-        add_beside(std::nullopt, FilmFile::path_beside(film));
+        add_beside(std::nullopt, FilmFile::path_beside(film), " (used to assemble the film)");
     }
     return files;
 }
@@ -103,14 +106,12 @@ char const* fate(UsedFile const& file) {
     return file.is_output ? "which the run also writes" : "which the run would overwrite";
 }
 
-char const* purpose_of_file_beside(UsedFile const& file) {
-    if (!file.is_beside) {
-        return "";
+/// The ending of its name says the format of a table.
+void check_table_format(Scenario const& scenario, Setting setting, std::string const& name) {
+    if (!table_format(name)) {
+        throw ConfigError(fmt::format("{}: the format of '{}' is unknown; expected a name that ends in {}",
+                                      place_of(scenario, setting), name, kTableEndings));
     }
-    if (!file.setting) {
-        return " (used to assemble the film)";
-    }
-    return file.setting == Setting::message_log ? " (used for the message log)" : " (used for the data file)";
 }
 
 void check_frames_name(Scenario const& scenario, std::vector<UsedFile> const& files) {
@@ -135,13 +136,17 @@ void check_used_files(Scenario const& scenario, std::string const& film) {
             UsedFile const& written = files[i];
             UsedFile const& other = files[j];
             if (written.is_output && !are_named_together(written, other) && are_same(written.path, other.path)) {
-                throw ConfigError(fmt::format(
-                    "{}: '{}'{} is the same file as {}, {}; choose another file", where_it_is_named(scenario, written),
-                    written.path.string(), purpose_of_file_beside(written), described(scenario, other), fate(other)));
+                throw ConfigError(fmt::format("{}: '{}'{} is the same file as {}, {}; choose another file",
+                                              where_it_is_named(scenario, written), written.path.string(),
+                                              written.purpose, described(scenario, other), fate(other)));
             }
         }
     }
     check_frames_name(scenario, files);
+    if (scenario.output.enable_data_logging) {
+        check_table_format(scenario, Setting::data_filename, scenario.output.data_filename);
+    }
+    check_table_format(scenario, Setting::message_log, scenario.output.message_log);
 }
 
 bool is_used_file(Scenario const& scenario, std::string const& film, std::filesystem::path const& path) {

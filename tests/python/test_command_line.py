@@ -137,6 +137,21 @@ def test_without_the_flag_there_is_no_progress_bar(tmp_path: Path) -> None:
     assert "#]" not in hello(tmp_path).text
 
 
+def test_run_says_in_one_line_what_it_did(tmp_path: Path) -> None:
+    result = hello(tmp_path)
+    assert (result.code, result.errors) == (0, "")
+    said = r"2 s of 3 robots simulated in \d+\.\d\d s, \S+ x real time; 63 rows in 'data\.feather'"
+    assert re.fullmatch(said, result.summary)
+    assert "simulated in" not in result.output
+    assert hello(tmp_path, "-P").summary
+    for quiet in ([], ["-P"]):
+        assert hello(tmp_path, "-q", *quiet).summary == ""
+    without = hello(tmp_path, "--set", "enable_data_logging=false", "--set", "objects.robots.nb=1")
+    assert re.fullmatch(
+        r"2 s of 1 robot simulated in .* x real time; no data file \(enable_data_logging: false\)", without.summary
+    )
+
+
 @pytest.mark.parametrize("seed", ["0", "4294967295"])
 def test_seed_of_the_command_line_wins_and_is_saved(tmp_path: Path, seed: str) -> None:
     assert hello(tmp_path, "-s", seed).code == 0

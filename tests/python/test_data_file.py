@@ -40,7 +40,7 @@ def times(frame: pd.DataFrame) -> list[float]:
 def test_columns_have_the_names_order_and_types_of_the_format(program: Compile, tmp_path: Path) -> None:
     schema = columns(program, tmp_path).table().schema
     assert [(field.name, str(field.type)) for field in schema] == [
-        ("time", "float"),
+        ("time", "double"),
         ("robot_category", "string"),
         ("robot_id", "int32"),
         ("pogobot_ticks", "int64"),

@@ -28,7 +28,7 @@ def test_rows_come_back_as_pandas_reads_them(tmp_path: Path) -> None:
     path = write(tmp_path / "a.feather", {})
     frame, _ = load_dataframe(path)
     pd.testing.assert_frame_equal(frame, pd.read_feather(path))
-    assert frame["time"].dtype == np.float64  # files of versions up to 0.10 have 32 bits
+    assert frame["time"].dtype == np.float32
 
 
 def test_path_may_be_a_text(tmp_path: Path) -> None:

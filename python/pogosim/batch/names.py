@@ -100,7 +100,7 @@ def file_name(combination: dict[str, Any]) -> str:
     if not is_text(name):
         raise NamesError(FORMAT, f"'{pattern}' gives a name that is no text in UTF-8")
     if format_of(name) is None:
-        raise NamesError(FORMAT, f"the format of '{shown(name)}' is unknown; expected {EXPECTED}")
+        raise NamesError(FORMAT, f"the format of {shown(name)} is unknown; expected {EXPECTED}")
     return name
 
 

@@ -13,6 +13,7 @@ import pandas as pd
 
 from pogosim.calibration.errors import CalibrationError
 from pogosim.run_columns import RUN, is_one_run
+from pogosim.tables import is_our_metadata, metadata_path
 from pogosim.utils import load_dataframe
 
 SYNONYMS = {
@@ -63,7 +64,7 @@ def read_track_table(path: Path, category: str, warn: Warn) -> TrackTable:
     """Read tracks, in whatever units they are.
 
     Args:
-        path: CSV file, or Feather file of a run.
+        path: CSV file, or data file of a run.
         category: Of a run, the category of objects to take.
         warn: Called with each thing that is doubtful.
 
@@ -73,7 +74,8 @@ def read_track_table(path: Path, category: str, warn: Warn) -> TrackTable:
     """
     if path.exists() and not path.is_file():
         raise CalibrationError(f"{path} is not a file; expected a CSV file of tracks, or the data file of a run")
-    if path.suffix.lower() in (".feather", ".arrow"):
+    is_of_run = path.suffix.lower() in (".feather", ".arrow", ".parquet") or is_our_metadata(metadata_path(path))
+    if is_of_run:
         return numbers_only(read_run(path, category, warn), warn)
     try:
         table = pd.read_csv(path, comment="#", encoding="utf-8-sig", index_col=False, sep=separator(path))
@@ -110,11 +112,10 @@ def read_run(path: Path, category: str, warn: Warn) -> TrackTable:
     if RUN in table and table[RUN].nunique() > 1 and not is_one_run(table, metadata):
         warn(f"{path} has {table[RUN].nunique()} runs; the first one is used")
         table = table[table[RUN] == table[RUN].iloc[0]]
-    if "robot_category" in table:
-        table = table[[name for name in OF_DATA_FILES if name in table]]
-    read = named(table, path)
-    units = {"time": "s", "x": "mm", "y": "mm", "angle": "rad"} if "robot_category" in table else read.units
-    return TrackTable(read.rows, read.source, units)
+    if "robot_category" not in table:
+        return named(table, path)
+    read = named(table[[name for name in OF_DATA_FILES if name in table]], path)
+    return TrackTable(read.rows, read.source, {"time": "s", "x": "mm", "y": "mm", "angle": "rad"})
 
 
 def named(table: pd.DataFrame, path: Path) -> TrackTable:

@@ -31,7 +31,7 @@ from pogosim.scene import (
     read_periodic,
     read_top_speed,
 )
-from pogosim.times import slack_s
+from pogosim.times import slack_s, with_exact_times
 from pogosim.utils import load_dataframe
 
 # Robots of the real swarm, where a file does not say.
@@ -154,7 +154,7 @@ def read_recording(
     missing = {"time", "x", "y"} - set(rows.columns)
     if missing:
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
-    rows, polygons, left_out = one_run(checked(rows), metadata, run, combination)
+    rows, polygons, left_out = one_run(checked(with_exact_times(rows)), metadata, run, combination)
     configuration = metadata["configuration"]
     categories = read_categories(configuration)
     rows = completed(with_defaults(rows))

@@ -1,0 +1,239 @@
+"""The ending of a name says the format of a table, whoever writes it; all formats hold the same."""
+
+from __future__ import annotations
+
+import signal
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from batches import batch, write_options
+from pogosim import recover, swarm_picture
+from pogosim.tables import format_of
+from pogosim.utils import load_dataframe, read_table
+from running import PROGRAMS, Run, compile_program, example, run, start
+
+FORMATS = ("csv", "parquet")
+LONG: dict[str, object] = {"simulation_time": 1.0e6, "save_data_period": 0.02}
+NOT_THE_SAME = ("data_filename", "message_log")
+
+
+@pytest.fixture(scope="module")
+def columns(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return compile_program(tmp_path_factory.mktemp("columns") / "columns", PROGRAMS / "column_names.c")
+
+
+@pytest.fixture(scope="module")
+def runs(columns: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same run in all formats."""
+    folder = tmp_path_factory.mktemp("runs")
+    for ending in ("feather", *FORMATS):
+        names = {"data_filename": f"d.{ending}", "message_log": f"m.{ending}"}
+        ended_well(run(columns, folder, {**names, "objects.robots.nb": 4}))
+    return folder
+
+
+def ended_well(result: Run) -> None:
+    assert (result.code, result.errors) == (0, ""), result.text
+
+
+def without_names(metadata: dict[str, object]) -> dict[str, object]:
+    """Return what two runs have in common that write to different files."""
+    plain: dict[str, object] = {}
+    for key, value in metadata.items():
+        if isinstance(value, dict):
+            plain[key] = {name: entry for name, entry in value.items() if name not in NOT_THE_SAME}
+        else:
+            plain[key] = [polygon.tolist() for polygon in value] if isinstance(value, list) else value
+    return plain
+
+
+@pytest.mark.parametrize("name", ["d", "m"])
+@pytest.mark.parametrize("ending", FORMATS)
+def test_all_formats_hold_the_same_rows_types_and_metadata(runs: Path, ending: str, name: str) -> None:
+    rows, metadata = load_dataframe(runs / f"{name}.feather")
+    others, other_metadata = load_dataframe(runs / f"{name}.{ending}")
+    assert len(rows) > 4
+    pd.testing.assert_frame_equal(others, rows)
+    assert without_names(other_metadata) == without_names(metadata)
+    table, other_table = read_table(runs / f"{name}.feather"), read_table(runs / f"{name}.{ending}")
+    assert other_table.schema.remove_metadata() == table.schema.remove_metadata()
+
+
+def test_csv_is_what_other_readers_expect(runs: Path) -> None:
+    rows = pd.read_csv(runs / "d.csv")
+    assert list(rows.columns[:4]) == ["time", "robot_category", "robot_id", "pogobot_ticks"]
+    assert rows["time"].tolist()[:8] == [0.0] * 4 + [0.1] * 4
+    assert rows["number"].tolist()[:4] == [0, 100, 200, 300]
+    assert rows["word"].tolist()[2] == 'a, "b"\nc'
+    assert rows["word"].isna().tolist()[:2] == [True, True]
+
+
+def test_parquet_is_what_other_readers_expect(runs: Path) -> None:
+    pd.testing.assert_frame_equal(pd.read_parquet(runs / "d.parquet"), pd.read_feather(runs / "d.feather"))
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_same_run_gives_the_same_bytes(columns: Path, tmp_path: Path, ending: str) -> None:
+    for name in ("a", "b"):
+        ended_well(run(columns, tmp_path / name, {"data_filename": f"d.{ending}"}))
+    written = sorted(path.name for path in (tmp_path / "a").iterdir())
+    assert written == ["d.csv", "d.csv.yaml", "scene.yaml"] if ending == "csv" else ["d.parquet", "scene.yaml"]
+    for name in written:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+@pytest.mark.parametrize("name", ["d.xlsx", "d.feather.old", "d.h5"])
+@pytest.mark.parametrize("key", ["data_filename", "message_log"])
+def test_format_that_cannot_be_written_is_refused_with_those_that_can(tmp_path: Path, key: str, name: str) -> None:
+    result = run(example("helloworld"), tmp_path, {key: name})
+    assert result.code == 2
+    (line,) = result.errors.splitlines()
+    assert line.startswith("Error: scene.yaml:")
+    assert f"{key}: the format of '{name}' is unknown; expected a name that ends in .feather, .arrow or .ipc" in line
+    assert ".parquet or .csv" in line
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["scene.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("d", "feather"),
+        ("d.", "feather"),
+        ("p_0.5", "feather"),
+        ("d.ARROW", "feather"),
+        ("d.ipc", "feather"),
+        ("D.CSV", "csv"),
+    ],
+)
+def test_names_of_every_kind_are_understood(tmp_path: Path, name: str, kind: str) -> None:
+    assert format_of(name) == kind
+    ended_well(run(example("helloworld"), tmp_path, {"data_filename": name}))
+    assert len(load_dataframe(tmp_path / name)[0]) == 63
+
+
+def wait_for_rows(path: Path) -> None:
+    for _ in range(600):
+        time.sleep(0.05)
+        try:
+            if recover.read_unfinished(path).table.num_rows > 0:
+                return
+        except (FileNotFoundError, recover.RecoverError):
+            pass
+    raise AssertionError("no rows come")
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_killed_run_leaves_its_rows_and_recover_gives_them_their_format(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"d.{ending}"
+    process = start(example("helloworld"), tmp_path, {**LONG, "data_filename": path.name})
+    wait_for_rows(path)
+    process.kill()
+    process.communicate()
+    with pytest.warns(RuntimeWarning, match="is incomplete"):
+        rows, _ = load_dataframe(path)
+    assert len(rows) > 0
+    assert recover.main([str(path)]) == 0
+    recovered, metadata = load_dataframe(path)
+    pd.testing.assert_frame_equal(recovered, rows)
+    assert metadata["configuration"]["seed"] == 1
+    assert "these are the rows that were saved" in metadata["recovered"]
+    assert path.read_bytes().startswith(b"PAR1" if ending == "parquet" else b'"time"')
+    assert recover.main([str(path)]) == 2  # complete
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_interrupted_run_has_a_complete_file(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"d.{ending}"
+    process = start(example("helloworld"), tmp_path, {**LONG, "data_filename": path.name})
+    wait_for_rows(path)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert f"The data file '{path.name}' contains all rows up to that point" in errors
+    assert "simulated in" not in errors
+    rows, metadata = load_dataframe(path)
+    assert len(rows) > 3
+    assert "incomplete" not in metadata
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_full_disk_leaves_the_rows_and_says_how_to_have_them(tmp_path: Path, ending: str) -> None:
+    program = tmp_path / "limited"
+    program.write_text(f"#!/bin/sh\nulimit -f 200\nexec '{example('helloworld')}' \"$@\"\n")
+    program.chmod(0o755)
+    result = run(program, tmp_path, {**LONG, "data_filename": f"d.{ending}"})
+    assert result.code == 2
+    assert f"pogosim-recover 'd.{ending}'" in result.errors
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"d.{ending}", "limited", "scene.yaml"]
+    assert recover.main([str(tmp_path / f"d.{ending}")]) == 0
+    assert len(load_dataframe(tmp_path / f"d.{ending}")[0]) > 0
+
+
+def test_what_killed_runs_left_is_removed_and_files_of_users_are_not(tmp_path: Path) -> None:
+    (tmp_path / "d.csv.pogosim-new").write_text('"time","robot_category"\n0,')
+    (tmp_path / "d.parquet.pogosim-new").write_bytes(b"PAR1 and then it was killed")
+    (tmp_path / "e.csv.pogosim-new").write_text("mine\n")
+    for name in ("d.csv", "d.parquet", "e.csv"):
+        ended_well(run(example("helloworld"), tmp_path, {"data_filename": name}))
+    assert sorted(path.name for path in tmp_path.glob("*.pogosim-new")) == ["e.csv.pogosim-new"]
+    assert (tmp_path / "e.csv.pogosim-new").read_text() == "mine\n"
+
+
+@pytest.mark.parametrize("key", ["data_filename", "message_log"])
+def test_file_of_a_user_in_the_place_of_the_metadata_is_refused(tmp_path: Path, key: str) -> None:
+    (tmp_path / "d.csv.yaml").write_text("my: own\n")
+    result = run(example("helloworld"), tmp_path, {key: "d.csv"})
+    assert result.code == 2
+    assert "its metadata go to" in result.errors
+    assert (tmp_path / "d.csv.yaml").read_text() == "my: own\n"
+    same = run(example("helloworld"), tmp_path, {key: "scene.csv", "console_filename": "scene.csv.yaml"})
+    assert same.code == 0  # no console file is written
+    both = {key: "scene.csv", "console_filename": "scene.csv.yaml", "enable_console_logging": True}
+    refused = run(example("helloworld"), tmp_path, both)
+    assert refused.code == 2
+    assert "(the metadata of the " in refused.errors
+
+
+def test_csv_without_its_metadata_is_read_with_a_warning(runs: Path, tmp_path: Path) -> None:
+    path = tmp_path / "d.csv"
+    path.write_bytes((runs / "d.csv").read_bytes())
+    with pytest.warns(RuntimeWarning, match=r"there is no d\.csv\.yaml of a run beside it") as caught:
+        rows, metadata = load_dataframe(path)
+    assert caught[0].filename == __file__
+    assert metadata == {"configuration": {}}
+    assert rows["time"].tolist() == load_dataframe(runs / "d.csv")[0]["time"].tolist()
+
+
+@pytest.mark.parametrize("content", [b"PAR1", b"PAR1 no table PAR1", b'"time","x"\n1\n'])
+def test_damaged_files_say_so(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / ("d.parquet" if content.startswith(b"PAR1") else "d.csv")
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=f"{path.name} is damaged, or no data file"), pytest.MonkeyPatch.context() as m:
+        m.setattr("warnings.warn", lambda *_, **__: None)
+        load_dataframe(path)
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_results_of_a_batch_have_the_format_of_their_name(tmp_path: Path, ending: str) -> None:
+    for form in ("feather", ending):
+        write_options(tmp_path / form, {"result_filename_format": f"r.{form}", "data_filename": f"d.{form}"})
+        result = batch(tmp_path / form, "-r", "2")
+        assert (result.code, result.errors) == (0, "")
+    rows, metadata = load_dataframe(tmp_path / "feather" / "results" / "r.feather")
+    others, other_metadata = load_dataframe(tmp_path / ending / "results" / f"r.{ending}")
+    pd.testing.assert_frame_equal(others, rows)
+    assert other_metadata["combinations"] == metadata["combinations"]
+    again = batch(tmp_path / ending, "-r", "1")  # replaces what an earlier batch wrote
+    assert (again.code, again.errors) == (0, "")
+    refused = batch(write_options(tmp_path / "wrong", {"result_filename_format": "r.xlsx"}).parent)
+    assert refused.code == 2
+    assert "result_filename_format: the format of 'r.xlsx' is unknown; expected a name that ends in" in refused.errors
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_pictures_are_drawn_from_all_formats(runs: Path, tmp_path: Path, ending: str) -> None:
+    for form in ("feather", ending):
+        assert swarm_picture.main([str(runs / f"d.{form}"), str(tmp_path / f"{form}.png"), "--dpi", "40", "-q"]) == 0
+    assert (tmp_path / f"{ending}.png").read_bytes() == (tmp_path / "feather.png").read_bytes()
