@@ -43,8 +43,10 @@ FrameLock::~FrameLock() {
     std::error_code error;
     if (names_.descriptor() >= 0 && getpid() == owner_ && names_.is_still_there() &&
         std::filesystem::file_size(names_.path(), error) == 0 && !error) {
-        unlink(names_.path().c_str());                                // also one that a killed run has left
-        std::filesystem::remove(names_.path().parent_path(), error);  // if it was made for the lock
+        unlink(names_.path().c_str());  // also one that a killed run has left
+        if (folder_ < 0) {
+            std::filesystem::remove(names_.path().parent_path(), error);  // that of t = 0, unless there is a frame
+        }
     }
 }
 
