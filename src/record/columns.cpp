@@ -199,7 +199,7 @@ std::string_view meaning_for_tools(std::string_view name) {
     return name == "led_rgb" ? "tools take a column of that name for the colour of the head LED (0xRRGGBB)" : "";
 }
 
-/// True if tools would take rows for others. A column of colours, in a file without those of the simulator, does no harm.
+/// True if tools would take rows for others. Colours, in a file without those of the simulator, do no harm.
 bool is_reserved(std::string_view name, std::span<BuiltInColumn const* const> built_ins) {
     return name == "subpart_id" ||
            std::ranges::any_of(built_ins, [name](BuiltInColumn const* column) { return column->name == name; });

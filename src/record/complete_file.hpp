@@ -1,5 +1,5 @@
 // The complete data file in progress: a file that is written next to the unfinished one and replaces it at the end, so
-// that at any time one of the two contains all rows. It is a Feather file; other formats are made of that one at the end.
+// that at any time one of the two contains all rows. It is a Feather file; other formats are made of it at the end.
 #pragma once
 
 #include <arrow/ipc/writer.h>

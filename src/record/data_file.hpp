@@ -42,8 +42,8 @@ struct ObjectRow {
 };
 
 /// Columns: time float64 (rounded to 1 ns), robot_category utf8, robot_id int32, pogobot_ticks int64, x, y, angle
-/// float32, [subpart_id int16], [led_rgb int32], then the user's. Every failure to write throws OutputError naming the path and
-/// the system's reason; nothing is lost silently.
+/// float32, [subpart_id int16], [led_rgb int32], then the user's. Every failure to write throws OutputError naming the
+/// path and the system's reason; nothing is lost silently.
 ///
 /// In a child after fork(), it writes nothing.
 class DataFile {

@@ -1,5 +1,5 @@
-// The metadata of a CSV file, which has no place for them: a YAML file beside it, d.csv.yaml of d.csv, with the types of
-// the columns.
+// The metadata of a CSV file, which has no place for them: a YAML file beside it, d.csv.yaml of d.csv, with the types
+// of the columns.
 #pragma once
 
 #include <arrow/result.h>
@@ -21,7 +21,7 @@ public:
     /// True if a file is there that is none of ours: it must not be overwritten.
     static bool is_taken(std::filesystem::path const& table);
 
-    /// Writes the metadata of a schema to a file of another name beside the table. `sync`: waits until it is on the disk.
+    /// Writes the metadata of a schema to a file of another name beside the table. `sync`: waits for the disk.
     static arrow::Result<std::unique_ptr<MetadataBeside>> write(std::filesystem::path const& table,
                                                                 arrow::Schema const& schema, bool sync);
 

@@ -73,16 +73,18 @@ void check_type_of_file(TableKind const& kind, std::string const& path) {
     }
 }
 
+/// The format that the name says; Feather if that is none.
+TableFormat format_of(std::string const& path) {
+    return table_format(path).value_or(TableFormat::feather);
+}
+
 /// Throws OutputError if the format that the name says cannot be written, or the place of the metadata is taken.
 void check_format(TableKind const& kind, std::string const& path) {
-    auto const format = table_format(path);
-    if (!format) {
-        fail(kind, path, fmt::format("its format is unknown; expected a name that ends in {}", kTableEndings));
-    }
-    if (auto const status = check_can_write(*format); !status.ok()) {
+    auto const format = format_of(path);
+    if (auto const status = check_can_write(format); !status.ok()) {
         fail(kind, path, status.message());
     }
-    if (*format == TableFormat::csv && MetadataBeside::is_taken(path)) {
+    if (format == TableFormat::csv && MetadataBeside::is_taken(path)) {
         fail(kind, path,
              fmt::format("its metadata go to '{}', and the file that is there is none of Pogosim; move it, or choose "
                          "another name",
@@ -200,7 +202,7 @@ struct TableFile::Impl {
     Impl(TableFileOptions const& options, LockedFile locked, arrow::FieldVector const& fields, TakeCells take)
         : kind(options.kind),
           path(options.path),
-          format(table_format(options.path).value_or(TableFormat::feather)),
+          format(format_of(options.path)),
           file(std::move(locked)),
           flush_row_count(options.flush_row_count),
           take_cells(std::move(take)) {

@@ -3,8 +3,8 @@
 //     rows ──► cells ──► batches that are not yet ... ──► saved      unfinished_file.hpp, every few seconds
 //                                                     └─► complete   complete_file.hpp, flush_row_count rows each
 //
-// Until the end, the path refers to the unfinished file, an Arrow file, which can be read whenever the run is killed. The contents of
-// the complete one depend on the rows alone, not on the clock.
+// Until the end, the path refers to the unfinished file, an Arrow file, which can be read whenever the run is killed.
+// The contents of the complete one depend on the rows alone, not on the clock.
 #pragma once
 
 #include <arrow/result.h>

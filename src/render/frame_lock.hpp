@@ -1,7 +1,7 @@
 // Which run may draw frames of certain names, and which may delete frames of a folder.
 //
 //     a file beside the frame of t = 0     locked: one run draws frames of these names
-//     the folder of the frames             locked by all runs that draw into it: none of them deletes the frames of another;
+//     the folder of the frames             locked by all runs that draw into it: none deletes the frames of another;
 //                                          locked by one alone while it deletes old frames
 #pragma once
 

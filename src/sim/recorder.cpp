@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/error.hpp"
+#include "base/table_format.hpp"
+#include "config/places.hpp"
 #include "physics/physics_engine.hpp"
 #include "robot/last_words.hpp"
 #include "robot/user_guard.hpp"
@@ -54,6 +57,14 @@ ObjectRow row_of(World const& world, Object const& object, std::optional<std::in
     return row;
 }
 
+/// The ending of its name says the format of a table.
+void check_table_format(Scenario const& scenario, Setting setting, std::string const& name) {
+    if (!table_format(name)) {
+        throw ConfigError(fmt::format("{}: the format of '{}' is unknown; expected a name that ends in {}",
+                                      place_of(scenario, setting), name, kTableEndings));
+    }
+}
+
 /// Its rows are followed by those of its subparts.
 bool has_subparts(Category const& category) {
     auto const& membrane = category.spec.membrane;
@@ -72,9 +83,11 @@ Recorder::Recorder(Scenario const& scenario, World const& world, Controllers& co
       category_is_recorded_(recorded_categories(scenario, world)),
       row_times_(output().save_data_period_s, /*first=*/0) {
     if (output().enable_data_logging) {
+        check_table_format(scenario, Setting::data_filename, output().data_filename);
         reserved_ = DataFile::reserve(output().data_filename);
     }
     if (!output().message_log.empty()) {
+        check_table_format(scenario, Setting::message_log, output().message_log);
         messages_ = std::make_unique<MessageRecorder>(output().message_log, world);
     }
 }

@@ -24,7 +24,7 @@ namespace pogosim {
 class Recorder {
 public:
     /// Locks the files, so that no other run writes them. All references outlive this. `data` is what user code
-    /// declares and exports. Throws OutputError.
+    /// declares and exports. Throws OutputError, and ConfigError for a name whose format is unknown.
     Recorder(Scenario const& scenario, World const& world, Controllers& controllers, DataExport const& data,
              std::uint32_t seed);
 

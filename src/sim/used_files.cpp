@@ -10,7 +10,6 @@
 
 #include "base/error.hpp"
 #include "base/locked_file.hpp"
-#include "base/table_format.hpp"
 #include "config/places.hpp"
 #include "record/data_file.hpp"
 #include "record/message_log.hpp"
@@ -106,14 +105,6 @@ char const* fate(UsedFile const& file) {
     return file.is_output ? "which the run also writes" : "which the run would overwrite";
 }
 
-/// The ending of its name says the format of a table.
-void check_table_format(Scenario const& scenario, Setting setting, std::string const& name) {
-    if (!table_format(name)) {
-        throw ConfigError(fmt::format("{}: the format of '{}' is unknown; expected a name that ends in {}",
-                                      place_of(scenario, setting), name, kTableEndings));
-    }
-}
-
 void check_frames_name(Scenario const& scenario, std::vector<UsedFile> const& files) {
     if (scenario.view.save_video_period_s <= 0.0) {
         return;
@@ -143,10 +134,6 @@ void check_used_files(Scenario const& scenario, std::string const& film) {
         }
     }
     check_frames_name(scenario, files);
-    if (scenario.output.enable_data_logging) {
-        check_table_format(scenario, Setting::data_filename, scenario.output.data_filename);
-    }
-    check_table_format(scenario, Setting::message_log, scenario.output.message_log);
 }
 
 bool is_used_file(Scenario const& scenario, std::string const& film, std::filesystem::path const& path) {

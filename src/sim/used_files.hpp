@@ -9,8 +9,8 @@
 namespace pogosim {
 
 /// Throws ConfigError, naming both keys, if a file that the run would write is one that it reads or also writes under
-/// another key, by whatever name, symbolic or hard link; if an input file does not exist; and if the format of a table is
-/// unknown. Call it before anything is opened for writing. `film`: of --video; empty for none.
+/// another key, by whatever name, symbolic or hard link; and if an input file does not exist. Call it before anything
+/// is opened for writing. `film`: of --video; empty for none.
 void check_used_files(Scenario const& scenario, std::string const& film);
 
 /// True if the run reads this existing file, or writes it other than as a frame.
