@@ -1,7 +1,8 @@
 /// @file
 /// Runs inside another process, such as Python: a run is a value, which the host steps as it likes. Any number of runs
-/// may exist, of the same program or others; each is used by one thread at a time. The package `pogosim` of Python is
-/// made with this (`pogosim.Simulation`); it is meant for other languages, too.
+/// may exist, of the same program or others. Several threads may use one run: a call waits for the end of the time step
+/// that another thread is making, not for all of its steps. The last call of a run is pogosim_run_close(). The package
+/// `pogosim` of Python is made with this (`pogosim.Simulation`); it is meant for other languages, too.
 ///
 /// Functions that can fail return a status; pogosim_host_error() then says what, in one line.
 #ifndef POGOSIM_HOST_H
@@ -63,8 +64,9 @@ int pogosim_run_end(pogosim_run* run);
 /// Ends the run, if it has not ended, and frees it. NULL does nothing.
 void pogosim_run_close(pogosim_run* run);
 
-/// A number: "time" (s), "step", "step_count" (steps of the whole run), "time_step" (s), "seed", "object_count",
-/// "robot_count", "lamp_count", "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
+/// A number: "time" (s), "step", "step_count" (steps of the whole run), "time_step" (s), "is_over" (1: no further step
+/// will be made), "has_failed" (1: a step has failed), "seed", "object_count", "robot_count", "lamp_count",
+/// "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 
 /// An array. Of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
@@ -75,7 +77,7 @@ int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 /// counts. Of the columns that the program has added to the data file, by robot, what data_set_value_* gave at the last
 /// save: "columns.NAME", and "columns_absent.NAME", true for robots that gave no value or wrote no row; for them
 /// "columns.NAME" has NaN, 0 or false. A column of strings has the type "text": UTF-8, each ended by a zero, so many
-/// bytes; it stays in place only until the next step.
+/// bytes; it stays in place only until this thread asks for the next one.
 int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_array* array);
 
 /// Names of the categories, a line each. Valid as long as the run.

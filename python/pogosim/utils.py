@@ -9,7 +9,7 @@ import json
 import logging
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -63,13 +63,18 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
         rows, metadata = join_files([(file, *load_file(file)) for file in files_that_fit(path)])
     else:
         rows, metadata = load_file(Path(path))
-    rows.attrs = {name: shared(plain(value)) for name, value in metadata.items()}
+    rows.attrs = attributes(metadata)
     return rows, metadata
 
 
-def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
-    """Read one data file: what `load_dataframe` does with it."""
-    table = read_table(path)
+def attributes(metadata: dict[str, Any]) -> dict[Hashable | None, Any]:
+    """Return metadata as the `attrs` of a dataframe."""
+    return {name: shared(plain(value)) for name, value in metadata.items()}
+
+
+def load_file(path: Path, warns: bool = True) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Read one data file: what `load_dataframe` does with it, and without its warning if that is not wanted."""
+    table = read_table(path, warns)
     try:
         rows = table.to_pandas()
     except DAMAGED as error:
@@ -88,7 +93,7 @@ def load_file(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
     return rows, metadata
 
 
-def read_table(path: Path) -> pyarrow.Table:
+def read_table(path: Path, warns: bool = True) -> pyarrow.Table:
     """Read a data file as load_dataframe does, keeping the types and metadata of the file."""
     try:
         other = read_other(path)
@@ -114,11 +119,12 @@ def read_table(path: Path) -> pyarrow.Table:
         ) from reason
     if not unfinished.says_so:
         raise ValueError(f"{path} is not a complete Feather file: it is truncated; {hint}") from reason
-    warnings.warn(
-        f"{path} is incomplete: its run is still going on, or was killed. Read {unfinished.up_to}; {hint}",
-        RuntimeWarning,
-        stacklevel=4,
-    )
+    if warns:
+        warnings.warn(
+            f"{path} is incomplete: its run is still going on, or was killed. Read {unfinished.up_to}; {hint}",
+            RuntimeWarning,
+            stacklevel=4,
+        )
     return unfinished.table
 
 

@@ -50,7 +50,9 @@ pogosim_array array_of(void const* data, char const* type, std::size_t size, std
 
 pogosim_array values_of(SavedColumn const& column) {
     if (column.type == ColumnType::text) {
-        return array_of(column.texts.data(), type_name(column.type), column.texts.size(), 1);
+        static thread_local std::string texts;  // those of the run are replaced at the next save
+        texts = column.texts;
+        return array_of(texts.data(), type_name(column.type), texts.size(), 1);
     }
     return array_of(column.values.data(), type_name(column.type), column.is_absent.size(), bytes_of(column.type));
 }

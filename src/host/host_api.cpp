@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -21,22 +22,28 @@ using namespace pogosim;
 
 namespace {
 
+double number(auto value) {
+    return static_cast<double>(value);
+}
+
 struct NamedNumber {
     std::string_view name;
-    double (*value)(Simulation const& simulation);
+    double (*value)(pogosim_run const& run);
 };
 constexpr std::array kNumbers{
-    NamedNumber{"time", [](Simulation const& s) { return s.world().time_s(); }},
-    NamedNumber{"step", [](Simulation const& s) { return static_cast<double>(s.world().step); }},
-    NamedNumber{"step_count", [](Simulation const& s) { return static_cast<double>(s.step_count()); }},
-    NamedNumber{"time_step", [](Simulation const& s) { return s.world().time_step_s; }},
-    NamedNumber{"save_time", [](Simulation const& s) { return s.saved_columns().time_s(); }},
-    NamedNumber{"seed", [](Simulation const& s) { return static_cast<double>(s.seed()); }},
-    NamedNumber{"object_count", [](Simulation const& s) { return static_cast<double>(s.world().objects.size()); }},
-    NamedNumber{"robot_count", [](Simulation const& s) { return static_cast<double>(s.world().robots.size()); }},
-    NamedNumber{"lamp_count", [](Simulation const& s) { return static_cast<double>(s.world().lamps.size()); }},
+    NamedNumber{"time", [](pogosim_run const& run) { return run.simulation().world().time_s(); }},
+    NamedNumber{"step", [](pogosim_run const& run) { return number(run.simulation().world().step); }},
+    NamedNumber{"step_count", [](pogosim_run const& run) { return number(run.simulation().step_count()); }},
+    NamedNumber{"time_step", [](pogosim_run const& run) { return run.simulation().world().time_step_s; }},
+    NamedNumber{"is_over", [](pogosim_run const& run) { return number(run.is_over()); }},
+    NamedNumber{"has_failed", [](pogosim_run const& run) { return number(run.has_failed()); }},
+    NamedNumber{"save_time", [](pogosim_run const& run) { return run.simulation().saved_columns().time_s(); }},
+    NamedNumber{"seed", [](pogosim_run const& run) { return number(run.simulation().seed()); }},
+    NamedNumber{"object_count", [](pogosim_run const& run) { return number(run.simulation().world().objects.size()); }},
+    NamedNumber{"robot_count", [](pogosim_run const& run) { return number(run.simulation().world().robots.size()); }},
+    NamedNumber{"lamp_count", [](pogosim_run const& run) { return number(run.simulation().world().lamps.size()); }},
     NamedNumber{"user_data_bytes",
-                [](Simulation const& s) { return static_cast<double>(s.controllers().user_data_bytes()); }},
+                [](pogosim_run const& run) { return number(run.simulation().controllers().user_data_bytes()); }},
 };
 
 }  // namespace
@@ -63,14 +70,14 @@ int pogosim_run_open(pogosim_run_options const* options, pogosim_run** run) {
 
 int pogosim_run_step(pogosim_run* run, int64_t steps, double budget_s, int64_t* done) {
     *done = 0;
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         *done = run->step(steps, budget_s);
         return run->is_over() ? POGOSIM_OVER : POGOSIM_OK;
     });
 }
 
 int pogosim_run_end(pogosim_run* run) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         run->end();
         return POGOSIM_OK;
     });
@@ -81,9 +88,10 @@ void pogosim_run_close(pogosim_run* run) {
 }
 
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value) {
-    for (NamedNumber const& number : kNumbers) {
-        if (number.name == name) {
-            *value = number.value(run->simulation());
+    std::lock_guard const lock(run->in_use);
+    for (NamedNumber const& known : kNumbers) {
+        if (known.name == name) {
+            *value = known.value(*run);
             return POGOSIM_OK;
         }
     }
@@ -91,6 +99,7 @@ int pogosim_run_number(pogosim_run const* run, char const* name, double* value) 
 }
 
 int pogosim_run_array(pogosim_run const* run, char const* name, pogosim_array* array) {
+    std::lock_guard const lock(run->in_use);
     if (auto const found = array_of(run->simulation(), name)) {
         *array = *found;
         return POGOSIM_OK;
@@ -107,11 +116,12 @@ char const* pogosim_run_columns(pogosim_run const* run) {
 }
 
 char const* pogosim_run_messages(pogosim_run* run) {
+    std::lock_guard const lock(run->in_use);
     return run->take_messages().c_str();
 }
 
 int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         World const& world = run->simulation().world();
         if (robot >= world.robots.size()) {
             throw ConfigError(fmt::format("there is no robot {}: the run has {}", robot, world.robots.size()));
@@ -127,7 +137,7 @@ int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_m
 }
 
 int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* value) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         if (!run->simulation().set_parameter(name, value)) {
             throw ConfigError(fmt::format(
                 "parameters.{}: the program has not read it into a global variable or USERDATA, so it can only be set "
@@ -140,6 +150,7 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
 
 void pogosim_run_light_levels(pogosim_run const* run, double* levels) {
     StandardFloatingPoint const mode;
+    std::lock_guard const lock(run->in_use);
     World const& world = run->simulation().world();
     for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
         std::uint32_t const body = world.robots.body[robot];
@@ -148,11 +159,12 @@ void pogosim_run_light_levels(pogosim_run const* run, double* levels) {
 }
 
 uint64_t pogosim_run_hash(pogosim_run const* run) {
+    std::lock_guard const lock(run->in_use);
     return run->simulation().hash();
 }
 
 int pogosim_run_save(pogosim_run* run) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         run->simulation().save_now();
         return POGOSIM_OK;
     });

@@ -41,7 +41,7 @@ float number(char const* name, double value, double smallest) {
 }  // namespace
 
 int pogosim_run_object(pogosim_run const* run, size_t object, pogosim_object* found) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         World const& world = run->simulation().world();
         Object const& of = object_at(world, object);
         auto const [place_mm, heading_rad] = pose_of(world, of);
@@ -59,7 +59,7 @@ int pogosim_run_object(pogosim_run const* run, size_t object, pogosim_object* fo
 }
 
 int pogosim_run_set_object_pose(pogosim_run* run, size_t object, double x_mm, double y_mm, double heading_rad) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         World const& world = run->simulation().world();
         Object const& moved = object_at(world, object);
         Vec2 const place_mm{static_cast<float>(x_mm), static_cast<float>(y_mm)};
@@ -73,7 +73,7 @@ int pogosim_run_set_object_pose(pogosim_run* run, size_t object, double x_mm, do
 }
 
 int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         World const& world = run->simulation().world();
         Object const& of = object_at(world, object);
         if (of.robot == kNone) {
@@ -86,7 +86,7 @@ int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive) {
 }
 
 int pogosim_run_lamp(pogosim_run const* run, size_t lamp, pogosim_lamp* found) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         PlacedLamp const& of = lamp_at(run->simulation().world(), lamp);
         Vec2 const place_mm = of.place_mm();
         *found = {.category = of.category.c_str(),
@@ -99,7 +99,7 @@ int pogosim_run_lamp(pogosim_run const* run, size_t lamp, pogosim_lamp* found) {
 }
 
 int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, pogosim_lamp const* setting) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         constexpr double lowest = std::numeric_limits<float>::lowest();
         PlacedLamp const& of = lamp_at(run->simulation().world(), lamp);
         Vec2 const place_mm{number("x", setting->x_mm, lowest), number("y", setting->y_mm, lowest)};
@@ -112,7 +112,7 @@ int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, pogosim_lamp const* sett
 }
 
 int pogosim_run_set_column(pogosim_run* run, int64_t object, char const* name, double value) {
-    return with_status([&] {
+    return with_status_of(*run, [&] {
         std::optional<std::uint32_t> of;
         if (object >= 0) {
             object_at(run->simulation().world(), static_cast<std::size_t>(object));

@@ -86,18 +86,31 @@ void pogosim_run::must_succeed(Outcome const& outcome) {
 }
 
 std::int64_t pogosim_run::step(std::int64_t steps, double budget_s) {
-    using Clock = std::chrono::steady_clock;
+    if (has_failed_) {
+        throw ConfigError("the run has failed: reset it");
+    }
     if (has_ended_) {
         throw ConfigError("the run has ended: reset it, or make another one");
     }
+    try {
+        return make_steps(steps, budget_s);
+    } catch (...) {
+        has_failed_ = true;
+        throw;
+    }
+}
+
+std::int64_t pogosim_run::make_steps(std::int64_t steps, double budget_s) {
+    using Clock = std::chrono::steady_clock;
     auto const deadline = Clock::now() + std::chrono::duration<double>(budget_s);
     std::int64_t done = 0;
     must_succeed(simulation_->attempt([&]() -> std::optional<UserFailure> {
-        while (done < steps && !simulation_->is_over() && (done == 0 || Clock::now() < deadline)) {
+        while (done < steps && !is_over() && (done == 0 || Clock::now() < deadline)) {
             if (auto failure = simulation_->step()) {
                 return failure;
             }
             ++done;
+            in_use.yield();
         }
         return std::nullopt;
     }));

@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "base/fair_mutex.hpp"
 #include "base/log.hpp"
 #include "pogosim/host.h"
 #include "sim/simulation.hpp"
 
-/// As declared in pogosim/host.h. Functions throw what the functions there turn into a status.
+/// As declared in pogosim/host.h. Functions throw what the functions there turn into a status. Functions of host.h hold
+/// `in_use` while they look at a run or change it; step() passes it on between two steps.
 struct pogosim_run {
 public:
     explicit pogosim_run(pogosim_run_options const& options);
@@ -23,7 +25,8 @@ public:
     /// Returns the steps made. Throws RunFailure.
     std::int64_t step(std::int64_t steps, double budget_s);
     void end();
-    bool is_over() const { return has_ended_ || simulation_->is_over(); }
+    bool is_over() const { return has_ended_ || has_failed_ || simulation_->is_over(); }
+    bool has_failed() const { return has_failed_; }
 
     pogosim::Simulation& simulation() { return *simulation_; }
     pogosim::Simulation const& simulation() const { return *simulation_; }
@@ -32,7 +35,10 @@ public:
     std::string const& columns() const { return columns_; }
     std::string const& take_messages();
 
+    pogosim::FairMutex mutable in_use;
+
 private:
+    std::int64_t make_steps(std::int64_t steps, double budget_s);
     void must_succeed(pogosim::Outcome const& outcome);
     pogosim::ExitCode conclude(pogosim::Outcome const& outcome);
 
@@ -43,6 +49,7 @@ private:
     std::string categories_;
     std::string columns_;
     bool has_ended_ = false;
+    bool has_failed_ = false;
 };
 
 namespace pogosim {

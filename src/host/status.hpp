@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <mutex>
 #include <new>
 #include <string>
 
@@ -37,6 +38,13 @@ int with_status(Body const& body) {
     } catch (...) {
         return failed("unknown error");
     }
+}
+
+/// The same of what needs the run for itself.
+template <class Body>
+int with_status_of(pogosim_run const& run, Body const& body) {
+    std::lock_guard const lock(run.in_use);
+    return with_status(body);
 }
 
 }  // namespace pogosim

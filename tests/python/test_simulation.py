@@ -6,7 +6,6 @@ import copy
 import gc
 import logging
 import math
-import os
 import signal
 import subprocess
 import sys
@@ -282,7 +281,7 @@ def test_poses_can_be_set(sim: pogosim.Simulation) -> None:
     sim.set_pose(1, 480.0, 520.0)
     for robot, x, y, message in (
         (1, 0.0, 0.0, "no place for an object"),
-        (1, math.nan, 0.0, "expected finite numbers"),
+        (1, math.nan, 0.0, "x: expected a finite number, found nan"),
         (3, 500.0, 500.0, "there is no robot 3: the run has 3"),
         (-1, 500.0, 500.0, "there is no robot -1: the run has 3"),
     ):
@@ -503,9 +502,9 @@ def test_run_goes_as_far_as_the_run_has_time(sim: pogosim.Simulation, until_s: f
 def test_numbers_that_are_none_are_refused(sim: pogosim.Simulation) -> None:
     with pytest.raises(pogosim.ConfigurationError, match="until_s"):
         sim.run(math.nan)
-    with pytest.raises(TypeError):
+    with pytest.raises(pogosim.ConfigurationError, match=r"steps: expected an integer of at least 0, found 1\.5"):
         sim.step(1.5)  # type: ignore[arg-type]
-    with pytest.raises(pogosim.ConfigurationError, match="expected finite numbers"):
+    with pytest.raises(pogosim.ConfigurationError, match="heading: expected a finite number, found nan"):
         sim.set_pose(0, 500, 500, math.nan)
     with pytest.raises(pogosim.ConfigurationError, match="expected finite numbers"):
         sim.set_pose(0, 1e12, 500)
@@ -525,19 +524,6 @@ def test_seed_out_of_range_is_refused_and_the_run_goes_on(program: Path, scene: 
 def test_simulations_are_not_copied(sim: pogosim.Simulation) -> None:
     with pytest.raises(TypeError, match="cannot be copied or pickled"):
         copy.copy(sim)
-
-
-def test_child_process_leaves_the_rows_of_its_parent(sim: pogosim.Simulation) -> None:
-    sim.step(60)
-    child = os.fork()
-    if child == 0:
-        try:
-            sys.exit(0)
-        finally:
-            sim._remove_folder()
-            os._exit(0)
-    os.waitpid(child, 0)
-    assert len(sim.to_dataframe()) == 6  # of two saves, the one at the start included
 
 
 @pytest.mark.parametrize("key", ["data_filename", "message_log"])

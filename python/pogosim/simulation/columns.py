@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from ctypes import byref, c_double, c_void_p, string_at
 from typing import Any
 
 import numpy as np
 
-from pogosim.simulation.arrays import array_of
-from pogosim.simulation.library import ArrayPlace, check, library
-
-TEXT = b"text"
+from pogosim.simulation.arrays import RunState
 
 
 class Columns(Mapping[str, Any]):
@@ -26,35 +22,23 @@ class Columns(Mapping[str, Any]):
     is new each time. All columns that the program has added are there, those that `data_logger_fields` leaves out, too.
     """
 
-    def __init__(self, run: c_void_p, owner: object) -> None:
-        """Look at the columns of a run.
-
-        Args:
-            run: The run.
-            owner: Keeps the run as long as an array of it exists.
-        """
+    def __init__(self, run: RunState) -> None:
+        """Look at the columns of a run."""
         self._run = run
-        self._owner = owner
-        names: bytes = library().pogosim_run_columns(run)
-        self._names = names.decode().split("\n") if names else []
+        self._names = run.names("pogosim_run_columns")
 
     @property
     def time(self) -> float:
         """Simulated time of the last save, s; NaN: there was none (`enable_data_logging: false`)."""
-        value = c_double()
-        check(library().pogosim_run_number(self._run, b"save_time", byref(value)))
-        return value.value
+        return self._run.number("save_time")
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._names:
             raise KeyError(f"the program has added no column '{name}' to the data file; {self._what_there_is()}")
-        absent = array_of(self._run, f"columns_absent.{name}", self._owner)
-        place = ArrayPlace()
-        check(library().pogosim_run_array(self._run, f"columns.{name}".encode(), byref(place)))
-        if place.type == TEXT:
-            texts = string_at(place.data, place.shape[0]).decode().split("\0")
-            return [None if is_absent else text for text, is_absent in zip(texts, absent.tolist(), strict=False)]
-        return np.ma.MaskedArray(array_of(self._run, f"columns.{name}", self._owner), absent)
+        absent = self._run.array(f"columns_absent.{name}")
+        if (texts := self._run.texts(f"columns.{name}")) is not None:
+            return [None if is_absent else text for text, is_absent in zip(texts, absent.tolist(), strict=True)]
+        return np.ma.MaskedArray(self._run.array(f"columns.{name}"), absent)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

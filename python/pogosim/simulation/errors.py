@@ -1,5 +1,7 @@
 """What can go wrong with a run. The messages are those of the command line."""
 
+from pogosim.arguments import Arguments
+
 
 class SimulationError(Exception):
     """A run cannot be made, or has failed."""
@@ -11,3 +13,6 @@ class ConfigurationError(SimulationError, ValueError):
 
 class ProgramFailedError(SimulationError):
     """The robots' program crashed, or did not return. The run is over; its rows up to then can be read."""
+
+
+given = Arguments(ConfigurationError)

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import os
 import sys
+from collections.abc import Callable
 from ctypes import (
     POINTER,
     byref,
@@ -141,8 +143,8 @@ def check(status: int) -> int:
     """Return the status of a call that did not fail.
 
     Raises:
-        ConfigurationError: Of wrong arguments or configurations, or of files.
-        ProgramFailedError: Of the robots' program.
+        ConfigurationError: Arguments, a configuration or a file are wrong.
+        ProgramFailedError: The robots' program has failed.
     """
     if status in (OK, OVER):
         return status
@@ -151,22 +153,28 @@ def check(status: int) -> int:
 
 
 class OpenRun:
-    """A run of the simulator, which is freed with this object: arrays of it keep it."""
+    """A run of the simulator, which is freed with this object: arrays of it keep it, and so do calls under way.
 
-    def __init__(self, pointer: c_void_p) -> None:
-        self.pointer = pointer
+    Attributes:
+        pointer: NULL until it is open.
+    """
+
+    def __init__(self) -> None:
+        self.pointer = c_void_p()
+        self._process = os.getpid()
         self._close = library().pogosim_run_close
 
-    def __del__(self) -> None:
-        self._close(self.pointer)
+    def __del__(self, process_now: Callable[[], int] = os.getpid) -> None:  # modules may be gone at the end of Python
+        if process_now() == self._process:  # in a forked child, the files are those of its parent
+            self._close(self.pointer)
 
 
 def open_run(program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool) -> OpenRun:
     """Build a run and start its program."""
     texts = (c_char_p * len(settings))(*(text.encode() for text in settings))
     options = RunOptions(
-        str(program).encode(), str(configuration).encode(), texts, len(settings), -1 if seed is None else seed, strict
+        os.fsencode(program), os.fsencode(configuration), texts, len(settings), -1 if seed is None else seed, strict
     )
-    handle = c_void_p()
-    check(library().pogosim_run_open(byref(options), byref(handle)))
-    return OpenRun(handle)
+    run = OpenRun()
+    check(library().pogosim_run_open(byref(options), byref(run.pointer)))
+    return run

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from ctypes import byref
 from typing import TYPE_CHECKING, overload
 
-import numpy as np
-
-from pogosim.simulation.errors import ConfigurationError
+from pogosim.simulation.arrays import RunState
+from pogosim.simulation.errors import ConfigurationError, given
 from pogosim.simulation.library import LampState, ObjectState, check, library
 
 if TYPE_CHECKING:
@@ -17,11 +16,31 @@ if TYPE_CHECKING:
 NONE = 2**32 - 1
 
 
-def check_object(simulation: Simulation, index: int) -> None:
-    """Raise ConfigurationError if there is no object of this index."""
-    count = int(simulation._number("object_count"))
-    if not 0 <= index < count:
-        raise ConfigurationError(f"there is no object {index}: the run has {count}")
+def object_state(run: RunState, index: int) -> ObjectState:
+    """Return what pogosim_run_object() says."""
+    state = ObjectState()
+    check(library().pogosim_run_object(run.pointer, index, byref(state)))
+    return state
+
+
+def lamp_state(run: RunState, index: int) -> LampState:
+    """Return what pogosim_run_lamp() says. The name of its category is the run's."""
+    state = LampState()
+    check(library().pogosim_run_lamp(run.pointer, index, byref(state)))
+    return state
+
+
+def chosen_index(index: int, count: int, what: str) -> int:
+    """Return the index from 0 that an index of a sequence means, which may count from the end.
+
+    Raises:
+        IndexError: There is none.
+        ConfigurationError: It is no integer.
+    """
+    number = given.integer(f"index of a {what}", index)
+    if not -count <= number < count:
+        raise IndexError(f"there is no {what} {number}: the run has {count}")
+    return number % count
 
 
 class WorldObject:
@@ -38,9 +57,7 @@ class WorldObject:
         self.index = index
 
     def _state(self) -> ObjectState:
-        state = ObjectState()
-        check(library().pogosim_run_object(self._simulation._run, self.index, byref(state)))
-        return state
+        return object_state(self._simulation._run, self.index)
 
     @property
     def category(self) -> str:
@@ -91,9 +108,10 @@ class WorldObject:
         Raises:
             ConfigurationError: It has no body, or the place is in a wall.
         """
-        angle = self.heading if heading is None else heading
+        place = given.finite("x", x), given.finite("y", y)
+        angle = self.heading if heading is None else given.finite("heading", heading)
         with self._simulation._busy():
-            check(library().pogosim_run_set_object_pose(self._simulation._run, self.index, x, y, angle))
+            check(library().pogosim_run_set_object_pose(self._simulation._run.pointer, self.index, *place, angle))
 
     def kill(self) -> None:
         """Switch it off: no user code, no messages, motors stand still, LEDs are dark. Its body stays.
@@ -113,7 +131,7 @@ class WorldObject:
 
     def _set_alive(self, alive: bool) -> None:
         with self._simulation._busy():
-            check(library().pogosim_run_set_alive(self._simulation._run, self.index, alive))
+            check(library().pogosim_run_set_alive(self._simulation._run.pointer, self.index, alive))
 
     def __repr__(self) -> str:
         x, y = self.position
@@ -127,17 +145,16 @@ class Objects(Sequence[WorldObject]):
         self._simulation = simulation
 
     def __len__(self) -> int:
-        return int(self._simulation._number("object_count"))
+        return int(self._simulation._run.number("object_count"))
 
     @overload
     def __getitem__(self, index: int) -> WorldObject: ...
     @overload
     def __getitem__(self, index: slice) -> list[WorldObject]: ...
     def __getitem__(self, index: int | slice) -> WorldObject | list[WorldObject]:
-        numbers = range(len(self))[index]
-        if isinstance(numbers, range):
-            return [WorldObject(self._simulation, number) for number in numbers]
-        return WorldObject(self._simulation, numbers)
+        if isinstance(index, slice):
+            return [WorldObject(self._simulation, number) for number in range(len(self))[index]]
+        return WorldObject(self._simulation, chosen_index(index, len(self), "object"))
 
     def of(self, category: str) -> list[WorldObject]:
         """Return the objects of a category.
@@ -165,18 +182,17 @@ class Lamp:
         self.index = index
 
     def _state(self) -> LampState:
-        state = LampState()
-        check(library().pogosim_run_lamp(self._simulation._run, self.index, byref(state)))
-        return state
+        return lamp_state(self._simulation._run, self.index)
 
     def _set(self, state: LampState) -> None:
         with self._simulation._busy():
-            check(library().pogosim_run_set_lamp(self._simulation._run, self.index, byref(state)))
+            check(library().pogosim_run_set_lamp(self._simulation._run.pointer, self.index, byref(state)))
 
     @property
     def category(self) -> str:
         """Name of its category."""
-        name: bytes = self._state().category
+        run = self._simulation._run  # which has the name
+        name: bytes = lamp_state(run, self.index).category
         return name.decode()
 
     @property
@@ -186,10 +202,9 @@ class Lamp:
 
     @is_on.setter
     def is_on(self, on: bool) -> None:
-        if not isinstance(on, (bool, np.bool_)):
-            raise ConfigurationError(f"is_on: expected True or False, found {on!r}")
+        is_on = given.boolean("is_on", on)
         state = self._state()
-        state.is_on = bool(on)
+        state.is_on = is_on
         self._set(state)
 
     @property
@@ -199,8 +214,9 @@ class Lamp:
 
     @intensity.setter
     def intensity(self, intensity: float) -> None:
+        number = given.number("intensity", intensity)
         state = self._state()
-        state.intensity = intensity
+        state.intensity = number
         self._set(state)
 
     @property
@@ -211,8 +227,9 @@ class Lamp:
 
     @position.setter
     def position(self, place: tuple[float, float]) -> None:
+        x, y = given.numbers("position", place, 2)
         state = self._state()
-        state.x_mm, state.y_mm = place
+        state.x_mm, state.y_mm = x, y
         self._set(state)
 
     def __repr__(self) -> str:
@@ -228,14 +245,13 @@ class Lamps(Sequence[Lamp]):
         self._simulation = simulation
 
     def __len__(self) -> int:
-        return int(self._simulation._number("lamp_count"))
+        return int(self._simulation._run.number("lamp_count"))
 
     @overload
     def __getitem__(self, index: int) -> Lamp: ...
     @overload
     def __getitem__(self, index: slice) -> list[Lamp]: ...
     def __getitem__(self, index: int | slice) -> Lamp | list[Lamp]:
-        numbers = range(len(self))[index]
-        if isinstance(numbers, range):
-            return [Lamp(self._simulation, number) for number in numbers]
-        return Lamp(self._simulation, numbers)
+        if isinstance(index, slice):
+            return [Lamp(self._simulation, number) for number in range(len(self))[index]]
+        return Lamp(self._simulation, chosen_index(index, len(self), "lamp"))

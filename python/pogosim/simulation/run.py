@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import logging
 import math
-import operator
 import os
 import shutil
-import tempfile
 import threading
-import warnings
-import weakref
-from collections.abc import Callable, Iterator, Mapping, MutableMapping
-from ctypes import byref, c_double, c_int64, c_void_p
+from collections.abc import Iterator, Mapping, MutableMapping
+from ctypes import byref, c_int64
+from multiprocessing.util import Finalize
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -21,18 +18,18 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.outputs import PathLike
-from pogosim.simulation.arrays import array_of
+from pogosim.simulation.arrays import NO_BODY, RunState, check_process
 from pogosim.simulation.columns import Columns
-from pogosim.simulation.errors import ConfigurationError, SimulationError
-from pogosim.simulation.library import OVER, OpenRun, check, library, open_run
-from pogosim.simulation.objects import Lamps, Objects, WorldObject, check_object
+from pogosim.simulation.current_run import CurrentRun, own_folder
+from pogosim.simulation.errors import ConfigurationError, SimulationError, given
+from pogosim.simulation.library import OVER, check, library, open_run
+from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
 
 if TYPE_CHECKING:
     import pandas as pd
 
-NO_BODY = 2**32 - 1
 MOST_SEED = 2**32 - 1
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
@@ -41,23 +38,37 @@ logger = logging.getLogger("pogosim")
 robot_logger = logging.getLogger("pogosim.robots")
 
 
-def plain(value: Any) -> Any:
-    """Return a value without types of NumPy."""
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
-    if isinstance(value, Mapping):
-        return {plain(key): plain(item) for key, item in value.items()}
-    return [plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+def yaml_text(name: str, value: Any) -> str:
+    """Return a value as YAML in one line.
+
+    Raises:
+        ConfigurationError: It is nothing that YAML has.
+    """
+    return dump_yaml(given.value(name, value), is_flow=True).strip()
 
 
-def yaml_text(value: Any) -> str:
-    """Return a value as YAML in one line."""
-    return dump_yaml(plain(str(value) if isinstance(value, Path) else value), is_flow=True).strip()
+def checked_settings(values: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Return the settings that a caller gives, as plain values.
+
+    Raises:
+        ConfigurationError: They are no map from keys to values of YAML.
+    """
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping):
+        raise given.refused("set", "a map from keys to values", values)
+    settings = {}
+    for key, value in values.items():
+        name = given.text("a key of set", key)
+        if not name or "=" in name:
+            raise given.refused("a key of set", "the name of a key, such as 'objects.robots.nb'", key)
+        settings[name] = given.value(name, value)
+    return settings
 
 
 def settings_of(values: Mapping[str, Any]) -> list[str]:
     """Return the texts that `--set` would take."""
-    return [f"{key}={yaml_text(value)}" for key, value in values.items()]
+    return [f"{key}={yaml_text(key, value)}" for key, value in values.items()]
 
 
 class Parameters(MutableMapping[str, Any]):
@@ -132,36 +143,37 @@ class Simulation:
             ProgramFailedError: The program crashed at its start.
             SimulationError: There is no simulator, or one of another version.
         """
-        self.program = shared_object(Path(program))
-        self.configuration = Path(configuration)
+        self.program = shared_object(given.path("program", program))
+        self.configuration = given.path("configuration", configuration)
         self.parameters = Parameters(self)
-        self._remove_folder: Callable[[], object] = bool
-        self._should_pause = False
-        check_seed(seed)
-        if data_file is None:
-            folder = tempfile.mkdtemp(prefix="pogosim-")
-            self._remove_folder = weakref.finalize(self, remove_own_folder, folder, os.getpid())
-            self.data_file = Path(folder) / "data.feather"
-        else:
-            self.data_file = Path(data_file)
+        self._strict = given.boolean("strict", strict)
+        settings = checked_settings(set)
+        seed = checked_seed(seed)
+        if data_file is None and "data_filename" in settings:
+            data_file = settings["data_filename"]
+        folder = own_folder() if data_file is None else None
+        self.data_file = folder / "data.feather" if folder else given.path("data_file", data_file)
         self._settings: dict[str, Any] = {
             "enable_console_logging": False,
             "save_video_period": -1,
             "data_filename": str(self.data_file),
-            **(set or {}),
+            **settings,
         }
-        self._strict = strict
-        self._lock = threading.Lock()
+        self._current = CurrentRun(folder)
+        self._lock = self._current.lock
         self._is_closed = False
-        self._open(seed)
+        self._finish = Finalize(self, self._current.finish, exitpriority=0)
+        try:
+            self._open(seed)
+        except BaseException:
+            self._finish()
+            raise
 
     def _open(self, seed: int | None) -> None:
-        self._handle: OpenRun | None = open_run(
-            self.program, self.configuration, settings_of(self._settings), seed, self._strict
+        self._current.run = RunState(
+            open_run(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
         )
-        self._is_over = self._has_failed = False
-        self._arrays: dict[str, npt.NDArray[Any]] = {}
-        self._slices: dict[str, Any] = {}
+        self._user_data: tuple[RunState, npt.NDArray[Any]] | None = None
         self._parameter_values = {
             key.removeprefix("parameters."): value
             for key, value in self._settings.items()
@@ -182,24 +194,19 @@ class Simulation:
             ConfigurationError: The program refused its configuration, or the data file cannot be written.
             KeyboardInterrupt: Ctrl-C. The run can go on afterwards.
         """
-        steps = operator.index(steps)
-        if steps < 0:
-            raise ConfigurationError(f"steps: expected at least 0, found {steps}")
+        steps = given.integer("steps", steps, least=0)
         made = 0
         with self._busy():
             run = self._run
-            if self._has_failed:
+            if run.number("has_failed"):
                 raise SimulationError("the run has failed: reset it")
             # One more than are left: the step that finds the run over.
-            steps = min(steps, self.step_count - self.steps + 1)
-            while made < steps and not self._is_over and not self._should_pause:
+            steps = min(steps, int(run.number("step_count") - run.number("step")) + 1)
+            is_over = bool(run.number("is_over"))
+            while made < steps and not is_over and not self._current.should_pause:
                 done = c_int64()
                 try:
-                    status = check(library().pogosim_run_step(run, steps - made, SLICE_S, byref(done)))
-                    self._is_over = status == OVER
-                except SimulationError:
-                    self._is_over = self._has_failed = True
-                    raise
+                    is_over = check(library().pogosim_run_step(run.pointer, steps - made, SLICE_S, byref(done))) == OVER
                 finally:
                     made += done.value
                     self._pass_messages_on()
@@ -207,9 +214,10 @@ class Simulation:
 
     def run(self, until_s: float = math.inf) -> int:
         """Go on until this simulated time, or the end of the run. Returns how many steps were made."""
-        if math.isnan(until_s):
-            raise ConfigurationError("until_s: expected a time (s), found nan")
-        last = min(max(until_s / self.time_step, 0.0), float(self.step_count))
+        until = given.number("until_s", until_s, "a time (s)")
+        if math.isnan(until):
+            raise given.refused("until_s", "a time (s)", until)
+        last = min(max(until / self.time_step, 0.0), float(self.step_count))
         return self.step(max(0, round(last) - self.steps))
 
     def end(self) -> None:
@@ -219,43 +227,47 @@ class Simulation:
 
     def _end(self) -> None:
         try:
-            check(library().pogosim_run_end(self._run))
+            check(library().pogosim_run_end(self._run.pointer))
         finally:
-            self._is_over = True
             self._pass_messages_on()
 
     def reset(self, seed: int | None = None) -> None:
         """Begin again: the program is loaded anew, with variables as new, and the parameters set so far.
 
+        Other threads that look at the simulation meanwhile see the end of the run before.
+
         Args:
             seed: Of the new run; None: that of this one.
         """
-        if self._is_closed:
-            raise SimulationError(CLOSED)
-        check_seed(seed)
+        check_process(self._current.process)
+        seed = checked_seed(seed)
         with self._busy():
-            self._close_run()
-            self._open(self._seed if seed is None else seed)
+            if self._is_closed:
+                raise SimulationError(CLOSED)
+            try:
+                if self._current.run is not None:
+                    self._seed = self.seed
+                    self._end()
+                self._open(self._seed if seed is None else seed)
+            except BaseException:
+                self._current.run = None
+                raise
 
     def close(self) -> None:
         """End the run. Its memory is freed as soon as no array of it is left."""
+        if os.getpid() != self._current.process:  # a forked child: its parent goes on
+            self._is_closed = True
+            return
         with self._busy():
             self._is_closed = True
             try:
-                self._close_run()
+                if self._current.run is not None:
+                    self._end()
             finally:
-                self._remove_folder()
-
-    def _close_run(self) -> None:
-        if self._handle is None:
-            return
-        self._seed = self.seed
-        try:
-            self._end()
-        finally:
-            self._arrays.clear()
-            self._slices.clear()
-            self._handle = None
+                self._current.run = None
+                self._user_data = None
+                self._finish.cancel()
+                self._current.remove_folder()
 
     def __enter__(self) -> Simulation:
         return self
@@ -269,7 +281,11 @@ class Simulation:
         raise TypeError("a simulation cannot be copied or pickled: make another one")
 
     def __repr__(self) -> str:
-        state = "closed" if self._handle is None else f"t = {self.time:g} s of {self.step_count * self.time_step:g} s"
+        run = self._current.run
+        if run is None or self._is_closed or os.getpid() != self._current.process:
+            state = "closed"
+        else:
+            state = f"t = {run.number('time'):g} s of {run.number('step_count') * run.number('time_step'):g} s"
         return f"<pogosim.Simulation of {self.program.name}, {self.configuration.name}: {state}>"
 
     # ---- What it is like now
@@ -277,110 +293,110 @@ class Simulation:
     @property
     def time(self) -> float:
         """Simulated time, s."""
-        return self._number("time")
+        return self._run.number("time")
 
     @property
     def steps(self) -> int:
         """Time steps since the beginning."""
-        return int(self._number("step"))
+        return int(self._run.number("step"))
 
     @property
     def step_count(self) -> int:
         """Time steps of the whole run."""
-        return int(self._number("step_count"))
+        return int(self._run.number("step_count"))
 
     @property
     def time_step(self) -> float:
         """Length of a time step, s."""
-        return self._number("time_step")
+        return self._run.number("time_step")
 
     @property
     def seed(self) -> int:
         """Seed of the run."""
-        return int(self._number("seed"))
+        return int(self._run.number("seed"))
 
     @property
     def is_over(self) -> bool:
         """Whether the simulated time is over, or the run has ended early."""
-        return self._is_over
+        check_process(self._current.process)
+        run = self._current.run
+        return run is None or bool(run.number("is_over"))
 
     @property
     def categories(self) -> list[str]:
         """Names of the categories, in the order of the configuration."""
-        text: bytes = library().pogosim_run_categories(self._run)
-        return text.decode().split("\n") if text else []
+        return self._run.names("pogosim_run_categories")
 
     @property
     def robot_ids(self) -> npt.NDArray[Any]:
         """What `pogobot_helper_getid()` answers. Shape (robots,); as below, robots are objects that run the program."""
-        return self._array("robots.id")
+        return self._run.array("robots.id")
 
     @property
     def robot_categories(self) -> npt.NDArray[Any]:
         """Index into `categories`. Shape (robots,)."""
-        return self._array("robots.category")
+        return self._run.array("robots.category")
 
     @property
     def positions(self) -> npt.NDArray[Any]:
         """Positions of the robots, mm. Shape (robots, 2); read-only, and always those of now."""
-        return self._of_robots("bodies.position")
+        return self._run.of_robots("bodies.position")
 
     @property
     def headings(self) -> npt.NDArray[Any]:
         """Headings of the robots, rad, clockwise on the screen, not wrapped. Shape (robots,); read-only."""
-        return self._of_robots("bodies.heading")
+        return self._run.of_robots("bodies.heading")
 
     @property
     def velocities(self) -> npt.NDArray[Any]:
         """Velocities of the robots, mm/s. Shape (robots, 2); read-only."""
-        return self._of_robots("bodies.velocity")
+        return self._run.of_robots("bodies.velocity")
 
     @property
     def angular_velocities(self) -> npt.NDArray[Any]:
         """Angular velocities of the robots, rad/s, clockwise on the screen. Shape (robots,); read-only."""
-        return self._of_robots("bodies.angular_velocity")
+        return self._run.of_robots("bodies.angular_velocity")
 
     @property
     def radii(self) -> npt.NDArray[Any]:
         """Radii of the robots' bounding disks, mm. Shape (robots,); read-only."""
-        return self._of_robots("bodies.radius")
+        return self._run.of_robots("bodies.radius")
 
     @property
     def leds(self) -> npt.NDArray[Any]:
         """Colours of the LEDs, 0 to 255. Shape (robots, 5, 3): head, front, right, back, left; red, green, blue."""
-        return self._array("robots.led")
+        return self._run.array("robots.led")
 
     @property
     def ticks(self) -> npt.NDArray[Any]:
         """`pogobot_ticks` of the robots. Shape (robots,); read-only."""
-        return self._array("robots.ticks")
+        return self._run.array("robots.ticks")
 
     @property
     def messages_sent(self) -> npt.NDArray[Any]:
         """Messages that each robot has sent. Shape (robots,); read-only."""
-        return self._array("robots.messages_sent")
+        return self._run.array("robots.messages_sent")
 
     @property
     def messages_received(self) -> npt.NDArray[Any]:
         """Messages that each robot has taken out of its queue. Shape (robots,); read-only."""
-        return self._array("robots.messages_received")
+        return self._run.array("robots.messages_received")
 
     @property
     def light_map(self) -> npt.NDArray[Any]:
         """Light on the floor, sensor counts. Shape (rows, columns), the first row along the top; read-only."""
-        return self._array("light")
+        return self._run.array("light")
 
     @property
     def light_levels(self) -> npt.NDArray[np.float64]:
         """Light at each robot, sensor counts, mean of its sensors, without noise. Shape (robots,); -1: no body."""
-        levels = np.empty(len(self.robot_ids))
-        library().pogosim_run_light_levels(self._run, levels.ctypes.data)
-        return levels
+        return self._run.light_levels()
 
     @property
     def state_hash(self) -> int:
         """Equal for runs in the same state: poses, LEDs, light, counts of messages, clocks, random streams."""
-        found: int = library().pogosim_run_hash(self._run)
+        run = self._run
+        found: int = library().pogosim_run_hash(run.pointer)
         return found
 
     @property
@@ -390,7 +406,7 @@ class Simulation:
         A mapping by name, see `Columns`. What robots give with `data_set_value_*` is known when rows are saved
         (`save_data_period`), and `sim.columns.time` is when that was.
         """
-        return Columns(self._run, self._handle)
+        return Columns(self._run)
 
     @property
     def user_data(self) -> npt.NDArray[Any]:
@@ -401,12 +417,11 @@ class Simulation:
         Raises:
             SimulationError: The program has no user data, or was compiled without `-g`.
         """
-        if "user_data" not in self._slices:
-            raw = self._array("robots.user_data")
-            kind = user_data_type(self.program, int(self._number("user_data_bytes")))
-            self._slices["user_data"] = writable(raw).view(kind)
-        found: npt.NDArray[Any] = self._slices["user_data"]
-        return found
+        run, known = self._run, self._user_data
+        if known is None or known[0] is not run:
+            kind = user_data_type(self.program, int(run.number("user_data_bytes")))
+            self._user_data = known = (run, writable(run.array("robots.user_data")).view(kind))
+        return known[1]
 
     # ---- What can be changed
 
@@ -422,12 +437,14 @@ class Simulation:
         Raises:
             ConfigurationError: There is no such robot, it has no body, or the place is in a wall.
         """
-        count = len(self.robot_ids)
-        if not 0 <= robot < count:
-            raise ConfigurationError(f"there is no robot {robot}: the run has {count}")
-        angle = float(self.headings[robot]) if heading is None else heading
+        number = given.integer("robot", robot)
+        count = int(self._run.number("robot_count"))
+        if not 0 <= number < count:
+            raise ConfigurationError(f"there is no robot {number}: the run has {count}")
+        place = given.finite("x", x), given.finite("y", y)
+        angle = float(self.headings[number]) if heading is None else given.finite("heading", heading)
         with self._busy():
-            check(library().pogosim_run_set_pose(self._run, robot, x, y, angle))
+            check(library().pogosim_run_set_pose(self._run.pointer, number, *place, angle))
 
     @property
     def objects(self) -> Objects:
@@ -442,8 +459,9 @@ class Simulation:
     @property
     def alive(self) -> npt.NDArray[np.bool_]:
         """Whether each robot is switched on. Shape (robots,); read-only copy: objects have `kill()` and `revive()`."""
-        alive = np.ones(len(self.robot_ids), dtype=np.bool_)
-        for state in (found._state() for found in self.objects):
+        run = self._run
+        alive = np.ones(int(run.number("robot_count")), dtype=np.bool_)
+        for state in (object_state(run, index) for index in range(int(run.number("object_count")))):
             if state.robot != NO_BODY:
                 alive[state.robot] = state.is_alive
         alive.flags.writeable = False
@@ -463,98 +481,78 @@ class Simulation:
         """
         index = -1
         if obj is not None:
-            index = obj.index if isinstance(obj, WorldObject) else operator.index(obj)
-            check_object(self, index)
+            index = given.integer("obj", obj.index if isinstance(obj, WorldObject) else obj)
+            count = len(self.objects)
+            if not 0 <= index < count:
+                raise ConfigurationError(f"there is no object {index}: the run has {count}")
+        column = given.text("name", name)
+        number = float(value) if isinstance(value, (bool, np.bool_)) else given.number(column, value)
         with self._busy():
-            check(library().pogosim_run_set_column(self._run, index, name.encode(), float(value)))
+            check(library().pogosim_run_set_column(self._run.pointer, index, column.encode(), number))
 
     def _set_parameter(self, name: str, value: Any) -> None:
+        key = f"parameters.{given.text('a parameter', name)}"
+        plain = given.value(key, value)
         with self._busy():
-            if self._handle is not None or self._is_closed:  # else the last reset failed, perhaps because of this one
-                check(library().pogosim_run_set_parameter(self._run, name.encode(), yaml_text(value).encode()))
-        self._settings[f"parameters.{name}"] = plain(value)
-        self._parameter_values[name] = plain(value)
+            if self._current.run is not None or self._is_closed:  # else the last reset failed, perhaps because of this
+                text = yaml_text(key, plain).encode()
+                check(library().pogosim_run_set_parameter(self._run.pointer, name.encode(), text))
+            self._settings[key] = plain
+            self._parameter_values[name] = plain
 
     # ---- Rows
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the rows recorded so far, as `pogosim.utils.load_dataframe` does."""
-        from pogosim.utils import load_dataframe  # pandas takes most of a second, which runs without rows need not wait
+        from pogosim import utils  # pandas takes most of a second, which runs without rows need not wait
 
         with self._busy():
-            check(library().pogosim_run_save(self._run))
-        if not self.data_file.exists():
-            raise SimulationError("the run records no rows (enable_data_logging: false)")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # the run goes on
-            rows, _ = load_dataframe(self.data_file)
+            check(library().pogosim_run_save(self._run.pointer))
+            if not self.data_file.exists():
+                raise SimulationError("the run records no rows (enable_data_logging: false)")
+            rows, metadata = utils.load_file(self.data_file, warns=False)  # the run goes on
+        rows.attrs = utils.attributes(metadata)
         return rows
 
     def save_data(self, file: PathLike) -> None:
         """Copy the complete data file of a run that is over."""
+        path = given.path("file", file)
         self.end()
-        shutil.copyfile(self.data_file, file)
+        try:
+            shutil.copyfile(self.data_file, path)
+        except OSError as error:
+            raise ConfigurationError(f"the data file cannot be copied to {path}: {error.strerror or error}") from None
 
     # ---- Inside
 
     @property
-    def _run(self) -> c_void_p:
-        if self._handle is None:
+    def _run(self) -> RunState:
+        check_process(self._current.process)
+        run = self._current.run
+        if run is None:
             raise SimulationError(
                 CLOSED if self._is_closed else "the last reset failed: mend what it said, and reset again"
             )
-        return self._handle.pointer
+        return run
 
-    def _busy(self) -> Busy:
-        return Busy(self._lock)
+    def _busy(self) -> threading.Lock:
+        """Return the lock for a `with` block, which no other thread has: a second one gets an error, no wrong results.
 
-    def _number(self, name: str) -> float:
-        value = c_double()
-        check(library().pogosim_run_number(self._run, name.encode(), byref(value)))
-        return value.value
-
-    def _array(self, name: str) -> npt.NDArray[Any]:
-        if name not in self._arrays:
-            self._arrays[name] = array_of(self._run, name, self._handle)
-        return self._arrays[name]
-
-    def _of_robots(self, name: str) -> npt.NDArray[Any]:
-        """Return rows of an array of bodies: a view if the bodies of the robots stand in a row, which is usual."""
-        values = self._array(name)
-        if "bodies" not in self._slices:
-            body = self._array("robots.body")
-            first = int(body[0]) if len(body) else 0
-            in_a_row = bool(np.array_equal(body, np.arange(first, first + len(body))))
-            self._slices["bodies"] = slice(first, first + len(body)) if in_a_row else body
-        rows = self._slices["bodies"]
-        if isinstance(rows, slice):
-            return values[rows]
-        copy = np.full((len(rows), *values.shape[1:]), np.nan, dtype=values.dtype)
-        has_body = rows != NO_BODY
-        copy[has_body] = values[rows[has_body]]
-        return copy
+        Python takes and gives back the lock itself in one piece each, so that Ctrl-C cannot leave it behind.
+        """
+        check_process(self._current.process)
+        if self._lock.locked():
+            raise SimulationError("the simulation is in use by another thread: give each thread one of its own")
+        return self._lock
 
     def _pass_messages_on(self) -> None:
-        text: bytes = library().pogosim_run_messages(self._run)
+        run = self._run
+        text: bytes = library().pogosim_run_messages(run.pointer)
         for line in text.decode("utf-8", "replace").split("\n") if text else ():
             if line[:1] == "P":
                 robot_logger.info("%s", line[1:])
             else:
                 logger.log(LEVELS.get(line[:1], logging.INFO), "%s", line[1:])
-
-
-class Busy:
-    """A simulation in use by one thread: a second one gets an error instead of wrong results."""
-
-    def __init__(self, lock: threading.Lock) -> None:
-        self._lock = lock
-
-    def __enter__(self) -> None:
-        if not self._lock.acquire(blocking=False):
-            raise SimulationError("the simulation is in use by another thread: give each thread one of its own")
-
-    def __exit__(self, *of_error: object) -> None:
-        self._lock.release()
 
 
 def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
@@ -566,16 +564,13 @@ def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return np.asarray(holder)
 
 
-def check_seed(seed: int | None) -> None:
-    """Raise ConfigurationError for what is no seed."""
-    if seed is not None and not 0 <= operator.index(seed) <= MOST_SEED:
-        raise ConfigurationError(f"seed: expected an integer from 0 to {MOST_SEED}, found {seed}")
+def checked_seed(seed: Any) -> int | None:
+    """Return a seed.
 
-
-def remove_own_folder(folder: str, process: int) -> None:
-    """Remove a folder, but not at the end of a child process that the one that made it has forked."""
-    if os.getpid() == process:
-        shutil.rmtree(folder, ignore_errors=True)
+    Raises:
+        ConfigurationError: It is none.
+    """
+    return None if seed is None else given.integer("seed", seed, least=0, most=MOST_SEED)
 
 
 def shared_object(program: Path) -> Path:

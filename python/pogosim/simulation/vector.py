@@ -12,10 +12,27 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.outputs import PathLike
-from pogosim.simulation.errors import ConfigurationError, SimulationError
-from pogosim.simulation.run import CLOSED, Simulation, check_seed
+from pogosim.simulation.arrays import check_process
+from pogosim.simulation.errors import ConfigurationError, SimulationError, given
+from pogosim.simulation.objects import chosen_index
+from pogosim.simulation.run import CLOSED, Simulation, checked_seed
+
+MOST_THREADS = 1024
 
 T = TypeVar("T")
+
+
+def checked_seeds(seeds: Any) -> list[int | None]:
+    """Return seeds, one for each run.
+
+    Raises:
+        ConfigurationError: They are none.
+    """
+    try:
+        found = list(seeds)
+    except TypeError:
+        raise given.refused("seeds", "a list of integers, one for each run", seeds) from None
+    return [checked_seed(seed) for seed in found]
 
 
 def call_with_run(function: Callable[[Simulation], T], simulation: Simulation, index: int) -> T:
@@ -24,6 +41,19 @@ def call_with_run(function: Callable[[Simulation], T], simulation: Simulation, i
         return function(simulation)
     except SimulationError as error:
         raise type(error)(f"run {index}: {error}") from None
+
+
+def alike(arrays: list[npt.NDArray[Any]]) -> list[npt.NDArray[Any]]:
+    """Return arrays that can be stacked.
+
+    Raises:
+        SimulationError: There are none, or runs have different numbers of robots.
+    """
+    shapes = {array.shape for array in arrays}
+    if len(shapes) != 1:
+        found = " and ".join(str(shape[0]) for shape in sorted(shapes)) or "no runs"
+        raise SimulationError(f"arrays of all runs need the same number of robots in each, found {found}")
+    return arrays
 
 
 class VectorSimulation:
@@ -54,11 +84,14 @@ class VectorSimulation:
             threads: How many runs go on at a time; None: one for each processor.
             **options: As of `Simulation`, the same for all.
         """
-        self._threads = ThreadPoolExecutor(threads or os.cpu_count() or 1, thread_name_prefix="pogosim")
+        chosen_seeds = checked_seeds(seeds)
+        count = os.cpu_count() or 1 if threads is None else given.integer("threads", threads, 1, MOST_THREADS)
+        self._threads = ThreadPoolExecutor(count, thread_name_prefix="pogosim")
+        self._process = os.getpid()
         self._is_closed = False
         try:
             self.simulations = list(
-                self._threads.map(lambda seed: Simulation(program, configuration, seed=seed, **options), seeds)
+                self._threads.map(lambda seed: Simulation(program, configuration, seed=seed, **options), chosen_seeds)
             )
         except BaseException:
             self._threads.shutdown()
@@ -71,8 +104,11 @@ class VectorSimulation:
             What it returned, in order. If it raises an exception for some runs, the others go on, and the first of
             these exceptions comes when all are ready. After Ctrl-C, runs that step stop between two time steps.
         """
+        check_process(self._process)  # a forked child has none of the threads
         if self._is_closed:
             raise SimulationError(CLOSED)
+        if not callable(function):
+            raise given.refused("function", "a function of a Simulation", function)
         runs = enumerate(self.simulations)
         calls = [self._threads.submit(call_with_run, function, simulation, index) for index, simulation in runs]
         try:
@@ -87,12 +123,12 @@ class VectorSimulation:
     def _pause(self, calls: list[Future[T]]) -> None:
         """Let runs stop between two time steps; none is in use afterwards."""
         for simulation in self.simulations:
-            simulation._should_pause = True
+            simulation._current.should_pause = True
         try:
             wait(calls)
         finally:
             for simulation in self.simulations:
-                simulation._should_pause = False
+                simulation._current.should_pause = False
 
     def step(self, steps: int = 1) -> list[int]:
         """Go on with all of them, see `Simulation.step`. Returns how many steps each has made."""
@@ -100,18 +136,16 @@ class VectorSimulation:
 
     def reset(self, seeds: Sequence[int] | range | None = None) -> None:
         """Begin all of them again, with these seeds or their own."""
-        chosen: list[int | None] = [None] * len(self) if seeds is None else list(seeds)
-        if len(chosen) != len(self):
-            raise ConfigurationError(f"seeds: expected {len(self)}, one for each run, found {len(chosen)}")
-        for seed in chosen:
-            check_seed(seed)
-        seed_of = dict(zip(map(id, self.simulations), chosen, strict=True))
+        new_seeds = [None] * len(self) if seeds is None else checked_seeds(seeds)
+        if len(new_seeds) != len(self):
+            raise ConfigurationError(f"seeds: expected {len(self)}, one for each run, found {len(new_seeds)}")
+        seed_of = dict(zip(map(id, self.simulations), new_seeds, strict=True))
         self.each(lambda simulation: simulation.reset(seed_of[id(simulation)]))
 
     @property
     def positions(self) -> npt.NDArray[Any]:
         """Positions of all robots, mm. Shape (runs, robots, 2); a copy. All runs must have as many robots."""
-        return np.stack([simulation.positions for simulation in self.simulations])
+        return np.stack(alike([simulation.positions for simulation in self.simulations]))
 
     def column(self, name: str) -> Any:
         """Return a column that the program has added to the data file, at the last save of each run.
@@ -126,7 +160,7 @@ class VectorSimulation:
             KeyError: There is no such column.
         """
         found = [simulation.columns[name] for simulation in self.simulations]
-        return found if any(isinstance(values, list) for values in found) else np.ma.stack(found)
+        return found if any(isinstance(values, list) for values in found) else np.ma.stack(alike(found))
 
     @property
     def is_over(self) -> npt.NDArray[np.bool_]:
@@ -138,7 +172,7 @@ class VectorSimulation:
         self._is_closed = True
         for simulation in self.simulations:
             simulation.close()
-        self._threads.shutdown()
+        self._threads.shutdown(wait=os.getpid() == self._process)
 
     def __len__(self) -> int:
         return len(self.simulations)
@@ -147,7 +181,7 @@ class VectorSimulation:
         return iter(self.simulations)
 
     def __getitem__(self, index: int) -> Simulation:
-        return self.simulations[index]
+        return self.simulations[chosen_index(index, len(self), "run")]
 
     def __enter__(self) -> VectorSimulation:
         return self
