@@ -114,7 +114,6 @@ class Simulation:
     Attributes:
         program: The shared object.
         configuration: The YAML file.
-        parameters: Values under `parameters`; they can be set during the run, see `Parameters`.
     """
 
     def __init__(
@@ -145,7 +144,6 @@ class Simulation:
         """
         self.program = shared_object(given.path("program", program))
         self.configuration = given.path("configuration", configuration)
-        self.parameters = Parameters(self)
         self._strict = given.boolean("strict", strict)
         settings = checked_settings(set)
         seed = checked_seed(seed)
@@ -173,6 +171,7 @@ class Simulation:
         self._current.run = RunState(
             open_run(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
         )
+        self._seed = self.seed
         self._user_data: tuple[RunState, npt.NDArray[Any]] | None = None
         self._parameter_values = {
             key.removeprefix("parameters."): value
@@ -246,7 +245,6 @@ class Simulation:
                 raise SimulationError(CLOSED)
             try:
                 if self._current.run is not None:
-                    self._seed = self.seed
                     self._end()
                 self._open(self._seed if seed is None else seed)
             except BaseException:
@@ -445,6 +443,11 @@ class Simulation:
         angle = float(self.headings[number]) if heading is None else given.finite("heading", heading)
         with self._busy():
             check(library().pogosim_run_set_pose(self._run.pointer, number, *place, angle))
+
+    @property
+    def parameters(self) -> Parameters:
+        """Values under `parameters`; they can be set during the run, see `Parameters`."""
+        return Parameters(self)
 
     @property
     def objects(self) -> Objects:

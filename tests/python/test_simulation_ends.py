@@ -1,0 +1,222 @@
+"""How runs inside of this process end: interrupted, collected, forgotten at the end of a script, in a forked child."""
+
+from __future__ import annotations
+
+import gc
+import inspect
+import os
+import signal
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pogosim
+import pytest
+from pogosim.simulation.library import library
+from pogosim.utils import load_dataframe
+from running import PROGRAMS, ROOT, compile_program, write_scene
+from threads_of_a_run import SPECIAL, names_of
+
+SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
+
+
+@pytest.fixture(autouse=True)
+def _folders(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The shared object of tests/programs/hosted.c."""
+    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    """A configuration of three robots and 2 s."""
+    return write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv"), "save_data_period": 0.5})
+
+
+def interrupt_in(function: str, call: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let Ctrl-C come while a function of the library is called for the so-manieth time."""
+    real, calls = getattr(library(), function), []
+
+    def interrupted(*arguments: Any) -> Any:
+        status = real(*arguments)
+        calls.append(status)
+        if len(calls) == call:
+            signal.raise_signal(signal.SIGINT)
+        return status
+
+    monkeypatch.setattr(library(), function, interrupted)
+
+
+def test_run_is_over_though_ctrl_c_came_in_its_last_step(
+    program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pogosim.Simulation(program, scene) as simulation:
+        interrupt_in("pogosim_run_step", 1, monkeypatch)
+        with pytest.raises(KeyboardInterrupt):
+            simulation.run()
+        assert simulation.steps == simulation.step_count
+        assert simulation.is_over
+        assert simulation.run() == 0
+
+
+@pytest.mark.parametrize("function", ["pogosim_run_open", "pogosim_run_end", "pogosim_run_number"])
+def test_reset_that_ctrl_c_interrupted_can_be_done_again(
+    function: str, program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pogosim.Simulation(program, scene, seed=4) as simulation:
+        simulation.step(20)
+        with monkeypatch.context() as patch:
+            interrupt_in(function, 1, patch)
+            with pytest.raises(KeyboardInterrupt):
+                simulation.reset()
+        simulation.reset()
+        assert (simulation.seed, simulation.steps, simulation.step(5)) == (4, 0, 5)
+
+
+HEAD = """
+import glob, multiprocessing, os, sys, threading, pogosim
+def left():
+    return glob.glob(os.environ['TMPDIR'] + '/pogosim-*')
+def make(**options):
+    simulation = pogosim.Simulation(sys.argv[1], sys.argv[2], **options)
+    simulation.step(60)
+    return simulation
+def forget():
+    global kept
+    kept = make()
+"""
+ENDINGS = {
+    "alive at the end of the script": "kept = make()",
+    "collected": "make(); assert not left()",
+    "collected in a circle": "import gc\nloop = [make()]; loop.append(loop); del loop; gc.collect()\nassert not left()",
+    "an exception": "kept = make(); error = 1 / 0",
+    "sys.exit": "kept = make(); sys.exit(3)",
+    "its arrays are kept": "positions = make().positions; columns = make().columns",
+    "reset": "kept = make(); kept.reset(); kept.step(10)",
+    "closed": "kept = make(); kept.close(); kept.close()",
+    "a thread": "thread = threading.Thread(target=make); thread.start(); thread.join()\nassert not left()",
+    "a thread that still steps": "kept = make(set={'simulation_time': 1e7, 'save_data_period': -1})\n"
+    "threading.Thread(target=kept.run, daemon=True).start()",
+    "a failing program": "kept = make(set={'parameters.fail_at_tick': 5})",
+    "a wrong configuration": "kept = make(set={'objects.robots.nb': -5})",
+    "many": "kept = pogosim.VectorSimulation(*sys.argv[1:], seeds=range(3)); kept.step(10)",
+    "a forked child": "kept = make(); child = os.fork()\n"
+    "if child: os.waitpid(child, 0); print(len(kept.to_dataframe()))",
+    "fork": "child = multiprocessing.get_context('fork').Process(target=forget); child.start(); child.join()\n"
+    "assert not left()",
+    "forkserver": "if __name__ == '__main__':\n"
+    "    child = multiprocessing.get_context('forkserver').Process(target=forget); child.start(); child.join()\n"
+    "    assert not left()",
+    "a pool": "pool = multiprocessing.get_context('fork').Pool(2)\n"
+    "pool.map(type(forget)(forget.__code__, globals()), []) \npool.close(); pool.join()",
+}
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_temporary_files_are_removed_however_a_script_ends(
+    ending: str, program: Path, scene: Path, tmp_path: Path
+) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(HEAD + ENDINGS[ending] + "\n")
+    ended = subprocess.run(
+        [sys.executable, script, program, scene], capture_output=True, text=True, timeout=60, check=False
+    )
+    fails = {"an exception": 1, "sys.exit": 3, "a failing program": 1, "a wrong configuration": 1}
+    assert ended.returncode == fails.get(ending, 0), ended.stderr
+    assert "Exception ignored" not in ended.stderr
+    assert [found.name for found in (tmp_path / "tmp").iterdir() if found.name.startswith("pogosim-")] == []
+    if ending == "a forked child":
+        assert ended.stdout == "6\n"
+
+
+def test_named_file_of_a_forgotten_run_is_complete(program: Path, scene: Path, tmp_path: Path) -> None:
+    file = tmp_path / "rows.feather"
+    simulation = pogosim.Simulation(program, scene, data_file=file)
+    simulation.step(60)
+    positions = simulation.positions
+    del simulation
+    gc.collect()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rows, _ = load_dataframe(file)
+    assert len(rows) == 6
+    assert positions.shape == (3, 2)
+
+
+def in_a_child(check: Callable[[], str]) -> str:
+    """Return what a check returns in a forked child."""
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            text = check()
+        except BaseException as error:
+            text = f"{type(error).__name__}: {error}"
+        os.write(writer, text.encode())
+        os._exit(0)
+    os.close(writer)
+    with os.fdopen(reader) as pipe:
+        text = pipe.read()
+    os.waitpid(child, 0)
+    return text
+
+
+def closed_quietly(runs: pogosim.Simulation | pogosim.VectorSimulation) -> str:
+    """Close, as a `with` block does."""
+    runs.close()
+    return "quiet"
+
+
+ARGUMENTS: dict[str, Any] = {"robot": 0, "x": 500, "y": 500, "name": "steps_of_all", "value": 1, "file": "/dev/null"}
+
+
+def answers_in_a_child(simulation: pogosim.Simulation) -> str:
+    """Use everything of a simulation; returns what did not say that it belongs to another process."""
+    silent = []
+    for name in names_of(pogosim.Simulation):
+        if name in ("close", "lamps", "objects", "parameters", *SPECIAL):  # see below
+            continue
+        try:
+            value = getattr(simulation, name)
+            if callable(value):
+                needed = [one.name for one in inspect.signature(value).parameters.values() if one.default is one.empty]
+                value(*(ARGUMENTS[argument] for argument in needed))
+            silent.append(name)
+        except pogosim.SimulationError as error:
+            assert "which has forked this one: make one of its own here" in str(error)
+    return " ".join(silent)
+
+
+def test_forked_child_gets_an_error_for_all_that_it_asks(program: Path, scene: Path) -> None:
+    with pogosim.Simulation(program, scene) as simulation:
+        simulation.step(60)
+        positions, columns, objects = simulation.positions, simulation.columns, list(simulation.objects)
+        assert in_a_child(lambda: answers_in_a_child(simulation)) == ""
+        assert "belongs to process" in in_a_child(lambda: str(columns.time))
+        assert "belongs to process" in in_a_child(lambda: str(objects[0].position))
+        assert "belongs to process" in in_a_child(lambda: str(len(simulation.lamps)))
+        assert "belongs to process" in in_a_child(lambda: str(simulation.parameters.update(gain=3.0)))
+        assert in_a_child(lambda: str(positions.shape)) == "(3, 2)"
+        assert in_a_child(lambda: closed_quietly(simulation)) == "quiet"
+        assert "closed" in in_a_child(lambda: repr(simulation))
+        assert len(simulation.to_dataframe()) == 6
+        simulation.run()
+        assert len(simulation.to_dataframe()) == 15
+
+
+def test_many_runs_in_a_forked_child_do_not_wait_for_threads_that_it_lacks(program: Path, scene: Path) -> None:
+    with pogosim.VectorSimulation(program, scene, seeds=range(2)) as runs:
+        runs.step(5)
+        for use in (lambda: runs.step(5), runs.reset, lambda: runs.positions, lambda: runs.is_over):
+            assert "belongs to process" in in_a_child(lambda use=use: str(use()))  # type: ignore[misc]
+        assert in_a_child(lambda: closed_quietly(runs)) == "quiet"
+        assert runs.step(5) == [5, 5]
