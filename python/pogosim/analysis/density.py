@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy import ndimage
 
 from pogosim.analysis.arena import Arena, Floats
@@ -94,6 +95,24 @@ def count_density(arena: Arena, position_mm: Floats, bins: int = 30) -> DensityG
         return DensityGrid(x, y, np.where(few, np.nan, count / (len(points) * area_m2)))
 
 
+def is_within(points: Floats, x_mm: Floats, y_mm: Floats) -> npt.NDArray[np.bool_]:
+    """Tell which points are on a grid. Shape (n, 2) to (n,)."""
+    return np.asarray(((points >= [x_mm[0], y_mm[0]]) & (points <= [x_mm[-1], y_mm[-1]])).all(axis=1))
+
+
+def smoothed(values: Floats, sigma: Floats, arena: Arena) -> Floats:
+    """Smooth values of bins by a Gaussian with these standard deviations, in bins.
+
+    What a kernel that is wider than the grid has beyond it is not computed; in a periodic arena, one that is as wide
+    as the grid is uniform, and so is a wider one. So the time does not depend on the width.
+    """
+    if arena.is_periodic:
+        return np.asarray(ndimage.gaussian_filter(values, np.minimum(sigma, values.shape), mode="wrap"))
+    radius = np.minimum(np.ceil(4.0 * sigma), np.array(values.shape)).astype(int)
+    sigma = np.minimum(sigma, 100.0 * np.array(values.shape))  # flat, as far as the grid goes
+    return np.asarray(ndimage.gaussian_filter(values, sigma, mode="constant", radius=tuple(radius)))
+
+
 def kernel_density(arena: Arena, position_mm: Floats, bandwidth_mm: float | None = None) -> DensityGrid:
     """Estimate the density by Gaussian kernels: each position is spread over its surroundings.
 
@@ -104,9 +123,9 @@ def kernel_density(arena: Arena, position_mm: Floats, bandwidth_mm: float | None
 
     Args:
         arena: The grid covers its bounding box.
-        position_mm: As for `count_density`.
+        position_mm: As for `count_density`; those beyond the box are left out.
         bandwidth_mm: Standard deviation of the kernel. None: Scott's rule in two dimensions, s n^(-1/6), where s is
-            the standard deviation of the positions (root mean square of both axes).
+            the standard deviation of the positions in the arena (root mean square of both axes).
 
     Returns:
         The density: NaN off the floor.
@@ -115,14 +134,16 @@ def kernel_density(arena: Arena, position_mm: Floats, bandwidth_mm: float | None
     if len(points) == 0:
         return DensityGrid(np.zeros(2), np.zeros(2), np.full((1, 1), np.nan))
     x, y = edges(arena, points, KERNEL_GRID)
+    points = points[is_within(points, x, y)]
+    if len(points) == 0:
+        return DensityGrid(x, y, np.full((len(y) - 1, len(x) - 1), np.nan))
     if bandwidth_mm is None:
         bandwidth_mm = float(np.sqrt(points.var(axis=0).mean())) * len(points) ** (-1.0 / 6.0)
     size = np.array([y[1] - y[0], x[1] - x[0]])
     sigma = np.maximum(bandwidth_mm / size, 0.5)  # in bins
-    mode = "wrap" if arena.is_periodic else "constant"
     share = floor_share(arena, x, y)
-    count = ndimage.gaussian_filter(counted(points, x, y), sigma, mode=mode)
-    inside = ndimage.gaussian_filter(share, sigma, mode=mode) if has_walls(arena) else share
+    count = smoothed(counted(points, x, y), sigma, arena)
+    inside = smoothed(share, sigma, arena) if has_walls(arena) else share
     with np.errstate(invalid="ignore", divide="ignore"):
         density = np.where(share > MIN_FLOOR_SHARE, count / inside, np.nan)
     total = np.nansum(density * share) * size.prod() * 1e-6

@@ -22,6 +22,7 @@ import pandas as pd
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.errors import AnalysisError
 from pogosim.batch.paths import get_by_dotted_path
+from pogosim.far_away import is_near
 from pogosim.periodic import steps_of
 from pogosim.run_columns import is_one_run
 from pogosim.scene import POGOBOT_RADIUS_MM, number, read_categories
@@ -88,7 +89,8 @@ def trajectories_of(
 ) -> list[Trajectories]:
     """Arrange the rows of a data file by run, time and robot.
 
-    Runs are told apart by the column `run`, and by the columns with which a batch names its combinations.
+    Runs are told apart by the column `run`, and by the columns with which a batch names its combinations. Rows with
+    positions farther than 10 km away are left out, with a warning (RuntimeWarning).
 
     Args:
         rows: As of `pogosim.utils.load_dataframe`; at least the columns time, x and y (s, mm).
@@ -106,6 +108,7 @@ def trajectories_of(
     need_columns(rows, ["time", "x", "y"])
     need_numbers(rows, ["time", "x", "y", "angle"])
     rows = of_category(with_objects(rows), metadata, category)
+    rows = rows[is_near(rows)]
     rows = rows[np.isfinite(rows["time"]) & np.isfinite(rows["x"]) & np.isfinite(rows["y"])]
     if rows.empty:
         raise AnalysisError("it has no row with a time and a position")

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from pogosim.far_away import is_near
 from pogosim.outputs import PathLike
 from pogosim.picture.colouring import Colouring, colouring_of
 from pogosim.picture.errors import PictureError
@@ -155,6 +156,7 @@ def read_recording(
     if missing:
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
     rows, polygons, left_out = one_run(checked(with_exact_times(rows)), metadata, run, combination)
+    rows = rows[is_near(rows)]
     configuration = metadata["configuration"]
     categories = read_categories(configuration)
     rows = completed(with_defaults(rows))

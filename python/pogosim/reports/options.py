@@ -57,12 +57,13 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         rows, metadata = load_dataframe(files)
-    for warning in caught:
-        warn(prog, warning.message)
-    try:
-        runs = trajectories_of(rows, metadata, options.category)
-    except AnalysisError as error:
-        raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
+        try:
+            runs = trajectories_of(rows, metadata, options.category)
+        except AnalysisError as error:
+            raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
+        finally:
+            for warning in caught:
+                warn(prog, warning.message)
     if options.rc is not None:
         runs = [replace(run, reach_mm=options.rc) for run in runs]
     return runs

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from ctypes import byref
 from typing import TYPE_CHECKING, overload
 
+from pogosim.arguments import shown
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import ConfigurationError, given
 from pogosim.simulation.library import LampState, ObjectState, check, library
@@ -39,7 +40,7 @@ def chosen_index(index: int, count: int, what: str) -> int:
     """
     number = given.integer(f"index of a {what}", index)
     if not -count <= number < count:
-        raise IndexError(f"there is no {what} {number}: the run has {count}")
+        raise IndexError(f"there is no {what} {shown(number)}: the run has {count}")
     return number % count
 
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.arguments import shown
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import NO_BODY, RunState, check_process
 from pogosim.simulation.columns import Columns
@@ -438,7 +439,7 @@ class Simulation:
         number = given.integer("robot", robot)
         count = int(self._run.number("robot_count"))
         if not 0 <= number < count:
-            raise ConfigurationError(f"there is no robot {number}: the run has {count}")
+            raise ConfigurationError(f"there is no robot {shown(number)}: the run has {count}")
         place = given.finite("x", x), given.finite("y", y)
         angle = float(self.headings[number]) if heading is None else given.finite("heading", heading)
         with self._busy():
@@ -487,7 +488,7 @@ class Simulation:
             index = given.integer("obj", obj.index if isinstance(obj, WorldObject) else obj)
             count = len(self.objects)
             if not 0 <= index < count:
-                raise ConfigurationError(f"there is no object {index}: the run has {count}")
+                raise ConfigurationError(f"there is no object {shown(index)}: the run has {count}")
         column = given.text("name", name)
         number = float(value) if isinstance(value, (bool, np.bool_)) else given.number(column, value)
         with self._busy():
