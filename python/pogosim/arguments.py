@@ -43,6 +43,15 @@ def is_text(value: Any) -> bool:
     return True
 
 
+def is_file_name(text: str) -> bool:
+    """Tell whether text can be the name of a file."""
+    try:
+        os.fsencode(text)
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 @dataclass(frozen=True)
 class Arguments:
     """Checks of arguments. What is none of the expected kind raises `error`, with the name of the argument.
@@ -115,7 +124,7 @@ class Arguments:
     def path(self, name: str, value: Any) -> Path:
         """Return the path of a file or folder."""
         found = os.fspath(value) if isinstance(value, os.PathLike) else value
-        if not isinstance(found, str) or not found or "\0" in found:
+        if not isinstance(found, str) or not found or "\0" in found or not is_file_name(found):
             raise self.refused(name, "the path of a file (str or pathlib.Path)", value)
         return Path(found)
 

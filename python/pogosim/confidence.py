@@ -6,6 +6,8 @@ import numpy as np
 import pandas as pd
 from scipy import special
 
+from pogosim.arguments import Arguments
+
 
 def mean_over_runs(runs: pd.DataFrame, level: float = 0.95) -> pd.DataFrame:
     """Average independent runs, with the confidence interval of each mean.
@@ -31,6 +33,7 @@ def mean_over_runs(runs: pd.DataFrame, level: float = 0.95) -> pd.DataFrame:
         raise TypeError(
             f"expected a dataframe with one column per run, as of unstack('run'); found {type(runs).__name__}"
         )
+    level = Arguments().number("level", level, "a number between 0 and 1, such as 0.95")
     if not 0.0 < level < 1.0:
         raise ValueError(f"level: expected a number between 0 and 1, such as 0.95; found {level}")
     count = runs.notna().sum(axis=1)

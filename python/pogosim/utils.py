@@ -9,7 +9,7 @@ import json
 import logging
 import os
 import warnings
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +19,15 @@ import pandas as pd
 import pyarrow
 from pyarrow import feather
 
+from pogosim.arguments import Arguments
 from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
 from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
 from pogosim.shared_metadata import shared
 from pogosim.tables import read_other
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
+
+given = Arguments()
 
 
 def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, dict[str, Any]]:
@@ -54,15 +57,16 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
     Raises:
         FileNotFoundError: There is no such file, or none that fits the pattern.
         OSError: A file cannot be read.
-        ValueError: A file is damaged, or neither a complete Feather file nor an unfinished one of the simulator; or the
-            list is empty.
+        ValueError: What was given is no path, or an empty list. A file is damaged, or neither a complete Feather file
+            nor an unfinished one of the simulator.
     """
-    if not isinstance(path, (str, os.PathLike)):
-        rows, metadata = join_files([(Path(file), *load_file(Path(file))) for file in path])
-    elif is_pattern(path):
-        rows, metadata = join_files([(file, *load_file(file)) for file in files_that_fit(path)])
+    if isinstance(path, Iterable) and not isinstance(path, (str, bytes, os.PathLike)):
+        files = [given.path(f"path[{number}]", file) for number, file in enumerate(path)]
+        rows, metadata = join_files([(file, *load_file(file)) for file in files])
+    elif is_pattern(one := given.path("path", path)):
+        rows, metadata = join_files([(file, *load_file(file)) for file in files_that_fit(one)])
     else:
-        rows, metadata = load_file(Path(path))
+        rows, metadata = load_file(one)
     rows.attrs = attributes(metadata)
     return rows, metadata
 

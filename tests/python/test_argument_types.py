@@ -14,7 +14,15 @@ import numpy as np
 import pandas as pd
 import pogosim
 import pytest
+from pogosim.analysis.neighbourhood import degrees, nearest_distances
+from pogosim.analysis.trajectories import trajectories_of
+from pogosim.confidence import mean_over_runs
+from pogosim.picture.errors import PictureError
+from pogosim.picture.swarm import read_recording
+from pogosim.pogobatch import BatchError, PogobotBatchRunner
+from pogosim.utils import load_dataframe
 from running import PROGRAMS, ROOT, compile_program, write_scene
+from swarms import brownian_walk, metadata_of, rows_of, write_rows
 
 SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 
@@ -291,3 +299,50 @@ def test_vector_of_runs_takes_seeds_of_numpy(program: Path, scene: Path) -> None
             runs[2]
         with pytest.raises(pogosim.ConfigurationError, match="function: expected a function"):
             runs.each(3)
+
+
+def run_in_a_file(folder: Path) -> Path:
+    """A data file of four robots."""
+    return write_rows(folder / "rows.feather", rows_of(500.0 + brownian_walk(3, 4, 5.0)), metadata_of())
+
+
+NO_PATHS = {kind: value for kind, value in NOT_NUMBERS.items() if kind not in ("text", "path", "generator")}
+
+
+def test_what_is_no_data_file_is_refused(tmp_path: Path) -> None:
+    file = run_in_a_file(tmp_path)
+    for kind, value in NO_PATHS.items():
+        with pytest.raises(ValueError, match=r"^path(\[\d\])?: expected the path of a file"):
+            load_dataframe(value if kind != "map" else [value])
+        with pytest.raises(ValueError, match=r"^path\[1\]: expected the path of a file"):
+            load_dataframe([file, value])
+    for files in ((file, str(file)), np.array([str(file)]), {file}, (name for name in [file])):
+        assert len(load_dataframe(files)[0]) in (12, 24)  # type: ignore[arg-type]
+
+
+FUNCTIONS: dict[str, Callable[[Path, Any], object]] = {
+    "rows": lambda _, value: trajectories_of(value),
+    "reach_mm": lambda file, value: degrees(trajectories_of(load_dataframe(file)[0])[0], value),
+    "count": lambda file, value: nearest_distances(trajectories_of(load_dataframe(file)[0])[0], value),
+    "level": lambda _, value: mean_over_runs(pd.DataFrame({"a": [1.0]}), value),
+    "run": lambda file, value: read_recording(file, run=value),
+    "combination": lambda file, value: read_recording(file, combination=value),
+    "multi_config_file": lambda _, value: PogobotBatchRunner(value, 1, "p", "tmp", "out"),
+    "simulator_binary": lambda _, value: PogobotBatchRunner("c.yaml", 1, value, "tmp", "out"),
+    "--runs": lambda _, value: PogobotBatchRunner("c.yaml", value, "p", "tmp", "out"),
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_of_the_package_refuse_by_name(name: str, tmp_path: Path) -> None:
+    file = run_in_a_file(tmp_path)
+    for kind, value in NOT_NUMBERS.items():
+        is_path = name in ("multi_config_file", "simulator_binary") and kind in ("text", "path")
+        is_large = name in ("run", "combination", "count", "--runs") and kind == "huge"
+        if is_path or is_large or (value is None and name in ("reach_mm", "run", "combination")):
+            continue
+        with pytest.raises((ValueError, PictureError, BatchError)) as caught:
+            FUNCTIONS[name](file, value)
+        text = str(caught.value)
+        assert text.startswith(f"{name}: expected"), (kind, text)
+        assert text.isprintable() and len(text) < 250

@@ -32,7 +32,7 @@ def coverage_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.D
         AnalysisError: The arena is not known.
     """
     need_arena(run)
-    reach = run.reach_mm if reach_mm is None else reach_mm
+    reach = run.reach(reach_mm)
     floor = run.arena.shape()
     rows = []
     for _, positions, _ in run.snapshots():

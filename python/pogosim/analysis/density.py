@@ -100,6 +100,15 @@ def is_within(points: Floats, x_mm: Floats, y_mm: Floats) -> npt.NDArray[np.bool
     return np.asarray(((points >= [x_mm[0], y_mm[0]]) & (points <= [x_mm[-1], y_mm[-1]])).all(axis=1))
 
 
+def count_outside(arena: Arena, position_mm: Floats) -> int:
+    """Return how many points are outside of the bounding box of the arena, and thus in no bin; 0 if it is not known."""
+    if not arena.polygons:
+        return 0
+    low, high = arena.bounds_mm
+    points = finite_points(position_mm)
+    return int(np.count_nonzero(~is_within(points, *np.stack([low, high]).T)))
+
+
 def smoothed(values: Floats, sigma: Floats, arena: Arena) -> Floats:
     """Smooth values of bins by a Gaussian with these standard deviations, in bins.
 
@@ -108,7 +117,7 @@ def smoothed(values: Floats, sigma: Floats, arena: Arena) -> Floats:
     """
     if arena.is_periodic:
         return np.asarray(ndimage.gaussian_filter(values, np.minimum(sigma, values.shape), mode="wrap"))
-    radius = np.minimum(np.ceil(4.0 * sigma), np.array(values.shape)).astype(int)
+    radius = np.minimum(np.floor(4.0 * sigma + 0.5), values.shape).astype(int)  # scipy's own, if the grid has it
     sigma = np.minimum(sigma, 100.0 * np.array(values.shape))  # flat, as far as the grid goes
     return np.asarray(ndimage.gaussian_filter(values, sigma, mode="constant", radius=tuple(radius)))
 

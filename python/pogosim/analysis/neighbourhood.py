@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Trajectories, given
 
 if TYPE_CHECKING:
     from scipy import sparse, spatial
@@ -114,7 +114,7 @@ def neighbours(run: Trajectories, reach_mm: float | None = None) -> Iterator[Nei
         run: Robots without a position at a time have no neighbours, and are none.
         reach_mm: Greatest distance; None: that of the run.
     """
-    reach = run.reach_mm if reach_mm is None else reach_mm
+    reach = run.reach(reach_mm)
     for time, positions, is_there in run.snapshots():
         first, second, distance = neighbour_pairs(positions, run.arena, reach)
         robots = np.flatnonzero(is_there)
@@ -131,7 +131,7 @@ def degrees(run: Trajectories, reach_mm: float | None = None) -> Floats:
     Returns:
         Shape (T, N); NaN where a robot has no position.
     """
-    reach = run.reach_mm if reach_mm is None else reach_mm
+    reach = run.reach(reach_mm)
     degree = np.full(run.position_mm.shape[:2], np.nan)
     for step, (_, positions, is_there) in enumerate(run.snapshots()):
         if len(positions):
@@ -151,7 +151,8 @@ def nearest_distances(run: Trajectories, count: int = 3, reach_mm: float | None 
     Returns:
         Shape (T, N, count), in mm, increasing; NaN where a robot has no position, or fewer neighbours.
     """
-    reach = run.reach_mm if reach_mm is None else reach_mm
+    reach = run.reach(reach_mm)
+    count = given.integer("count", count, least=1)
     distance = np.full((*run.position_mm.shape[:2], count), np.nan)
     for step, (_, positions, is_there) in enumerate(run.snapshots()):
         if len(positions):

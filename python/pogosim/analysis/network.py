@@ -144,7 +144,7 @@ def contact_time_s(runs: Sequence[Trajectories], reach_mm: float | None = None) 
         s; infinite if no robot moves, or there is one save time.
     """
     speeds = [speed for speed in map(mean_speed_mm_s, runs) if speed > 0.0]
-    return (runs[0].reach_mm if reach_mm is None else reach_mm) / float(np.mean(speeds)) if speeds else float("inf")
+    return runs[0].reach(reach_mm) / float(np.mean(speeds)) if speeds else float("inf")
 
 
 def ten_periods_s(runs: Sequence[Trajectories]) -> float:

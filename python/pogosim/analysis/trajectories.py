@@ -21,6 +21,7 @@ import pandas as pd
 
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.errors import AnalysisError
+from pogosim.arguments import Arguments
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.far_away import is_near
 from pogosim.periodic import steps_of
@@ -34,6 +35,8 @@ COMMUNICATION_RADIUS_MM = 80.0
 
 # With more cells per row, times and robots do not belong together.
 MAX_CELLS_PER_ROW = 1000
+
+given = Arguments(AnalysisError)
 
 OBJECT = ("robot_category", "robot_id")
 MOVING = ("pogobot", "pogobject")  # types of objects that run a program and have a pose of their own
@@ -65,6 +68,19 @@ class Trajectories:
     def path_mm(self) -> Floats:
         """Positions without jumps at periodic borders, shape (T, N, 2), see `unwrapped`."""
         return unwrapped_path(self)
+
+    def reach(self, reach_mm: float | None) -> float:
+        """Return the greatest distance of neighbours: the given one, or that of the run.
+
+        Raises:
+            AnalysisError: It is no distance.
+        """
+        if reach_mm is None:
+            return self.reach_mm
+        reach = given.number("reach_mm", reach_mm, "a distance in mm")
+        if not reach >= 0.0:
+            raise given.refused("reach_mm", "a distance in mm", reach_mm)
+        return reach
 
     def column(self, name: str) -> npt.NDArray[Any]:
         """Values of a column of the file, shape (T, N). Null, or NaN for numbers, where there is no row.
@@ -104,7 +120,13 @@ def trajectories_of(
     Raises:
         AnalysisError: A column is missing, there is no position, or the runs cannot be told apart.
     """
+    if not isinstance(rows, pd.DataFrame):
+        raise given.refused("rows", "a dataframe, as of load_dataframe", rows)
+    if category is not None:
+        category = given.text("category", category)
     metadata = cast(Mapping[str, Any], rows.attrs) if metadata is None else metadata
+    if not isinstance(metadata, Mapping):
+        raise given.refused("metadata", "a map, as of load_dataframe", metadata)
     need_columns(rows, ["time", "x", "y"])
     need_numbers(rows, ["time", "x", "y", "angle"])
     rows = of_category(with_objects(rows), metadata, category)

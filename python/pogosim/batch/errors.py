@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import operator
 import os
 from pathlib import Path
 
+from pogosim.arguments import Arguments, shown
 from pogosim.outputs import say
 
 
 class BatchError(Exception):
     """The batch cannot be done. The message is one line: where, what, what was expected, what to do."""
+
+
+given = Arguments(BatchError)
 
 
 class NothingSelectedError(BatchError):
@@ -56,6 +61,10 @@ def at_least(smallest: int, value: int, name: str) -> int:
     Raises:
         BatchError: It is none, or too small.
     """
-    if isinstance(value, bool) or not isinstance(value, int) or value < smallest:
-        raise BatchError(f"{name}: expected a whole number of at least {smallest}; found {value}")
-    return value
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = smallest - 1
+    if isinstance(value, bool) or number < smallest:
+        raise BatchError(f"{name}: expected a whole number of at least {smallest}; found {shown(value)}")
+    return number

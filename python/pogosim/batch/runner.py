@@ -12,7 +12,7 @@ from typing import Any
 from pogosim.batch.backends import Workers
 from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
-from pogosim.batch.errors import BatchError, at_least, cannot, tell
+from pogosim.batch.errors import BatchError, at_least, cannot, given, tell
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
@@ -83,11 +83,11 @@ class PogobotBatchRunner:
         scheduler: str | None = None,
         slurm_jobs: SlurmJobs | None = None,
     ) -> None:
-        self.multi_config_file = str(multi_config_file)
+        self.multi_config_file = str(given.path("multi_config_file", multi_config_file))
         self.runs = at_least(1, runs, "--runs")
-        self.simulator_binary = str(simulator_binary)
-        self.temp_base = str(temp_base)
-        self.output_dir = str(output_dir)
+        self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
+        self.temp_base = str(given.path("temp_base", temp_base))
+        self.output_dir = str(given.path("output_dir", output_dir))
         self.workers = Workers(backend, workers, scheduler, slurm_jobs)
         self.keep_temp = keep_temp
         self.verbose = verbose

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from pogosim.arguments import Arguments
 from pogosim.far_away import is_near
 from pogosim.outputs import PathLike
 from pogosim.picture.colouring import Colouring, colouring_of
@@ -126,6 +127,9 @@ class Recording:
         return {str(name): own[RGB].to_numpy()[0] for name, own in walls.groupby("robot_category")}
 
 
+given = Arguments(PictureError)
+
+
 def read_swarm(path: PathLike) -> Swarm:
     """Read the file of a run (of several runs: the first), up to its end.
 
@@ -151,6 +155,9 @@ def read_recording(
         PictureError: The file has no poses, no such run, or no such column.
         OSError, ValueError: It cannot be read.
     """
+    run = None if run is None else given.integer("run", run)
+    combination = None if combination is None else given.integer("combination", combination)
+    color_by = None if color_by is None else given.text("color_by", color_by)
     rows, metadata = load_dataframe(path)
     missing = {"time", "x", "y"} - set(rows.columns)
     if missing:

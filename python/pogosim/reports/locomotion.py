@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from pogosim.analysis.density import count_outside
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.numbers import at_least, positive, whole
 from pogosim.command.parser import warn
@@ -77,6 +78,10 @@ def warn_of_what_is_left_out(tables: Sequence[RunTables], prog: str) -> None:
     robots = sum(len(own.run.robot_id) for own in tables)
     if single := robots - sum(len(own.agents) for own in tables):
         warn(prog, f"{single} of {robots} robots have one position only: no speeds or displacements of them")
+    beyond = [count_outside(own.run.arena, own.run.position_mm.reshape(-1, 2)) for own in tables]
+    if outside := sum(beyond):
+        there = sum(int(own.run.is_there.sum()) for own in tables)
+        warn(prog, f"{outside} of {there} positions are outside of the arena: they are not in the heat maps")
     if uneven := sum(not is_evenly_spaced(own.run) for own in tables):
         warn(
             prog, f"{uneven} of {runs} runs have unevenly spaced save times: no autocorrelations or averages over them"
