@@ -100,6 +100,41 @@ TEST(HostedRuns, OnThreadsGiveWhatEachGivesAlone) {
     }
 }
 
+TEST(HostedRuns, ReadsAreAnsweredBetweenTwoStepsOfAnotherThread) {
+    std::string const few = written("host_few.yaml", scene(10));
+    pogosim_run_options const options{.program = POGOSIM_HOSTED,
+                                      .configuration = few.c_str(),
+                                      .settings = nullptr,
+                                      .setting_count = 0,
+                                      .seed = 1,
+                                      .strict = 0};
+    pogosim_run* run = nullptr;
+    ASSERT_EQ(pogosim_run_open(&options, &run), POGOSIM_OK) << pogosim_host_error();
+    auto const number = [&](char const* name) {
+        double value = -1.0;
+        EXPECT_EQ(pogosim_run_number(run, name, &value), POGOSIM_OK);
+        return value;
+    };
+    double const last = number("step_count");
+    std::thread stepping([&] {
+        std::int64_t done = 0;
+        EXPECT_EQ(pogosim_run_step(run, 1'000'000, 1e6, &done), POGOSIM_OVER);
+    });
+    int answers = 0;
+    double before = 0.0;
+    for (double now = 0.0; now < last; now = number("step")) {
+        EXPECT_GE(now, before);
+        answers += now > before ? 1 : 0;
+        before = now;
+        EXPECT_NE(pogosim_run_hash(run), 0U);
+    }
+    stepping.join();
+    EXPECT_GE(answers, 1);
+    EXPECT_EQ(number("is_over"), 1.0);
+    EXPECT_EQ(number("has_failed"), 0.0);
+    pogosim_run_close(run);
+}
+
 TEST(HostedRuns, FailuresOnThreadsEndTheirRunsAlone) {
     std::string const few = written("host_few.yaml", scene(10));
     std::vector<Talk> const talks{{POGOSIM_HOSTED, few, "crash", 1},

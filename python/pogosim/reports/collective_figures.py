@@ -54,6 +54,8 @@ def draw_metric(metric: Metric, runs: Sequence[Trajectories], tables: Sequence[p
 
 def draw_square_root(axes: Axes) -> None:
     """Make both axes logarithmic, and draw what independent positions have: sigma = N^(1/2)."""
+    if not np.isfinite(axes.dataLim.minpos).all():
+        return  # no value above 0
     low, high = axes.dataLim.intervalx
     x = np.array([low, high])
     axes.set(xscale="log", yscale="log")
