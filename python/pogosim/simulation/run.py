@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_SEED = 2**32 - 1
+MOST_STEPS = 2**62  # of one call, which ends with the run
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
 LEVELS = {"D": logging.DEBUG, "I": logging.INFO, "W": logging.WARNING, "E": logging.ERROR}
@@ -198,11 +199,10 @@ class Simulation:
         made = 0
         with self._busy():
             run = self._run
-            if run.number("has_failed"):
-                raise SimulationError("the run has failed: reset it")
-            # One more than are left: the step that finds the run over.
-            steps = min(steps, int(run.number("step_count") - run.number("step")) + 1)
+            steps = min(steps, MOST_STEPS)
             is_over = bool(run.number("is_over"))
+            if is_over and run.number("has_failed"):
+                raise SimulationError("the run has failed: reset it")
             while made < steps and not is_over and not self._current.should_pause:
                 done = c_int64()
                 try:
@@ -531,9 +531,9 @@ class Simulation:
 
     @property
     def _run(self) -> RunState:
-        check_process(self._current.process)
         run = self._current.run
         if run is None:
+            check_process(self._current.process)
             raise SimulationError(
                 CLOSED if self._is_closed else "the last reset failed: mend what it said, and reset again"
             )
