@@ -105,7 +105,8 @@ class Simulation:
     """A run of a program, which goes on as far as it is told to.
 
     Any number of them can exist at the same time, of the same program or others; each result is what it would be alone.
-    A simulation is for one thread at a time, and `step` lets other threads of Python run.
+    One thread at a time steps, resets, changes or closes a simulation; all may look at it meanwhile, and are answered
+    between two time steps. `step` lets other threads of Python run.
 
         with pogosim.Simulation("examples/hanabi/hanabi.so", "conf/simple.yaml", seed=3) as sim:
             sim.step(100)
@@ -265,8 +266,8 @@ class Simulation:
             finally:
                 self._current.run = None
                 self._user_data = None
-                self._finish.cancel()
                 self._current.remove_folder()
+                self._finish.cancel()
 
     def __enter__(self) -> Simulation:
         return self
