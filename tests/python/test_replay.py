@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import shutil
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 from pogosim.film.command import main
 from pogosim.picture.links import proximity_pairs
+from pogosim.picture.palette import PALETTE
 from recordings import walkers, write
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -75,6 +77,48 @@ def pixel(page: Page, x: float, y: float) -> list[int]:
     with Image.open(io.BytesIO(page.screenshot())) as shown:
         red, green, blue = np.asarray(shown.convert("RGB"))[round(y), round(x)]
     return [int(red), int(green), int(blue)]
+
+
+def share_of_floor(picture: Path) -> float:
+    with Image.open(picture) as shown:
+        pixels = np.asarray(shown.convert("RGB")).astype(int)
+    floor = np.array([int(PALETTE["floor"][i : i + 2], 16) for i in (1, 3, 5)])
+    return float((np.abs(pixels - floor).max(axis=-1) <= 3).mean())
+
+
+def test_screenshot_taken_at_once_shows_the_arena_and_its_robots(tmp_path: Path) -> None:
+    page = page_of(write(tmp_path / "run.feather", walkers()))
+    shot = tmp_path / "shot.png"
+    command = [
+        str(CHROMIUM),
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--hide-scrollbars",
+        "--window-size=900,700",
+    ]
+    command += [f"--user-data-dir={tmp_path / 'profile'}", f"--screenshot={shot}", page.as_uri()]
+    subprocess.run(command, check=True, timeout=120, capture_output=True)
+    assert share_of_floor(shot) > 0.2
+
+
+def test_page_without_javascript_shows_the_same_first_picture(browser: Browser, tmp_path: Path) -> None:
+    page = page_of(write(tmp_path / "run.feather", walkers()))
+    pictures = []
+    for has_javascript in (True, False):
+        opened = browser.new_page(viewport={"width": 900, "height": 700}, java_script_enabled=has_javascript)
+        opened.goto(page.as_uri())
+        if has_javascript:
+            opened.wait_for_function("replay.frames > 0")
+            drawn(opened)
+        else:
+            assert "first picture" in opened.inner_text("noscript p")
+            assert opened.inner_text("#clock") == "0.00 s"
+        with Image.open(io.BytesIO(opened.screenshot())) as shown:
+            pictures.append(np.asarray(shown.convert("RGB")).astype(int))
+        opened.close()
+    drawn_by_program, drawn_by_page = (picture[60:560, 20:880] for picture in pictures)
+    assert (np.abs(drawn_by_program - drawn_by_page).max(axis=-1) > 60).mean() < 0.01
 
 
 def test_robots_are_where_the_data_say_at_each_time(page: Page) -> None:

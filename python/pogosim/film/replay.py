@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
+from pogosim.film.first_picture import first_picture
 from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, quantised, shades_of
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.outputs import partial_output
@@ -50,7 +52,7 @@ def write_replay(
         PictureError: The run is too large.
         OSError: The page cannot be written.
     """
-    head, data, warnings = replay_data(recording, span_s)
+    head, data, picture, warnings = replay_data(recording, span_s)
     head["start"] = {
         "speed": options.speed,
         "tail_s": options.tail or DEFAULT_TAIL_S,
@@ -59,18 +61,21 @@ def write_replay(
         "colourBy": options.color_by if options.color_by != "led_rgb" else None,
     }
     name = Path(options.data).name
-    page = page_of(head, data, name).encode("utf-8")
+    page = page_of(head, data, picture, name).encode("utf-8")
     with partial_output(path) as partial:
         partial.write_bytes(page)
     count, times = len(head["objects"]), head["times"]
     return f"{count} objects from {times[0]:.9g} s to {times[-1]:.9g} s, {len(page) / 1e6:.2f} MB", warnings
 
 
-def page_of(head: dict[str, Any], data: str, name: str) -> str:
-    """Join page, style, program and data."""
+def page_of(head: dict[str, Any], data: str, picture: str, name: str) -> str:
+    """Join page, style, first picture, program and data."""
     text = json.dumps(head, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     parts = {
         "@@TITLE@@": html.escape(f"{name} \u2013 Pogosim"),
+        "@@HEADING@@": html.escape(head["title"]),
+        "@@CLOCK@@": f"{head['times'][0]:.2f} s",
+        "@@PICTURE@@": picture,
         "@@STYLE@@": (FOLDER / "replay.css").read_text(encoding="utf-8"),
         "@@SCRIPT@@": (FOLDER / "replay.js").read_text(encoding="utf-8"),
         "@@HEAD@@": text,
@@ -81,13 +86,14 @@ def page_of(head: dict[str, Any], data: str, name: str) -> str:
     return re.sub("|".join(parts), lambda mark: parts[mark.group()], page).encode("utf-8", "replace").decode("utf-8")
 
 
-def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, list[str]]:
-    """Return what the page knows of the run: its description, its tables as text, and what had to be left out."""
+def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, str, list[str]]:
+    """Return what the page knows of the run: description, tables, first picture, and what had to be left out."""
     swarm = recording.last
     swarm.check_steps()
     bodies = timeline_of(recording, swarm.rows, [OBJECT], *span_s)
     packer = Packer()
-    columns, warnings = column_tables(packer, bodies, recording)
+    base, codes = base_colours(bodies, recording)
+    columns, warnings = column_tables(packer, bodies, recording, {**base, "table": packer.add(codes)})
     head: dict[str, Any] = {
         "title": title(swarm, 1000.0).rsplit(" after ", 1)[0],
         "notes": notes(swarm),
@@ -108,7 +114,24 @@ def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict
         "membranes": membrane_tables(packer, recording, bodies, span_s),
         "palette": PALETTE,
     }
-    return head, packer.packed(), warnings
+    picture = first_picture(head, first_poses(bodies), first_colours(head, base, codes[0]))
+    return head, packer.packed(), picture, warnings
+
+
+def first_poses(bodies: Timeline) -> npt.NDArray[np.float64]:
+    """x, y and angle of each object at the first time, NaN where there is none yet. Shape (n, 3)."""
+    rows = bodies.known[0]
+    poses = np.column_stack([bodies.position, bodies.angle])[np.maximum(rows, 0)]
+    return np.where((rows >= 0)[:, None], poses, np.nan)
+
+
+def first_colours(head: dict[str, Any], base: dict[str, Any], codes: npt.NDArray[np.uint16]) -> list[str]:
+    """Colour of each object at the first time, as the page has it."""
+    colours = []
+    for (category, _), code in zip(head["objects"], codes, strict=True):
+        is_dark = code == MISSING or (base["led"] and head["categories"][category]["passive"])
+        colours.append(str(PALETTE["no_led"] if is_dark else base["colours"][code]))
+    return colours
 
 
 def names_in(objects: pd.DataFrame) -> list[str]:
@@ -160,10 +183,12 @@ def pose_tables(packer: Packer, timeline: Timeline) -> dict[str, Any]:
     return poses
 
 
-def column_tables(packer: Packer, bodies: Timeline, recording: Recording) -> tuple[list[dict[str, Any]], list[str]]:
+def column_tables(
+    packer: Packer, bodies: Timeline, recording: Recording, base: dict[str, Any]
+) -> tuple[list[dict[str, Any]], list[str]]:
     """Add all columns that can be shown, colours of LEDs first; returns what they are, and what cannot be shown."""
     rows = with_speed(bodies.rows, recording.last.period_mm, recording.last.top_speed_mm_s)
-    columns = [base_table(packer, bodies, recording)]
+    columns = [base]
     warnings = []
     for name in rows.columns:
         if name in OWN:
@@ -177,8 +202,8 @@ def column_tables(packer: Packer, bodies: Timeline, recording: Recording) -> tup
     return columns, warnings
 
 
-def base_table(packer: Packer, bodies: Timeline, recording: Recording) -> dict[str, Any]:
-    """Add the colours of LEDs, or of categories if the file does not have those; returns what they are."""
+def base_colours(bodies: Timeline, recording: Recording) -> tuple[dict[str, Any], npt.NDArray[np.uint16]]:
+    """Return what the colours of LEDs are, or of categories if the file does not have those, and their codes (t, n)."""
     rows = bodies.rows
     has_leds = "led_rgb" in rows
     if has_leds:
@@ -191,10 +216,10 @@ def base_table(packer: Packer, bodies: Timeline, recording: Recording) -> dict[s
     codes, different = pd.factorize(packed, sort=True)
     labels = [f"#{colour:06x}" for colour in different]
     shown = [hex_colour(colour) for colour in led_colours(different)] if has_leds else labels
-    table = packer.add(spread(codes.astype(np.uint16), bodies))
     name = "LED" if has_leds else "category"
     name += " of the simulator" if name in rows else ""  # a column of the program has its name for itself
-    return {"name": name, "led": has_leds, "base": True, "labels": labels, "colours": shown, "table": table}
+    meaning = {"name": name, "led": has_leds, "base": True, "labels": labels, "colours": shown}
+    return meaning, spread(codes.astype(np.uint16), bodies)
 
 
 def spread(codes: np.ndarray, timeline: Timeline) -> np.ndarray:
