@@ -69,15 +69,16 @@ void pogosim_run_close(pogosim_run* run);
 /// "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 
-/// An array. Of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
-/// "bodies.velocity" (n, 2) mm/s, "bodies.angular_velocity" (n) rad/s, "bodies.radius" (n) mm. Of robots (rows: objects
-/// that run the program): "robots.id", "robots.category" (index into pogosim_run_categories), "robots.body" (index of
-/// its body; 2^32 - 1: none), "robots.led" (n, 5, 3), "robots.ticks", "robots.clock" (us; at least 2^62: switched off),
-/// "robots.messages_sent", "robots.messages_received", "robots.user_data". Of the floor: "light" (rows, columns) sensor
-/// counts. Of the columns that the program has added to the data file, by robot, what data_set_value_* gave at the last
-/// save: "columns.NAME", and "columns_absent.NAME", true for robots that gave no value or wrote no row; for them
-/// "columns.NAME" has NaN, 0 or false. A column of strings has the type "text": UTF-8, each ended by a zero, so many
-/// bytes; it stays in place only until this thread asks for the next one.
+/// An array. Arrays of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
+/// "bodies.velocity" (n, 2) mm/s and "bodies.angular_velocity" (n) rad/s, of the displacement and the turn in the last
+/// step, "bodies.radius" (n) mm. Arrays of robots (rows: objects that run the program): "robots.id", "robots.category"
+/// (index into pogosim_run_categories), "robots.body" (index of its body; 2^32 - 1: none), "robots.led" (n, 5, 3),
+/// "robots.ticks", "robots.clock" (us; at least 2^62: switched off), "robots.messages_sent",
+/// "robots.messages_received", "robots.user_data". Light on the floor: "light" (rows, columns), sensor counts. Columns
+/// that the program has added to the data file, by robot, as set by data_set_value_* at the last save: "columns.NAME",
+/// and "columns_absent.NAME", true for robots that set no value or wrote no row; for them "columns.NAME" has NaN, 0 or
+/// false. A column of strings has the type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only
+/// until this thread asks for the next one.
 int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_array* array);
 
 /// Names of the categories, a line each. Valid as long as the run.

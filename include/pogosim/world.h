@@ -28,7 +28,7 @@ typedef struct pogosim_pose_t {
     double heading_rad;  ///< -pi to pi, clockwise on the screen
 } pogosim_pose_t;
 
-/// How an object moves.
+/// How an object moved in the last step: displacement and turn, by the duration of a step.
 typedef struct pogosim_velocity_t {
     double x_mm_s;         ///< to the right
     double y_mm_s;         ///< down
@@ -62,7 +62,7 @@ bool pogosim_world_runs_program(uint32_t object);
 /// True pose: of a membrane, its middle; of walls, the centre of their box; heading 0 for both. In a periodic arena,
 /// inside its box.
 void pogosim_world_pose(uint32_t object, pogosim_pose_t* pose);
-/// True velocity: of a membrane, the mean of its parts, without rotation. 0 for walls.
+/// True velocity, in the last step: of a membrane, the mean of its parts, without rotation. 0 for walls.
 void pogosim_world_velocity(uint32_t object, pogosim_velocity_t* velocity);
 /// Puts an object elsewhere, at rest; its motors drive it on from there. Returns false, and changes nothing, for a
 /// place in a wall or outside of the arena and for walls. Other objects at that place are pushed away. A membrane keeps

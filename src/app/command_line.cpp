@@ -36,6 +36,8 @@ std::vector<std::string> normalised_arguments(int argc, char const* const* argv)
 void declare_options(CLI::App& app, CommandLine& options) {
     app.add_option("-c,--config", options.config, "configuration file (YAML)")->required()->type_name("FILE");
     app.add_flag("-g,--no-GUI", options.no_gui, "run without a window");
+    app.add_flag("--close-at-end", options.close_at_end,
+                 "close the window when the simulated time is over, for scripts; else it stays open");
     app.add_flag("-v,--verbose", options.verbose, "show debug messages");
     app.add_flag("-q,--quiet", options.quiet, "show warnings and errors only; takes precedence over -v");
     app.add_flag("--do-not-show-robot-msg", options.hide_robot_lines,

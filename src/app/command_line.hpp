@@ -12,6 +12,7 @@ struct CommandLine {
     std::string program_name;  // without folders
     std::string config;
     bool no_gui = false;
+    bool close_at_end = false;  // the window
     bool verbose = false;
     bool quiet = false;
     bool hide_robot_lines = false;

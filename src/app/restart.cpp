@@ -16,7 +16,7 @@ constexpr Camera kWholeArena{.centre_mm = {}, .scale_px_mm = 0.0F};  // stands f
 
 // Numbers with blanks between them.
 std::string text_of(Restart const& restart) {
-    std::string text = std::to_string(restart.seed);
+    std::string text = fmt::format("{} {:d}", restart.seed, restart.overwrite);
     if (restart.window) {
         WindowState const& window = *restart.window;
         PaintOptions const& options = window.options;
@@ -36,7 +36,7 @@ std::string text_of(Restart const& restart) {
 std::optional<Restart> restart_of(std::string const& text) {
     std::istringstream numbers(text);
     Restart restart;
-    if (!(numbers >> restart.seed)) {
+    if (!(numbers >> restart.seed >> restart.overwrite)) {
         return std::nullopt;
     }
     WindowState window;

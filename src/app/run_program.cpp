@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/command_line.hpp"
 #include "app/restart.hpp"
@@ -30,6 +31,7 @@
 #include "robot/program_image.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/interrupt.hpp"
+#include "sim/kept_files.hpp"
 #include "sim/simulation.hpp"
 #include "sim/used_files.hpp"
 #include "sim/window_module.hpp"
@@ -65,6 +67,33 @@ char const* process_name() {
 #endif
 }
 
+Scenario read_scenario(CommandLine const& options) {
+    return load_scenario(options.config, {.overrides = options.overrides, .strict = options.strict});
+}
+
+/// What a restart would overwrite; see WindowSetup::earlier_files. Empty once the program has left its folder: the new
+/// run keeps all files then.
+std::vector<std::string> names_of_earlier_files(CommandLine const& options, std::filesystem::path const& folder) {
+    std::vector<std::string> names;
+    std::error_code error;
+    if (std::filesystem::current_path(error) != folder) {
+        return names;
+    }
+    for (KeptFile const& file : earlier_files(read_scenario(options), options.video)) {
+        names.push_back(
+            fmt::format("{} -> {}", escaped(file.path.filename().string()), escaped(file.kept.filename().string())));
+    }
+    return names;
+}
+
+/// A run that is watched replaces nothing that an earlier one has written.
+void keep_and_tell(Scenario const& scenario, CommandLine const& options) {
+    for (KeptFile const& file : keep_earlier_files(scenario, options.video)) {
+        log().info("'{}' of an earlier run is now '{}' (-g overwrites instead)", escaped(file.path.string()),
+                   escaped(file.kept.filename().string()));
+    }
+}
+
 /// Why the program cannot be started again as it was in `folder`; empty if it can.
 std::string restart_problem(CommandLine const& options, std::filesystem::path const& folder) {
     std::error_code error;
@@ -75,7 +104,7 @@ std::string restart_problem(CommandLine const& options, std::filesystem::path co
         return fmt::format("the configuration '{}' is not a file that can be read again", escaped(options.config));
     }
     try {
-        load_scenario(options.config, {.overrides = options.overrides, .strict = options.strict});
+        read_scenario(options);
         return "";
     } catch (std::exception const& problem) {
         return escaped(problem.what());
@@ -92,7 +121,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     logging.show_robot_lines = !options.hide_robot_lines;
     start_logging(logging);
 
-    Scenario scenario = load_scenario(options.config, {.overrides = options.overrides, .strict = options.strict});
+    Scenario scenario = read_scenario(options);
     if (options.seed) {
         scenario.seed = options.seed;
     }
@@ -110,6 +139,9 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
         log().info("restarted with seed {}", restarted->seed);
     }
     bool const window = scenario.view.gui && !options.no_gui;
+    if (window && has_display() && !(restarted && restarted->overwrite)) {
+        keep_and_tell(scenario, options);
+    }
     std::unique_ptr<Simulation, DestroyIfIntact> const simulation(
         new Simulation(linked_program(program, process_name()), std::move(scenario),
                        {.progress_bar = options.progress_bar,
@@ -118,9 +150,11 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                         .hash_period_steps = options.hash_period_steps,
                         .film = options.video,
                         .window = window,
+                        .close_at_end = options.close_at_end,
                         .program_name = options.program_name,
                         .restarted = restarted,
-                        .restart_problem = [&] { return restart_problem(options, folder); }}));
+                        .restart_problem = [&] { return restart_problem(options, folder); },
+                        .earlier_files = [&] { return names_of_earlier_files(options, folder); }}));
     ProcessRun const scope(simulation->guard());
     auto const begin = std::chrono::steady_clock::now();
     ExitCode const code = simulation->run();

@@ -86,9 +86,9 @@ struct NamedArray {
 constexpr std::array kArrays{
     NamedArray{"bodies.position", [](Simulation const& s) { return vectors(s.world().bodies.position_mm); }},
     NamedArray{"bodies.heading", [](Simulation const& s) { return numbers(s.world().bodies.heading_rad); }},
-    NamedArray{"bodies.velocity", [](Simulation const& s) { return vectors(s.world().bodies.velocity_mm_s); }},
+    NamedArray{"bodies.velocity", [](Simulation const& s) { return vectors(s.observed_motions().velocity_mm_s()); }},
     NamedArray{"bodies.angular_velocity",
-               [](Simulation const& s) { return numbers(s.world().bodies.angular_velocity_rad_s); }},
+               [](Simulation const& s) { return numbers(s.observed_motions().angular_velocity_rad_s()); }},
     NamedArray{"bodies.radius", [](Simulation const& s) { return numbers(s.world().bodies.radius_mm); }},
     NamedArray{"robots.id", [](Simulation const& s) { return numbers(s.world().robots.id); }},
     NamedArray{"robots.category", [](Simulation const& s) { return numbers(s.world().robots.category); }},

@@ -169,7 +169,8 @@ public:
         take_over(world);
         impose_commands(world);
         if (!any_awake_) {
-            return;  // nothing moves, as in a swarm that only communicates
+            known_.end_still_step(world.bodies);  // as in a swarm that only communicates
+            return;
         }
         int const substeps =
             substeps_for(fastest_of(world, others_set_velocities_), most_motion_mm_, world.time_step_s);
@@ -197,7 +198,7 @@ public:
                 sides_->look_again(world);
             }
         }
-        known_.copy(world.bodies);
+        known_.end_step(world.bodies);
         assert_motion(world.bodies);
     }
 
@@ -205,6 +206,12 @@ public:
         return {.motion_mm = kMostSubsteps * most_motion_mm_,
                 .turn_rad = kMostSubsteps * kMostTurnRad,
                 .is_of_membranes = most_motion_mm_ < kMostMotionMm};
+    }
+
+    TouchGaps touch_gaps() const override {
+        constexpr float kSlopMm = b2_linearSlop * kMmPerUnit;
+        constexpr float kSkinMm = b2_polygonRadius * kMmPerUnit;  // of walls
+        return {.bodies_mm = kSlopMm, .walls_mm = kSkinMm + kSlopMm};
     }
 
 private:

@@ -98,7 +98,8 @@ public:
         damping_.begin_step(bodies, dt_s);
         float const fastest_mm_s = fastest(bodies);
         if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_) {
-            return;  // nothing moves, as in a swarm that only communicates
+            known_.end_still_step(bodies);  // as in a swarm that only communicates
+            return;
         }
         float const reach_mm = 2.0F * std::min(std::max(kReserve * fastest_mm_s * dt_s, kLeastReachMm), ordinary_mm_);
         if (moved_ || !neighbour_list_.covers(world, reach_mm, workers_)) {
@@ -118,7 +119,7 @@ public:
             hold_by_membranes(world);
         }
         damping_.end_step(bodies);
-        known_.copy(bodies);
+        known_.end_step(bodies);
         assert_motion(bodies);
     }
 
@@ -126,6 +127,10 @@ public:
         return {.motion_mm = most_motion_mm_,
                 .turn_rad = std::numeric_limits<float>::max(),
                 .is_of_membranes = sides_.has_value()};
+    }
+
+    TouchGaps touch_gaps() const override {
+        return {.bodies_mm = 2.0F * kContactToleranceMm, .walls_mm = 2.0F * kContactToleranceMm};
     }
 
 private:

@@ -22,6 +22,22 @@ void KnownMotion::copy(Bodies const& bodies) {
     angular_velocity_rad_s_ = bodies.angular_velocity_rad_s;
 }
 
+void KnownMotion::end_step(Bodies& bodies) {
+    // What has been known goes there without a copy.
+    bodies.start_mm.swap(position_mm_);
+    bodies.start_rad.swap(heading_rad_);
+    copy(bodies);
+    was_still_ = false;
+}
+
+void KnownMotion::end_still_step(Bodies& bodies) {
+    if (!was_still_) {
+        bodies.start_mm = position_mm_;
+        bodies.start_rad = heading_rad_;
+        was_still_ = true;
+    }
+}
+
 bool KnownMotion::is_of(Bodies const& bodies) const {
     return has_same_bytes(position_mm_, bodies.position_mm) && has_same_bytes(heading_rad_, bodies.heading_rad) &&
            has_same_bytes(velocity_mm_s_, bodies.velocity_mm_s) &&

@@ -12,6 +12,12 @@ class KnownMotion {
 public:
     void copy(Bodies const& bodies);
 
+    /// Ends a step: what was known until now is where it began.
+    void end_step(Bodies& bodies);
+
+    /// The same for a step in which nothing has moved.
+    void end_still_step(Bodies& bodies);
+
     /// True if nothing has been written since copy().
     bool is_of(Bodies const& bodies) const;
 
@@ -31,6 +37,7 @@ private:
     std::vector<float> heading_rad_;
     std::vector<Vec2> velocity_mm_s_;
     std::vector<float> angular_velocity_rad_s_;
+    bool was_still_ = false;  // the last step
 };
 
 bool is_finite(Bodies const& bodies, std::uint32_t body);

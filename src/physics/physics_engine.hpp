@@ -19,6 +19,12 @@ struct MotionLimits {
     bool is_of_membranes;  // motion_mm: it is what the soft membranes of the world can hold back
 };
 
+/// Outlines that are no further apart touch, mm: what contacts leave between bodies at rest that are pressed together.
+struct TouchGaps {
+    float bodies_mm;  // between two bodies
+    float walls_mm;   // between a body and a wall of the arena
+};
+
 class PhysicsEngine {
 public:
     virtual ~PhysicsEngine() = default;
@@ -29,6 +35,8 @@ public:
     virtual void advance(World& world) = 0;
 
     virtual MotionLimits motion_limits() const = 0;
+
+    virtual TouchGaps touch_gaps() const = 0;
 };
 
 /// Stands for the fastest engine that can move what is in the world.

@@ -20,14 +20,19 @@ struct Neighbour {
 };
 
 struct Inspection {
+    static constexpr double kSpeedWindowS = 0.16;  // ten ticks of 60 Hz
+
     std::uint32_t robot = 0;  // index
     std::uint32_t id = 0;
     std::string category;
     bool has_body = false;     // else the pose and velocities are 0
     Vec2 position_mm;          // of a membrane: its middle; in a periodic arena inside its bounds
     float heading_rad = 0.0F;  // (-pi, pi]
-    float speed_mm_s = 0.0F;
+    float speed_mm_s = 0.0F;   // mean of the last kSpeedWindowS
     float angular_velocity_rad_s = 0.0F;
+    float moved_mm = 0.0F;             // between the ends of its way
+    double moved_during_s = 0.0;       // in so long until now: the last second, or the whole run
+    std::vector<std::string> touches;  // "wall", "robot 7", "obstacles 3"
     std::uint32_t ticks = 0;
     double clock_s = 0.0;                  // the robot's own: when its next tick is due
     std::array<int, 3> motor_power{};      // right, left, back; 0 to 1023
@@ -39,8 +44,11 @@ struct Inspection {
     std::uint64_t messages_sent = 0;       // by whatever function; to all directions counts once
     std::uint64_t messages_received = 0;   // that its program has read
     std::size_t messages_waiting = 0;      // in its queue
-    std::vector<std::pair<std::string, std::string>> columns;  // its last row of the data file: name and value
-    std::vector<std::string> lines;                            // its last lines of printf, oldest first
+    std::vector<std::pair<std::string, std::string>> variables;  // of its program, now: name and value
+    std::string no_variables{};                                  // why there are none; empty: the program has none
+    std::vector<std::pair<std::string, std::string>> columns;    // its last row of the data file: name and value
+    double columns_time_s = 0.0;                                 // of that row
+    std::vector<std::string> lines;                              // its last lines of printf, oldest first
 };
 
 /// What the data file recorded of the robots at one time: numbers of all columns that hold some.

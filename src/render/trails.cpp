@@ -16,7 +16,8 @@ bool leaves_a_trail(World const& world, std::size_t robot) {
 void Trails::follow(World const& world) {
     std::size_t const robots = world.robots.size();
     if (robots != robot_count()) {
-        points_.assign(robots * kLength, {});
+        length_ = std::clamp(most_bytes_ / (sizeof(TrailPoint) * robots), kLeastLength, kLength);
+        points_.assign(robots * length_, {});
         count_.assign(robots, 0);
         next_.assign(robots, 0);
     }
@@ -30,16 +31,10 @@ void Trails::follow(World const& world) {
         if (!(moved >= kSpacingMm) || !std::isfinite(moved)) {
             continue;
         }
-        points_[i * kLength + next_[i]] = {position, world.robots.led[i][0]};
-        next_[i] = static_cast<std::uint16_t>((next_[i] + 1U) % kLength);
-        count_[i] = static_cast<std::uint16_t>(std::min<std::size_t>(count_[i] + 1U, kLength));
+        points_[i * length_ + next_[i]] = {position, world.robots.led[i][0]};
+        next_[i] = static_cast<std::uint16_t>((next_[i] + 1U) % length_);
+        count_[i] = static_cast<std::uint16_t>(std::min<std::size_t>(count_[i] + 1U, length_));
     }
-}
-
-void Trails::clear() {
-    points_.clear();
-    count_.clear();
-    next_.clear();
 }
 
 }  // namespace pogosim

@@ -8,6 +8,7 @@
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
 #include "robot/waiting.hpp"
+#include "world/observed_motion.hpp"
 
 using pogosim::context;
 using pogosim::require_argument;
@@ -62,8 +63,8 @@ void pogobot_imu_read(float* acc, float* gyro) {
         pogosim::acceleration_m_s2(*context.world, context.body(), context.controller->accelerometer);
     acc[0] = std::clamp(acceleration.y, -kMaxAcceleration, kMaxAcceleration);
     acc[1] = std::clamp(acceleration.x, -kMaxAcceleration, kMaxAcceleration);
-    gyro[2] = std::clamp(0.0F - context.world->bodies.angular_velocity_rad_s[context.body()], -kMaxAngularVelocity,
-                         kMaxAngularVelocity);
+    gyro[2] = std::clamp(0.0F - pogosim::observed_motion(*context.world, context.body()).angular_velocity_rad_s,
+                         -kMaxAngularVelocity, kMaxAngularVelocity);
 }
 
 float pogobot_imu_readTemp() {

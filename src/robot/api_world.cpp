@@ -16,6 +16,7 @@
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
 #include "robot/user_guard.hpp"
+#include "world/observed_motion.hpp"
 
 using pogosim::ConfigError;
 using pogosim::context;
@@ -222,16 +223,8 @@ void pogosim_world_pose(uint32_t object, pogosim_pose_t* pose) {
 void pogosim_world_velocity(uint32_t object, pogosim_velocity_t* velocity) {
     Object const& found = object_at(__func__, object);
     require_argument(velocity, __func__, "velocity");
-    pogosim::Bodies const& bodies = context.world->bodies;
-    *velocity = {};
-    for (uint32_t i = 0; i < found.body_count; ++i) {
-        Vec2 const of_part = bodies.velocity_mm_s[found.body + i];
-        velocity->x_mm_s += static_cast<double>(of_part.x) / found.body_count;
-        velocity->y_mm_s += static_cast<double>(of_part.y) / found.body_count;
-    }
-    if (found.body_count == 1) {
-        velocity->angular_rad_s = bodies.angular_velocity_rad_s[found.body];
-    }
+    auto const [velocity_mm_s, angular_velocity_rad_s] = pogosim::observed_motion(*context.world, found);
+    *velocity = {.x_mm_s = velocity_mm_s.x, .y_mm_s = velocity_mm_s.y, .angular_rad_s = angular_velocity_rad_s};
 }
 
 bool pogosim_world_set_pose(uint32_t object, double x_mm, double y_mm, double heading_rad) {

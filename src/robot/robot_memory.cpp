@@ -292,6 +292,23 @@ bool RobotMemory::is_same_for_all(std::uint32_t own_slot) const {
     return true;
 }
 
+void RobotMemory::read(std::uint32_t copy, std::byte const* place, std::span<std::byte> to) const {
+    copy_bytes(to.data(), place, to.size());
+    if (copy == loaded_) {
+        return;
+    }
+    std::byte const* const end = place + to.size();
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        Block const& block = blocks_[i];
+        std::byte const* const first = std::max<std::byte const*>(place, block.place);
+        std::byte const* const last = std::min<std::byte const*>(end, block.place + block.bytes);
+        if (first < last) {
+            copy_bytes(to.data() + (first - place), content(copy, i) + (first - block.place),
+                       static_cast<std::size_t>(last - first));
+        }
+    }
+}
+
 void RobotMemory::give_to_all(std::span<std::byte const> place) {
     std::byte const* const end = place.data() + place.size();
     for (std::size_t i = 0; i < blocks_.size(); ++i) {

@@ -27,6 +27,10 @@ public:
     /// Puts a copy into the program: that of a robot, or kNone. What is in the program belongs to the copy before.
     void load(std::uint32_t copy);
 
+    /// What a copy, that of a robot, has in a place of the program; bytes outside of its variables are as the program has
+    /// them. Nothing is loaded for it.
+    void read(std::uint32_t copy, std::byte const* place, std::span<std::byte> to) const;
+
     /// What the program has in this place now is in every copy from now on. Bytes outside of its variables are ignored.
     void give_to_all(std::span<std::byte const> place);
 

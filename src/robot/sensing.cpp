@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "world/observed_motion.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -42,7 +44,7 @@ void measure_velocity(World const& world, std::uint32_t robot, Controller& self)
     }
     Accelerometer& meter = self.accelerometer;
     meter.previous_mm_s = meter.current_mm_s;
-    meter.current_mm_s = world.bodies.velocity_mm_s[body];
+    meter.current_mm_s = observed_motion(world, body).velocity_mm_s;
     bool const first = !std::exchange(meter.has_measured, true);
     meter.interval_s = first ? 0.0F : static_cast<float>(self.clock_us - meter.current_us) * seconds_per_us;
     meter.current_us = self.clock_us;

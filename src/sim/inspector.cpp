@@ -1,15 +1,21 @@
 #include "sim/inspector.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "robot/sensing.hpp"
+#include "robot/variable_text.hpp"
+#include "world/observed_motion.hpp"
 
 namespace pogosim {
 
 namespace {
 
 constexpr double kSecondsPerUs = 1e-6;
+std::vector<ProgramVariables::Variable> const kNoVariables;
 
 Object const& object_of(World const& world, std::uint32_t robot) {
     return *std::ranges::find(world.objects, robot, &Object::robot);
@@ -17,18 +23,11 @@ Object const& object_of(World const& world, std::uint32_t robot) {
 
 /// Of the middle of a membrane, or of its only body.
 void add_motion(World const& world, Object const& object, Inspection& inspection) {
-    Bodies const& bodies = world.bodies;
-    Vec2 velocity_mm_s;
-    for (std::uint32_t k = 0; k < object.body_count; ++k) {
-        velocity_mm_s = velocity_mm_s + bodies.velocity_mm_s[object.body + k];
-    }
+    auto const [position_mm, heading_rad] = pose_of(world, object);
     inspection.has_body = true;
-    inspection.position_mm = wrapped(world, centre_mm(world, object));
-    inspection.speed_mm_s = length(velocity_mm_s) / static_cast<float>(object.body_count);
-    if (object.body_count == 1) {
-        inspection.heading_rad = wrap_angle(bodies.heading_rad[object.body]);
-        inspection.angular_velocity_rad_s = bodies.angular_velocity_rad_s[object.body];
-    }
+    inspection.position_mm = position_mm;
+    inspection.heading_rad = heading_rad;
+    inspection.angular_velocity_rad_s = observed_motion(world, object).angular_velocity_rad_s;
 }
 
 void add_controller(Controller const& controller, Inspection& inspection) {
@@ -62,11 +61,57 @@ Inspection Inspector::inspect(std::uint32_t robot) {
     if (object.body != kNone) {
         add_motion(world_, object, inspection);
         add_sensors(world_, object.body, controller, inspection);
+        auto const [shortly_mm, shortly_s] = recent_motion_.of(robot, Inspection::kSpeedWindowS);
+        inspection.speed_mm_s = shortly_s > 0.0 ? shortly_mm / static_cast<float>(shortly_s) : 0.0F;
+        RecentMotion::Displacement const recent = recent_motion_.of(robot, RecentMotion::kWindowS);
+        inspection.moved_mm = recent.distance_mm;
+        inspection.moved_during_s = recent.during_s;
+        inspection.touches = names_of_touched(object);
     }
     inspection.neighbours = neighbours_of(robot);
-    inspection.columns = rows_.last_row(robot);
+    add_variables(robot, inspection);
+    std::tie(inspection.columns_time_s, inspection.columns) = rows_.last_row(robot);
     inspection.lines.assign(lines_.of(robot).begin(), lines_.of(robot).end());
     return inspection;
+}
+
+void Inspector::add_variables(std::uint32_t robot, Inspection& inspection) {
+    RobotMemory const* const memory = controllers_.own_memory();
+    std::size_t const data_bytes = controllers_.user_data_bytes();
+    if (memory == nullptr && data_bytes == 0) {
+        return;
+    }
+    if (!variables_) {
+        variables_ = variables_of(controllers_.image());
+    }
+    inspection.no_variables = variables_->why_unknown;
+    if (variables_->user_data != nullptr) {
+        add_texts("", *variables_->user_data, {controllers_.controller_of(robot).user_data, data_bytes},
+                  inspection.variables);
+    }
+    std::vector<std::byte> bytes;
+    for (ProgramVariables::Variable const& variable : memory != nullptr ? variables_->own : kNoVariables) {
+        bytes.resize(variable.type->bytes);
+        auto const address = controllers_.image().load_address + variable.address;
+        memory->read(robot, reinterpret_cast<std::byte const*>(address), bytes);
+        add_texts(variable.name, *variable.type, bytes, inspection.variables);
+    }
+}
+
+/// Those of its own category are just robots.
+std::vector<std::string> Inspector::names_of_touched(Object const& object) const {
+    Touched const touched = touched_by(world_, object, gaps_);
+    std::vector<std::string> names;
+    if (touched.wall) {
+        names.emplace_back("wall");
+    }
+    for (std::uint32_t const i : touched.objects) {
+        Object const& other = world_.objects[i];
+        std::string const& category = world_.categories[other.category].name;
+        bool const is_alike = category == world_.categories[object.category].name;
+        names.push_back(fmt::format("{} {}", is_alike ? "robot" : category, other.id));
+    }
+    return names;
 }
 
 std::vector<Neighbour> Inspector::neighbours_of(std::uint32_t robot) {

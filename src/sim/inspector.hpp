@@ -2,21 +2,35 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "comms/visibility.hpp"
 #include "render/inspection.hpp"
 #include "robot/controllers.hpp"
 #include "robot/printed_lines.hpp"
+#include "robot/program_variables.hpp"
+#include "sim/recent_motion.hpp"
 #include "sim/recorded_rows.hpp"
+#include "sim/touching.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
 class Inspector {
 public:
-    /// References outlive this.
-    Inspector(World const& world, Controllers const& controllers)
-        : world_(world), controllers_(controllers), lines_(world.robots.size()), rows_(world.robots.size()) {}
+    /// References outlive this. `gaps`: of the engine.
+    Inspector(World const& world, Controllers const& controllers, TouchGaps const& gaps)
+        : world_(world),
+          controllers_(controllers),
+          gaps_(gaps),
+          recent_motion_(world),
+          lines_(world.robots.size()),
+          rows_(world.robots.size()) {}
+
+    /// Call it after each step.
+    void note_step() { recent_motion_.follow(world_); }
 
     /// A robot as it is between two steps. Only reads: no user code runs, and nothing is drawn from a random stream.
     Inspection inspect(std::uint32_t robot);
@@ -27,10 +41,15 @@ public:
 
 private:
     std::vector<Neighbour> neighbours_of(std::uint32_t robot);
+    std::vector<std::string> names_of_touched(Object const& object) const;
+    void add_variables(std::uint32_t robot, Inspection& inspection);
 
     World const& world_;
     Controllers const& controllers_;
+    TouchGaps gaps_;
+    RecentMotion recent_motion_;
     Visibility visibility_;
+    std::optional<ProgramVariables> variables_;  // from the first look at them on
     PrintedLines lines_;
     RecordedRows rows_;
 };

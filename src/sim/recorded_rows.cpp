@@ -110,13 +110,12 @@ void RecordedRows::end() {
     moments_.push_back(std::move(present_));
 }
 
-std::vector<std::pair<std::string, std::string>> RecordedRows::last_row(std::uint32_t robot) const {
+std::pair<double, std::vector<std::pair<std::string, std::string>>> RecordedRows::last_row(std::uint32_t robot) const {
     std::vector<std::pair<std::string, std::string>> cells;
     Row const& row = last_[robot];
     if (!row.exists) {
-        return cells;
+        return {};
     }
-    cells.emplace_back("time", fmt::format("{:.4f}", row.built_in.time_s));
     for (std::size_t const i : built_in_kept_) {
         bool const is_count = i == 0;
         float const value = kBuiltIns[i].value(row.built_in);
@@ -127,7 +126,7 @@ std::vector<std::pair<std::string, std::string>> RecordedRows::last_row(std::uin
             cells.emplace_back(replace_malformed(user_columns_[i].name), std::visit(Text(), row.user[i]));
         }
     }
-    return cells;
+    return {row.built_in.time_s, std::move(cells)};
 }
 
 }  // namespace pogosim

@@ -34,8 +34,8 @@ public:
     /// What was recorded since the last call. Booleans are 0 or 1.
     std::vector<RecordedValues> take() { return std::exchange(moments_, {}); }
 
-    /// The last row of a robot as text, by column; empty when it has none.
-    std::vector<std::pair<std::string, std::string>> last_row(std::uint32_t robot) const;
+    /// The last row of a robot as text, by column, and its time; empty when it has none.
+    std::pair<double, std::vector<std::pair<std::string, std::string>>> last_row(std::uint32_t robot) const;
 
 private:
     struct Row {

@@ -113,7 +113,7 @@ SnapshotTaker& Simulation::snapshots() {
 
 Inspector& Simulation::inspector() {
     if (!inspector_) {
-        inspector_ = std::make_unique<Inspector>(world_, controllers_);
+        inspector_ = std::make_unique<Inspector>(world_, controllers_, physics_->touch_gaps());
         services_.printed_lines = &inspector_->lines();
         recorder_.show(&inspector_->rows());
     }
@@ -132,7 +132,20 @@ bool Simulation::is_over() const {
 
 ExitCode Simulation::run() {
     Thread const thread(*this);
-    return conclude(attempt([this] { return run_steps(); }));
+    ExitCode const code = conclude(attempt([this] { return run_steps(); }));
+    if (window_ && code == ExitCode::done && !options_.close_at_end) {
+        stay_open();
+    }
+    return code;
+}
+
+void Simulation::stay_open() {
+    if (window_->is_over() || interrupted()) {
+        return;
+    }
+    release_files();
+    log().info("over at t = {:.4f} s; the window stays open until you close it (--close-at-end)", world_.time_s());
+    window_->show_end();
 }
 
 Outcome Simulation::attempt(std::function<std::optional<UserFailure>()> const& part) {
@@ -261,6 +274,7 @@ void Simulation::open_window() {
             setup.speed_up = setup.restored->speed_up;
         }
         setup.restart_problem = options_.restart_problem;
+        setup.earlier_files = options_.earlier_files;
         setup.hurry = [this](char const* what) { guard_.hurry(what); };
         setup.scenery = snapshots().scenery();
         window_ = std::make_unique<WindowDriver>(*this, setup);
@@ -350,6 +364,9 @@ std::optional<UserFailure> Simulation::step() {
     channel_.deliver(world_, recorder_.deliveries(), &workers_);
     stages_.end(Stage::messages);
     physics_->advance(world_);
+    if (observed_motions_) {
+        observed_motions_->update(world_);
+    }
     stages_.end(Stage::physics);
     ++world_.step;
     auto failure = recorder_.record_if_due();
@@ -372,6 +389,22 @@ std::optional<UserFailure> Simulation::click(std::uint32_t robot) {
     return failure;
 }
 
+ObservedMotions const& Simulation::observed_motions() const {
+    if (!observed_motions_) {
+        observed_motions_.emplace(world_);
+    }
+    return *observed_motions_;
+}
+
+void Simulation::put(std::uint32_t object, Vec2 centre_mm, float heading_rad) {
+    Object const& moved = world_.objects[object];
+    pogosim::set_pose(world_, moved, centre_mm, heading_rad);
+    if (observed_motions_) {
+        observed_motions_->update(world_, moved);
+    }
+    touches_.add_move(object, world_.time_s());
+}
+
 FreePlaces const& Simulation::free_places() {
     if (!free_places_) {
         free_places_.emplace(world_);
@@ -385,8 +418,7 @@ bool Simulation::move_object(std::uint32_t object, Vec2 centre_mm) {
     if (place_mm == pogosim::centre_mm(world_, moved)) {
         return false;
     }
-    pogosim::set_pose(world_, moved, place_mm, world_.bodies.heading_rad[moved.body]);
-    touches_.add_move(object, world_.time_s());
+    put(object, place_mm, world_.bodies.heading_rad[moved.body]);
     return true;
 }
 
@@ -405,8 +437,7 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
             fmt::format("({:g}, {:g}) mm is no place for an object: it is in a wall or outside of the arena",
                         centre_mm.x, centre_mm.y));
     }
-    pogosim::set_pose(world_, moved, centre_mm, heading_rad);
-    touches_.add_move(object, world_.time_s());
+    put(object, centre_mm, heading_rad);
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/log.hpp"
 #include "base/worker_pool.hpp"
@@ -20,6 +21,7 @@
 #include "robot/shared_steps.hpp"
 #include "robot/user_guard.hpp"
 #include "sim/inspector.hpp"
+#include "sim/observed_motions.hpp"
 #include "sim/pictures.hpp"
 #include "sim/recorder.hpp"
 #include "sim/saved_columns.hpp"
@@ -43,10 +45,13 @@ struct RunOptions {
     std::int64_t hash_period_steps = 0;  // a hash of the state in the log after so many steps each; 0: none
     std::string film{};                  // file of a film of the run; empty: none
     bool window = false;
+    bool close_at_end = false;           // else the window stays open when the simulated time is over
     std::string program_name{};          // for the window's title
     std::optional<Restart> restarted{};  // by the user, in the window of the run before
     // Why the user cannot start the run again, empty if it is possible. Called in the window's thread.
     std::function<std::string()> restart_problem = [] { return std::string(); };
+    // See WindowSetup::earlier_files.
+    std::function<std::vector<std::string>()> earlier_files = [] { return std::vector<std::string>(); };
 };
 
 /// What became of a part of a run.
@@ -153,6 +158,9 @@ public:
     /// True from the first click that ran a callback, or the first move, on.
     bool is_touched() const { return touches_.any(); }
 
+    /// What bodies did in the last step. From the first call on, the arrays stay in place and are always those of now.
+    ObservedMotions const& observed_motions() const;
+
     /// The fence around this run's user code, for whoever owns the process.
     UserGuard& guard() { return guard_; }
 
@@ -181,7 +189,10 @@ private:
     std::optional<UserFailure> run_robots();
     void fit_time_step();
     void open_window();
+    void stay_open();
     FreePlaces const& free_places();
+    /// At rest, wherever that is.
+    void put(std::uint32_t object, Vec2 centre_mm, float heading_rad);
     void report(UserFailure const& failure) const;
     void report_unread_parameters() const;
 
@@ -206,8 +217,9 @@ private:
     std::unique_ptr<Inspector> inspector_;
     std::optional<FreePlaces> free_places_;  // from the first move by hand on
     Touches touches_;
-    std::unique_ptr<WindowDriver> window_;  // null without a window
-    bool is_complete_ = false;              // it came to its end, and all is written
+    mutable std::optional<ObservedMotions> observed_motions_;  // from the first look at them on
+    std::unique_ptr<WindowDriver> window_;                     // null without a window
+    bool is_complete_ = false;                                 // it came to its end, and all is written
 };
 
 }  // namespace pogosim

@@ -51,8 +51,4 @@ void SnapshotTaker::follow_trails() {
     trails_.follow(world_);
 }
 
-void SnapshotTaker::clear_trails() {
-    trails_.clear();
-}
-
 }  // namespace pogosim

@@ -1,6 +1,7 @@
 // Copies of the world for pictures.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -24,9 +25,11 @@ public:
     /// included in the links; every sender counts at its present emitter power.
     Snapshot take(SnapshotParts parts);
 
+    /// Trails take no more memory than this. Call it before follow_trails().
+    void limit_trails(std::size_t most_bytes) { trails_ = Trails(most_bytes); }
+
     /// Adds the present positions to the trails. Call it after each step from which trails are wanted.
     void follow_trails();
-    void clear_trails();
 
 private:
     std::shared_ptr<LightMap const> light();

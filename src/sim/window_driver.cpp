@@ -14,7 +14,8 @@ namespace pogosim {
 
 namespace {
 
-constexpr std::chrono::milliseconds kLookPeriod{50};  // for Ctrl-C, while nothing happens
+constexpr std::size_t kMostTrailBytes = std::size_t{64} << 20;  // 512 places for each of 10 000 robots
+constexpr std::chrono::milliseconds kLookPeriod{50};            // for Ctrl-C, while nothing happens
 
 template <class... Handlers>
 struct Overloaded : Handlers... {
@@ -30,7 +31,10 @@ WindowDriver::WindowDriver(Simulation& simulation, WindowSetup const& setup)
       taker_(simulation.snapshots()),
       pacer_(setup.speed_up),
       paused_(setup.restored && setup.restored->paused),
-      window_(std::make_unique<OpenWindow>(setup)) {}
+      window_(std::make_unique<OpenWindow>(setup)) {
+    taker_.limit_trails(kMostTrailBytes);
+    taker_.follow_trails();
+}
 
 WindowDriver::~WindowDriver() = default;
 
@@ -62,9 +66,22 @@ void WindowDriver::note_step() {
     }
     steps_asked_ = std::max(steps_asked_ - 1, 0);
     pacer_.note_step(simulation_.world().time_s(), Pacer::Clock::now());
+    simulation_.inspector().note_step();
     drag();
-    if (follows_trails_) {
-        taker_.follow_trails();
+    taker_.follow_trails();
+}
+
+void WindowDriver::show_end() {
+    shows_end_ = true;
+    dragged_.reset();
+    while (is_open() && !is_over_ && !interrupted()) {
+        carry_out_commands();
+        show_if_wanted();
+        flush_logs_if_due();
+        look_for_its_end();
+        if (is_open()) {
+            window_->exchange().wait_until(Pacer::Clock::now() + kLookPeriod);
+        }
     }
 }
 
@@ -90,7 +107,7 @@ void WindowDriver::look_for_its_end() {
     if (!end) {
         return;
     }
-    if (*end == WindowEnd::closed) {
+    if (*end == WindowEnd::closed || shows_end_) {
         is_over_ = true;
     } else if (*end == WindowEnd::display_lost) {
         log().warn("the display is gone at t = {:.4f} s; the run goes on without a window",
@@ -115,6 +132,12 @@ std::optional<UserFailure> WindowDriver::carry_out_commands() {
 
 std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
     std::optional<UserFailure> failure;
+    bool const needs_the_run = std::holds_alternative<Pause>(command) || std::holds_alternative<StepOnce>(command) ||
+                               std::holds_alternative<ClickRobot>(command) ||
+                               std::holds_alternative<DragObject>(command);
+    if (shows_end_ && needs_the_run) {
+        return failure;
+    }
     auto const pause = [this](bool on) {
         paused_ = on;
         steps_asked_ = 0;
@@ -139,6 +162,9 @@ std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
                           },
                           [&](Quit const&) {
                               is_over_ = true;
+                              if (shows_end_) {
+                                  return;
+                              }
                               World const& world = simulation_.world();
                               log().info("ended at t = {:.4f} s of {:g} s by closing the window", world.time_s(),
                                          static_cast<double>(simulation_.step_count()) * world.time_step_s);
@@ -153,18 +179,13 @@ void WindowDriver::show_if_wanted() {
     if (!request) {
         return;
     }
-    if (!request->follow_trails) {
-        taker_.clear_trails();
-    } else if (!follows_trails_) {
-        taker_.follow_trails();
-    }
-    follows_trails_ = request->follow_trails;
     auto moment = std::make_shared<Moment>();
     moment->snapshot = taker_.take(request->parts);
     moment->status = {.paused = paused_,
                       .asked_speed_up = pacer_.speed_up(),
                       .speed_up = pacer_.reached(),
                       .too_slow = pacer_.is_too_slow(),
+                      .is_over = shows_end_,
                       .touched = simulation_.is_touched()};
     if (request->robot) {
         moment->inspection = simulation_.inspector().inspect(*request->robot);

@@ -33,6 +33,10 @@ public:
     /// Call it after each step.
     void note_step();
 
+    /// Call it when the run is over and its files are complete: shows its last moment until the user closes the window,
+    /// or wants the run again.
+    void show_end();
+
     /// The user has ended the run.
     bool is_over() const { return is_over_; }
 
@@ -53,10 +57,10 @@ private:
     Pacer pacer_;
     bool paused_ = false;
     std::unique_ptr<OpenWindow> window_;  // null: it has gone
-    bool follows_trails_ = false;
     std::optional<DragObject> dragged_;
     int steps_asked_ = 0;  // while paused
     bool is_over_ = false;
+    bool shows_end_ = false;
     std::optional<Restart> restart_;
 };
 

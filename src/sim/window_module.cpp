@@ -24,15 +24,9 @@ std::atomic<bool> left_behind = false;
 
 /// SDL says little of a missing display.
 void check_display() {
-#if !defined(__APPLE__)
-    auto const is_set = [](char const* name) {
-        char const* const value = std::getenv(name);
-        return value != nullptr && *value != '\0';
-    };
-    if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") && !is_set("SDL_VIDEODRIVER")) {
+    if (!has_display()) {
         throw std::runtime_error("there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)");
     }
-#endif
 }
 
 ShowWindow load_module() {
@@ -49,6 +43,18 @@ ShowWindow load_module() {
 }
 
 }  // namespace
+
+bool has_display() {
+#if defined(__APPLE__)
+    return true;
+#else
+    auto const is_set = [](char const* name) {
+        char const* const value = std::getenv(name);
+        return value != nullptr && *value != '\0';
+    };
+    return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY") || is_set("SDL_VIDEODRIVER");
+#endif
+}
 
 OpenWindow::OpenWindow(WindowSetup const& setup) : exchange_(std::make_shared<Exchange>()) {
     check_display();

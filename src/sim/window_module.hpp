@@ -9,6 +9,9 @@
 
 namespace pogosim {
 
+/// Whether a display is named, on which a window could open.
+bool has_display();
+
 /// An open window and its thread.
 class OpenWindow {
 public:

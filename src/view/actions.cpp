@@ -57,7 +57,7 @@ constexpr std::array kHelp{
     Help{"Space", "pause, or go on"},
     Help{"S", "pause and advance by one step"},
     Help{"F3, F4", "slower, faster"},
-    Help{"R", "restart with the same seed (overwrites the data)"},
+    Help{"R", "restart with the same seed"},
     Help{"Shift R", "restart with the next seed"},
     Help{"F2", "trails"},
     Help{"F5", "communication channels: off, below, above the robots"},

@@ -12,23 +12,26 @@ namespace pogosim {
 
 namespace {
 
-constexpr float kWidthPx = 262.0F;
-constexpr float kTopPx = 44.0F;  // below the time
-constexpr float kMarginPx = 10.0F;
-constexpr float kRoomyPx = 700.0F;  // in lower windows, the sections are closed at first: robots are under them
 constexpr float kDegreesPerRad = 180.0F / std::numbers::pi_v<float>;
 constexpr std::size_t kLongestValue = 500;   // bytes of a text
 constexpr std::size_t kMostNeighbours = 40;  // named
 constexpr std::array kFaces{"front", "right", "back", "left"};
 
-/// A line of a table of two columns.
-void row(char const* name, std::string const& value) {
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", name);
-    ImGui::TableNextColumn();
+/// On several lines where it is long.
+void wrapped(std::string const& text) {
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(value.c_str(), value.c_str() + std::min(value.size(), kLongestValue));
+    ImGui::TextUnformatted(text.c_str(), text.c_str() + std::min(text.size(), kLongestValue));
     ImGui::PopTextWrapPos();
+}
+
+/// A line of a table of two columns.
+void row(std::string const& name, std::string const& value) {
+    ImGui::TableNextColumn();
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    wrapped(name);
+    ImGui::PopStyleColor();
+    ImGui::TableNextColumn();
+    wrapped(value);
 }
 
 /// Draws lines of `draw`, which calls row().
@@ -46,11 +49,25 @@ std::string motor_text(Inspection const& robot, std::size_t motor) {
     return fmt::format("{}, direction {}", robot.motor_power[motor], robot.motor_direction[motor]);
 }
 
+std::string joined(std::vector<std::string> const& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size() && i < kMostNeighbours; ++i) {
+        text += (i > 0 ? ", " : "") + names[i];
+    }
+    return text.empty() ? "nothing" : text;
+}
+
 void draw_motion(Inspection const& robot) {
+    row("category", robot.category);
     if (robot.has_body) {
         row("position", fmt::format("{:.1f}, {:.1f} mm", robot.position_mm.x, robot.position_mm.y));
         row("heading", fmt::format("{:.3f} rad ({:.0f}\u00b0)", robot.heading_rad, robot.heading_rad * kDegreesPerRad));
-        row("speed", fmt::format("{:.1f} mm/s", robot.speed_mm_s));
+        row(fmt::format("speed, mean of {:g} s", Inspection::kSpeedWindowS),
+            fmt::format("{:.1f} mm/s", robot.speed_mm_s));
+        row(robot.moved_during_s < 0.9995 ? fmt::format("moved in the last {:.2f} s", robot.moved_during_s)
+                                          : "moved in the last second",
+            fmt::format("{:.1f} mm", robot.moved_mm));
+        row("touches", joined(robot.touches));
         row("turning", fmt::format("{:.2f} rad/s", robot.angular_velocity_rad_s));
         row("acceleration",
             fmt::format("{:.2f}, {:.2f} m/s\u00b2", robot.acceleration_m_s2.x, robot.acceleration_m_s2.y));
@@ -84,6 +101,20 @@ std::string neighbour_text(Inspection const& robot) {
     return text;
 }
 
+void draw_pairs(std::vector<std::pair<std::string, std::string>> const& pairs) {
+    for (auto const& [name, value] : pairs) {
+        row(name, value);
+    }
+}
+
+void draw_variables(Inspection const& robot) {
+    if (!robot.variables.empty()) {
+        table("variables", [&] { draw_pairs(robot.variables); });
+    } else {
+        wrapped(robot.no_variables.empty() ? "robots have none of their own (USERDATA)" : robot.no_variables);
+    }
+}
+
 void draw_messages(Inspection const& robot) {
     row("sent", std::to_string(robot.messages_sent));
     row("received", std::to_string(robot.messages_received));
@@ -93,46 +124,32 @@ void draw_messages(Inspection const& robot) {
 
 }  // namespace
 
-void draw_inspector(Inspection const& robot, float scale, bool in_its_corner) {
-    ImVec2 const size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({size.x - kMarginPx, kTopPx * scale}, in_its_corner ? ImGuiCond_Always : ImGuiCond_Once,
-                            {1.0F, 0.0F});
-    ImGui::SetNextWindowSizeConstraints({kWidthPx * scale, 0.0F},
-                                        {kWidthPx * scale, size.y - kTopPx * scale - kMarginPx});
-    ImGui::SetNextWindowSize({kWidthPx * scale, 0.0F});
-    std::string const title = fmt::format("Robot {} ({})###inspector", robot.id, robot.category);
-    if (ImGui::Begin(title.c_str(), nullptr,
-                     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings)) {
-        ImGuiTreeNodeFlags const open = size.y < kRoomyPx * scale ? 0 : ImGuiTreeNodeFlags_DefaultOpen;
-        table("motion", [&] { draw_motion(robot); });
-        if (ImGui::CollapsingHeader("Messages", open)) {
-            table("messages", [&] { draw_messages(robot); });
-            if (!robot.neighbours.empty()) {
-                ImGui::TextUnformatted(neighbour_text(robot).c_str());
-            }
-        }
-        if (!robot.columns.empty() && ImGui::CollapsingHeader("Data columns", open)) {
-            table("columns", [&] {
-                for (auto const& [name, value] : robot.columns) {
-                    row(name.c_str(), value);
-                }
-            });
-        }
-        if (!robot.lines.empty() && ImGui::CollapsingHeader("Printed", open)) {
-            ImGui::PushTextWrapPos(0.0F);
-            for (std::string const& line : robot.lines) {
-                ImGui::TextUnformatted(line.c_str());
-            }
-            ImGui::PopTextWrapPos();
-        }
-        if (ImGui::CollapsingHeader("LEDs and sensors")) {
-            table("leds", [&] {
-                draw_leds(robot);
-                row("light", fmt::format("{} back, {} left, {} right", robot.light[0], robot.light[1], robot.light[2]));
-            });
+void draw_inspector(Inspection const& robot) {
+    table("motion", [&] { draw_motion(robot); });
+    if (ImGui::CollapsingHeader("Variables", ImGuiTreeNodeFlags_DefaultOpen)) {
+        draw_variables(robot);
+    }
+    if (ImGui::CollapsingHeader("Messages", ImGuiTreeNodeFlags_DefaultOpen)) {
+        table("messages", [&] { draw_messages(robot); });
+        if (!robot.neighbours.empty()) {
+            wrapped(neighbour_text(robot));
         }
     }
-    ImGui::End();
+    std::string const columns = fmt::format("Data columns at t = {:g} s###columns", robot.columns_time_s);
+    if (!robot.columns.empty() && ImGui::CollapsingHeader(columns.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+        table("columns", [&] { draw_pairs(robot.columns); });
+    }
+    if (!robot.lines.empty() && ImGui::CollapsingHeader("Printed", ImGuiTreeNodeFlags_DefaultOpen)) {
+        for (std::string const& line : robot.lines) {
+            wrapped(line);
+        }
+    }
+    if (ImGui::CollapsingHeader("LEDs and sensors")) {
+        table("leds", [&] {
+            draw_leds(robot);
+            row("light", fmt::format("{} back, {} left, {} right", robot.light[0], robot.light[1], robot.light[2]));
+        });
+    }
 }
 
 }  // namespace pogosim

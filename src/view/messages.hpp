@@ -51,6 +51,7 @@ struct WindowState {
 /// Ends the run and starts it again with this seed.
 struct Restart {
     std::uint32_t seed = 0;
+    bool overwrite = false;               // the files of the run before; else they are kept beside the new ones
     std::optional<WindowState> window{};  // that the new run has
 };
 struct Quit {};
@@ -63,7 +64,6 @@ using Command = std::variant<Pause, StepOnce, SetSpeedUp, ClickRobot, DragObject
 /// What the window wants to show next.
 struct MomentRequest {
     SnapshotParts parts;
-    bool follow_trails = false;            // so that they are there when `parts` ask for them
     std::optional<std::uint32_t> robot{};  // to inspect
 };
 
@@ -72,6 +72,7 @@ struct RunStatus {
     double asked_speed_up = 1.0;  // 0: as fast as possible
     double speed_up = 0.0;        // reached in the last second; 0: not known yet
     bool too_slow = false;        // the machine cannot keep the asked one
+    bool is_over = false;         // its files are complete; the window is still open
     bool touched = false;         // by the user's hand: the run is no longer that of its seed alone
 };
 
@@ -101,6 +102,9 @@ struct WindowSetup {
     // Why the run cannot be started again, such as a configuration that is wrong by now; empty if it can. Called in the
     // window's thread.
     std::function<std::string()> restart_problem;
+    // What a restart would overwrite, and the name under which it can be kept: "run.feather -> run.1.feather". Called in
+    // the window's thread.
+    std::function<std::vector<std::string>()> earlier_files;
 };
 
 /// How a window ended.

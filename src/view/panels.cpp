@@ -16,9 +16,6 @@ namespace {
 
 constexpr float kTextPx = 15.0F;
 constexpr float kMarginPx = 10.0F;
-constexpr float kControlWidthPx = 236.0F;
-constexpr float kLeastWidthPx = 320.0F;  // of a picture with panels
-constexpr float kLeastHeightPx = 240.0F;
 ImVec4 const kWarning{1.0F, 0.66F, 0.25F, 1.0F};
 constexpr ImGuiWindowFlags kFixed =
     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings;
@@ -39,6 +36,19 @@ void set_style(float scale) {
     style.Colors[ImGuiCol_TitleBgCollapsed] = {0.07F, 0.08F, 0.10F, 0.80F};
     style.Colors[ImGuiCol_PlotHistogram] = {0.31F, 0.55F, 0.85F, 1.0F};
     style.ScaleAllSizes(scale);
+}
+
+/// Within the panel, on several lines where it is long.
+void text(std::string const& text) {
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+void text(ImVec4 const& colour, std::string const& of_colour) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    text(of_colour);
+    ImGui::PopStyleColor();
 }
 
 std::string speed_text(double speed_up) {
@@ -66,14 +76,13 @@ void draw_speed(PanelState const& state, std::function<void(Command const&)> con
         send(SetSpeedUp{unlimited ? 0.0 : 1.0});
     }
     if (state.seconds_since_moment > kBusyS) {
-        ImGui::TextColored(kWarning, "busy with one step for %.0f s", state.seconds_since_moment);
+        text(kWarning, fmt::format("busy with one step for {:.0f} s", state.seconds_since_moment));
     } else if (status.paused) {
         ImGui::TextUnformatted("paused");
     } else if (status.too_slow) {
-        ImGui::TextColored(kWarning, "%s",
-                           fmt::format("the machine reaches only {}", speed_text(status.speed_up)).c_str());
+        text(kWarning, fmt::format("the machine reaches only {}", speed_text(status.speed_up)));
     } else if (status.speed_up > 0.0) {
-        ImGui::TextUnformatted(fmt::format("running at {} real time", speed_text(status.speed_up)).c_str());
+        text(fmt::format("running at {} real time", speed_text(status.speed_up)));
     } else {
         ImGui::TextUnformatted("running");
     }
@@ -99,34 +108,56 @@ void draw_switches(PanelState& state) {
     ImGui::Checkbox("plot of a data column", &state.plot);
 }
 
-void draw_control(PanelState& state, float scale, std::function<void(Command const&)> const& send) {
-    WindowSetup const& setup = *state.setup;
-    ImGui::SetNextWindowPos({kMarginPx, kMarginPx}, ImGuiCond_Once);
-    ImGui::SetNextWindowSize({kControlWidthPx * scale, 0.0F});
-    if (ImGui::Begin("Run", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize) && state.moment != nullptr) {
-        RunStatus const& status = state.status;
-        if (ImGui::Button(status.paused ? "Run" : "Pause", {66.0F * scale, 0.0F})) {
-            send(Pause{!status.paused});
-        }
-        ImGui::SameLine();
-        if (ImGui::Button("Step")) {
-            send(StepOnce{});
-        }
-        ImGui::SameLine();
-        if (ImGui::Button("Restart")) {
-            send(Restart{setup.seed});
-        }
-        double const time_s = state.moment->snapshot.time_s;
-        double const share = setup.duration_s > 0.0 ? time_s / setup.duration_s : 1.0;
-        ImGui::ProgressBar(static_cast<float>(share), {-1.0F, 0.0F},
-                           fmt::format("{:.2f} of {:g} s", time_s, setup.duration_s).c_str());
-        draw_speed(state, send);
-        ImGui::TextUnformatted(fmt::format("seed {}{}", setup.seed, status.touched ? ", touched" : "").c_str());
-        ImGui::SameLine(0.62F * ImGui::GetWindowWidth());
-        ImGui::TextDisabled("F1: help");
-        draw_switches(state);
+void draw_buttons(PanelState const& state, float scale, PanelActions const& actions) {
+    RunStatus const& status = state.status;
+    ImGui::BeginDisabled(status.is_over);
+    if (ImGui::Button(status.paused && !status.is_over ? "Run" : "Pause", {66.0F * scale, 0.0F})) {
+        actions.send(Pause{!status.paused});
     }
-    ImGui::End();
+    ImGui::SameLine();
+    if (ImGui::Button("Step")) {
+        actions.send(StepOnce{});
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (ImGui::Button("Restart")) {
+        actions.send(Restart{state.setup->seed});
+    }
+}
+
+/// What is left to do when the simulated time is over.
+void draw_end(PanelActions const& actions) {
+    text(kWarning, "over: its files are complete");
+    if (ImGui::Button("Save a picture")) {
+        actions.save_picture();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Close")) {
+        actions.send(Quit{});
+    }
+}
+
+void draw_control(PanelState& state, float scale, PanelActions const& actions) {
+    WindowSetup const& setup = *state.setup;
+    draw_buttons(state, scale, actions);
+    double const time_s = state.moment->snapshot.time_s;
+    double const share = setup.duration_s > 0.0 ? time_s / setup.duration_s : 1.0;
+    ImGui::ProgressBar(static_cast<float>(share), {-1.0F, 0.0F},
+                       fmt::format("{:.2f} of {:g} s", time_s, setup.duration_s).c_str());
+    if (state.status.is_over) {
+        draw_end(actions);
+    } else {
+        draw_speed(state, actions.send);
+    }
+    std::string const seed = fmt::format("seed {}{}", setup.seed, state.status.touched ? ", touched" : "");
+    text(seed);
+    float const beside_px =
+        std::max(ImGui::CalcTextSize(seed.c_str()).x + 20.0F * scale, 0.62F * ImGui::GetWindowWidth());
+    if (beside_px + ImGui::CalcTextSize("F1: help").x < ImGui::GetWindowWidth()) {
+        ImGui::SameLine(beside_px);
+    }
+    ImGui::TextDisabled("F1: help");
+    draw_switches(state);
 }
 
 void draw_help(PanelState& state) {
@@ -159,6 +190,46 @@ void draw_message(std::string const& text) {
     ImGui::End();
 }
 
+/// What the keys do at the end, while no panel says so.
+constexpr auto kEnd = "over: R runs it again, F12 saves a picture, Esc closes the window";
+
+void draw_question(PanelState const& state, PanelActions const& actions) {
+    ImVec2 const size = ImGui::GetIO().DisplaySize;
+    RestartQuestion const question = *state.question;  // an answer takes it away
+    ImGui::SetNextWindowPos({0.5F * size.x, 0.5F * size.y}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowFocus();
+    if (ImGui::Begin("Run again", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
+        ImGui::PushTextWrapPos(std::max(size.x - 6.0F * kMarginPx, kMarginPx));
+        ImGui::TextUnformatted(
+            fmt::format("Run again with seed {}: what becomes of the files of this run?", question.seed).c_str());
+        for (std::string const& file : question.files) {
+            ImGui::TextUnformatted(file.c_str());
+        }
+        ImGui::PopTextWrapPos();
+        for (auto const& [label, answer] : {std::pair{"Keep them (K)", RestartAnswer::keep},
+                                            std::pair{"Overwrite them (O)", RestartAnswer::overwrite},
+                                            std::pair{"Cancel (Esc)", RestartAnswer::cancel}}) {
+            bool const fits = ImGui::GetItemRectMax().x + ImGui::CalcTextSize(label).x + 4.0F * kMarginPx < size.x;
+            if (answer != RestartAnswer::keep && fits) {
+                ImGui::SameLine();
+            }
+            if (ImGui::Button(label)) {
+                actions.answer(answer);
+                break;
+            }
+        }
+    }
+    ImGui::End();
+}
+
+/// A panel at its place, if that is to be set anew. Returns whether it is open.
+bool begin_panel(char const* title, PanelBox const& box, bool in_its_place, bool* is_shown, ImGuiWindowFlags flags) {
+    ImGuiCond const when = in_its_place ? ImGuiCond_Always : ImGuiCond_Appearing;
+    ImGui::SetNextWindowPos({box.corner_px.x, box.corner_px.y}, when);
+    ImGui::SetNextWindowCollapsed(box.is_collapsed, when);
+    return ImGui::Begin(title, is_shown, flags | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings);
+}
+
 }  // namespace
 
 Panels::Panels(float scale) : context_(ImGui::CreateContext()), scale_(scale) {
@@ -182,8 +253,83 @@ bool Panels::has_mouse() const {
     return ImGui::GetIO().WantCaptureMouse;
 }
 
-void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state,
-                  std::function<void(Command const&)> const& send) {
+PanelRoom Panels::room_now(PanelState const& state) const {
+    ImVec2 const size = ImGui::GetIO().DisplaySize;
+    PictureSize const picture{static_cast<int>(size.x), static_cast<int>(size.y)};
+    Box const& bounds_mm = state.setup->scenery->arena.bounds;
+    Camera const camera = fitted(bounds_mm, picture);
+    PanelRoom room{.window_px = {size.x, size.y},
+                   .arena_px = {camera.to_pixels(bounds_mm.min, picture), camera.to_pixels(bounds_mm.max, picture)},
+                   .scale = scale_,
+                   .title_px = ImGui::GetFrameHeight(),
+                   .has_inspector = state.moment != nullptr && state.moment->inspection.has_value(),
+                   .has_plot = state.plot};
+    if (control_px_ > 0.0F) {
+        room.control_px = control_px_;
+    } else {
+        room.control_px *= scale_;
+    }
+    return room;
+}
+
+void Panels::draw_all(PanelState& state, PanelActions const& actions) {
+    PanelRoom const room = room_now(state);
+    PanelLayout const layout = lay_out_panels(room);
+    bool const in_place = has_other_places(layout, layout_);
+    layout_ = layout;
+
+    float const title_width_px = kTitleWidthPx * scale_;
+    float const control_width_px = kControlWidthPx * scale_;
+    ImGui::SetNextWindowSize({control_is_open_ ? control_width_px : title_width_px, 0.0F});
+    control_is_open_ = begin_panel("Run", layout.control, in_place, nullptr,
+                                   ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize);
+    if (control_is_open_ && state.moment != nullptr) {
+        draw_control(state, scale_, actions);
+        control_px_ = ImGui::GetWindowHeight();
+    }
+    ImGui::End();
+
+    if (room.has_inspector) {
+        PanelBox box = layout.inspector;
+        if (box.is_collapsed && inspector_is_open_) {  // the user wants to see it all the same
+            float const right_px = box.corner_px.x + box.size_px.x;
+            box.size_px = {kInspectorWidthPx * scale_, room.window_px.y - box.corner_px.y - kMarginPx};
+            box.corner_px.x = std::max(right_px - box.size_px.x, kMarginPx);
+        }
+        float const width_px = inspector_is_open_ ? box.size_px.x : title_width_px;
+        ImGui::SetNextWindowSizeConstraints({width_px, 0.0F}, {width_px, box.size_px.y});
+        ImGui::SetNextWindowSize({width_px, 0.0F});
+        std::string const title = fmt::format("Robot {}###inspector", state.moment->inspection->id);
+        bool const was_open = inspector_is_open_;
+        inspector_is_open_ = begin_panel(title.c_str(), box, in_place, nullptr, ImGuiWindowFlags_NoResize);
+        if (inspector_is_open_ != was_open && !in_place) {
+            ImGui::SetWindowPos({inspector_is_open_
+                                     ? std::max(room.window_px.x - kMarginPx - kInspectorWidthPx * scale_, kMarginPx)
+                                     : room.window_px.x - kMarginPx - title_width_px,
+                                 box.corner_px.y});
+        }
+        if (inspector_is_open_) {
+            draw_inspector(*state.moment->inspection);
+        }
+        ImGui::End();
+    }
+
+    if (room.has_plot) {
+        PanelBox const& box = layout.plot;
+        if (in_place) {
+            ImGui::SetNextWindowSize({box.size_px.x, box.size_px.y});
+        }
+        Vec2 const least_px = plot_is_open_ ? scale_ * kLeastPlotPx : Vec2{title_width_px, room.title_px};
+        ImGui::SetNextWindowSizeConstraints({least_px.x, least_px.y}, {room.window_px.x, room.window_px.y});
+        plot_is_open_ = begin_panel("Data column", box, in_place, &state.plot, 0);
+        if (plot_is_open_) {
+            draw_plot(state);
+        }
+        ImGui::End();
+    }
+}
+
+void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state, PanelActions const& actions) {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(canvas.size().width_px), static_cast<float>(canvas.size().height_px)};
     io.DeltaTime = std::max(input.seconds, 1e-4F);
@@ -191,23 +337,20 @@ void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state,
     io.MouseDown[0] = input.mouse.left_is_down;
     io.MouseWheel = input.wheel;
     ImGui::NewFrame();
-    bool const has_room = io.DisplaySize.x >= kLeastWidthPx && io.DisplaySize.y >= kLeastHeightPx;
-    if (state.control && has_room) {
-        draw_control(state, scale_, send);
-        if (state.moment != nullptr && state.moment->inspection) {
-            bool const was_resized = inspector_size_ != canvas.size();
-            inspector_size_ = canvas.size();
-            draw_inspector(*state.moment->inspection, scale_, was_resized);
-        }
-        if (state.plot) {
-            draw_plot(state, scale_);
-        }
+    bool const shows_panels = state.control && has_room_for_panels({io.DisplaySize.x, io.DisplaySize.y}, scale_);
+    if (shows_panels) {
+        draw_all(state, actions);
     }
     if (state.help) {
         draw_help(state);
     }
+    if (state.question) {
+        draw_question(state, actions);
+    }
     if (!state.message.empty()) {
         draw_message(state.message);
+    } else if (state.status.is_over && !(shows_panels && control_is_open_)) {
+        draw_message(kEnd);
     }
     ImGui::Render();
     draw_panels(canvas, *ImGui::GetDrawData(), atlas_);

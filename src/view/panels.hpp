@@ -12,6 +12,7 @@
 #include "view/column_history.hpp"
 #include "view/messages.hpp"
 #include "view/mouse_states.hpp"
+#include "view/panel_layout.hpp"
 #include "view/panel_raster.hpp"
 
 namespace pogosim {
@@ -24,6 +25,20 @@ struct PanelInput {
     MouseState mouse;
     float wheel = 0.0F;    // lines up
     float seconds = 0.0F;  // since the last picture
+};
+
+/// A restart would overwrite files: what becomes of them?
+struct RestartQuestion {
+    std::uint32_t seed = 0;          // that the new run is to have
+    std::vector<std::string> files;  // see WindowSetup::earlier_files
+};
+enum class RestartAnswer { keep, overwrite, cancel };
+
+/// What the user asks for.
+struct PanelActions {
+    std::function<void(Command const&)> send;
+    std::function<void()> save_picture;
+    std::function<void(RestartAnswer)> answer;
 };
 
 /// What the panels show and change.
@@ -40,6 +55,7 @@ struct PanelState {
     bool column_is_chosen = false;      // else the first of the user's own is shown
     double seconds_since_moment = 0.0;  // the run has shown nothing new for so long
     std::string message;                // shown for a while in the middle
+    std::optional<RestartQuestion> question{};
 };
 
 class Panels {
@@ -50,21 +66,28 @@ public:
     Panels(Panels const&) = delete;
     Panels& operator=(Panels const&) = delete;
 
-    /// Lays the panels out and draws them. `send` takes what the user asks for.
-    void draw(Canvas& canvas, PanelInput const& input, PanelState& state,
-              std::function<void(Command const&)> const& send);
+    /// Lays the panels out and draws them.
+    void draw(Canvas& canvas, PanelInput const& input, PanelState& state, PanelActions const& actions);
 
     /// True when the mouse is over a panel, or holds a part of one: it is not for the picture then.
     bool has_mouse() const;
 
 private:
+    PanelRoom room_now(PanelState const& state) const;
+    void draw_all(PanelState& state, PanelActions const& actions);
+
     struct DestroyContext {
         void operator()(ImGuiContext* context) const { ImGui::DestroyContext(context); }
     };
     std::unique_ptr<ImGuiContext, DestroyContext> context_;
     GlyphAtlas atlas_;
     float scale_;
-    PictureSize inspector_size_{0, 0};  // of the window in which the inspector was last shown
+    PanelLayout layout_{};     // in which the panels were put last
+    float control_px_ = 0.0F;  // height of the control panel when it was last open; 0: not known yet
+    // Which are not collapsed, by the layout or the user.
+    bool control_is_open_ = true;
+    bool inspector_is_open_ = true;
+    bool plot_is_open_ = true;
 };
 
 }  // namespace pogosim

@@ -13,8 +13,6 @@ namespace pogosim {
 
 namespace {
 
-constexpr float kHeightPx = 230.0F;
-constexpr float kMarginPx = 10.0F;
 constexpr float kAxisPx = 58.0F;  // left of the plot, for numbers
 constexpr ImU32 kBand = IM_COL32(90, 150, 230, 70);
 constexpr ImU32 kMean = IM_COL32(110, 170, 245, 255);
@@ -133,7 +131,7 @@ void choose_column(PanelState& state) {
         state.column = first_choice(columns);
         state.column_is_chosen = true;
     }
-    ImGui::SetNextItemWidth(190.0F);
+    ImGui::SetNextItemWidth(-1.0F);
     if (ImGui::BeginCombo("##column", columns[state.column].c_str())) {
         for (std::size_t i = 0; i < columns.size(); ++i) {
             if (ImGui::Selectable(columns[i].c_str(), i == state.column)) {
@@ -142,7 +140,11 @@ void choose_column(PanelState& state) {
         }
         ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    float const room_px =
+        ImGui::GetItemRectSize().x - ImGui::GetFrameHeight() - 2.0F * ImGui::GetStyle().FramePadding.x;
+    if (ImGui::CalcTextSize(columns[state.column].c_str()).x > room_px) {  // it is cut there
+        ImGui::TextWrapped("%s", columns[state.column].c_str());
+    }
     ImGui::TextColored(ImColor(kMean), "swarm: mean, 10 to 90 %%");
     if (state.moment != nullptr && state.moment->inspection) {
         ImGui::SameLine();
@@ -183,20 +185,13 @@ void draw_series(PanelState const& state) {
 
 }  // namespace
 
-void draw_plot(PanelState& state, float scale) {
-    ImVec2 const size = ImGui::GetIO().DisplaySize;
-    float const height = std::min(kHeightPx * scale, 0.5F * size.y);
-    ImGui::SetNextWindowPos({kMarginPx, size.y - height - kMarginPx}, ImGuiCond_Once);
-    ImGui::SetNextWindowSize({std::min(size.x - 2.0F * kMarginPx, 620.0F * scale), height}, ImGuiCond_Once);
-    if (ImGui::Begin("Data column", &state.plot, ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings)) {
-        if (state.setup->columns.empty()) {
-            ImGui::TextDisabled("the run records no data (enable_data_logging: false)");
-        } else {
-            choose_column(state);
-            draw_series(state);
-        }
+void draw_plot(PanelState& state) {
+    if (state.setup->columns.empty()) {
+        ImGui::TextDisabled("the run records no data (enable_data_logging: false)");
+        return;
     }
-    ImGui::End();
+    choose_column(state);
+    draw_series(state);
 }
 
 }  // namespace pogosim

@@ -5,6 +5,7 @@
 
 namespace pogosim {
 
-void draw_plot(PanelState& state, float scale);
+/// Fills the panel that is open.
+void draw_plot(PanelState& state);
 
 }  // namespace pogosim

@@ -117,7 +117,10 @@ private:
                 quit();
                 break;
             case SDL_KEYDOWN:
-                if (auto const action = action_of(event.key.keysym.sym, (event.key.keysym.mod & KMOD_SHIFT) != 0)) {
+                if (state_.question) {
+                    answer(event.key.keysym.sym);
+                } else if (auto const action =
+                               action_of(event.key.keysym.sym, (event.key.keysym.mod & KMOD_SHIFT) != 0)) {
                     carry_out(*action, event.key.repeat != 0);
                 }
                 break;
@@ -242,6 +245,15 @@ private:
             restart(again->seed);
             return;
         }
+        if (std::holds_alternative<Quit>(command)) {
+            quit();
+            return;
+        }
+        bool const needs_the_run = std::holds_alternative<Pause>(command) || std::holds_alternative<StepOnce>(command);
+        if (state_.status.is_over && needs_the_run) {
+            say("the run is over: R runs it again");
+            return;
+        }
         // Until the simulation has taken notice, the panels show what was asked for.
         if (auto const* const pause = std::get_if<Pause>(&command)) {
             state_.status.paused = pause->on;
@@ -258,6 +270,43 @@ private:
             say("cannot restart: " + problem);
             return;
         }
+        std::vector<std::string> const files = setup_.earlier_files();
+        if (files.empty()) {
+            restart(seed, /*overwrite=*/false);
+        } else {
+            state_.question = RestartQuestion{seed, files};
+        }
+    }
+
+    /// By a key.
+    void answer(SDL_Keycode key) {
+        switch (key) {
+            case SDLK_k:
+            case SDLK_RETURN:
+            case SDLK_KP_ENTER:
+                answer(RestartAnswer::keep);
+                break;
+            case SDLK_o:
+                answer(RestartAnswer::overwrite);
+                break;
+            case SDLK_c:
+            case SDLK_ESCAPE:
+                answer(RestartAnswer::cancel);
+                break;
+            default:
+                break;
+        }
+    }
+
+    void answer(RestartAnswer answer) {
+        std::uint32_t const seed = state_.question->seed;
+        state_.question.reset();
+        if (answer != RestartAnswer::cancel) {
+            restart(seed, answer == RestartAnswer::overwrite);
+        }
+    }
+
+    void restart(std::uint32_t seed, bool overwrite) {
         WindowState state;
         window_.write_place(state);
         if (!is_fitted()) {
@@ -269,7 +318,7 @@ private:
         state.options = options_;
         state.plot = state_.plot;
         state.column = state_.column;
-        exchange_.send(Restart{seed, state});
+        exchange_.send(Restart{seed, overwrite, state});
         setup_.hurry("restarting");
     }
 
@@ -404,7 +453,7 @@ private:
         double const time_s = moment_ != nullptr ? moment_->snapshot.time_s : 0.0;
         bool const are_fresh = trails_ != nullptr && time_s - trails_time_s_ < kTrailPeriodS && !state_.status.paused;
         parts.trails = options_.trails && !are_fresh;
-        exchange_.request({.parts = parts, .follow_trails = options_.trails, .robot = options_.selected_robot});
+        exchange_.request({.parts = parts, .robot = options_.selected_robot});
     }
 
     void take_moment() {
@@ -418,7 +467,11 @@ private:
         last_moment_ = Clock::now();
         // While the run is paused, nothing changes but by the user.
         is_stale_ = is_stale_ || moment_ == nullptr || newest->snapshot.step != moment_->snapshot.step ||
-                    newest->status.touched != moment_->status.touched;
+                    newest->status.touched != moment_->status.touched ||
+                    newest->status.is_over != moment_->status.is_over;
+        if (moment_ != nullptr && newest->status.is_over != moment_->status.is_over) {
+            pictures_to_draw_ = kPicturesAfterInput;  // panels settle
+        }
         moment_ = std::make_unique<Moment>(*newest);
         // Only the user changes these two, and the moment may be from before the simulation has taken notice.
         RunStatus const asked = state_.status;
@@ -449,8 +502,14 @@ private:
                                .wheel = std::exchange(wheel_, 0.0F),
                                .seconds = std::chrono::duration<float>(now - last_drawn_).count()};
         last_drawn_ = now;
-        panels_.draw(canvas_, input, state_, [this](Command const& command) { send(command); });
+        panels_.draw(canvas_, input, state_,
+                     {.send = [this](Command const& command) { send(command); },
+                      .save_picture = [this] { picture_is_asked_ = true; },
+                      .answer = [this](RestartAnswer asked) { answer(asked); }});
         window_.show(canvas_);
+        if (std::exchange(picture_is_asked_, false)) {
+            save_screenshot();
+        }
         is_stale_ = false;
         pictures_to_draw_ = std::max(pictures_to_draw_ - 1, 0);
     }
@@ -499,6 +558,7 @@ private:
     bool closed_ = false;
     bool is_stale_ = true;
     bool help_is_logged_ = false;
+    bool picture_is_asked_ = false;  // by a button
     int pictures_to_draw_ = kPicturesAfterInput;
     Clock::time_point last_drawn_ = Clock::now();
     Clock::time_point last_asked_ = Clock::now();

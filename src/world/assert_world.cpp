@@ -18,6 +18,8 @@ void assert_sizes(Bodies const& bodies) {
     assert(bodies.heading_dir.size() == bodies.size());
     assert(bodies.velocity_mm_s.size() == bodies.size());
     assert(bodies.angular_velocity_rad_s.size() == bodies.size());
+    assert(bodies.start_mm.size() == bodies.size());
+    assert(bodies.start_rad.size() == bodies.size());
     assert(bodies.radius_mm.size() == bodies.size());
     assert(bodies.shape.size() == bodies.size());
     assert(bodies.spec.size() == bodies.size());

@@ -22,6 +22,8 @@ void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float headin
     bodies.heading_dir[body] = direction(heading_rad);
     bodies.velocity_mm_s[body] = {};
     bodies.angular_velocity_rad_s[body] = 0.0F;
+    bodies.start_mm[body] = position_mm;
+    bodies.start_rad[body] = heading_rad;
 }
 
 void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) {

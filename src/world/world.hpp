@@ -6,8 +6,8 @@
 //                     that stands still goes on or off
 //   robot     writes  robots.led, robots.command, air; takes messages out of mailboxes; draws from robots.stream
 //   comms     writes  mailboxes; clears air; draws from robots.stream
-//   physics   writes  position_mm, heading_rad, axis, velocity_mm_s and angular_velocity_rad_s of bodies that are not
-//                     fixed; clears robots.command[i].pending
+//   physics   writes  position_mm, heading_rad, heading_dir, velocity_mm_s, angular_velocity_rad_s, start_mm and
+//                     start_rad of bodies; clears robots.command[i].pending
 //   record, render and view only read
 //
 // Callbacks of the whole run, which run before the robots, also write poses, switched_off (by way of
@@ -62,7 +62,9 @@ struct Bodies {
     std::vector<Vec2> heading_dir;   // unit vector along the heading, which decides
     std::vector<Vec2> velocity_mm_s;
     std::vector<float> angular_velocity_rad_s;  // clockwise on the screen
-    std::vector<float> radius_mm;               // bounding disk
+    std::vector<Vec2> start_mm;    // position and heading at the start of the last step, or where they have
+    std::vector<float> start_rad;  // been put since, see observed_motion.hpp
+    std::vector<float> radius_mm;  // bounding disk
     std::vector<Shape> shape;
     std::vector<BodySpec> spec;
 

@@ -22,7 +22,7 @@ from running import PROGRAMS, compile_program
 
 KEYS = [f"F{i}" for i in (1, 2, 3, 4, 5, 6, 7, 8, 9, 11)]
 KEYS += ["space", "s", "S", "Left", "Right", "Up", "Down", "plus", "minus", "0", "KP_Add", "KP_Subtract", "KP_0", "q"]
-RARE_KEYS = ["r", "R", "F12", "Escape"]
+RARE_KEYS = ["r", "R", "k", "o", "F12", "Escape"]
 SCENE: dict[str, object] = {
     "simulation_time": 60.0,
     "GUI_speed_up": 2.0,

@@ -44,7 +44,7 @@ def test_window_changes_no_byte_of_the_data_file(display: Display, window_progra
     settings = {"simulation_time": 100.0, "objects.robots.nb": 20}
     settings |= {"GUI": True, "GUI_speed_up": 100.0}
     run(window_program, tmp_path / "alone", settings)
-    with shown(display, window_program, tmp_path / "shown", settings) as window:
+    with shown(display, window_program, tmp_path / "shown", settings, ["--close-at-end"]) as window:
         window.keys("F2", "F5", "F7", "F4", "F3", "F6", "F8", "F9", "F1")
         assert window.end()[0] == 0
     alone = (tmp_path / "alone/data.feather").read_bytes()
@@ -216,7 +216,7 @@ def test_restart_begins_again_with_the_same_or_the_next_seed(
     # Initial poses are drawn from the seed.
     settings: Mapping[str, object] = {**STILL, "objects.robots.nb": 10}
     with shown(display, window_program, tmp_path / "shown", settings) as window:
-        window.keys("shift+r" if key == "R" else key)
+        window.keys("shift+r" if key == "R" else key, "k")
         wait_for(lambda: f"restarted with seed {seed}" in window.text(), "the restart")
         window.find_window()
         ended(window)
@@ -261,7 +261,7 @@ def test_restarted_window_shows_what_the_one_before_showed(
         display.xdotool("windowsize", window.window, "620", "640")
         window.keys("F5", "F5", "F6", "F7", "F8", "plus", "Right", "space")
         before = settled(window)
-        window.keys("r")
+        window.keys("r", "k")
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
         window.find_window()
         assert not differ(settled(window), before)
@@ -271,7 +271,7 @@ def test_restart_finds_its_files_when_the_program_has_left_its_folder(
     display: Display, window_program: Path, tmp_path: Path
 ) -> None:
     with shown(display, window_program, tmp_path, {**STILL, **FOUR, "parameters.leaves_folder": True}) as window:
-        window.keys("r")
+        window.keys("r", "k")
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
         window.find_window()
 
@@ -293,8 +293,92 @@ def test_run_goes_on_when_it_cannot_be_restarted(display: Display, window_progra
 def test_restart_ends_a_step_that_never_returns(display: Display, window_program: Path, tmp_path: Path) -> None:
     settings = {**LONG, **FOUR, "parameters.busy_ms": 100_000_000, "parameters.busy_at": 1, "user_code_timeout": 1.0}
     with shown(display, window_program, tmp_path, settings) as window:
-        window.keys("r")
+        window.keys("r", "k")
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
+
+
+def test_window_stays_open_at_the_end_with_complete_data(
+    display: Display, window_program: Path, tmp_path: Path
+) -> None:
+    with shown(display, window_program, tmp_path, {**FOUR, "simulation_time": 1.0, "GUI_speed_up": 0}) as window:
+        wait_for(lambda: "over at t = 1.0000 s; the window stays open" in window.text(), "the end")
+        data = (tmp_path / "data.feather").read_bytes()
+        assert data.endswith(b"ARROW1")
+        assert window.process.poll() is None
+        time.sleep(0.5)
+        before = window.shot()
+        press(window, "F2", "trails of where robots have been")
+        window.keys("F2")
+        window.wait_for_picture(lambda picture: not differ(picture, before), "no trails")
+        press(window, "space", "the word that the run is over")
+        window.keys("F12")
+        wait_for((tmp_path / "screenshot-001.png").exists, "the screenshot")
+        ended(window)
+    assert (tmp_path / "data.feather").read_bytes() == data
+
+
+def test_closing_the_window_after_the_end_says_nothing_of_an_early_end(
+    display: Display, window_program: Path, tmp_path: Path
+) -> None:
+    with shown(display, window_program, tmp_path, {**FOUR, "simulation_time": 0.5, "GUI_speed_up": 0}) as window:
+        wait_for(lambda: "the window stays open" in window.text(), "the end")
+        display.close(window.window)
+        code, text = window.end()
+    assert code == 0, text
+    assert "by closing the window" not in text
+
+
+def test_ctrl_c_after_the_end_closes_the_window(display: Display, window_program: Path, tmp_path: Path) -> None:
+    with shown(display, window_program, tmp_path, {**FOUR, "simulation_time": 0.5, "GUI_speed_up": 0}) as window:
+        wait_for(lambda: "the window stays open" in window.text(), "the end")
+        window.process.send_signal(2)
+        code, text = window.end()
+    assert code == 0, text
+
+
+@pytest.mark.parametrize(("key", "files"), [("k", ["data.1.feather", "data.feather"]), ("o", ["data.feather"])])
+def test_restart_asks_what_becomes_of_the_finished_file(
+    display: Display, window_program: Path, tmp_path: Path, key: str, files: list[str]
+) -> None:
+    with shown(display, window_program, tmp_path, {**FOUR, "simulation_time": 0.5, "GUI_speed_up": 0}) as window:
+        wait_for(lambda: "the window stays open" in window.text(), "the end")
+        first = (tmp_path / "data.feather").read_bytes()
+        press(window, "r", "the question")
+        time.sleep(0.3)
+        assert "restarted" not in window.text()
+        window.keys(key)
+        wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
+        wait_for(lambda: window.text().count("the window stays open") == 2, "the second end")
+        window.find_window()
+        ended(window)
+    assert sorted(path.name for path in tmp_path.glob("*.feather")) == files
+    assert (tmp_path / files[0]).read_bytes() == first
+
+
+def test_restart_can_be_thought_better_of(display: Display, window_program: Path, tmp_path: Path) -> None:
+    with shown(display, window_program, tmp_path, {**LONG, **FOUR}) as window:
+        window.keys("r")
+        time.sleep(0.3)
+        window.keys("Escape")
+        time.sleep(0.3)
+        assert window.process.poll() is None
+        assert "restarted" not in ended(window)
+
+
+def test_watching_a_run_again_keeps_the_file_of_the_first_time(
+    display: Display, window_program: Path, tmp_path: Path
+) -> None:
+    settings = {**FOUR, "simulation_time": 0.5, "GUI_speed_up": 0}
+    run(window_program, tmp_path, settings)
+    first = (tmp_path / "data.feather").read_bytes()
+    for number in (1, 2):
+        with shown(display, window_program, tmp_path, settings, ["--close-at-end"]) as window:
+            code, text = window.end()
+        assert code == 0, text
+        assert f"of an earlier run is now 'data.{number}.feather'" in text
+    assert (tmp_path / "data.1.feather").read_bytes() == first
+    run(window_program, tmp_path, settings)  # without a window it is overwritten
+    assert len(list(tmp_path.glob("*.feather"))) == 3
 
 
 def test_screenshot_shows_what_the_window_shows(display: Display, window_program: Path, tmp_path: Path) -> None:
@@ -345,7 +429,7 @@ def test_display_that_cannot_be_reached_is_none(window_program: Path, tmp_path: 
 
 def test_long_run_with_the_plot_does_not_end_early(display: Display, window_program: Path, tmp_path: Path) -> None:
     settings = {**LONG, **FOUR, "save_data_period": 0.01, "GUI_speed_up": 0, "simulation_time": 300.0}
-    with shown(display, window_program, tmp_path, settings) as window:
+    with shown(display, window_program, tmp_path, settings, ["--close-at-end"]) as window:
         window.click(*PLACES["header View"])
         time.sleep(0.3)
         window.click(*PLACES["plot"])

@@ -199,7 +199,7 @@ def test_each_press_of_a_speed_key_multiplies_the_speed(
 def test_faster_key_lets_the_time_pass(display: Display, window_program: Path, tmp_path: Path) -> None:
     """A thousandth of real time becomes more than a thousand times real time: the run ends by itself."""
     settings = {**STILL, "GUI_speed_up": 1.0e-3, "simulation_time": 20.0, "save_data_period": 1.0}
-    with shown(display, window_program, tmp_path, settings) as window:
+    with shown(display, window_program, tmp_path, settings, ["--close-at-end"]) as window:
         window.keys(*["F4"] * 80)
         code, text = window.end()
     assert code == 0, text
@@ -211,7 +211,7 @@ def test_speed_of_the_panel_lets_the_time_pass(
     display: Display, window_program: Path, tmp_path: Path, place: str
 ) -> None:
     settings = {**STILL, "simulation_time": 20.0, "save_data_period": 1.0}
-    with shown(display, window_program, tmp_path, settings) as window:
+    with shown(display, window_program, tmp_path, settings, ["--close-at-end"]) as window:
         window.click(*BUTTONS[place])
         code, text = window.end()
     assert code == 0, text
@@ -259,7 +259,10 @@ def test_pause_holds_the_time_until_the_run_goes_on(
 def test_restart_button_restarts_with_the_same_seed(display: Display, window_program: Path, tmp_path: Path) -> None:
     with shown(display, window_program, tmp_path, STILL) as window:
         opened(window)
+        before = window.shot()
         window.click(*BUTTONS["restart"])
+        window.wait_for_picture(lambda picture: differ(picture[300:500], before[300:500]), "the question")
+        window.keys("Return")  # keeps the files
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
         window.find_window()
         ended(window)
@@ -297,8 +300,7 @@ def test_switch_of_the_panel_does_what_its_key_does(
         act(window, f"an effect of {switch}", lambda: window.click(*SWITCHES[switch]), BESIDE_PANELS)
         window.move_mouse(*ASIDE)
         window.keys(key)
-        part = np.s_[:, :246] if switch == "trails" else np.s_[:, :]  # which begin anew
-        window.wait_for_picture(lambda picture: not differ(picture[part], before[part]), f"{key} to undo it")
+        window.wait_for_picture(lambda picture: not differ(picture, before), f"{key} to undo it")
 
 
 @pytest.mark.parametrize(("layer", "presses"), [("below", 1), ("above", 2)])

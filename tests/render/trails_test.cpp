@@ -52,6 +52,21 @@ TEST(Trail, ForgetsTheOldestPoints) {
     EXPECT_FLOAT_EQ(trails.point(0, Trails::kLength - 1).position_mm.x, (1000 - 512) * 3.0F);
 }
 
+TEST(Trail, IsShorterWhereTheSwarmWouldNeedMoreMemoryThanAllowed) {
+    World world = square_world(5000.0F);
+    add_robot(world, {0, 200});
+    add_robot(world, {0, 400});
+    Trails trails(2 * 100 * sizeof(TrailPoint));
+    for (int step = 0; step < 1000; ++step) {
+        trails.follow(world);
+        world.bodies.position_mm[0].x += 3.0F;
+        world.bodies.position_mm[1].x += 2.0F;
+    }
+    ASSERT_EQ(trails.size(0), 100U);
+    EXPECT_FLOAT_EQ(trails.point(0, 0).position_mm.x, 999 * 3.0F);
+    EXPECT_FLOAT_EQ(trails.point(1, 99).position_mm.x, 900 * 2.0F);
+}
+
 TEST(Trail, RemembersTheColourOfTheTime) {
     World world = square_world();
     add_robot(world, {100, 200});
@@ -102,17 +117,6 @@ TEST(Trail, LeavesOutPositionsThatAreNotFinite) {
         world.bodies.position_mm[0].x = bad;
         trails.follow(world);
     }
-    EXPECT_EQ(trails.size(0), 1U);
-}
-
-TEST(Trails, BeginAnewWhenTheyAreCleared) {
-    World world = square_world();
-    add_robot(world, {100, 200});
-    Trails trails;
-    trails.follow(world);
-    trails.clear();
-    EXPECT_EQ(trails.robot_count(), 0U);
-    trails.follow(world);
     EXPECT_EQ(trails.size(0), 1U);
 }
 

@@ -26,6 +26,28 @@ struct Variables {
     std::vector<std::span<std::byte>> pieces() { return {bytes_of(large), bytes_of(small)}; }
 };
 
+TEST(RobotMemory, EveryCopyCanBeReadWhateverIsLoaded) {
+    constexpr std::uint32_t kCopies = 5;
+    Variables program;
+    RobotMemory memory(program.pieces(), kCopies);
+    for (std::uint32_t copy = 0; copy < kCopies; ++copy) {
+        memory.load(copy);
+        program.large[70] = static_cast<std::uint8_t>(10 + copy);
+        program.small[2] = static_cast<std::uint8_t>(20 + copy);
+    }
+    for (std::uint32_t loaded : {kNone, 0U, 3U}) {
+        memory.load(loaded);
+        for (std::uint32_t copy = 0; copy < kCopies; ++copy) {
+            std::array<std::byte, 10> read{};
+            memory.read(copy, bytes_of(program.large).data() + 65, read);
+            EXPECT_EQ(static_cast<unsigned>(read[5]), 10U + copy) << loaded;
+            EXPECT_EQ(static_cast<unsigned>(read[4]), 0U);
+            memory.read(copy, bytes_of(program.small).data() + 2, std::span(read).first(1));
+            EXPECT_EQ(static_cast<unsigned>(read[0]), 20U + copy) << loaded;
+        }
+    }
+}
+
 TEST(RobotMemory, EachCopyKeepsWhatItWasGiven) {
     constexpr std::uint32_t kCopies = 50;
     Variables program;

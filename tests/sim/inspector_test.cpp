@@ -52,8 +52,12 @@ TEST(Inspector, ShowsPoseSpeedAndMotors) {
         pogobot_led_setColors(1, 2, 3, 4);
     });
     Simulation simulation(testing::test_program(), square_scene({robot_at({500, 500})}), {});
+    simulation.inspector();
     start(simulation);
-    ASSERT_FALSE(run_for(simulation, 0.5));
+    for (int i = 0; i < 50; ++i) {
+        ASSERT_FALSE(simulation.step());
+        simulation.inspector().note_step();
+    }
     Inspection const robot = simulation.inspector().inspect(0);
     World const& world = simulation.world();
     EXPECT_EQ(robot.robot, 0U);
@@ -62,7 +66,7 @@ TEST(Inspector, ShowsPoseSpeedAndMotors) {
     EXPECT_TRUE(robot.has_body);
     EXPECT_EQ(robot.position_mm, world.bodies.position_mm[0]);
     EXPECT_EQ(robot.heading_rad, world.bodies.heading_rad[0]);
-    EXPECT_NEAR(robot.speed_mm_s, 75.0F, 0.1F);
+    EXPECT_NEAR(robot.speed_mm_s, 75.0F * std::sin(0.16F) / 0.16F, 0.1F);  // along the chord of its circle
     EXPECT_NEAR(robot.angular_velocity_rad_s, 2.0F, 0.01F);
     EXPECT_EQ(robot.ticks, 31U);  // 62.5 per second, the first at t = 0
     EXPECT_NEAR(robot.clock_s, 0.496, 1e-9);
@@ -256,12 +260,28 @@ TEST(Inspector, ShowsTheLastRowOfTheDataFile) {
     ASSERT_FALSE(run_for(simulation, 0.15));
     Inspection const first = inspector.inspect(0);
     std::vector<std::pair<std::string, std::string>> const expected{
-        {"time", "0.1000"}, {"pogobot_ticks", "6"}, {"x", "300"},      {"y", "500"},     {"angle", "0"},
-        {"age", "6"},       {"name", "R\uFFFD"},    {"share", "0.25"}, {"happy", "true"}};
+        {"pogobot_ticks", "6"}, {"x", "300"},        {"y", "500"},      {"angle", "0"},
+        {"age", "6"},           {"name", "R\uFFFD"}, {"share", "0.25"}, {"happy", "true"}};
     EXPECT_EQ(first.columns, expected);
+    EXPECT_NEAR(first.columns_time_s, 0.1, 1e-6);
     EXPECT_EQ(cell(inspector.inspect(1), "share"), "null");
     EXPECT_TRUE(inspector.inspect(2).columns.empty());  // its rows are not exported
     simulation.finish();
+}
+
+TEST(Inspector, ShowsUserDataByNameAsTheyAreNow) {
+    use_program(idle, [] { static_cast<TestData*>(mydata)->number[2] = static_cast<std::int64_t>(pogobot_ticks); });
+    Simulation simulation(testing::test_program(), square_scene({robot_at({300, 500}), robot_at({600, 500})}), {});
+    start(simulation);
+    ASSERT_FALSE(run_for(simulation, 0.1));
+    Inspection const robot = simulation.inspector().inspect(1);
+    if (robot.variables.empty()) {
+        EXPECT_NE(robot.no_variables, "");  // built without debug information
+        return;
+    }
+    ASSERT_EQ(robot.variables.size(), 1U);
+    EXPECT_EQ(robot.variables[0].first, "number");
+    EXPECT_EQ(robot.variables[0].second, "0, 0, 5, 0, 0, 0, 0, 0");
 }
 
 TEST(RecordedRows, HandOutTheNumbersOfEachRecordedTimeOnce) {

@@ -6,14 +6,19 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <thread>
 
+#include "base/locked_file.hpp"
 #include "base/log.hpp"
 #include "sim/simulation.hpp"
 #include "sim/window_script.hpp"
 #include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_program.hpp"
 
 namespace pogosim::testing {
@@ -26,6 +31,11 @@ using namespace std::chrono_literals;
 using SharedMoment = std::shared_ptr<Moment const>;
 
 void idle() {}
+
+std::string content_of(std::filesystem::path const& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
 
 void full_ahead() {
     pogobot_motor_set(motorL, motorFull);
@@ -195,17 +205,19 @@ TEST_F(WindowDriver, PauseTakesBackTheStepsThatWereAskedFor) {
 TEST_F(WindowDriver, SpeedIsThatAskedForLast) {
     scenario_.view.gui_speed_up = kAlmostStill;
     scenario_.simulation_time_s = 1.0;
-    EXPECT_EQ(run_until_end([](WindowSetup const& setup, Exchange& exchange) {
-                  EXPECT_EQ(setup.speed_up, kAlmostStill);
-                  EXPECT_EQ(look(exchange)->status.asked_speed_up, kAlmostStill);
-                  exchange.send(SetSpeedUp{2.0 * kAlmostStill});
-                  SharedMoment const moment = look(exchange);
-                  EXPECT_EQ(moment->status.asked_speed_up, 2.0 * kAlmostStill);
-                  EXPECT_EQ(moment->snapshot.step, 0);
-                  exchange.send(SetSpeedUp{0.0});
-                  wait_for("the end", [&] { return exchange.is_closing(); });
-                  return WindowEnd::closed;
-              }),
+    EXPECT_EQ(run_until_end(
+                  [](WindowSetup const& setup, Exchange& exchange) {
+                      EXPECT_EQ(setup.speed_up, kAlmostStill);
+                      EXPECT_EQ(look(exchange)->status.asked_speed_up, kAlmostStill);
+                      exchange.send(SetSpeedUp{2.0 * kAlmostStill});
+                      SharedMoment const moment = look(exchange);
+                      EXPECT_EQ(moment->status.asked_speed_up, 2.0 * kAlmostStill);
+                      EXPECT_EQ(moment->snapshot.step, 0);
+                      exchange.send(SetSpeedUp{0.0});
+                      wait_for("the end", [&] { return exchange.is_closing(); });
+                      return WindowEnd::closed;
+                  },
+                  {.close_at_end = true}),
               ExitCode::done);
     EXPECT_NEAR(simulation_->world().time_s(), 1.0, 1e-9);
 }
@@ -292,28 +304,73 @@ TEST_F(WindowDriver, MomentHasThePartsThatWereAskedFor) {
     });
 }
 
-TEST_F(WindowDriver, TrailsGrowWhileTheyAreFollowedAndBeginAnew) {
+TEST_F(WindowDriver, TrailsShowWhereRobotsHaveBeenBeforeTheyAreAskedFor) {
     scenario_.view.gui_speed_up = kAlmostStill;
-    MomentRequest const follow{.parts = {.trails = true}, .follow_trails = true};
     run_with([&](Exchange& exchange) {
-        std::int64_t step = 0;
-        auto const make_steps = [&](int count) {
-            for (int i = 0; i < count; ++i) {
-                exchange.send(StepOnce{});
-            }
-            look_for(
-                exchange, "steps", [&](Moment const& now) { return now.snapshot.step == step + count; }, follow);
-            step += count;
-            return look(exchange, follow);
-        };
+        EXPECT_EQ(look(exchange)->snapshot.trails, nullptr);
+        for (int i = 0; i < 40; ++i) {
+            exchange.send(StepOnce{});
+        }
+        look_for_step(exchange, 40);
         // 1 mm a step, and 2 mm from one point to the next.
-        EXPECT_LE(look(exchange, follow)->snapshot.trails->size(0), 1U);
-        Snapshot const after = make_steps(40)->snapshot;
+        Snapshot const after = look(exchange, {.parts = {.trails = true}})->snapshot;
         EXPECT_NEAR(static_cast<double>(after.trails->size(0)), 20.0, 2.0);
         EXPECT_LT(length(after.trails->point(0, 0).position_mm - after.position_mm[0]), 2.1F);
-        look(exchange);
-        EXPECT_LE(look(exchange, follow)->snapshot.trails->size(0), 1U);
+        EXPECT_NEAR(after.trails->point(0, after.trails->size(0) - 1).position_mm.x, 200.0F, 0.1F);
     });
+}
+
+TEST_F(WindowDriver, WindowStaysOpenWhenTheSimulatedTimeIsOverAndTheFilesAreComplete) {
+    TemporaryFolder const folder;
+    scenario_.simulation_time_s = 0.5;
+    scenario_.output.enable_data_logging = true;
+    scenario_.output.data_filename = folder / "data.feather";
+    EXPECT_EQ(run_until_end([&](WindowSetup const&, Exchange& exchange) {
+                  SharedMoment const moment =
+                      look_for(exchange, "the end", [](Moment const& now) { return now.status.is_over; });
+                  EXPECT_NEAR(moment->snapshot.time_s, 0.5, 1e-9);
+                  LockedFile const free(folder / "data.feather");  // another run could write it
+                  std::string const bytes = content_of(folder / "data.feather");
+                  EXPECT_TRUE(bytes.ends_with("ARROW1"));
+                  // Nothing brings it back to life.
+                  exchange.send(Pause{false});
+                  exchange.send(StepOnce{});
+                  exchange.send(ClickRobot{0});
+                  exchange.send(DragObject{0, {500, 300}});
+                  EXPECT_EQ(look(exchange)->snapshot.position_mm, moment->snapshot.position_mm);
+                  EXPECT_FALSE(look(exchange)->status.touched);
+                  EXPECT_TRUE(look(exchange, {.robot = 0})->inspection);
+                  EXPECT_EQ(content_of(folder / "data.feather"), bytes);
+                  exchange.send(Quit{});
+                  wait_for("the closing", [&] { return exchange.is_closing(); });
+                  return WindowEnd::closed;
+              }),
+              ExitCode::done);
+    EXPECT_FALSE(simulation_->restart());
+}
+
+TEST_F(WindowDriver, RunThatIsOverCanBeRestarted) {
+    scenario_.simulation_time_s = 0.1;
+    run_until_end([&](WindowSetup const&, Exchange& exchange) {
+        look_for(exchange, "the end", [](Moment const& now) { return now.status.is_over; });
+        exchange.send(Restart{.seed = 9, .overwrite = true});
+        wait_for("the closing", [&] { return exchange.is_closing(); });
+        return WindowEnd::closed;
+    });
+    ASSERT_TRUE(simulation_->restart());
+    EXPECT_EQ(simulation_->restart()->seed, 9U);
+    EXPECT_TRUE(simulation_->restart()->overwrite);
+}
+
+TEST_F(WindowDriver, WindowOfARunForScriptsClosesAtTheEnd) {
+    scenario_.simulation_time_s = 0.1;
+    EXPECT_EQ(run_until_end(
+                  [&](WindowSetup const&, Exchange& exchange) {
+                      wait_for("the closing", [&] { return exchange.is_closing(); });
+                      return WindowEnd::closed;
+                  },
+                  {.close_at_end = true}),
+              ExitCode::done);
 }
 
 TEST_F(WindowDriver, RestartEndsTheRunAndIsHandedOn) {

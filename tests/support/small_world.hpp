@@ -36,6 +36,8 @@ inline std::uint32_t add_body(World& world, Vec2 position_mm, float heading_rad,
     world.bodies.heading_dir.push_back(direction(heading_rad));
     world.bodies.velocity_mm_s.push_back({});
     world.bodies.angular_velocity_rad_s.push_back(0.0F);
+    world.bodies.start_mm.push_back(position_mm);
+    world.bodies.start_rad.push_back(heading_rad);
     world.bodies.radius_mm.push_back(bounding_radius(spec.shape));
     world.bodies.shape.push_back(spec.shape);
     world.bodies.spec.push_back(*spec.body);

@@ -349,12 +349,16 @@ class Simulation:
 
     @property
     def velocities(self) -> npt.NDArray[Any]:
-        """Velocities of the robots, mm/s. Shape (robots, 2); read-only."""
+        """Velocities of the robots, mm/s: displacements in the last step, by its duration. Shape (robots, 2); read-only.
+
+        0 for a robot that has just been put elsewhere. One that its motors press against a wall bounces by a millimetre
+        (`wall_restitution`): take the mean of some steps.
+        """
         return self._run.of_robots("bodies.velocity")
 
     @property
     def angular_velocities(self) -> npt.NDArray[Any]:
-        """Angular velocities of the robots, rad/s, clockwise on the screen. Shape (robots,); read-only."""
+        """Angular velocities of the robots, rad/s, clockwise on the screen, likewise. Shape (robots,); read-only."""
         return self._run.of_robots("bodies.angular_velocity")
 
     @property

@@ -1,0 +1,88 @@
+#include "sim/touching.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "geometry/polygon.hpp"
+#include "geometry/shape.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// A body that motors press against something bounces back by up to so much at each tick.
+constexpr float kBounceMm = 1.5F;
+
+/// A body as a polygon with a margin: of a disk, its centre and its radius.
+struct Solid {
+    Polygon corners;
+    float margin_mm = 0.0F;
+};
+
+Solid solid_of(World const& world, std::uint32_t body) {
+    Bodies const& bodies = world.bodies;
+    Vec2 const centre_mm = bodies.position_mm[body];
+    if (bodies.shape[body].kind == ShapeKind::disk) {
+        return {{centre_mm}, bodies.radius_mm[body]};
+    }
+    return {moved(outline(bodies.shape[body]), centre_mm, bodies.heading_rad[body])};
+}
+
+/// Of outlines that do not cross: one of their corners is as near to the other as they are.
+float distance_between(Polygon const& a, Polygon const& b, Vec2 shift_of_b) {
+    float nearest = std::numeric_limits<float>::max();
+    for (Vec2 const corner : a) {
+        nearest = std::min(nearest, distance_to_outline(b, corner - shift_of_b));
+    }
+    for (Vec2 const corner : b) {
+        nearest = std::min(nearest, distance_to_outline(a, corner + shift_of_b));
+    }
+    return nearest;
+}
+
+bool touch_walls(World const& world, std::uint32_t body, float gap_mm) {
+    Solid const solid = solid_of(world, body);
+    return std::ranges::any_of(world.arena.polygons, [&](Polygon const& wall) {
+        return distance_between(solid.corners, wall, {}) - solid.margin_mm <= gap_mm;
+    });
+}
+
+bool touch(World const& world, std::uint32_t a, std::uint32_t b, float gap_mm) {
+    Bodies const& bodies = world.bodies;
+    Vec2 const way_mm = minimum_image(world, bodies.position_mm[a], bodies.position_mm[b]);
+    float const reach_mm = bodies.radius_mm[a] + bodies.radius_mm[b] + gap_mm;
+    if (!(squared_length(way_mm) <= reach_mm * reach_mm)) {
+        return false;
+    }
+    Solid const first = solid_of(world, a);
+    Solid const second = solid_of(world, b);
+    Vec2 const shift_mm = bodies.position_mm[a] + way_mm - bodies.position_mm[b];
+    return distance_between(first.corners, second.corners, shift_mm) - first.margin_mm - second.margin_mm <= gap_mm;
+}
+
+}  // namespace
+
+Touched touched_by(World const& world, Object const& object, TouchGaps const& gaps) {
+    Touched touched;
+    if (object.body == kNone) {
+        return touched;
+    }
+    for (std::uint32_t a = object.body; a < object.body + object.body_count; ++a) {
+        touched.wall = touched.wall || (!world.periodic && touch_walls(world, a, gaps.walls_mm + kBounceMm));
+    }
+    for (std::uint32_t i = 0; i < world.objects.size(); ++i) {
+        Object const& other = world.objects[i];
+        bool found = false;
+        for (std::uint32_t b = other.body; &other != &object && b != kNone && b < other.body + other.body_count; ++b) {
+            for (std::uint32_t a = object.body; a < object.body + object.body_count && !found; ++a) {
+                found = touch(world, a, b, gaps.bodies_mm + kBounceMm);
+            }
+        }
+        if (found) {
+            touched.objects.push_back(i);
+        }
+    }
+    return touched;
+}
+
+}  // namespace pogosim

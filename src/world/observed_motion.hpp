@@ -1,0 +1,23 @@
+// What bodies really did in the last step, as an observer of the world sees it. The velocities of Bodies are those with
+// which an engine goes on: a robot that its motors press against a wall has one there, and stands still.
+#pragma once
+
+#include <cstdint>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+struct ObservedMotion {
+    Vec2 velocity_mm_s;
+    float angular_velocity_rad_s = 0.0F;  // clockwise on the screen
+};
+
+/// Displacement and turn of a body in the last step, by the duration of a step. 0 before the first step, and for a body
+/// that has been put elsewhere since the last one. In a periodic world, a body moves by less than half of it in a step.
+ObservedMotion observed_motion(World const& world, std::uint32_t body);
+
+/// The same of an object: of a membrane, the mean of its bodies, without rotation. 0 for one without a body.
+ObservedMotion observed_motion(World const& world, Object const& object);
+
+}  // namespace pogosim

@@ -1,0 +1,58 @@
+// What bodies really did in the last step.
+#include "world/observed_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/small_world.hpp"
+
+namespace pogosim {
+namespace {
+
+TEST(ObservedMotion, IsTheDisplacementAndTheTurnByTheDurationOfAStep) {
+    World world = testing::square_world();
+    std::uint32_t const robot = testing::add_robot(world, {200, 200}, 1.0F);
+    world.time_step_s = 0.5;
+    world.bodies.velocity_mm_s[robot] = {100, 100};  // what an engine goes on with
+    EXPECT_EQ(observed_motion(world, robot).velocity_mm_s, Vec2{});
+    world.bodies.position_mm[robot] = {201, 198};
+    world.bodies.heading_rad[robot] = 1.25F;
+    ObservedMotion const motion = observed_motion(world, robot);
+    EXPECT_EQ(motion.velocity_mm_s, (Vec2{2, -4}));
+    EXPECT_EQ(motion.angular_velocity_rad_s, 0.5F);
+}
+
+TEST(ObservedMotion, IsThatOfTheEngineToTheLastBitWhereTheBodyGotThere) {
+    World world = testing::square_world();
+    std::uint32_t const robot = testing::add_robot(world, {987.654F, 321.012F}, 1.0F);
+    Vec2 const velocity{73.3F, -12.1F};
+    world.bodies.velocity_mm_s[robot] = velocity;
+    world.bodies.position_mm[robot] =
+        world.bodies.position_mm[robot] + static_cast<float>(world.time_step_s) * velocity;
+    EXPECT_EQ(observed_motion(world, robot).velocity_mm_s, velocity);
+}
+
+TEST(ObservedMotion, CrossesTheSeamOfAPeriodicWorldTheShortWay) {
+    World world = testing::square_world();
+    world.periodic = true;
+    world.time_step_s = 0.5;
+    std::uint32_t const robot = testing::add_robot(world, {999, 500});
+    world.bodies.position_mm[robot] = {2, 500};
+    EXPECT_NEAR(observed_motion(world, robot).velocity_mm_s.x, 6.0F, 1e-3F);
+}
+
+TEST(ObservedMotion, WhatIsPutElsewhereHasNotMoved) {
+    World world = testing::square_world();
+    std::uint32_t const robot = testing::add_robot(world, {200, 200});
+    world.bodies.position_mm[robot] = {201, 200};
+    set_pose(world.bodies, robot, {700, 700}, 2.0F);
+    EXPECT_EQ(observed_motion(world, robot).velocity_mm_s, Vec2{});
+    EXPECT_EQ(observed_motion(world, robot).angular_velocity_rad_s, 0.0F);
+}
+
+TEST(ObservedMotion, ObjectWithoutABodyStands) {
+    World const world = testing::square_world();
+    EXPECT_EQ(observed_motion(world, Object{}).velocity_mm_s, Vec2{});
+}
+
+}  // namespace
+}  // namespace pogosim
