@@ -89,7 +89,9 @@ std::vector<std::string> names_of_earlier_files(CommandLine const& options, std:
 /// A run that is watched replaces nothing that an earlier one has written.
 void keep_and_tell(Scenario const& scenario, CommandLine const& options) {
     for (KeptFile const& file : keep_earlier_files(scenario, options.video)) {
-        log().info("'{}' of an earlier run is now '{}' (-g overwrites instead)", escaped(file.path.string()),
+        std::error_code error;  // then it is the whole path
+        log().info("'{}' of an earlier run is now '{}' (-g overwrites instead)",
+                   escaped(std::filesystem::proximate(file.path, error).string()),
                    escaped(file.kept.filename().string()));
     }
 }

@@ -51,8 +51,9 @@ PanelBox lay_control(PanelRoom const& room) {
     PanelBox const open{corner, {kControlWidthPx * room.scale, room.control_px}};
     float const both_px = (kControlWidthPx + kInspectorWidthPx) * room.scale + 3.0F * kMarginPx;
     bool const is_beside = !room.has_inspector || both_px <= room.window_px.x;
+    PanelBox const least{corner, {open.size_px.x, room.control_least_px}};  // what the user opens in it may cover more
     bool const fits = is_beside && open.size_px.y + 2.0F * kMarginPx <= room.window_px.y &&
-                      covered_share(open, room.arena_px) <= kMostOfControl;
+                      covered_share(least, room.arena_px) <= kMostOfControl;
     return fits ? open : collapsed(corner, room);
 }
 
@@ -117,7 +118,8 @@ float covered_share(PanelBox const& panel, Box const& arena_px) {
 PanelLayout lay_out_panels(PanelRoom const& room) {
     PanelLayout layout;
     layout.control = lay_control(room);
-    float left = kMostCovered - kReserve - covered_share(layout.control, room.arena_px);
+    float left = std::max(
+        0.0F, kMostCovered - kReserve - std::min(covered_share(layout.control, room.arena_px), kMostOfControl));
     if (room.has_inspector) {
         float const share = std::min(room.has_plot ? 0.5F * left : left, kMostOfInspector);
         layout.inspector = lay_inspector(room, layout.control, share);

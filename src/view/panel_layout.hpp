@@ -15,10 +15,11 @@ inline constexpr Vec2 kLeastPlotPx{250.0F, 130.0F};
 /// What decides on the layout. Sizes in pixels.
 struct PanelRoom {
     Vec2 window_px;
-    Box arena_px;               // when all of it is shown
-    float scale = 1.0F;         // of the text
-    float title_px = 22.0F;     // height of a title
-    float control_px = 150.0F;  // height that the control panel needs
+    Box arena_px;                     // when all of it is shown
+    float scale = 1.0F;               // of the text
+    float title_px = 22.0F;           // height of a title
+    float control_px = 150.0F;        // height that the control panel needs
+    float control_least_px = 150.0F;  // the same while its section "View" is closed
     bool has_inspector = false;
     bool has_plot = false;
 };

@@ -88,10 +88,11 @@ void draw_speed(PanelState const& state, std::function<void(Command const&)> con
     }
 }
 
-void draw_switches(PanelState& state) {
+/// Returns whether they are shown.
+bool draw_switches(PanelState& state) {
     PaintOptions& options = *state.options;
     if (!ImGui::CollapsingHeader("View")) {
-        return;
+        return false;
     }
     ImGui::Checkbox("trails", &options.trails);
     int layer = static_cast<int>(options.links);
@@ -106,6 +107,7 @@ void draw_switches(PanelState& state) {
         options.time = options.scale_bar = overlays;
     }
     ImGui::Checkbox("plot of a data column", &state.plot);
+    return true;
 }
 
 void draw_buttons(PanelState const& state, float scale, PanelActions const& actions) {
@@ -137,7 +139,8 @@ void draw_end(PanelActions const& actions) {
     }
 }
 
-void draw_control(PanelState& state, float scale, PanelActions const& actions) {
+/// Returns whether its section "View" is open.
+bool draw_control(PanelState& state, float scale, PanelActions const& actions) {
     WindowSetup const& setup = *state.setup;
     draw_buttons(state, scale, actions);
     double const time_s = state.moment->snapshot.time_s;
@@ -157,7 +160,7 @@ void draw_control(PanelState& state, float scale, PanelActions const& actions) {
         ImGui::SameLine(beside_px);
     }
     ImGui::TextDisabled("F1: help");
-    draw_switches(state);
+    return draw_switches(state);
 }
 
 void draw_help(PanelState& state) {
@@ -266,8 +269,10 @@ PanelRoom Panels::room_now(PanelState const& state) const {
                    .has_plot = state.plot};
     if (control_px_ > 0.0F) {
         room.control_px = control_px_;
+        room.control_least_px = control_least_px_ > 0.0F ? control_least_px_ : control_px_;
     } else {
         room.control_px *= scale_;
+        room.control_least_px *= scale_;
     }
     return room;
 }
@@ -284,8 +289,9 @@ void Panels::draw_all(PanelState& state, PanelActions const& actions) {
     control_is_open_ = begin_panel("Run", layout.control, in_place, nullptr,
                                    ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize);
     if (control_is_open_ && state.moment != nullptr) {
-        draw_control(state, scale_, actions);
+        bool const shows_switches = draw_control(state, scale_, actions);
         control_px_ = ImGui::GetWindowHeight();
+        control_least_px_ = shows_switches ? control_least_px_ : control_px_;
     }
     ImGui::End();
 

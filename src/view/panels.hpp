@@ -82,8 +82,9 @@ private:
     std::unique_ptr<ImGuiContext, DestroyContext> context_;
     GlyphAtlas atlas_;
     float scale_;
-    PanelLayout layout_{};     // in which the panels were put last
-    float control_px_ = 0.0F;  // height of the control panel when it was last open; 0: not known yet
+    PanelLayout layout_{};           // in which the panels were put last
+    float control_px_ = 0.0F;        // height of the control panel when it was last open; 0: not known yet
+    float control_least_px_ = 0.0F;  // the same while its section "View" was closed
     // Which are not collapsed, by the layout or the user.
     bool control_is_open_ = true;
     bool inspector_is_open_ = true;

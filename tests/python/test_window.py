@@ -372,10 +372,10 @@ def test_watching_a_run_again_keeps_the_file_of_the_first_time(
     run(window_program, tmp_path, settings)
     first = (tmp_path / "data.feather").read_bytes()
     for number in (1, 2):
-        with shown(display, window_program, tmp_path, settings, ["--close-at-end"]) as window:
-            code, text = window.end()
-        assert code == 0, text
-        assert f"of an earlier run is now 'data.{number}.feather'" in text
+        with shown(display, window_program, tmp_path, settings) as window:
+            wait_for(lambda: "the window stays open" in window.text(), "the end")
+            text = ended(window)
+        assert f"'data.feather' of an earlier run is now 'data.{number}.feather'" in text
     assert (tmp_path / "data.1.feather").read_bytes() == first
     run(window_program, tmp_path, settings)  # without a window it is overwritten
     assert len(list(tmp_path.glob("*.feather"))) == 3

@@ -40,7 +40,7 @@ SCENE: dict[str, object] = {
 }
 
 # Pixels of the panel "Run".
-PLACES = {"header View": (100, 168), "plot": (24, 317)}
+PLACES = {"header View": (100, 168), "plot": (24, 322)}
 
 # What is pressed and clicked, by name of the picture.
 PICTURES: dict[str, list[str]] = {

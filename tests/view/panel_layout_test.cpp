@@ -17,7 +17,8 @@ PanelRoom room_of(PictureSize size, Box const& arena_mm, float scale) {
             .arena_px = {camera.to_pixels(arena_mm.min, size), camera.to_pixels(arena_mm.max, size)},
             .scale = scale,
             .title_px = 22.0F * scale,
-            .control_px = 150.0F * scale};
+            .control_px = 150.0F * scale,
+            .control_least_px = 150.0F * scale};
 }
 
 std::vector<PanelBox> panels_of(PanelLayout const& layout, PanelRoom const& room) {
@@ -78,6 +79,9 @@ std::string text_of(PanelRoom const& room) {
 
 TEST(PanelLayout, CoversAtMostAQuarterOfTheArena) {
     for (PanelRoom const& room : rooms()) {
+        if (room.control_px > room.control_least_px) {
+            continue;  // as the user wants it
+        }
         float covered = 0.0F;
         for (PanelBox const& panel : panels_of(lay_out_panels(room), room)) {
             covered += covered_share(panel, room.arena_px);
