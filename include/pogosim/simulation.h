@@ -61,14 +61,14 @@ void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t 
 ///@}
 
 ///@{
-/// Sets an array to the first `size` numbers of the list `parameters.NAME`. An absent or empty list changes
-/// nothing; a shorter one is an error.
+/// Sets an array to the first `size` numbers of the list `parameters.NAME`, with a warning if there are more. An absent
+/// or empty list changes nothing; a shorter one is an error.
 /// @range size: numbers
 void init_float_array_from_configuration(float* array, char const* name, size_t const size);
 void init_double_array_from_configuration(double* array, char const* name, size_t const size);
 ///@}
-/// Sets a string (an array of `size` characters) to `parameters.NAME`, truncated to `size` - 1 characters;
-/// an absent one changes nothing.
+/// Sets a string (an array of `size` characters) to `parameters.NAME`, truncated to `size` - 1 characters,
+/// with a warning; an absent one changes nothing.
 /// @range size: bytes, with the final 0
 void init_string_from_configuration(char* text, char const* name, size_t const size);
 

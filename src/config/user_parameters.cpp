@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "config/option_keys.hpp"
 #include "config/source.hpp"
@@ -29,6 +31,12 @@ double read_number(Place const& place, double largest) {
         fail_expected(place, fmt::format("a number from {0} to {1}", number_text(-largest), number_text(largest)));
     }
     return value;
+}
+
+/// A value of which the program takes only the beginning.
+void warn_of_rest(Place const& place, std::string_view what, std::size_t found, std::size_t most) {
+    log().warn("{}: {}: the program has room for {} {}, found {}; the rest is ignored", place.node.where(),
+               shown(place.path), most, what, found);
 }
 
 }  // namespace
@@ -82,11 +90,20 @@ std::optional<std::int64_t> UserParameters::integer(std::string const& name, std
     return value;
 }
 
-std::optional<std::string> UserParameters::text(std::string const& name) {
-    return read<std::string>(name, {});
+std::optional<std::string> UserParameters::text(std::string const& name, std::size_t most) {
+    std::size_t const read_before = read_.size();
+    auto text = read<std::string>(name, {});
+    if (text && text->size() > most) {
+        if (read_.size() > read_before) {
+            warn_of_rest({*find_path(parameters_, name), path_of(name)}, "characters", text->size(), most);
+        }
+        text->resize(most);
+    }
+    return text;
 }
 
 std::optional<std::vector<double>> UserParameters::numbers(std::string const& name, std::size_t size, double largest) {
+    std::size_t const read_before = read_.size();
     Node const* const node = ask(name);
     if (node == nullptr || (node->kind == Node::Kind::sequence && node->items.empty())) {
         return std::nullopt;
@@ -97,6 +114,9 @@ std::optional<std::vector<double>> UserParameters::numbers(std::string const& na
     }
     if (node->items.size() < size) {
         fail_at(place, fmt::format("expected a list of at least {} numbers, found {}", size, node->items.size()));
+    }
+    if (node->items.size() > size && read_.size() > read_before) {
+        warn_of_rest(place, "numbers", node->items.size(), size);
     }
     std::vector<double> numbers(size);
     for (std::size_t i = 0; i < size; ++i) {

@@ -31,7 +31,7 @@ public:
     std::optional<bool> boolean(std::string const& name) override;
     std::optional<double> number(std::string const& name, double largest) override;
     std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) override;
-    std::optional<std::string> text(std::string const& name) override;
+    std::optional<std::string> text(std::string const& name, std::size_t most) override;
     std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size, double largest) override;
     void refuse(std::string const& name, std::string const& expected) override;
     void check_range(std::string const& name, double value, double min, double max) override;

@@ -57,11 +57,9 @@ void assign_numbers(ParameterSource& source, std::string const& name, void* arra
 }
 
 void assign_text(ParameterSource& source, std::string const& name, void* text, std::size_t size) {
-    auto const found = source.text(name);
+    auto const found = source.text(name, size > 0 ? size - 1 : 0);
     if (found && size > 0) {
-        std::size_t const length = std::min(found->size(), size - 1);
-        std::memcpy(text, found->data(), length);
-        static_cast<char*>(text)[length] = '\0';
+        std::memcpy(text, found->c_str(), found->size() + 1);
     }
 }
 

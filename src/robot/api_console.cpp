@@ -49,7 +49,7 @@ void print_line(std::string_view line) {
     if (context.is_system) {
         pogosim::robot_log().info("[SYSTEM] [PRINTF] {}", line);
     } else if (context.outbox != nullptr) {
-        context.outbox->said.push_back({.robot = context.robot, .format = {}, .text = std::string(line)});
+        context.outbox->said.push_back({.robot = context.robot, .kind = {}, .text = std::string(line)});
     } else {
         context.services->print_line(*context.world, context.robot, line);
     }

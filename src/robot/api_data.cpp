@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include "base/error.hpp"
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/slip.hpp"
 #include "robot/user_guard.hpp"
 
 using pogosim::CellValue;
@@ -88,12 +90,17 @@ std::size_t find_column(DataExport& data, char const* name) {
                     name));
 }
 
+void note_outside_of_export(char const* function) {
+    context.services->warn_once_of({.text = "outside of callback_export_data", .function = function},
+                                   "{}() has no effect outside of callback_export_data", function);
+}
+
 void set_value(char const* function, char const* name, ColumnType type, CellValue value) {
     check_call(function, name);
     without_exceptions([&] {
         DataExport& data = context.services->data;
         if (!data.filling) {
-            context.services->warn_once("data_set_value_* has no effect outside callback_export_data");
+            note_outside_of_export(function);
             return;
         }
         std::size_t const column = find_column(data, name);
@@ -104,6 +111,15 @@ void set_value(char const* function, char const* name, ColumnType type, CellValu
         data.row.values[column] = std::move(value);
         data.was_set[column] = true;
     });
+}
+
+void set_exported(char const* function, bool exported) {
+    require_robot(function);
+    if (!context.services->data.filling) [[unlikely]] {
+        note_outside_of_export(function);
+        return;
+    }
+    context.services->data.row.exported = exported;
 }
 
 }  // namespace
@@ -159,6 +175,10 @@ void data_set_value_bool(char const* name, bool value) {
     set_value(__func__, name, ColumnType::boolean, value);
 }
 void data_set_value_float16(char const* name, float value) {
+    constexpr float largest = 65520.0F;  // from here on, infinity is nearer than 65504
+    if (std::isfinite(value) && std::abs(value) >= largest) [[unlikely]] {
+        pogosim::note_slip({__func__, "value", "-65504 to 65504", "infinity is recorded"}, value);
+    }
     set_value(__func__, name, ColumnType::float16, static_cast<double>(value));
 }
 
@@ -167,12 +187,10 @@ void data_set_value_float(char const* name, float value) {
 }
 
 void enable_data_export() {
-    require_robot(__func__);
-    context.services->data.row.exported = true;
+    set_exported(__func__, true);
 }
 void disable_data_export() {
-    require_robot(__func__);
-    context.services->data.row.exported = false;
+    set_exported(__func__, false);
 }
 
 uint32_t get_nb_robots() {

@@ -9,6 +9,7 @@
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
+#include "robot/slip.hpp"
 #include "robot/user_guard.hpp"
 #include "robot/waiting.hpp"
 
@@ -16,6 +17,7 @@ using pogosim::context;
 using pogosim::FrameHeader;
 using pogosim::kAllFaces;
 using pogosim::kFaceCount;
+using pogosim::note_slip;
 using pogosim::require_argument;
 using pogosim::require_robot;
 
@@ -27,6 +29,8 @@ constexpr std::uint16_t kLongHeaderBytes = 8;
 
 constexpr std::uint32_t kSent = 0;
 constexpr std::uint32_t kNotSent = 1;
+constexpr auto kNothingSent = "nothing is sent, and the function returns 1";
+constexpr auto kMessage = "the address of a message";
 
 static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
 
@@ -51,17 +55,16 @@ float send_probability() {
 }
 
 /// Puts one transmission on the air.
-std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header, std::uint16_t header_bytes,
-                   std::uint8_t const* payload) {
-    if (header.payload_length > MAX_PAYLOAD_SIZE_BYTES) {
-        context.services->warn_once(
-            "a message of {} bytes was not sent: the largest payload is {} bytes (MAX_PAYLOAD_SIZE_BYTES); the sending "
-            "function returned {}",
-            header.payload_length, MAX_PAYLOAD_SIZE_BYTES, kNotSent);
+std::uint32_t emit(char const* function, std::uint8_t emitters, std::uint8_t power, FrameHeader header,
+                   std::uint16_t header_bytes, std::uint8_t const* payload) {
+    if (header.payload_length > MAX_PAYLOAD_SIZE_BYTES) [[unlikely]] {
+        static_assert(MAX_PAYLOAD_SIZE_BYTES == 382);
+        note_slip({function, "the length of the message", "0 to 382 bytes (MAX_PAYLOAD_SIZE_BYTES)", kNothingSent},
+                  header.payload_length);
         return kNotSent;
     }
-    if (payload == nullptr && header.payload_length > 0) {
-        context.services->warn_once("a message of {} bytes was not sent: its payload is NULL", header.payload_length);
+    if (payload == nullptr && header.payload_length > 0) [[unlikely]] {
+        note_slip({function, "message", kMessage, kNothingSent}, "NULL");
         return kNotSent;
     }
     pogosim::note_call();
@@ -83,8 +86,12 @@ std::uint32_t emit(std::uint8_t emitters, std::uint8_t power, FrameHeader header
     return kSent;
 }
 
-std::uint8_t emitters_of(ir_direction direction) {
+std::uint8_t emitters_of(char const* function, ir_direction direction) {
     int const index = static_cast<int>(direction);
+    if (index < 0 || index > static_cast<int>(ir_all)) [[unlikely]] {
+        note_slip({function, "dir", "ir_front (0) to ir_left (3), or ir_all (4)", "the message goes in all directions"},
+                  index);
+    }
     return index >= 0 && index < kFaceCount ? static_cast<std::uint8_t>(1U << index) : kAllFaces;
 }
 
@@ -114,17 +121,18 @@ std::uint8_t sender_index(std::uint8_t emitters) {
                                  : static_cast<std::uint8_t>(__builtin_ctz(emitters | 1U << kFaceCount));
 }
 
-std::uint32_t send_long(std::uint8_t emitters, std::uint8_t list, std::uint8_t const* payload, std::uint16_t size) {
+std::uint32_t send_long(char const* function, std::uint8_t emitters, std::uint8_t list, std::uint8_t const* payload,
+                        std::uint16_t size) {
     FrameHeader const header{.packet_type = ir_t_user,
                              .emitting_power_list = list,
                              .sender_id = pogobot_helper_getid(),
                              .sender_ir_index = sender_index(emitters),
                              .receiver_ir_index = 0,
                              .payload_length = size};
-    return emit(emitters, highest_power(list), header, kLongHeaderBytes, payload);
+    return emit(function, emitters, highest_power(list), header, kLongHeaderBytes, payload);
 }
 
-std::uint32_t send_short(std::uint8_t emitters, std::uint8_t const* payload, std::uint16_t size) {
+std::uint32_t send_short(char const* function, std::uint8_t emitters, std::uint8_t const* payload, std::uint16_t size) {
     // A short header carries neither sender nor emitter.
     FrameHeader const header{.packet_type = ir_t_short,
                              .emitting_power_list = 0,
@@ -132,21 +140,22 @@ std::uint32_t send_short(std::uint8_t emitters, std::uint8_t const* payload, std
                              .sender_ir_index = 0xF,
                              .receiver_ir_index = 0,
                              .payload_length = size};
-    return emit(emitters, context.controller->ir_power, header, kShortHeaderBytes, payload);
+    return emit(function, emitters, context.controller->ir_power, header, kShortHeaderBytes, payload);
 }
 
 }  // namespace
 
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
-    return send_long(kAllFaces, power_list(kAllFaces), message, message_size);
+    return send_long(__func__, kAllFaces, power_list(kAllFaces), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
     uint32_t errors = 0;
-    for (int face = 0; face < kFaceCount; ++face) {
-        errors += pogobot_infrared_sendLongMessage_uniSpe(static_cast<ir_direction>(face), message, message_size);
+    for (unsigned face = 0; face < kFaceCount; ++face) {
+        auto const emitter = static_cast<std::uint8_t>(1U << face);
+        errors += send_long(__func__, emitter, power_list(emitter), message, message_size);
     }
     return errors;
 }
@@ -154,23 +163,24 @@ uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16
 uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* const message,
                                                  uint16_t const message_size) {
     require_robot(__func__);
-    std::uint8_t const emitters = emitters_of(dir);
-    return send_long(emitters, power_list(emitters), message, message_size);
+    std::uint8_t const emitters = emitters_of(__func__, dir);
+    return send_long(__func__, emitters, power_list(emitters), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
-    return send_short(kAllFaces, message, message_size);
+    return send_short(__func__, kAllFaces, message, message_size);
 }
 
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
-    return send_short(emitters_of(dir), message, message_size);
+    return send_short(__func__, emitters_of(__func__, dir), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
     require_robot(__func__);
-    if (message == nullptr) {
+    if (message == nullptr) [[unlikely]] {
+        note_slip({__func__, "message", kMessage, kNothingSent}, "NULL");
         return kNotSent;
     }
     message->header._packet_type = ir_t_user;
@@ -182,25 +192,29 @@ uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
             emitters = static_cast<std::uint8_t>(emitters | 1U << face);
         }
     }
-    if (emitters == 0) {
-        context.services->warn_once(
-            "pogobot_infrared_sendRawLongMessage: every power in _emitting_power_list is 0, so "
-            "nothing is sent, as on a real robot");
+    if (emitters == 0) [[unlikely]] {
+        note_slip({__func__, "_emitting_power_list", "a power that is not 0 for at least one emitter",
+                   "nothing is sent, as on a real robot"},
+                  list);
     }
-    return send_long(emitters, list, message->payload, message->header.payload_length);
+    return send_long(__func__, emitters, list, message->payload, message->header.payload_length);
 }
 
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message) {
     require_robot(__func__);
-    if (message == nullptr) {
+    if (message == nullptr) [[unlikely]] {
+        note_slip({__func__, "message", kMessage, kNothingSent}, "NULL");
         return kNotSent;
     }
     message->header._packet_type = ir_t_short;
-    return send_short(emitters_of(dir), message->payload, message->header.payload_length);
+    return send_short(__func__, emitters_of(__func__, dir), message->payload, message->header.payload_length);
 }
 
 void pogobot_infrared_set_power(uint8_t power) {
     require_robot(__func__);
+    if (power > pogobot_infrared_emitter_power_max) [[unlikely]] {
+        note_slip({__func__, "power", "0 to 3", "3 is used"}, power);
+    }
     context.controller->ir_power = std::min<uint8_t>(power, pogobot_infrared_emitter_power_max);
 }
 
@@ -240,15 +254,25 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
     ++context.controller->messages_received;
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES).
     std::size_t const size = std::min<std::size_t>(header.payload_length, max_payload_bytes);
+    if (size < header.payload_length) [[unlikely]] {
+        note_slip({"pogobot_infrared_recover_next_message", "the length of the message",
+                   "no more bytes than this program has room for (MAX_PAYLOAD_SIZE_BYTES)", "the message is cut"},
+                  header.payload_length);
+    }
     header.payload_length = static_cast<std::uint16_t>(size);
     std::memcpy(&message->header, &header, sizeof(header));
     std::ranges::fill(payload.subspan(size), std::byte{0});
 }
 
-void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t /*ir_index*/) {
-    if (counter != nullptr) {
-        *counter = {};
+void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t ir_index) {
+    if (ir_index >= IR_RX_COUNT) [[unlikely]] {
+        note_slip({__func__, "ir_index", "0 (front) to 3 (left)", "the counters are set to 0"}, ir_index);
     }
+    if (counter == nullptr) [[unlikely]] {
+        note_slip({__func__, "counter", "the address of the counters", "nothing is written"}, "NULL");
+        return;
+    }
+    *counter = {};
 }
 
 void pogobot_infrared_reset_receiver_error_counter() {}

@@ -4,53 +4,82 @@
 
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;
 using pogosim::kMotorCount;
+using pogosim::note_slip;
 using pogosim::require_robot;
 
 namespace {
 
-bool is_motor(motor_id motor) {
+bool is_motor(char const* function, motor_id motor) {
     bool const known = static_cast<int>(motor) >= 0 && static_cast<int>(motor) < kMotorCount;
-    if (!known) {
-        context.services->warn_once("no motor {}; nothing set (valid: motorL, motorR, motorB)",
-                                    static_cast<int>(motor));
+    if (!known) [[unlikely]] {
+        note_slip({function, "motor", "motorR (0), motorL (1) or motorB (2)", "nothing is set"},
+                  static_cast<int>(motor));
     }
     return known;
 }
 
-/// Powers above motorFull count as that, but what is negative in 16 bits was meant otherwise.
-void warn_if_negative(std::uint16_t power) {
+/// What is negative in 16 bits was meant otherwise.
+void note_power(char const* function, std::uint16_t power) {
     if (power > INT16_MAX) {
-        context.services->warn_once(
-            "pogobot_motor_set was called with {}: powers are unsigned (0 to {}), so this one becomes {} and drives "
-            "the motor at full power; to reverse it, use pogobot_motor_dir_set and a positive power",
-            static_cast<int>(static_cast<std::int16_t>(power)), static_cast<int>(motorFull), power);
+        note_slip({function, "value", "0 to 1023 (motorFull)",
+                   "powers are unsigned, so this one drives the motor at full power; to reverse it, use "
+                   "pogobot_motor_dir_set and a positive power"},
+                  static_cast<int>(static_cast<std::int16_t>(power)));
+    } else {
+        note_slip({function, "value", "0 to 1023 (motorFull)", "1023 is used"}, power);
+    }
+}
+
+void set_power(char const* function, motor_id motor, std::uint16_t power) {
+    require_robot(function);
+    pogosim::note_call();
+    if (is_motor(function, motor)) {
+        if (power > motorFull) [[unlikely]] {
+            note_power(function, power);
+        }
+        context.controller->motors.power[motor] = std::min<uint16_t>(power, motorFull);
+        context.controller->motors.driven = true;
+    }
+}
+
+/// Whether there is a place for the three values of the persistent memory.
+bool has_place(char const* function, char const* argument, void const* place) {
+    if (place == nullptr) [[unlikely]] {
+        note_slip({function, argument, "the address of three values", "nothing is read or written"}, "NULL");
+    }
+    return place != nullptr;
+}
+
+/// Notes a value that is to be stored, above what motors take.
+template <class T>
+void note_stored(char const* function, char const* argument, T const* values, T most, char const* expected) {
+    T const* const wrong = std::find_if(values, values + kMotorCount, [most](T value) { return value > most; });
+    if (wrong != values + kMotorCount) [[unlikely]] {
+        note_slip({function, argument, expected, "it is stored as it is"}, *wrong);
     }
 }
 
 }  // namespace
 
 void pogobot_motor_power_set(motor_id motor, uint16_t value) {
-    require_robot(__func__);
-    pogosim::note_call();
-    if (is_motor(motor)) {
-        warn_if_negative(value);
-        context.controller->motors.power[motor] = std::min<uint16_t>(value, motorFull);
-        context.controller->motors.driven = true;
-    }
+    set_power(__func__, motor, value);
 }
 
 void pogobot_motor_set(motor_id motor, uint16_t value) {
-    require_robot(__func__);
-    pogobot_motor_power_set(motor, value);
+    set_power(__func__, motor, value);
 }
 
 void pogobot_motor_dir_set(motor_id motor, uint8_t value) {
     require_robot(__func__);
-    if (is_motor(motor)) {
+    if (is_motor(__func__, motor)) {
+        if (value > 1) [[unlikely]] {
+            note_slip({__func__, "value", "0 or 1", "1 is used"}, value);
+        }
         context.controller->motors.direction[motor] = value != 0 ? 1 : 0;
         context.controller->motors.driven = true;
     }
@@ -64,7 +93,7 @@ uint32_t pogobot_motor_dir_current_status() {
 
 int8_t pogobot_motor_dir_mem_get(uint8_t* p_directions) {
     require_robot(__func__);
-    if (p_directions == nullptr) {
+    if (!has_place(__func__, "p_directions", p_directions)) {
         return -1;
     }
     std::copy_n(context.controller->motors.stored_direction.begin(), kMotorCount, p_directions);
@@ -73,16 +102,17 @@ int8_t pogobot_motor_dir_mem_get(uint8_t* p_directions) {
 
 int8_t pogobot_motor_dir_mem_set(uint8_t* p_directions) {
     require_robot(__func__);
-    if (p_directions == nullptr) {
+    if (!has_place(__func__, "p_directions", p_directions)) {
         return -1;
     }
+    note_stored<std::uint8_t>(__func__, "p_directions", p_directions, 1, "0 or 1 for each motor");
     std::copy_n(p_directions, kMotorCount, context.controller->motors.stored_direction.begin());
     return 0;
 }
 
 uint8_t pogobot_motor_power_mem_get(uint16_t* p_powers) {
     require_robot(__func__);
-    if (p_powers == nullptr) {
+    if (!has_place(__func__, "p_powers", p_powers)) {
         return UINT8_MAX;
     }
     std::copy_n(context.controller->motors.stored_power.begin(), kMotorCount, p_powers);
@@ -91,9 +121,10 @@ uint8_t pogobot_motor_power_mem_get(uint16_t* p_powers) {
 
 uint8_t pogobot_motor_power_mem_set(uint16_t* p_powers) {
     require_robot(__func__);
-    if (p_powers == nullptr) {
+    if (!has_place(__func__, "p_powers", p_powers)) {
         return UINT8_MAX;
     }
+    note_stored<std::uint16_t>(__func__, "p_powers", p_powers, motorFull, "0 to 1023 (motorFull) for each motor");
     std::copy_n(p_powers, kMotorCount, context.controller->motors.stored_power.begin());
     return 0;
 }

@@ -7,6 +7,7 @@
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
+#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 #include "world/observed_motion.hpp"
 
@@ -29,16 +30,22 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     require_robot(__func__);
     pogosim::note_call();
     pogosim::take_back_floating_point();
-    if (sensor_number >= pogosim::kPhotosensorCount) {
-        context.services->warn_once(
-            "pogobot_photosensors_read: no light sensor {}; returning -1 (valid: 0 back, 1 front left, 2 front right)",
-            sensor_number);
+    if (sensor_number >= pogosim::kPhotosensorCount) [[unlikely]] {
+        pogosim::note_slip({__func__, "sensor_number", "p_B (0, back), p_FL (1, front left) or p_FR (2, front right)",
+                            "-1 is returned"},
+                           sensor_number);
         return -1;
     }
     if (!context.has_body()) {
         return -1;
     }
     pogosim::World& world = *context.world;
+    if (world.lamps.empty()) [[unlikely]] {
+        context.services->warn_once(
+            "{}(): there is no lamp in this world, so it is dark everywhere; add an object of type static_light or "
+            "another lamp to the configuration",
+            __func__);
+    }
     int level = pogosim::light_at_sensor(world, context.body(), sensor_number) +
                 context.controller->photosensor_bias[sensor_number];
     float const noise = context.spec().photosensor_noise_stddev;

@@ -9,9 +9,11 @@
 #include "robot/context.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/require_robot.hpp"
+#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;
+using pogosim::note_slip;
 using pogosim::require_argument;
 using pogosim::require_robot;
 
@@ -26,9 +28,29 @@ std::int64_t now_us() {
     return self.clock_us;
 }
 
-int32_t saturate(std::int64_t us) {
-    return static_cast<int32_t>(
-        std::clamp<std::int64_t>(us, std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::max()));
+int32_t saturate(char const* function, std::int64_t us) {
+    auto const fitting =
+        std::clamp<std::int64_t>(us, std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::max());
+    if (fitting != us) [[unlikely]] {
+        note_slip({function, "the time to return", "-2147483648 to 2147483647 us (35 minutes)",
+                   "the nearest of these is returned; on a real robot, times wrap around after 107 s"},
+                  us);
+    }
+    return static_cast<int32_t>(fitting);
+}
+
+/// Time since the origin, for a function that says it.
+int32_t elapsed_us(char const* function, time_reference_t const* stopwatch) {
+    require_robot(function);
+    require_argument(stopwatch, function, "stopwatch");
+    return saturate(function, now_us() - stopwatch->origin_us);
+}
+
+/// Time left, for a function that says it.
+int32_t remaining_us(char const* function, time_reference_t const* timer) {
+    require_robot(function);
+    require_argument(timer, function, "timer");
+    return saturate(function, timer->origin_us - now_us());
 }
 
 void set_origin(time_reference_t* reference, std::int64_t origin_us) {
@@ -36,9 +58,13 @@ void set_origin(time_reference_t* reference, std::int64_t origin_us) {
     reference->hardware_value_at_time_origin = static_cast<uint32_t>(origin_us);
 }
 
-/// Negative times take none. A thread or a process that the program has started sleeps in wall-clock time.
-void sleep_for(std::int64_t time_us) {
-    time_us = std::max<std::int64_t>(0, time_us);
+/// Sleeps for `count` units of `unit_us` microseconds. Negative times take none. A thread or a process that the program
+/// has started sleeps in wall-clock time.
+void sleep_for(char const* function, char const* argument, int count, std::int64_t unit_us) {
+    if (count < 0) [[unlikely]] {
+        note_slip({function, argument, "at least 0", "it takes no time"}, count);
+    }
+    std::int64_t const time_us = std::max(0, count) * unit_us;
     if (context.controller == nullptr || pogosim::is_forked_child()) {
         std::this_thread::sleep_for(std::chrono::microseconds(time_us));
     } else {
@@ -55,15 +81,11 @@ void pogobot_stopwatch_reset(time_reference_t* stopwatch) {
 }
 
 int32_t pogobot_stopwatch_get_elapsed_microseconds(time_reference_t* stopwatch) {
-    require_robot(__func__);
-    require_argument(stopwatch, __func__, "stopwatch");
-    return saturate(now_us() - stopwatch->origin_us);
+    return elapsed_us(__func__, stopwatch);
 }
 
 int32_t pogobot_stopwatch_lap(time_reference_t* stopwatch) {
-    require_robot(__func__);
-    require_argument(stopwatch, __func__, "stopwatch");
-    int32_t const elapsed = pogobot_stopwatch_get_elapsed_microseconds(stopwatch);
+    int32_t const elapsed = elapsed_us(__func__, stopwatch);
     pogobot_stopwatch_reset(stopwatch);
     return elapsed;
 }
@@ -81,15 +103,11 @@ void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go) {
 }
 
 int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer) {
-    require_robot(__func__);
-    require_argument(timer, __func__, "timer");
-    return saturate(timer->origin_us - now_us());
+    return remaining_us(__func__, timer);
 }
 
 bool pogobot_timer_has_expired(time_reference_t* timer) {
-    require_robot(__func__);
-    require_argument(timer, __func__, "timer");
-    return pogobot_timer_get_remaining_microseconds(timer) < 0;
+    return remaining_us(__func__, timer) < 0;
 }
 
 void pogobot_timer_wait_for_expiry(time_reference_t* timer) {
@@ -106,15 +124,15 @@ void pogobot_timer_offset_origin_microseconds(time_reference_t* timer, int32_t m
 
 void msleep(int milliseconds) {
     require_robot(__func__);
-    sleep_for(milliseconds * kMicrosecondsPerMillisecond);
+    sleep_for(__func__, "milliseconds", milliseconds, kMicrosecondsPerMillisecond);
 }
 
 void pogosim_usleep(int microseconds) {
-    sleep_for(microseconds);
+    sleep_for("usleep", "microseconds", microseconds, 1);
 }
 
 void pogosim_sleep(int seconds) {
-    sleep_for(seconds * kMicrosecondsPerSecond);
+    sleep_for("sleep", "seconds", seconds, kMicrosecondsPerSecond);
 }
 
 void pogosim_let_time_pass() {
@@ -125,7 +143,7 @@ void pogosim_let_time_pass() {
 /// What pogobot_stopwatch_get_elapsed_microseconds() is in the main loop.
 extern "C" int32_t pogosim_elapsed_microseconds(time_reference_t* stopwatch);
 int32_t pogosim_elapsed_microseconds(time_reference_t* stopwatch) {
-    return saturate(context.controller->clock_us - stopwatch->origin_us);
+    return saturate("current_time_milliseconds", context.controller->clock_us - stopwatch->origin_us);
 }
 
 void pogosim_sleep_after_tick(int milliseconds) {

@@ -8,25 +8,26 @@ namespace pogosim {
 
 constinit thread_local Context context;
 
-bool RunServices::is_new(std::string_view format) const {
-    return std::ranges::find(warned, format) == warned.end();
+bool RunServices::is_new(WarningKind const& kind) const {
+    return std::ranges::find(warned, kind) == warned.end();
 }
 
-void RunServices::warn_of_robot(std::string_view format, std::string const& text) {
-    std::string const warning = fmt::format("{}: {}", current_robot_name(), text);
+void RunServices::warn_of_robot(WarningKind const& kind, std::string const& text) {
+    std::string const time = has_ticks(context.phase) ? fmt::format(", t = {:.4f} s", context.world->time_s()) : "";
+    std::string const warning = fmt::format("{}{}: {}", current_robot_name(), time, text);
     if (context.outbox == nullptr) {
-        warn_first(format, warning);
+        warn_first(kind, warning);
         return;
     }
     std::vector<Outbox::Said>& said = context.outbox->said;
-    if (std::ranges::find(said, format, &Outbox::Said::format) == said.end()) {
-        said.push_back({.robot = context.robot, .format = format, .text = warning});
+    if (std::ranges::find(said, kind, &Outbox::Said::kind) == said.end()) {
+        said.push_back({.robot = context.robot, .kind = kind, .text = warning});
     }
 }
 
-void RunServices::warn_first(std::string_view format, std::string const& text) {
-    if (is_new(format)) {
-        warned.push_back(format);
+void RunServices::warn_first(WarningKind const& kind, std::string const& text) {
+    if (is_new(kind)) {
+        warned.push_back(kind);
         log().warn("{}", text);
     }
 }

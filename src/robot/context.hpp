@@ -62,30 +62,35 @@ struct RunServices {
     std::vector<BoundVariable> bound_variables{};
     bool stop_requested = false;
     std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once
-    std::vector<std::string_view> warned;           // formats of warn_once
+    std::vector<WarningKind> warned;                // of warn_once
     WorldAccess access{};
     PrintedLines* printed_lines = nullptr;  // gets the lines of robots; null: nobody wants them
 
-    /// Logs a warning that names the running robot and its tick, the first time in the run that this format (a literal)
-    /// is used.
+    /// Logs a warning that names the running robot, its tick and the time, the first time in the run that this format (a
+    /// literal) is used.
     template <class... Args>
     void warn_once(fmt::format_string<Args...> format, Args&&... args) {
         fmt::string_view const text = format;
-        std::string_view const name{text.data(), text.size()};
-        if (is_new(name)) {
-            warn_of_robot(name, fmt::format(format, std::forward<Args>(args)...));
+        warn_once_of(WarningKind{.text = {text.data(), text.size()}}, format, std::forward<Args>(args)...);
+    }
+
+    /// The same, the first time in the run for this kind.
+    template <class... Args>
+    void warn_once_of(WarningKind const& kind, fmt::format_string<Args...> format, Args&&... args) {
+        if (is_new(kind)) {
+            warn_of_robot(kind, fmt::format(format, std::forward<Args>(args)...));
         }
     }
 
     /// A line that a robot has printed.
     void print_line(World const& world, std::uint32_t robot, std::string_view line);
 
-    /// A warning that names a robot, if it is the first one of this format.
-    void warn_first(std::string_view format, std::string const& text);
+    /// A warning that names a robot, if it is the first one of this kind.
+    void warn_first(WarningKind const& kind, std::string const& text);
 
 private:
-    bool is_new(std::string_view format) const;
-    void warn_of_robot(std::string_view format, std::string const& text);
+    bool is_new(WarningKind const& kind) const;
+    void warn_of_robot(WarningKind const& kind, std::string const& text);
 };
 
 /// Whether a robot's program may return control to the simulator in the middle, see waiting.hpp.

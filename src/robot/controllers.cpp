@@ -469,10 +469,10 @@ void Controllers::take_over(Outbox& outbox) {
     air.transmissions.insert(air.transmissions.end(), outbox.air.transmissions.begin(), outbox.air.transmissions.end());
     air.payloads.insert(air.payloads.end(), outbox.air.payloads.begin(), outbox.air.payloads.end());
     for (Outbox::Said const& said : outbox.said) {
-        if (said.format.empty()) {
+        if (said.kind.text.empty()) {
             services_.print_line(world_, said.robot, said.text);
         } else {
-            services_.warn_first(said.format, said.text);
+            services_.warn_first(said.kind, said.text);
         }
     }
     services_.stop_requested = services_.stop_requested || outbox.stop_requested;
@@ -500,6 +500,9 @@ void Controllers::tick(std::uint32_t robot) {
     Controller& self = controllers_[robot];
     measure_velocity(world_, robot, self);
     enter(robot, Phase::user_step);
+    if (are_odd(self.loop, most_loop_hz_)) [[unlikely]] {
+        without_exceptions([&] { note_loop_globals(world_, self.loop, most_loop_hz_); });
+    }
     context.waiting = Waiting::always;
     pogo_main_loop_step(self.program.step);
     leave();
@@ -563,12 +566,18 @@ void Controllers::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, controllers_);
     warn_of_unused_messages(world_, controllers_, arrivals);
     warn_of_undecoded_messages(controllers_);
-    warn_of_send_percent(world_, controllers_);
     tell_of_ended_programs(controllers_);
 }
 
 void Controllers::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
     pogosim::tell_of_unset_columns(services_.data, fields);
+}
+
+void Controllers::watch_loop_rates() {
+    most_loop_hz_ = std::numeric_limits<std::uint8_t>::max();
+    while (skips_ticks(most_loop_hz_, world_.time_step_s)) {
+        --most_loop_hz_;
+    }
 }
 
 int Controllers::highest_loop_hz() const {

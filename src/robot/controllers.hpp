@@ -148,6 +148,8 @@ public:
 
     /// The highest main_loop_hz of all robots.
     int highest_loop_hz() const;
+    /// From now on, a robot that raises its main_loop_hz so that it skips ticks is warned of.
+    void watch_loop_rates();
 
     /// Bytes of one robot's user data.
     std::size_t user_data_bytes() const { return image_.user_data_bytes; }
@@ -212,6 +214,7 @@ private:
     FencedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step
+    int most_loop_hz_ = 255;    // with which robots skip no ticks
     std::atomic<bool> has_waited_ = false;
     std::int64_t next_look_us_ = 0;  // at calls that do not return
     std::vector<bool> is_warned_;    // of them, for each category

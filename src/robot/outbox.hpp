@@ -11,10 +11,19 @@
 
 namespace pogosim {
 
+/// What distinguishes warnings of which a run says the first only. All are literals.
+struct WarningKind {
+    std::string_view text{};  // of it, or of its end
+    std::string_view function{};
+    std::string_view argument{};
+
+    friend bool operator==(WarningKind const&, WarningKind const&) = default;
+};
+
 struct Outbox {
     struct Said {
-        std::uint32_t robot = 0;    // index in World::robots
-        std::string_view format{};  // of a warning, see RunServices::warn_once(); empty: a line that it has printed
+        std::uint32_t robot = 0;  // index in World::robots
+        WarningKind kind{};       // of a warning, see RunServices::warn_once(); empty: a line that it has printed
         std::string text{};
     };
 

@@ -11,6 +11,7 @@
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "robot/slip.hpp"
 
 // The run-time library of clang's sanitizers is a part of the program.
 extern "C" [[gnu::weak]] void __asan_init();
@@ -184,17 +185,20 @@ void tell_of_ended_programs(std::span<Controller const> controllers) {
     }
 }
 
-void warn_of_send_percent(World const& world, std::span<Controller const> controllers) {
-    constexpr int most_percent = 100;
-    std::vector<bool> warned(world.categories.size());
-    for (std::size_t i = 0; i < controllers.size(); ++i) {
-        std::uint32_t const category = world.robots.category[i];
-        int const percent = controllers[i].loop.send_percent;
-        if (percent > most_percent && !warned[category]) {
-            warned[category] = true;
-            log().warn("percent_msgs_sent_per_ticks is {} in category '{}': values above 100 count as 100", percent,
-                       world.categories[category].name);
-        }
+void note_loop_globals(World const& world, LoopGlobals const& loop, int most_loop_hz) {
+    if (loop.send_percent > kMostSendPercent) {
+        note_slip({"", "percent_msgs_sent_per_ticks", "0 to 100", "it counts as 100"}, loop.send_percent);
+    }
+    if (loop.error_led >= static_cast<int>(kLedCount)) {
+        note_slip(
+            {"", "error_codes_led_idx", "0 (head) to 4 (left), or a negative number for none", "no LED shows errors"},
+            loop.error_led);
+    }
+    if (loop.loop_hz > most_loop_hz) {
+        context.services->warn_once(
+            "main_loop_hz is {}, but a robot ticks at most once in each time_step of {} s: ticks are skipped; set the "
+            "highest value in user_init, which shortens the time_step, or set time_step to {} s",
+            loop.loop_hz, world.time_step_s, seconds_between_ticks(loop.loop_hz));
     }
 }
 

@@ -51,7 +51,26 @@ void warn_of_undecoded_messages(std::span<Controller const> controllers);
 /// Programs for the SDK whose main() has returned.
 void tell_of_ended_programs(std::span<Controller const> controllers);
 
-/// A percent_msgs_sent_per_ticks above 100, by category.
-void warn_of_send_percent(World const& world, std::span<Controller const> controllers);
+inline constexpr int kMostSendPercent = 100;
+
+/// Robots sleep whole milliseconds between ticks. `loop_hz`: above 0.
+inline double seconds_between_ticks(int loop_hz) {
+    constexpr int milliseconds = 1000;
+    return static_cast<double>(milliseconds / loop_hz) / milliseconds;
+}
+
+/// Whether a robot with this main_loop_hz cannot tick as often as it should: it does so at most once per step.
+inline bool skips_ticks(int loop_hz, double time_step_s) {
+    return loop_hz > 0 && time_step_s > seconds_between_ticks(loop_hz);
+}
+
+/// Whether variables of the main loop are not as they should be. `most_loop_hz`: without skipping ticks.
+inline bool are_odd(LoopGlobals const& loop, int most_loop_hz) {
+    return loop.send_percent > kMostSendPercent || loop.error_led >= static_cast<int>(kLedCount) ||
+           loop.loop_hz > most_loop_hz;
+}
+
+/// Says which, for the running robot.
+void note_loop_globals(World const& world, LoopGlobals const& loop, int most_loop_hz);
 
 }  // namespace pogosim

@@ -16,6 +16,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/places.hpp"
+#include "robot/program_checks.hpp"
 #include "robot/source_place.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
@@ -493,16 +494,13 @@ bool Simulation::finish() {
 
 void Simulation::fit_time_step() {
     int const hz = controllers_.highest_loop_hz();
-    if (hz == 0) {
-        return;
-    }
-    // Robots sleep whole milliseconds between ticks, and tick at most once per step.
-    double const tick_s = std::floor(1000.0 / hz) / 1000.0;
-    if (world_.time_step_s > tick_s) {
+    if (skips_ticks(hz, world_.time_step_s)) {
+        double const tick_s = seconds_between_ticks(hz);
         log().warn("time_step reduced from {} s to {} s, so that no ticks are skipped (main_loop_hz: {})",
                    world_.time_step_s, tick_s, hz);
         world_.time_step_s = tick_s;
     }
+    controllers_.watch_loop_rates();
 }
 
 void Simulation::report(UserFailure const& failure) const {

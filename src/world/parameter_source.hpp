@@ -19,8 +19,9 @@ public:
     virtual std::optional<double> number(std::string const& name, double largest) = 0;
     /// Text of a fraction is truncated.
     virtual std::optional<std::int64_t> integer(std::string const& name, std::int64_t min, std::int64_t max) = 0;
-    virtual std::optional<std::string> text(std::string const& name) = 0;
-    /// The first `size` numbers of a list; nothing for an absent or empty list.
+    /// Its first `most` bytes, with a warning if there are more.
+    virtual std::optional<std::string> text(std::string const& name, std::size_t most) = 0;
+    /// The first `size` numbers of a list, with a warning if there are more; nothing for an absent or empty list.
     virtual std::optional<std::vector<double>> numbers(std::string const& name, std::size_t size, double largest) = 0;
     /// Throws ConfigError: the value is not what the program expects.
     virtual void refuse(std::string const& name, std::string const& expected) = 0;

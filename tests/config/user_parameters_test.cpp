@@ -40,8 +40,8 @@ TEST(UserParameters, ValuesAreFoundByNameAndPath) {
     EXPECT_EQ(parameters.integer("run_duration_min", 0, 4294967295), 1000);
     EXPECT_EQ(parameters.number("ratio", kLargest), 0.25);
     EXPECT_EQ(parameters.boolean("back"), true);
-    EXPECT_EQ(parameters.text("name"), "Ada");
-    EXPECT_EQ(parameters.text("run_duration_min"), "1000");
+    EXPECT_EQ(parameters.text("name", 100), "Ada");
+    EXPECT_EQ(parameters.text("run_duration_min", 100), "1000");
     EXPECT_EQ(parameters.integer("p.k", 0, 255), 7);
     EXPECT_EQ(parameters.integer("p.list.1", 0, 255), 5);
     EXPECT_EQ(parameters.integer("a.b", 0, 255), 8);
@@ -54,7 +54,7 @@ TEST(UserParameters, AbsentAndNullLeaveTheProgramsDefault) {
         EXPECT_EQ(parameters.integer(name, 0, 255), std::nullopt) << name;
         EXPECT_EQ(parameters.number(name, kLargest), std::nullopt) << name;
         EXPECT_EQ(parameters.boolean(name), std::nullopt) << name;
-        EXPECT_EQ(parameters.text(name), std::nullopt) << name;
+        EXPECT_EQ(parameters.text(name, 100), std::nullopt) << name;
         EXPECT_EQ(parameters.numbers(name, 3, kLargest), std::nullopt) << name;
     }
     EXPECT_EQ(UserParameters(Node{}).number("ratio", kLargest), std::nullopt);
@@ -69,7 +69,8 @@ TEST(UserParameters, WrongTypesAreErrorsWithTheirLine) {
               "x.yaml:7: parameters.word: expected a number, found 'fast'");
     EXPECT_EQ(error_of([] { parameters.boolean("ratio"); }),
               "x.yaml:2: parameters.ratio: expected true or false, found 0.25");
-    EXPECT_EQ(error_of([] { parameters.text("map"); }), "x.yaml:13: parameters.map: expected a string, found a map");
+    EXPECT_EQ(error_of([] { parameters.text("map", 100); }),
+              "x.yaml:13: parameters.map: expected a string, found a map");
 }
 
 TEST(UserParameters, NumbersThatDoNotFitAFloatAreErrorsInAFloat) {

@@ -177,7 +177,7 @@ def compile_program(
     output: Path,
     *sources: Path,
     compiler: str | None = None,
-    flags: Sequence[str] = ("-Wall", "-Wextra", "-Werror"),
+    flags: Sequence[str] = ("-Wall", "-Wextra", "-Wfloat-conversion", "-Werror"),
     package: str = "pogosim",
 ) -> Path:
     """Compile sources of one language to a program; `package`: "pogosim-sdk" for one that includes pogobot.h."""

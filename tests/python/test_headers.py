@@ -9,7 +9,7 @@ import pytest
 from conftest import Compile
 from running import PROGRAMS, ROOT, build_folder, compile_program, compiler, pkg_config, run
 
-STRICT = ["-Wall", "-Wextra", "-Werror"]
+STRICT = ["-Wall", "-Wextra", "-Wfloat-conversion", "-Werror"]
 C_STANDARDS = ["c11", "c17", "gnu11"]
 CPP_STANDARDS = ["c++17", "c++20", "gnu++20"]
 C_COMPILERS = [name for name in (compiler("gcc"), compiler("clang", "clang-14")) if name]

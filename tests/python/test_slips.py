@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 from conftest import Compile
 from running import Run, Settings, compile_program, run
 
-FIRST = r"robot #0 of category 'robots', tick 10: "
+FIRST = "robot #0 of category 'robots', tick 10, t = 0.1600 s: "
+START = "robot #0 of category 'robots', tick 0, t = 0.0000 s: "
 CROWD: Settings = {
     "objects.robots.nb": 60,
     "objects.robots.msg_success_rate": {"type": "static", "rate": 1.0},
@@ -42,13 +44,63 @@ def warnings(result: Run) -> list[str]:
 @pytest.mark.parametrize(
     ("kind", "text"),
     [
-        ("negative_power", f"{FIRST}pogobot_motor_set was called with -500: "),
-        ("motor_3", f"{FIRST}no motor 3; "),
-        ("led_5", f"{FIRST}pogobot_led_setColors: no LED 5; "),
-        ("sensor_3", f"{FIRST}pogobot_photosensors_read: no light sensor 3; "),
+        (
+            "negative_power",
+            f"{FIRST}pogobot_motor_set(): value is -500, expected 0 to 1023 (motorFull); powers are unsigned, so this "
+            "one drives the motor at full power; ",
+        ),
+        (
+            "motor_3",
+            f"{FIRST}pogobot_motor_set(): motor is 3, expected motorR (0), motorL (1) or motorB (2); nothing is set",
+        ),
+        ("direction_2", f"{FIRST}pogobot_motor_dir_set(): value is 2, expected 0 or 1; 1 is used"),
+        ("direction_of_motor_3", f"{FIRST}pogobot_motor_dir_set(): motor is 3, expected "),
+        (
+            "stored_direction",
+            f"{FIRST}pogobot_motor_dir_mem_set(): p_directions is 7, expected 0 or 1 for each motor; ",
+        ),
+        ("stored_power", f"{FIRST}pogobot_motor_power_mem_set(): p_powers is 2000, expected 0 to 1023 "),
+        ("nowhere_to_read_to", f"{FIRST}pogobot_motor_power_mem_get(): p_powers is NULL, expected "),
+        ("led_5", f"{FIRST}pogobot_led_setColors(): id is 5, expected 0 (head) to 4 (left); nothing is set"),
+        ("sensor_3", f"{FIRST}pogobot_photosensors_read(): sensor_number is 3, expected p_B (0, back), "),
+        (
+            "direction_5",
+            f"{FIRST}pogobot_infrared_sendShortMessage_uni(): dir is 5, expected ir_front (0) to ir_left (3), or ir_all "
+            "(4); the message goes in all directions",
+        ),
+        ("direction_-1", f"{FIRST}pogobot_infrared_sendLongMessage_uniSpe(): dir is -1, expected "),
         (
             "long_message",
-            "robot #0 of category 'robots', tick 0: a message of 383 bytes was not sent: ",
+            f"{START}pogobot_infrared_sendShortMessage_omni(): the length of the message is 383, expected 0 to 382 "
+            "bytes (MAX_PAYLOAD_SIZE_BYTES); nothing is sent, and the function returns 1",
+        ),
+        (
+            "long_long_message",
+            f"{FIRST}pogobot_infrared_sendLongMessage_omniSpe(): the length of the message is 1000, ",
+        ),
+        ("raw_long_message", f"{FIRST}pogobot_infrared_sendRawLongMessage(): the length of the message is 383, "),
+        (
+            "raw_message_without_power",
+            f"{FIRST}pogobot_infrared_sendRawLongMessage(): _emitting_power_list is 0, expected ",
+        ),
+        ("raw_short_message", f"{FIRST}pogobot_infrared_sendRawShortMessage(): the length of the message is 383, "),
+        ("no_message", f"{FIRST}pogobot_infrared_sendShortMessage_omni(): message is NULL, expected "),
+        ("power_4", f"{FIRST}pogobot_infrared_set_power(): power is 4, expected 0 to 3; 3 is used"),
+        ("receiver_4", f"{FIRST}pogobot_infrared_get_receiver_error_counter(): ir_index is 4, expected 0 (front) to "),
+        ("sleep_-1", f"{FIRST}msleep(): milliseconds is -1, expected at least 0; it takes no time"),
+        ("old_stopwatch", f"{FIRST}pogobot_stopwatch_get_elapsed_microseconds(): the time to return is 3000000000, "),
+        ("hue", f"{FIRST}hsv_to_rgb(): h_deg is 400, expected 0 to 360; it counts as red"),
+        ("hidden_row", f"{FIRST}disable_data_export() has no effect outside of callback_export_data"),
+        ("large_half", f"{START}data_set_value_float16(): value is 1000000, expected -65504 to 65504; infinity is "),
+        ("error_led_7", f"{START}error_codes_led_idx is 7, expected 0 (head) to 4 (left), or a negative number "),
+        (
+            "dark",
+            f"{FIRST}pogobot_photosensors_read(): there is no lamp in this world, so it is dark everywhere; add an ",
+        ),
+        (
+            "faster",
+            "robot #0 of category 'robots', tick 11, t = 0.1700 s: main_loop_hz is 200, but a robot ticks at most once "
+            "in each time_step of 0.01 s: ticks are skipped; ",
         ),
         ("no_init", "the program never calls pogobot_init(), "),
         (
@@ -67,7 +119,7 @@ def warnings(result: Run) -> list[str]:
         ("sends_never", "no robot of category 'robots' sent a message: "),
         (
             "sends_too_often",
-            "percent_msgs_sent_per_ticks is 150 in category 'robots': values above 100 count as 100",
+            f"{START}percent_msgs_sent_per_ticks is 150, expected 0 to 100; it counts as 100",
         ),
         (
             "wrong_category",
@@ -86,7 +138,35 @@ def test_slip_in_a_program_is_warned_of_once(program: Compile, tmp_path: Path, k
     assert warning.startswith(text)
 
 
-@pytest.mark.parametrize("kind", ["nothing", "large_power", "polls", "late_reading"])
+def test_each_function_says_each_kind_of_mistake_once(program: Compile, tmp_path: Path) -> None:
+    """The second motor of a function is no news; the same mistake with another function is."""
+    found = warnings(slip(program, tmp_path, "motor_power"))
+    cut = "value is {}, expected 0 to 1023 (motorFull); 1023 is used"
+    assert found == [
+        f"{FIRST}pogobot_motor_set(): {cut.format(5000)}",
+        f"{FIRST}pogobot_motor_power_set(): {cut.format(1024)}",
+    ]
+
+
+def test_photosensors_under_a_lamp_are_not_warned_of(program: Compile, tmp_path: Path) -> None:
+    lamp = {"type": "static_light", "geometry": "global", "value": 100}
+    assert warnings(slip(program, tmp_path, "dark", {"objects.lamp": lamp})) == []
+
+
+def test_rate_that_fits_into_the_time_step_may_be_set_at_any_time(program: Compile, tmp_path: Path) -> None:
+    assert warnings(slip(program, tmp_path, "faster", {"time_step": 0.005})) == []
+
+
+def test_robots_on_several_threads_say_what_they_say_on_one(program: Compile, tmp_path: Path) -> None:
+    settings = {"objects.robots.nb": 300, "simulation_time": 0.5, "arena_surface": 4.0e6}
+    texts = [
+        warnings(slip(program, tmp_path / str(threads), "motor_power", {**settings, "threads": threads}))
+        for threads in (1, 2)
+    ]
+    assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize("kind", ["nothing", "polls", "late_reading"])
 def test_program_without_a_slip_is_not_nagged(program: Compile, tmp_path: Path, kind: str) -> None:
     assert (
         warnings(
@@ -226,7 +306,7 @@ def test_parameters_that_nobody_reads_are_an_error_with_strict_after_the_whole_r
 
 @pytest.mark.parametrize(
     "parameters",
-    [{"late": 1.0}, {"vector": [1, 2, 3]}, {"turn_duration": None}],
+    [{"late": 1.0}, {"vector": [1, 2]}, {"turn_duration": None}],
     ids=["late", "list", "null"],
 )
 def test_parameter_that_is_read_at_any_time_is_not_listed(
@@ -234,6 +314,20 @@ def test_parameter_that_is_read_at_any_time_is_not_listed(
 ) -> None:
     settings = {"parameters": {"kind": "late_reading", **parameters}}
     assert warnings(run(program("slips.c"), tmp_path, settings, ["--strict"])) == []
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "rest"),
+    [
+        ("vector", [1, 2, 3], "the program has room for 2 numbers, found 3; the rest is ignored"),
+        ("kind", "n" * 40, "the program has room for 31 characters, found 40; the rest is ignored"),
+    ],
+)
+def test_parameter_that_does_not_fit_into_its_variable_is_warned_of_once(
+    program: Compile, tmp_path: Path, parameter: str, value: object, rest: str
+) -> None:
+    (warning,) = warnings(run(program("slips.c"), tmp_path, {f"parameters.{parameter}": value}))
+    assert re.fullmatch(rf"scene.yaml:\d+: parameters.{parameter}: {rest}", warning)
 
 
 def test_part_of_a_map_that_is_not_read_is_listed(tmp_path: Path) -> None:

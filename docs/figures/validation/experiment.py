@@ -47,7 +47,18 @@ def compiler_flags() -> tuple[str, ...]:
 def compile_program(name: str, folder: Path, sources: Path = SOURCES) -> Path:
     """Compile NAME.c of a folder into another one. Raises CalledProcessError if the compiler fails."""
     program = folder / name
-    command = ["cc", "-std=c11", "-O1", "-g", "-Wall", "-Wextra", str(sources / f"{name}.c"), "-o", str(program)]
+    command = [
+        "cc",
+        "-std=c11",
+        "-O1",
+        "-g",
+        "-Wall",
+        "-Wextra",
+        "-Wfloat-conversion",
+        str(sources / f"{name}.c"),
+        "-o",
+        str(program),
+    ]
     subprocess.run([*command, *compiler_flags()], check=True)
     return program
 

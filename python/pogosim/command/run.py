@@ -33,7 +33,7 @@ def compile_file(source: Path, pogosim: Installation) -> Path:
     compiler = COMPILERS[source.suffix]
     command = [
         *compiler.command(),
-        *("-g", "-O2", "-Wall", "-Wextra"),
+        *("-g", "-O2", "-Wall", "-Wextra", "-Wfloat-conversion"),
         *words_of(compiler.flags),
         os.path.join(source.parent, source.name),  # noqa: PTH118 - ./-x.c, which would be an option without ./
         *("-o", str(program)),
