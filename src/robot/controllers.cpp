@@ -20,6 +20,7 @@
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
+#include "robot/shared_variables_check.hpp"
 #include "robot/user_guard.hpp"
 #include "robot/velocity_command.hpp"
 
@@ -486,6 +487,16 @@ std::string Controllers::why_one_after_the_other() const {
         return "callback_global_setup has had USERDATA of robots, and may have put the same address into several";
     }
     return pogosim::why_one_after_the_other(image_, services_.bound_variables);
+}
+
+void Controllers::warn_of_shared_variables() const {
+    auto const runs_program = [](Controller const& self) {
+        return self.program.registered && self.program.step != default_walls_user_step;
+    };
+    auto const robots = static_cast<std::size_t>(std::ranges::count_if(controllers_, runs_program));
+    if (!own_memory_) {
+        pogosim::warn_of_shared_variables(image_, services_.bound_variables, robots);
+    }
 }
 
 ConfiguredVariables Controllers::configured_variables() const {

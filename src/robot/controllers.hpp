@@ -83,6 +83,9 @@ public:
     /// Puts messages on the air, lines and warnings into the log. What is in the outbox is lost.
     void take_over(Outbox& outbox);
 
+    /// Warns of variables that robots share by mistake, unless each has its own.
+    void warn_of_shared_variables() const;
+
     /// Why run_robots() must not run on several threads, see why_one_after_the_other(); empty: it may.
     std::string why_one_after_the_other() const;
     ConfiguredVariables configured_variables() const;

@@ -1,11 +1,11 @@
 #include "robot/program_image.hpp"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
-#ifdef __linux__
 #include <sys/mman.h>
-#endif
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -45,6 +45,37 @@ std::optional<std::vector<char>> read_file(std::filesystem::path const& file) {
     input.read(content.data(), static_cast<std::streamsize>(content.size()));
     return input ? std::optional(std::move(content)) : std::nullopt;
 }
+
+/// A file whose bytes are read as they are looked at: of a program, its symbols are a small part.
+class MappedFile {
+public:
+    explicit MappedFile(std::filesystem::path const& file) {
+        int const descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+        struct stat status = {};
+        if (descriptor >= 0 && fstat(descriptor, &status) == 0 && status.st_size > 0) {
+            auto const size = static_cast<std::size_t>(status.st_size);
+            void* const place = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+            if (place != MAP_FAILED) {
+                bytes_ = {static_cast<char const*>(place), size};
+            }
+        }
+        if (descriptor >= 0) {
+            close(descriptor);
+        }
+    }
+    ~MappedFile() {
+        if (!bytes_.empty()) {
+            munmap(const_cast<char*>(bytes_.data()), bytes_.size());
+        }
+    }
+    MappedFile(MappedFile const&) = delete;
+    MappedFile& operator=(MappedFile const&) = delete;
+
+    std::span<char const> bytes() const { return bytes_; }
+
+private:
+    std::span<char const> bytes_{};
+};
 
 [[noreturn]] void fail(std::filesystem::path const& file, std::string const& problem) {
     throw ConfigError(fmt::format("the program '{}' {}", escaped(file.string()), problem));
@@ -225,7 +256,8 @@ ProgramSymbols ProgramImage::symbols() const {
     if (loaded_symbols) {
         return *loaded_symbols;
     }
-    return symbols_of(bytes_of_file());
+    MappedFile const mapped(file);
+    return symbols_of(mapped.bytes());
 }
 
 std::vector<std::span<std::byte>> ProgramImage::memory_of_robots() const {

@@ -201,6 +201,35 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     return "";
 }
 
+std::vector<ProgramSymbols::Variable> variables_of_all_robots(ProgramImage const& image,
+                                                              std::span<BoundVariable const> bound) {
+    if (is_in_file_of_simulator(image)) {
+        return {};
+    }
+    ProgramSymbols symbols = image.symbols();
+    auto const is_robots = [&](ProgramSymbols::Variable const& variable) {
+        return std::ranges::any_of(symbols.memory, [&](ProgramSymbols::Piece const& piece) {
+            return variable.address >= piece.begin && variable.address < piece.end;
+        });
+    };
+    auto const has_configured_part = [&](ProgramSymbols::Variable const& variable) {
+        std::byte const* const begin = address_in(image, variable);
+        return std::ranges::any_of(bound, [&](BoundVariable const& one) {
+            auto const* const place = static_cast<std::byte const*>(one.variable);
+            return place >= begin && place < begin + variable.bytes;
+        });
+    };
+    // Names that begin with two underscores are the compiler's, _ZGV stands before guards of static variables.
+    auto const is_of_compiler = [](ProgramSymbols::Variable const& variable) {
+        return variable.name.starts_with("__") || variable.name.starts_with("_ZGV") || is_own(variable.name);
+    };
+    std::erase_if(symbols.variables, [&](ProgramSymbols::Variable const& variable) {
+        return variable.is_of_thread || is_of_compiler(variable) || !is_robots(variable) ||
+               has_configured_part(variable);
+    });
+    return symbols.variables;
+}
+
 std::string why_memory_is_shared(ProgramImage const& image) {
     if (is_in_file_of_simulator(image)) {
         return kInOneFile;

@@ -17,6 +17,11 @@ namespace pogosim {
 /// sqrtf(). To be called after the program has read its configuration.
 std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound);
 
+/// Variables of the program that its code may change, in the memory of which robots may have their own copies, and of
+/// which nothing is set from the configuration. Empty where that is not known.
+std::vector<ProgramSymbols::Variable> variables_of_all_robots(ProgramImage const& image,
+                                                              std::span<BoundVariable const> bound);
+
 /// Why robots cannot have own copies of the program's variables; empty: they can.
 std::string why_memory_is_shared(ProgramImage const& image);
 

@@ -322,6 +322,7 @@ std::optional<UserFailure> Simulation::start() {
     if (auto failure = call_user_code([this] { controllers_.start(); })) {
         return failure;
     }
+    controllers_.warn_of_shared_variables();
     share_steps();
     fit_time_step();
     check_motion(scenario_, physics_->motion_limits(), world_.time_step_s);

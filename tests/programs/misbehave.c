@@ -21,9 +21,9 @@ uint16_t culprit = 1;
 int32_t number = 5;
 bool announced = false;  // robot 0 says so right before the misdeed in user_step
 
-volatile int zero = 0;
-int* volatile nowhere = NULL;
-volatile unsigned long spins = 0;
+POGO_SHARED volatile int zero = 0;
+POGO_SHARED int* volatile nowhere = NULL;
+POGO_SHARED volatile unsigned long spins = 0;
 
 static void write_to_null(void) {
     printf("going to write to null");  // without end of line
@@ -72,7 +72,7 @@ static void sleep_again_when_interrupted(void) {
 }
 
 static void wait_for_a_mutex(void) {
-    static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    POGO_SHARED static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&mutex);
     pthread_mutex_lock(&mutex);
 }

@@ -20,8 +20,8 @@ bool asked_for(char const* place, char const* kind) {
            std::strcmp(chosen_kind, kind) == 0;
 }
 
-int* volatile nowhere = nullptr;
-volatile int zero = 0;
+POGO_SHARED int* volatile nowhere = nullptr;
+POGO_SHARED volatile int zero = 0;
 
 int sum_on_the_stack(int depth) {
     volatile int frame[1024];
@@ -67,7 +67,7 @@ struct Static {
     Static() { misbehave("constructor"); }
     ~Static() noexcept(false) { misbehave("destructor"); }
 };
-Static of_the_program;
+POGO_SHARED Static of_the_program;
 
 __attribute__((constructor)) void before_main() {
     misbehave("function before main");
@@ -120,7 +120,7 @@ void user_step() {
 }  // namespace
 
 int main() {
-    static bool registered = false;
+    POGO_SHARED static bool registered = false;
     if (!registered) {
         registered = true;
         std::atexit(at_exit);

@@ -13,7 +13,7 @@ enum { LARGEST_WITHOUT_LOCK = 1032 };  // bytes; each thread has a cache of smal
 
 void __libc_free(void* block);
 
-static bool volatile has_crashed = false;
+POGO_SHARED static bool volatile has_crashed = false;
 
 static bool is_message_written(void) {
     struct stat errors;

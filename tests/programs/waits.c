@@ -13,7 +13,7 @@ REGISTER_USERDATA(USERDATA)
 
 char how[32] = "nothing";
 int32_t wait_ms = 100;
-static uint8_t message[] = "ask";
+POGO_SHARED static uint8_t message[] = "ask";
 
 static void wait_with_timer(bool (*is_over)(time_reference_t*)) {
     time_reference_t timer;

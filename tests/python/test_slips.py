@@ -65,8 +65,8 @@ def warnings(result: Run) -> list[str]:
         ("sensor_3", f"{FIRST}pogobot_photosensors_read(): sensor_number is 3, expected p_B (0, back), "),
         (
             "direction_5",
-            f"{FIRST}pogobot_infrared_sendShortMessage_uni(): dir is 5, expected ir_front (0) to ir_left (3), or ir_all "
-            "(4); the message goes in all directions",
+            f"{FIRST}pogobot_infrared_sendShortMessage_uni(): dir is 5, expected ir_front (0) to ir_left (3), or "
+            "ir_all (4); the message goes in all directions",
         ),
         ("direction_-1", f"{FIRST}pogobot_infrared_sendLongMessage_uniSpe(): dir is -1, expected "),
         (

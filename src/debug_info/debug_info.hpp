@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "program_file.hpp"
+#include "debug_info/program_file.hpp"
 
 namespace shared_state {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <set>
 
-#include "debug_info.hpp"
+#include "debug_info/debug_info.hpp"
 
 namespace shared_state {
 

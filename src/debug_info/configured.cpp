@@ -1,4 +1,4 @@
-#include "configured.hpp"
+#include "debug_info/configured.hpp"
 
 #include <functional>
 #include <regex>

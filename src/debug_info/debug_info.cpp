@@ -1,4 +1,4 @@
-#include "debug_info.hpp"
+#include "debug_info/debug_info.hpp"
 
 #include <dwarf.h>
 

@@ -1,4 +1,4 @@
-#include "program_file.hpp"
+#include "debug_info/program_file.hpp"
 
 #include <fcntl.h>
 #include <gelf.h>

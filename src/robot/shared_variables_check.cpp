@@ -1,0 +1,142 @@
+#include "robot/shared_variables_check.hpp"
+
+#include <cxxabi.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/escaped.hpp"
+#include "base/log.hpp"
+#include "robot/shared_state.hpp"
+
+#ifdef POGOSIM_HAS_LIBDW
+#include "debug_info/shared_variables.hpp"
+#endif
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kMostNames = 3;
+
+struct Found {
+    std::vector<std::string> names{};  // "'steps' in user_step() (main.c:31)"
+    bool is_certain = true;
+};
+
+/// Whether this is the first time in the process.
+bool is_new(ProgramImage const& image) {
+    using Program = std::pair<std::filesystem::path, std::filesystem::file_time_type>;
+    static std::mutex mutex;
+    static std::set<Program> known;
+    std::lock_guard const lock(mutex);
+    return known.emplace(image.file, image.file_time).second;
+}
+
+/// "steps" for the symbol "steps.0" of a variable in a function (gcc), and "user_step::steps" for "user_step.steps"
+/// (clang).
+std::string name_by_symbol(std::string const& symbol) {
+    int status = 0;
+    std::unique_ptr<char, void (*)(void*)> const demangled(
+        abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), std::free);
+    if (demangled != nullptr) {
+        return fmt::format("'{}'", demangled.get());
+    }
+    std::size_t const dot = symbol.find('.');
+    bool const is_numbered =
+        dot != std::string::npos && symbol.find_first_not_of("0123456789.", dot) == std::string::npos;
+    std::string name = is_numbered ? symbol.substr(0, dot) : symbol;
+    if (std::size_t const inner = name.find('.'); inner != std::string::npos) {
+        name.replace(inner, 1, "::");
+    }
+    return fmt::format("'{}'", name);
+}
+
+/// Constants that C++ calculates at the start are among the variables as far as symbols can tell.
+Found found_by_symbols(ProgramImage const& image, std::vector<ProgramSymbols::Variable> const& suspects) {
+    Found found{.is_certain = image.constructors == nullptr};
+    for (ProgramSymbols::Variable const& variable : suspects) {
+        found.names.push_back(name_by_symbol(variable.name));
+    }
+    return found;
+}
+
+#ifdef POGOSIM_HAS_LIBDW
+
+Found found_in(ProgramImage const& image, std::vector<ProgramSymbols::Variable> suspects) {
+    std::error_code error;
+    if (image.loaded && std::filesystem::last_write_time(image.file, error) != image.file_time) {
+        return found_by_symbols(image, suspects);  // it has been built again since
+    }
+    try {
+        shared_state::ProgramFile const file(image.file.string());
+        shared_state::DebugInfo const info = shared_state::read_debug_info(file);
+        std::set<std::uint64_t> known;
+        for (shared_state::Object const& object : info.objects) {
+            known.insert(object.address);
+        }
+        std::set<std::uint64_t> suspected;
+        for (ProgramSymbols::Variable const& variable : suspects) {
+            suspected.insert(variable.address);
+        }
+        std::erase_if(suspects, [&](auto const& variable) { return known.contains(variable.address); });
+        Found found = found_by_symbols(image, suspects);
+        std::vector<std::string> with_lines;
+        for (shared_state::Object const& object :
+             shared_state::shared_variables(info, file, shared_state::system_folders())) {
+            if (suspected.contains(object.address)) {
+                with_lines.push_back(fmt::format("{} ({}:{})", shared_state::shown_name(object),
+                                                 shared_state::shown_file(object.file), object.line));
+            }
+        }
+        found.is_certain = found.is_certain || found.names.empty();
+        found.names.insert(found.names.begin(), with_lines.begin(), with_lines.end());
+        return found;
+    } catch (std::exception const&) {  // no debug information
+        return found_by_symbols(image, suspects);
+    }
+}
+
+#else
+
+Found found_in(ProgramImage const& image, std::vector<ProgramSymbols::Variable> const& suspects) {
+    return found_by_symbols(image, suspects);
+}
+
+#endif
+
+}  // namespace
+
+void warn_of_shared_variables(ProgramImage const& image, std::span<BoundVariable const> bound, std::size_t robots) {
+    if (robots < 2) {
+        return;
+    }
+    std::vector<ProgramSymbols::Variable> const suspects = variables_of_all_robots(image, bound);
+    if (suspects.empty() || !is_new(image)) {
+        return;
+    }
+    Found const found = found_in(image, suspects);
+    if (found.names.empty()) {
+        return;
+    }
+    std::size_t const count = found.names.size();
+    std::size_t const shown = count > kMostNames + 1 ? kMostNames : count;
+    bool const one = count == 1;
+    std::string const text = fmt::format(
+        "all robots share the variable{} {}{}, of which each real robot has its own: put {} into USERDATA, read "
+        "parameters with init_from_configuration(), declare constants const and what is meant to be shared POGO_SHARED, "
+        "or set robot_memory: own",
+        one ? "" : "s", fmt::join(std::span(found.names).first(shown), ", "),
+        shown < count ? fmt::format(" and {} more", count - shown) : "", one ? "it" : "them");
+    log().log(found.is_certain ? spdlog::level::warn : spdlog::level::info, "{}", escaped(text));
+}
+
+}  // namespace pogosim

@@ -1,0 +1,176 @@
+"""A run says which variables its robots share by mistake, once, and nothing where they share none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pogosim
+import pytest
+from running import ROOT, Run, Settings, compile_text, compiler, run, write_scene
+
+PROGRAM = """#include "pogobase.h"
+#include <math.h>
+{variables}
+static void user_step(void) {{ {step} }}
+static void read_parameter(int32_t* variable) {{ init_int32_from_configuration(variable, "gain", 5); }}
+static void setup(void) {{ (void)read_parameter; {setup} }}
+int main(void) {{
+    pogobot_init();
+    pogobot_start(NULL, user_step);
+    SET_CALLBACK(callback_global_setup, setup);
+    return 0;
+}}
+"""
+REMEDY = (
+    "into USERDATA, read parameters with init_from_configuration(), declare constants const and what is meant to be "
+    "shared POGO_SHARED, or set robot_memory: own"
+)
+COMPILERS = [name for names in (("gcc",), ("clang", "clang-14")) if (name := compiler(*names))]
+
+
+def build(
+    folder: Path, variables: str, step: str = "", setup: str = "", flags: str = "-g", name: str = "main.c"
+) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    text = PROGRAM.format(variables=variables, step=step, setup=setup)
+    return compile_text(folder, text, name, flags=["-Wall", *flags.split()])
+
+
+def warnings(result: Run) -> list[str]:
+    assert result.code == 0, result.text
+    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
+
+
+def told(program: Path, folder: Path, settings: Settings | None = None) -> list[str]:
+    return [text.replace(f"{folder}/", "") for text in warnings(run(program, folder, settings))]
+
+
+@pytest.mark.parametrize("options", ["-g -O0", "-g -O2"])
+@pytest.mark.parametrize("name", COMPILERS)
+def test_shared_variables_are_named_with_their_lines(name: str, options: str, tmp_path: Path) -> None:
+    text = PROGRAM.format(
+        variables="uint32_t total;\nstatic uint8_t table[4];",
+        step="static int steps; table[steps++ % 4]++; total += table[0];",
+        setup="",
+    )
+    program = compile_text(tmp_path, text, compiler=name, flags=["-Wall", *options.split()])
+    assert told(program, tmp_path) == [
+        "all robots share the variables 'total' (main.c:3), 'table' (main.c:4), 'steps' in user_step() (main.c:5), of "
+        f"which each real robot has its own: put them {REMEDY}"
+    ]
+
+
+def test_one_variable_is_one(tmp_path: Path) -> None:
+    assert told(build(tmp_path, "uint32_t total;", "total++;"), tmp_path) == [
+        f"all robots share the variable 'total' (main.c:3), of which each real robot has its own: put it {REMEDY}"
+    ]
+
+
+def test_of_many_variables_the_first_are_named(tmp_path: Path) -> None:
+    variables = "\n".join(f"uint32_t number_{i};" for i in range(6))
+    (warning,) = told(build(tmp_path, variables), tmp_path)
+    assert "variables 'number_0' (main.c:3), 'number_1' (main.c:4), 'number_2' (main.c:5) and 3 more, of" in warning
+
+
+@pytest.mark.parametrize("name", COMPILERS)
+def test_without_debug_information_names_are_known(name: str, tmp_path: Path) -> None:
+    text = PROGRAM.format(variables="uint32_t total;", step="static int steps; total += (uint32_t)steps++;", setup="")
+    program = compile_text(tmp_path, text, compiler=name, flags=["-Wall", "-g0"])
+    (warning,) = told(program, tmp_path)
+    assert "'total'" in warning
+    assert "'steps'" in warning or "'user_step::steps'" in warning
+    assert "main.c" not in warning
+
+
+NOTHING_SHARED = {
+    "parameter": ("static float gain = 1.0f;", "", "init_from_configuration(gain);"),
+    "parameter that is not read": ("static float gain = 1.0f;", "", "if (0) init_from_configuration(gain);"),
+    "parameter behind a pointer": ("static int32_t gain = 1;", "", "read_parameter(&gain);"),
+    "member": (
+        "static struct { int32_t low; char mark; } limits;",
+        "limits.mark++;",
+        "init_from_configuration(limits.low);",
+    ),
+    "element": ("static int32_t table[3];", "table[0]++;", "init_from_configuration(table[1]);"),
+    "constant": (
+        'static int const powers[] = {1, 2}; char const* const names[] = {"a", "b"};',
+        "(void)powers; (void)names;",
+        "",
+    ),
+    "mark": ("POGO_SHARED uint32_t total; POGO_SHARED static int count;", "total++; count++;", ""),
+    "variable of a thread": ("static _Thread_local int number;", "number++;", ""),
+}
+
+
+@pytest.mark.parametrize("case", NOTHING_SHARED)
+def test_what_is_not_shared_by_mistake_is_not_named(case: str, tmp_path: Path) -> None:
+    assert told(build(tmp_path, *NOTHING_SHARED[case]), tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{"objects.robots.nb": 1}, {"robot_memory": "own"}],
+    ids=["alone", "own memory"],
+)
+def test_robots_that_cannot_share_are_not_warned_of(settings: Settings, tmp_path: Path) -> None:
+    assert told(build(tmp_path, "uint32_t total;", "total++;"), tmp_path, settings) == []
+
+
+def test_walls_that_run_the_default_controller_do_not_count(tmp_path: Path) -> None:
+    start = "pogobot_start(NULL, user_step);"
+    text = PROGRAM.format(variables="uint32_t total;", step="total++;", setup="").replace(
+        start, start + ' pogobot_start(default_walls_user_init, default_walls_user_step, "walls");'
+    )
+    program = compile_text(tmp_path, text, flags=["-g"])
+    walls = {"type": "pogowall", "geometry": "arena"}
+    assert told(program, tmp_path, {"objects.robots.nb": 1, "objects.walls": walls}) == []
+    assert len(told(program, tmp_path, {"objects.walls": walls})) == 1
+
+
+def test_program_of_the_sdk_shares_nothing_unless_the_configuration_says_so(tmp_path: Path) -> None:
+    text = '#include "pogobot.h"\nint own;\nint main(void) { pogobot_init(); for (;;) { own++; msleep(100); } }\n'
+    program = compile_text(tmp_path, text, flags=["-g"], package="pogosim-sdk")
+    assert told(program, tmp_path) == []
+    assert "'own' (main.c:2)" in told(program, tmp_path, {"robot_memory": "shared"})[0]
+
+
+def test_stripped_program_is_not_nagged(tmp_path: Path) -> None:
+    assert told(build(tmp_path, "uint32_t total;", "total++;", flags="-s"), tmp_path) == []
+
+
+CPP = """#include <cstdlib>
+#include "pogobase.h"
+static float const root = float(std::rand());
+struct Counter { int count = 0; Counter() { count = int(root); } };
+{variable}
+static void step() {{ {step} }}
+int main() {{ pogobot_init(); pogobot_start(nullptr, step); return 0; }}
+"""
+
+
+def test_constants_that_cpp_calculates_are_not_shared_by_mistake(tmp_path: Path) -> None:
+    text = CPP.replace("{variable}", "").replace("{step}", "(void)root;").replace("{{", "{").replace("}}", "}")
+    for flags in (["-g"], ["-g0"]):
+        result = run(compile_text(tmp_path, text, "main.cpp", flags=flags), tmp_path)
+        assert warnings(result) == []
+
+
+def test_objects_of_cpp_are_named(tmp_path: Path) -> None:
+    text = CPP.replace("{variable}", "namespace mine { Counter counter; }").replace("{step}", "mine::counter.count++;")
+    program = compile_text(tmp_path, text.replace("{{", "{").replace("}}", "}"), "main.cpp", flags=["-g"])
+    (warning,) = told(program, tmp_path)
+    assert warning.startswith("all robots share the variable 'mine::counter' (main.cpp:5), of which ")
+
+
+def test_process_says_it_once_for_each_program(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    shared = "-shared -fPIC -g"
+    programs = [build(tmp_path / name, f"uint32_t {name};", f"{name}++;", flags=shared) for name in ("first", "second")]
+    scene = write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv")})
+    for program in (*programs, *programs):
+        with pogosim.Simulation(program, scene) as one:
+            one.step(2)
+            one.reset()
+            one.step(2)
+    text = caplog.text
+    assert text.count("all robots share the variable 'first'") == 1
+    assert text.count("all robots share the variable 'second'") == 1
