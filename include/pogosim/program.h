@@ -51,11 +51,6 @@ void pogosim_sleep_after_tick(int milliseconds);
 /// The robot's program reads its clock, which takes time if it does so again and again.
 void pogosim_let_time_pass(void);
 
-/// Says once in the run that an argument of a function of the main loop's part is out of range, and what is done. All
-/// texts are literals.
-void pogosim_note_argument(char const* function, char const* argument, double value, char const* expected,
-                           char const* outcome);
-
 #pragma GCC visibility pop
 #ifdef __cplusplus
 }

@@ -3,16 +3,6 @@
 
 #include <stddef.h>
 
-#ifdef REAL_ROBOT
-#define EXPECT_UP_TO(largest, function, argument, expected, outcome)
-#else
-#include "pogosim/program.h"
-#define EXPECT_UP_TO(largest, function, argument, expected, outcome)                       \
-    if (!((argument) >= 0.0f && (argument) <= (largest))) {                                \
-        pogosim_note_argument(function, #argument, (double)(argument), expected, outcome); \
-    }
-#endif
-
 static void set_channel(uint8_t* channel, uint8_t value) {
     if (channel != NULL) {
         *channel = value;
@@ -41,9 +31,6 @@ void rainbow_colormap(uint8_t const value, uint8_t* r, uint8_t* g, uint8_t* b) {
 }
 
 void hsv_to_rgb(float h_deg, float s, float v, uint8_t* r, uint8_t* g, uint8_t* b) {
-    EXPECT_UP_TO(360.0f, "hsv_to_rgb", h_deg, "0 to 360", "it counts as red");
-    EXPECT_UP_TO(1.0f, "hsv_to_rgb", s, "0 to 1", "channels beyond 0 to 255 wrap around");
-    EXPECT_UP_TO(1.0f, "hsv_to_rgb", v, "0 to 1", "channels beyond 0 to 255 wrap around");
     float const sixths = h_deg / 60.0f;
     int const sextant = sixths >= 0.0f && sixths < 5.0f ? (int)sixths : 5;
     float const along = sixths >= 0.0f && sixths < 6.0f ? sixths - (float)sextant : 1.0f;

@@ -10,7 +10,6 @@
 #include "robot/forked_child.hpp"
 #include "robot/last_words.hpp"
 #include "robot/require_robot.hpp"
-#include "robot/slip.hpp"
 #include "robot/user_guard.hpp"
 
 using pogosim::context;
@@ -63,11 +62,6 @@ void pogosim_exit(int status) {
         std::fprintf(stderr, "pogosim: the user program %s before main(). The run did not start.\n", what);
     }
     std::exit(status);
-}
-
-void pogosim_note_argument(char const* function, char const* argument, double value, char const* expected,
-                           char const* outcome) {
-    pogosim::note_slip({function, argument, expected, outcome}, value);
 }
 
 void pogobot_init() {

@@ -573,6 +573,10 @@ void Controllers::print_unfinished_lines() {
     print_rest(kNone);
 }
 
+void Controllers::warn_of_stacks() const {
+    warn_of_large_stack(own_memory_ ? own_memory_->bytes() : user_data_bytes(), fibers_.deepest_bytes());
+}
+
 void Controllers::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, controllers_);
     warn_of_unused_messages(world_, controllers_, arrivals);

@@ -122,6 +122,9 @@ public:
     /// Warns, once for each category, of functions of robots that have not returned for long.
     void warn_of_unreturned_calls_at_end();
 
+    /// Warns about stacks for which a real robot has no room.
+    void warn_of_stacks() const;
+
     /// Warns about messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
     void warn_of_messages(std::uint64_t arrivals) const;
 

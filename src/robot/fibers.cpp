@@ -266,6 +266,23 @@ void FiberPool::put_back(Fiber& fiber) {
     unused_.push_back(&fiber);
 }
 
+std::size_t FiberPool::deepest_bytes() const {
+    std::lock_guard const lock(mutex_);
+    auto const page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    std::vector<unsigned char> is_in_memory(stack_bytes_ / page + 1);
+    std::size_t deepest = 0;
+    for (std::unique_ptr<Fiber> const& fiber : all_) {
+        std::span const stack = fiber->stack();
+        auto* const begin = const_cast<std::byte*>(stack.data());
+        if (mincore(begin, stack.size(), is_in_memory.data()) == 0) {
+            auto const first = std::ranges::find_if(is_in_memory, [](unsigned char page) { return (page & 1U) != 0; });
+            auto const unused = static_cast<std::size_t>(first - is_in_memory.begin()) * page;
+            deepest = std::max(deepest, stack.size() - std::min(unused, stack.size()));
+        }
+    }
+    return deepest;
+}
+
 bool run_on(Fiber& fiber, void (*body)(void*), void* argument) {
     fiber.call(body, argument);
     return fiber.enter();

@@ -30,9 +30,12 @@ public:
     Fiber& take();
     void put_back(Fiber& fiber);
 
+    /// How much of a stack code has used so far, at most, in whole pages; 0 where that is not known.
+    std::size_t deepest_bytes() const;
+
 private:
     std::size_t stack_bytes_;
-    std::mutex mutex_;  // of what follows
+    mutable std::mutex mutex_;  // of what follows
     std::vector<std::unique_ptr<Fiber>> all_;
     std::vector<Fiber*> unused_;
 };

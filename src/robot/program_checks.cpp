@@ -57,6 +57,16 @@ void warn_of_large_memory(std::string_view what, std::size_t bytes) {
     }
 }
 
+void warn_of_large_stack(std::size_t variables, std::size_t stack) {
+    bool const is_told_of_variables = variables > kRobotMemoryBytes;
+    if (variables + stack > kRobotMemoryBytes && !is_told_of_variables && __asan_init == nullptr) {
+        log().warn(
+            "the stack of a robot has grown to {} bytes, and its variables have {}: together more than the {} bytes "
+            "(128 KiB) of a real robot's memory; make arrays in functions smaller, or calls less deep",
+            stack, variables, kRobotMemoryBytes);
+    }
+}
+
 void warn_of_user_data_in_setup(std::uint32_t id) {
     log().warn("callback_global_setup changed USERDATA (mydata) of robot #{} only: initialise it in user_init", id);
 }

@@ -21,6 +21,10 @@ namespace pogosim {
 /// Variables too large for a real robot. `what`: "USERDATA has"; `bytes`: of one robot.
 void warn_of_large_memory(std::string_view what, std::size_t bytes);
 
+/// The same of what a robot needs in all. `variables`: USERDATA, or its own copies of the program's variables; `stack`:
+/// how much of one was used, at most.
+void warn_of_large_stack(std::size_t variables, std::size_t stack);
+
 /// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
 void warn_of_user_data_in_setup(std::uint32_t id);
 

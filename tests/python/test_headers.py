@@ -35,6 +35,7 @@ CASES = [
 SETTINGS = {
     "arena_surface": 5.0e4,
     "objects.robots.msg_success_rate": {"type": "static", "rate": 1.0},
+    "objects.lamp": {"type": "static_light", "geometry": "global", "value": 0},
     "parameters": {
         "a_bool": True,
         "an_int8": -8,
@@ -46,9 +47,9 @@ SETTINGS = {
         "a_float": 0.5,
         "a_double": 1.0e100,
         "settings": {"gain": 2.5},
-        "floats": [10, 20.5, 30, 40],
+        "floats": [10, 20.5, 30],
         "doubles": [0.25, 0.75],
-        "text": "too long a text",
+        "text": "too lon",
     },
 }
 READ = "[SYSTEM] [PRINTF] read 1 -8 -1600 -320000 200 60000 4000000000 0.5 1e+100 2.5 [10 20.5 30] [0.25 0.75] too lon"

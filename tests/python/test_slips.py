@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from conftest import Compile
-from running import Run, Settings, compile_program, run
+from running import Run, Settings, compile_program, compile_text, run
 
 FIRST = "robot #0 of category 'robots', tick 10, t = 0.1600 s: "
 START = "robot #0 of category 'robots', tick 0, t = 0.0000 s: "
@@ -216,6 +216,36 @@ def test_user_data_beyond_a_real_robots_memory_are_warned_of(tmp_path: Path) -> 
     assert warning.startswith(
         "USERDATA has 131073 bytes, more than the 131072 bytes (128 KiB) of a real robot's memory"
     )
+
+
+STACK = """#include "pogobase.h"
+static int sum(volatile uint8_t* numbers, int count) {
+    int total = 0;
+    for (int i = 0; i < count; i++) {
+        numbers[i] = 1;
+        total += numbers[i];
+    }
+    return total;
+}
+static void user_step(void) {
+    volatile uint8_t numbers[BYTES];
+    pogobot_led_setColor((uint8_t)sum(numbers, BYTES), 0, 0);
+}
+int main(void) { pogobot_init(); pogobot_start(NULL, user_step); return 0; }
+"""
+
+
+@pytest.mark.parametrize(("size", "is_told"), [(100_000, False), (140_000, True)])
+def test_stack_beyond_a_real_robots_memory_is_warned_of(tmp_path: Path, size: int, is_told: bool) -> None:
+    text = STACK.replace("BYTES", str(size))
+    found = warnings(run(compile_text(tmp_path, text, flags=["-O0"]), tmp_path))
+    assert len(found) == is_told
+    for warning in found:
+        grown = re.match(
+            r"the stack of a robot has grown to (\d+) bytes, and its variables have 0: together more", warning
+        )
+        assert grown
+        assert size < int(grown[1]) < size + 20_000
 
 
 def test_user_data_of_the_only_robot_may_be_set_for_the_whole_run(program: Compile, tmp_path: Path) -> None:

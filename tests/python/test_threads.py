@@ -20,6 +20,7 @@ SWARM: dict[str, object] = {
     "arena_surface": 6e6,
     "simulation_time": 1.0,
     "user_code_timeout": 0.25,
+    "objects.lamp": {"type": "static_light", "geometry": "global", "value": 0},
 }
 
 SWARMS: dict[str, dict[str, object]] = {
