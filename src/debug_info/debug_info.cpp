@@ -140,22 +140,6 @@ Scope unit_of(Dwarf_Die entry) {
     return dwarf_diecu(&origin, &unit, nullptr, nullptr) ? dwarf_dieoffset(&unit) : 0;
 }
 
-// Where it is declared, as a path. Tables of files begin with the compiled file, which libdw does not count as one.
-std::string file_of(Dwarf_Die* variable) {
-    Dwarf_Die unit;
-    Dwarf_Attribute folder;
-    std::string file = text_of(dwarf_decl_file(variable));
-    if (!dwarf_diecu(variable, &unit, nullptr, nullptr)) {
-        return file;
-    }
-    if (file.empty()) {
-        file = text_of(dwarf_diename(&unit));
-    }
-    std::filesystem::path const compiled_in =
-        dwarf_attr(&unit, DW_AT_comp_dir, &folder) ? text_of(dwarf_formstring(&folder)) : "";
-    return (compiled_in / file).lexically_normal().string();
-}
-
 class Reader {
 public:
     explicit Reader(ProgramFile const& program) : program_(program) {}
@@ -246,6 +230,21 @@ private:
 };
 
 }  // namespace
+
+std::string file_of(Dwarf_Die* entry) {
+    Dwarf_Die unit;
+    Dwarf_Attribute folder;
+    std::string file = text_of(dwarf_decl_file(entry));
+    if (!dwarf_diecu(entry, &unit, nullptr, nullptr)) {
+        return file;
+    }
+    if (file.empty()) {
+        file = text_of(dwarf_diename(&unit));
+    }
+    std::filesystem::path const compiled_in =
+        dwarf_attr(&unit, DW_AT_comp_dir, &folder) ? text_of(dwarf_formstring(&folder)) : "";
+    return (compiled_in / file).lexically_normal().string();
+}
 
 DebugInfo read_debug_info(ProgramFile const& program) {
     return Reader(program).read();

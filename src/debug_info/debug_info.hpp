@@ -46,6 +46,10 @@ struct DebugInfo {
     std::map<Scope, std::set<std::string>> local_to_a_call;  ///< parameters and automatic variables of functions
 };
 
+/// Where something is declared, as a path. Tables of files begin with the compiled file, which libdw does not count as
+/// one.
+std::string file_of(Dwarf_Die* entry);
+
 /// Reads all compiled files, including objects of library headers.
 DebugInfo read_debug_info(ProgramFile const& program);
 

@@ -10,12 +10,6 @@ namespace shared_state {
 
 namespace {
 
-bool is_ignored(std::string const& file, std::vector<std::string> const& folders) {
-    std::string const place = std::filesystem::weakly_canonical(file).string();
-    return std::any_of(folders.begin(), folders.end(),
-                       [&](std::string const& folder) { return place.starts_with(folder + "/"); });
-}
-
 // Shared unintentionally: writable, or set by the first robot that ran the line.
 bool is_suspect(Object const& object, ProgramFile const& program) {
     auto const section = program.section_at(object.address);
@@ -27,6 +21,12 @@ bool is_suspect(Object const& object, ProgramFile const& program) {
 
 }  // namespace
 
+bool is_in_folders(std::string const& file, std::vector<std::string> const& folders) {
+    std::string const place = std::filesystem::weakly_canonical(file).string();
+    return std::any_of(folders.begin(), folders.end(),
+                       [&](std::string const& folder) { return place.starts_with(folder + "/"); });
+}
+
 std::vector<std::string> system_folders() {
     return {"/usr/include", "/usr/lib", "/usr/lib64", "/usr/local/include", "/usr/local/lib"};
 }
@@ -37,7 +37,7 @@ std::vector<Object> shared_variables(DebugInfo const& info, ProgramFile const& p
     std::vector<Object> found;
     for (auto const& object : info.objects) {
         if (is_suspect(object, program) && !configured.contains(object.address) &&
-            !is_ignored(object.file, ignored_folders)) {
+            !is_in_folders(object.file, ignored_folders)) {
             found.push_back(object);
         }
     }

@@ -18,6 +18,9 @@ std::vector<std::string> system_folders();
 std::vector<Object> shared_variables(DebugInfo const& info, ProgramFile const& program,
                                      std::vector<std::string> const& ignored_folders);
 
+/// Whether a file is in one of these folders, or below.
+bool is_in_folders(std::string const& file, std::vector<std::string> const& folders);
+
 /// As compilers print it: relative to the working folder, if inside it.
 std::string shown_file(std::string const& file);
 
