@@ -62,20 +62,19 @@ def build(folder: Path, messages: str, name: str = "cc", options: str = "-O0") -
     return compile_text(folder, text, compiler=name, flags=["-g", *options.split()])
 
 
+NAMED = {(9, "'sizes'"), (9, "'time'"), (10, "'high'"), (10, "'fast'")}
+RECEIVED = {(7, "'count'"), (8, "'name'")}  # clang does not tell what belongs to USERDATA
+
+
 @pytest.mark.parametrize("options", ["-O0", "-O2"])
 @pytest.mark.parametrize("name", COMPILERS)
 def test_members_of_another_size_are_named(name: str, options: str, tmp_path: Path) -> None:
     result = check(build(tmp_path, WRONG, name, options))
-    assert (result.code, result.errors.count("\\n")) == (0, 6)
+    assert result.code == 0
     found = [line.split(" in the message ")[0].split(": warning: ") for line in result.errors.splitlines()]
-    assert {(int(place.split(":")[1]), member) for place, member in found} == {
-        (7, "'count'"),
-        (8, "'name'"),
-        (9, "'sizes'"),
-        (9, "'time'"),
-        (10, "'high'"),
-        (10, "'fast'"),
-    }
+    expected = NAMED if "clang" in name else NAMED | RECEIVED
+    assert len(found) == len(expected)
+    assert {(int(place.split(":")[1]), member) for place, member in found} == expected
 
 
 @pytest.mark.parametrize("name", COMPILERS)

@@ -102,7 +102,7 @@ public:
 
     std::vector<OddMember> find() {
         for (auto& [offset, type] : received_) {
-            if (!of_user_data_.contains(offset)) {
+            if (!of_user_data_.empty() && !of_user_data_.contains(offset)) {
                 messages_.emplace(offset, type);
             }
         }
@@ -174,9 +174,7 @@ private:
         if (!basic || !is_structure(&basic->type)) {
             return;
         }
-        if (name == "USERDATA") {
-            note_user_data(basic->type);  // clang does not say of which type mydata is
-        } else if (sounds_like_a_message(name)) {
+        if (sounds_like_a_message(name)) {
             messages_.emplace(dwarf_dieoffset(&basic->type), Message{name, basic->type});
         }
     }
