@@ -5,16 +5,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/escaped.hpp"
 #include "base/log.hpp"
+#include "robot/elf_file.hpp"
 #include "robot/shared_state.hpp"
 
 #ifdef POGOSIM_HAS_LIBDW
@@ -48,7 +51,7 @@ std::string name_by_symbol(std::string const& symbol) {
     std::unique_ptr<char, void (*)(void*)> const demangled(
         abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), std::free);
     if (demangled != nullptr) {
-        return fmt::format("'{}'", demangled.get());
+        return demangled.get();
     }
     std::size_t const dot = symbol.find('.');
     bool const is_numbered =
@@ -57,14 +60,72 @@ std::string name_by_symbol(std::string const& symbol) {
     if (std::size_t const inner = name.find('.'); inner != std::string::npos) {
         name.replace(inner, 1, "::");
     }
-    return fmt::format("'{}'", name);
+    return name;
 }
 
-/// Constants that C++ calculates at the start are among the variables as far as symbols can tell.
+#ifdef __linux__
+
+/// What calls of init_from_configuration() have left in the program (POGO_NOTE_CONFIGURED): "gain", "&limits.low".
+std::vector<std::string> configured_expressions(ProgramImage const& image) {
+    std::vector<char> const bytes = image.bytes_of_file();
+    ElfFile const file = elf_file(bytes);
+    std::vector<std::string> found;
+    for (Elf64_Shdr const& table : file.sections) {
+        if (table.sh_type != SHT_SYMTAB || table.sh_link >= file.sections.size()) {
+            continue;
+        }
+        Elf64_Shdr const& names = file.sections[table.sh_link];
+        std::span const texts = elf_array<char>(file.bytes, names.sh_offset, names.sh_size);
+        for (Elf64_Sym const& symbol : elf_symbols(file, table)) {
+            if (symbol.st_name >= texts.size() || symbol.st_shndx >= file.sections.size()) {
+                continue;
+            }
+            std::string_view const rest(texts.data() + symbol.st_name, texts.size() - symbol.st_name);
+            if (rest.substr(0, rest.find('\0')).find("pogosim_configured") != std::string_view::npos) {
+                Elf64_Shdr const& section = file.sections[symbol.st_shndx];
+                std::span const text = elf_array<char>(
+                    file.bytes, section.sh_offset + (symbol.st_value - section.sh_addr), symbol.st_size);
+                found.emplace_back(text.begin(), std::ranges::find(text, '\0'));
+            }
+        }
+    }
+    return found;
+}
+
+#else
+
+std::vector<std::string> configured_expressions(ProgramImage const& /*image*/) {
+    return {};
+}
+
+#endif
+
+/// Whether an expression has this word in it.
+bool mentions(std::string_view expression, std::string_view word) {
+    auto const is_part_of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (std::size_t at = expression.find(word); at != std::string_view::npos; at = expression.find(word, at + 1)) {
+        std::size_t const end = at + word.size();
+        if ((at == 0 || !is_part_of_word(expression[at - 1])) &&
+            (end == expression.size() || !is_part_of_word(expression[end]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Constants that C++ calculates at the start are among the variables as far as symbols can tell. Parameters are known
+/// by their names, whether they have been read yet or not.
 Found found_by_symbols(ProgramImage const& image, std::vector<ProgramSymbols::Variable> const& suspects) {
     Found found{.is_certain = image.constructors == nullptr};
+    std::vector<std::string> const configured =
+        suspects.empty() ? std::vector<std::string>() : configured_expressions(image);
     for (ProgramSymbols::Variable const& variable : suspects) {
-        found.names.push_back(name_by_symbol(variable.name));
+        std::string const name = name_by_symbol(variable.name);
+        std::string_view const word = std::string_view(name).substr(std::min(name.rfind(':') + 1, name.size()));
+        auto const is_mentioned = [word](std::string const& expression) { return mentions(expression, word); };
+        if (std::ranges::none_of(configured, is_mentioned)) {
+            found.names.push_back(fmt::format("'{}'", name));
+        }
     }
     return found;
 }

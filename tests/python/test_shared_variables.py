@@ -102,9 +102,10 @@ NOTHING_SHARED = {
 }
 
 
+@pytest.mark.parametrize("flags", ["-g", "-g0", "-g0 -O2"])
 @pytest.mark.parametrize("case", NOTHING_SHARED)
-def test_what_is_not_shared_by_mistake_is_not_named(case: str, tmp_path: Path) -> None:
-    assert told(build(tmp_path, *NOTHING_SHARED[case]), tmp_path) == []
+def test_what_is_not_shared_by_mistake_is_not_named(case: str, flags: str, tmp_path: Path) -> None:
+    assert told(build(tmp_path, *NOTHING_SHARED[case], flags=flags), tmp_path) == []
 
 
 @pytest.mark.parametrize(

@@ -257,7 +257,7 @@ def test_setup_that_leaves_constructed_user_data_alone_is_not_warned_of(tmp_path
     source.write_text(
         '#include <string>\n#include "pogobase.h"\n'
         'struct data { char padded = 1; double number = 2.0; std::string text = "long enough to be on the heap"; };\n'
-        "DECLARE_USERDATA(data);\nREGISTER_USERDATA(data);\nuint32_t length = 0;\n"
+        "DECLARE_USERDATA(data);\nREGISTER_USERDATA(data);\nPOGO_SHARED uint32_t length = 0;\n"
         "static void setup() { length = mydata->text.size(); }\nstatic void nothing() {}\n"
         "int main() { pogobot_init(); pogobot_start(nothing, nothing); "
         "SET_CALLBACK(callback_global_setup, setup); return 0; }\n"
