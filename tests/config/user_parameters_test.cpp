@@ -27,7 +27,7 @@ std::string unread_after(std::vector<std::string> const& asked) {
     UserParameters several(parse_yaml("speed: 1\nphases: [{turn: {left: 1, right: 2}}, {turn: 3}]\n", "x.yaml"));
     for (std::string const& name : asked) {
         try {
-            several.text(name);
+            several.text(name, 100);
         } catch (ConfigError const&) {  // a map or a list: it has been asked for
         }
     }
