@@ -15,8 +15,10 @@ from typing import Any
 from pogosim.command.main import ended
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser
+from pogosim.configuration_values import default_option
+from pogosim.geometry.actions import PICTURES, checked_output, guarded, show_arena
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
-from pogosim.geometry.command import DEFAULT_AREA_MM2, DEFAULT_RADIUS_MM, PICTURES, checked_output, guarded, show_arena
+from pogosim.geometry.command import DEFAULT_AREA_MM2, DEFAULT_RADIUS_MM
 from pogosim.installation import InstallationError, find_installation
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
@@ -50,11 +52,6 @@ def read_configuration(path: Path) -> dict[str, Any]:
     if not isinstance(entries, dict):
         raise ArenaError(f"{path} is not a configuration; expected keys such as arena_file")
     return entries
-
-
-def default_option(value: Any) -> Any:
-    """Return the value that the simulator takes of an entry with options for batches."""
-    return value.get("default_option") if isinstance(value, dict) else value
 
 
 def find_arena(name: str, configuration: Path) -> Path:

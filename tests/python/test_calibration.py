@@ -13,11 +13,12 @@ import pandas as pd
 import pytest
 import yaml
 from pogosim.calibration import statistics
-from pogosim.calibration.command import PROTOCOL, main
+from pogosim.calibration.command import main
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.fit import bias_range
 from pogosim.calibration.identifiability import verdicts, weakest_direction, without_own_effect
 from pogosim.calibration.reading import TrackTable, column_of
+from pogosim.calibration.results import PROTOCOL
 from pogosim.calibration.scene_of_tracks import handedness
 from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
 from pogosim.calibration.units import UnitOptions, in_millimetres, in_radians, y_down

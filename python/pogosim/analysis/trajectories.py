@@ -21,7 +21,8 @@ import pandas as pd
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.errors import AnalysisError
 from pogosim.batch.paths import get_by_dotted_path
-from pogosim.scene import POGOBOT_RADIUS_MM, number, read_categories
+from pogosim.configuration_values import number
+from pogosim.scene import POGOBOT_RADIUS_MM, read_categories
 from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
 

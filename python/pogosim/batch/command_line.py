@@ -13,8 +13,7 @@ from typing import NoReturn
 
 import pogosim
 from pogosim.batch.errors import BatchError, NothingSelectedError, is_text, reason, tell
-from pogosim.batch.runner import PogobotBatchRunner
-from pogosim.batch.slurm import CORES, JOBS, MEMORY_PER_CORE_GB, TIME, SlurmJobs
+from pogosim.batch.slurm_options import add_slurm_options, slurm_jobs
 
 DONE = 0
 NO_SUCH_OUTPUT = 1
@@ -79,45 +78,6 @@ def parser(prog: str) -> Parser:
     return options
 
 
-def add_slurm_options(options: argparse.ArgumentParser) -> None:
-    """Add what is asked of SLURM; each entry that is not given is that of the site's jobqueue.yaml."""
-    group = options.add_argument_group(
-        "SLURM",
-        "Jobs of SLURM do the runs. What is not given is taken from the site's jobqueue.yaml, see docs/batches.md.",
-    )
-    add = group.add_argument
-    add("--slurm", action="store_true", help="let jobs of SLURM do the runs")
-    add("--slurm-jobs", type=int, metavar="N", help=f"jobs at the same time, at most ({JOBS})")
-    add("--slurm-cores", type=int, metavar="N", help=f"cores per job: runs at the same time in it ({CORES})")
-    add("--slurm-memory", metavar="SIZE", help=f"memory per job, such as 4G ({MEMORY_PER_CORE_GB}G per core)")
-    add("--slurm-time", metavar="TIME", help=f"time limit of a job, such as 04:00:00 or 2-12 for 2.5 days ({TIME})")
-    add("--slurm-partition", metavar="NAME", help="partition, or queue (the cluster's default)")
-    add("--slurm-account", metavar="NAME", help="account that pays (your default)")
-    add(
-        "--slurm-option",
-        metavar="OPTION",
-        action="append",
-        help="another option of sbatch, such as qos=long or constraint=skylake; may be given several times",
-    )
-    add("--slurm-wait", type=float, metavar="MINUTES", help="give up if no job has started by then (wait)")
-
-
-def slurm_jobs(arguments: argparse.Namespace) -> SlurmJobs | None:
-    """Return what is asked of SLURM, if it is to do the runs.
-
-    Raises:
-        BatchError: Options for SLURM are given without --slurm, or have a wrong form.
-    """
-    names = ("jobs", "cores", "memory", "time", "partition", "account", "option", "wait")
-    given = {name: value for name in names if (value := getattr(arguments, f"slurm_{name}")) is not None}
-    if not arguments.slurm:
-        if given:
-            raise BatchError(f"--slurm-{next(iter(given))} goes with --slurm")
-        return None
-    options = tuple(given.pop("option", ()))
-    return SlurmJobs(options=options, wait_min=given.pop("wait", None), **given)
-
-
 def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
     """End the batch as Ctrl-C does."""
     raise KeyboardInterrupt
@@ -164,6 +124,8 @@ def run_batch(arguments: argparse.Namespace) -> int:
         BatchError: It cannot be done.
     """
     check_names(arguments)
+    from pogosim.batch.runner import PogobotBatchRunner  # takes a while
+
     runner = PogobotBatchRunner(
         arguments.config,
         arguments.runs,

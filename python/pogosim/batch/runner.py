@@ -20,7 +20,7 @@ from pogosim.batch.names import NamesError, file_name, new_columns
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
-from pogosim.batch.slurm import SlurmJobs
+from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 

@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from pogosim.arenas import default_option
 from pogosim.calibration.errors import CalibrationError
-from pogosim.scene import number
+from pogosim.configuration_values import default_option, number
 
 BIAS = "angular_systematic_bias_domain"
 BIAS_LIMIT = 1023  # motor power units

@@ -12,9 +12,8 @@ import numpy as np
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks, continuous
+from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM
 
-LENGTHS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
-ANGLES_RAD = {"rad": 1.0, "deg": math.pi / 180.0}
 ARENA_TOLERANCE = 1.1  # tracks may extend over so much more than the arena: cameras are not perfect
 SMALL_SHARE = 0.1  # of the arena; tracks within less suggest another unit
 STRIDE_S = 0.4  # motion in which a direction shows

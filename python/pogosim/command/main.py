@@ -28,12 +28,14 @@ class Subcommand(NamedTuple):
 SUBCOMMANDS = {
     "new": Subcommand("pogosim.command.new", "make a project: a program, a configuration and a Makefile"),
     "run": Subcommand("pogosim.command.run", "compile a project or a source file, and run it"),
-    "batch": Subcommand("pogosim.pogobatch", "run a program many times, with every combination of options"),
-    "optimize": Subcommand("pogosim.pogoptim", "search for the parameters that make an objective as large as possible"),
+    "batch": Subcommand("pogosim.batch.command_line", "run a program many times, with every combination of options"),
+    "optimize": Subcommand(
+        "pogosim.optimize.command", "search for the parameters that make an objective as large as possible"
+    ),
     "analyze": Subcommand("pogosim.reports.command", "compute what robots did: tables and figures of a data file"),
-    "picture": Subcommand("pogosim.swarm_picture", "draw the trajectories of a run"),
+    "picture": Subcommand("pogosim.picture.command", "draw the trajectories of a run"),
     "film": Subcommand("pogosim.film.command", "make a film of a run, or a page to replay it in a browser"),
-    "recover": Subcommand("pogosim.recover", "make a complete data file of a run that was killed"),
+    "recover": Subcommand("pogosim.command.recover", "make a complete data file of a run that was killed"),
     "arena": Subcommand("pogosim.geometry.command", "draw, check, scale and convert arenas"),
     "calibrate": Subcommand("pogosim.calibration.command", "fit the motion of simulated robots to tracks of real ones"),
     "fit-comm": Subcommand("pogosim.communication.fit_command", "fit a law of reception to measurements"),

@@ -5,28 +5,53 @@ from __future__ import annotations
 import difflib
 import importlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from pogosim.command.parser import complain
+from pogosim.command.parser import Parser, complain
+from pogosim.inputs import check_readable
 from pogosim.outputs import say
+from pogosim.reports import command_lines
 
 
 class Analysis(NamedTuple):
-    """An analysis; its module has `main(arguments, prog) -> exit code`, and is imported when it is called."""
+    """An analysis; its module has `analyze(options, prog)`, and is imported when its command line is understood."""
 
     module: str
+    parser: Callable[[str], Parser]
     summary: str
 
 
 ANALYSES: dict[str, Analysis] = {
-    "locomotion": Analysis("pogosim.reports.locomotion", "speeds, displacements, diffusion, persistence, densities"),
-    "neighbors": Analysis("pogosim.reports.neighbors", "distances to neighbours, degrees, Fano factor, clusters"),
-    "network": Analysis("pogosim.reports.network", "components and Laplacian spectra of the proximity graph"),
-    "coverage": Analysis("pogosim.reports.coverage", "Voronoi cells and the share of the arena within reach"),
-    "collective": Analysis("pogosim.reports.collective", "order, pair correlations, structure factor, flow, milling"),
-    "messages": Analysis("pogosim.reports.messages", "what became of messages; reception by distance and cluster size"),
-    "arena": Analysis("pogosim.reports.arena", "size, area and room of the arenas, and how much of them was visited"),
+    "locomotion": Analysis(
+        "pogosim.reports.locomotion",
+        command_lines.locomotion,
+        "speeds, displacements, diffusion, persistence, densities",
+    ),
+    "neighbors": Analysis(
+        "pogosim.reports.neighbors", command_lines.neighbors, "distances to neighbours, degrees, Fano factor, clusters"
+    ),
+    "network": Analysis(
+        "pogosim.reports.network", command_lines.network, "components and Laplacian spectra of the proximity graph"
+    ),
+    "coverage": Analysis(
+        "pogosim.reports.coverage", command_lines.coverage, "Voronoi cells and the share of the arena within reach"
+    ),
+    "collective": Analysis(
+        "pogosim.reports.collective",
+        command_lines.collective,
+        "order, pair correlations, structure factor, flow, milling",
+    ),
+    "messages": Analysis(
+        "pogosim.reports.messages",
+        command_lines.messages,
+        "what became of messages; reception by distance and cluster size",
+    ),
+    "arena": Analysis(
+        "pogosim.reports.arena",
+        command_lines.arena,
+        "size, area and room of the arenas, and how much of them was visited",
+    ),
 }
 
 
@@ -61,8 +86,19 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze") 
         near = difflib.get_close_matches(name, ANALYSES, n=1)
         question = f"; did you mean '{near[0]}'?" if near else f"; {prog} --help lists all analyses"
         return complain(prog, f"there is no analysis '{name}'{question}")
-    code: int = importlib.import_module(ANALYSES[name].module).main(rest, f"{prog} {name}")
-    return code
+    return analyze(name, rest, f"{prog} {name}")
+
+
+def analyze(name: str, arguments: Sequence[str] | None, prog: str) -> int:
+    """Run the command line of an analysis. Returns the exit code, which is 2 for wrong usage or data."""
+    options = ANALYSES[name].parser(prog).parse_args(arguments)
+    try:
+        check_readable(options.input)
+    except OSError as error:
+        return complain(prog, f"{error.filename}: {(error.strerror or str(error)).lower()}")
+    from pogosim.reports.options import reported  # takes a while
+
+    return reported(prog, options, importlib.import_module(ANALYSES[name].module).analyze)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,6 @@
+"""Units in which tracks may be."""
+
+import math
+
+LENGTHS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+ANGLES_RAD = {"rad": 1.0, "deg": math.pi / 180.0}

@@ -1,0 +1,42 @@
+"""Reading the data file that a command draws, and saying what is wrong with it."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import warnings
+from collections.abc import Iterator
+
+import numpy as np
+
+from pogosim.command.parser import warn
+from pogosim.picture.errors import PictureError
+from pogosim.picture.swarm import Recording, read_recording
+
+
+def load(options: argparse.Namespace, prog: str) -> Recording:
+    """Read the data file that the options name; what is incomplete or left out is a line on standard error."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", RuntimeWarning)
+        recording = read_recording(options.data, options.run, options.color_by, options.combination)
+    for warning in caught:
+        warn(prog, warning.message)
+    if recording.left_out:
+        warn(prog, f"{options.data} holds {recording.left_out}")
+    return recording
+
+
+@contextlib.contextmanager
+def sayings(data: str) -> Iterator[None]:
+    """Turn what keeps a data file from being drawn into a PictureError that names the file."""
+    try:
+        yield
+    except PictureError as error:
+        raise PictureError(f"cannot draw {data}: {error}") from error
+    except (TypeError, KeyError, IndexError, AttributeError, OverflowError, np.linalg.LinAlgError) as error:
+        raise PictureError(f"cannot draw {data}: its columns or metadata are not those of a run: {error}") from error
+    except MemoryError as error:
+        raise PictureError(f"cannot draw {data}: there is not enough memory") from error
+    except ValueError as error:
+        named = str(data) in str(error)
+        raise PictureError(str(error) if named else f"cannot draw {data}: {error}") from error
