@@ -23,7 +23,7 @@ from pogosim.optimize.outcome import finish, refresh
 from pogosim.optimize.results import check_outputs, remove_stale
 from pogosim.optimize.search import Search, description_of
 from pogosim.optimize.settings import Settings
-from pogosim.optimize.variables import Space
+from pogosim.optimize.variables import Space, as_json
 
 DONE = 0
 NOTHING_FOUND = 3
@@ -50,6 +50,15 @@ def objective_of(settings: Settings) -> Objective:
     return Objective()
 
 
+def say_where_it_starts(space: Space) -> None:
+    """Say what the initial values are, and which of them the configuration does not say."""
+    log.info("Evaluation 1, the initial values: %s", as_json(space.values_at(space.init)))
+    if unsaid := [variable.name for variable in space.variables if not variable.has_init]:
+        log.info(
+            "Without init, these start in the middle of their range, or with the first choice: %s", ", ".join(unsaid)
+        )
+
+
 def optimize(arguments: argparse.Namespace, configuration: Configuration, settings: Settings) -> int:
     """Do what the command line says; returns the exit code.
 
@@ -67,9 +76,9 @@ def optimize(arguments: argparse.Namespace, configuration: Configuration, settin
         raise OptimizeError(f"{configuration.where(error.path)}: {error.args[0]}") from None
     objective = objective_of(settings)
     with_features = settings.optimizer in WITH_FEATURES
-    if with_features and settings.qd_init_samples >= settings.max_evals:
+    if with_features and settings.qd_init_samples + 1 >= settings.max_evals:
         log.warning(
-            "all %d evaluations are random samples: --max-evals is not more than --qd-init-samples, %d",
+            "all evaluations but the first are random samples: --max-evals is %d, and --qd-init-samples %d",
             settings.max_evals,
             settings.qd_init_samples,
         )
@@ -101,6 +110,7 @@ def optimize(arguments: argparse.Namespace, configuration: Configuration, settin
             len(space.variables),
             settings.max_evals,
         )
+        say_where_it_starts(space)
         progress = Progress(settings.max_evals, "evaluation")
         search = Search(space, objective, settings, optimizer, runs, journal, with_features, progress.update)
         try:

@@ -1,4 +1,4 @@
-"""All optimisers by name. A new one is a class with `ask` and `tell`, and a line here."""
+"""All optimisers by name. A new one is a class with `ask`, `begin` and `tell`, and a line here."""
 
 from __future__ import annotations
 
