@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -73,7 +72,7 @@ def parser(prog: str) -> Parser:
     add("--list-outputs", action="store_true", help="print the paths of all results, and exit")
     add("--keep-temp", action="store_true", help="keep the folders of single runs")
     add("--gui", action="store_true", help="let each run open its window")
-    add("-v", "--verbose", action="store_true", help="say more")
+    add("-v", "--verbose", action="store_true", help="also say tasks, rows, and which runs failed")
     add("-V", "--version", action="version", version=f"{prog} {pogosim.__version__}")
     return options
 
@@ -147,12 +146,10 @@ def run_batch(arguments: argparse.Namespace) -> int:
         for output in runner.list_outputs():
             tell(output)
         return DONE
-    outputs = runner.run_all()
-    unwritten = {output for output in outputs if not os.path.exists(output)}  # noqa: PTH110
+    runner.run_all()
     tell("Batch run completed. Generated output files:")
-    for output in outputs:
-        if output not in unwritten:
-            tell(f" - {output}")
+    for output in runner.generated:
+        tell(f" - {output}")
     return RUNS_FAILED if runner.failures else DONE
 
 

@@ -57,6 +57,7 @@ class PogobotBatchRunner:
     Attributes:
         failures: Runs of the last `run_all()` that failed.
         simulator_s: Wall-clock time, in s, that simulators of the last `run_all()` took, added up.
+        generated: Files of results that the last `run_all()` wrote, each once.
 
     Raises:
         BatchError: An argument is wrong, or the configuration cannot be read. Also raised by all methods: its message
@@ -96,6 +97,7 @@ class PogobotBatchRunner:
         self.seed_from = seed_from
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
+        self.generated: list[str] = []
         self.queue: list[Combination] | None = None
         self.run_settings: RunSettings | None = None
         # Configurations of combinations that were written: their text and entries by path.
@@ -207,7 +209,7 @@ class PogobotBatchRunner:
                 outputs = []
                 for config, output in selected:
                     path = self.write_temp_yaml(config)
-                    tell(f"Task: Config file {path} -> Output: {output}")
+                    log.debug("Task: Config file %s -> Output: %s", path, output)
                     outputs.append(self.run_launcher_for_combination(path, output))
                 queue = self.queue
             finally:
@@ -218,7 +220,7 @@ class PogobotBatchRunner:
     def do_all(self, combinations: Sequence[Combination]) -> None:
         """Do the runs that are not done yet, and write the results."""
         execution = Execution(combinations, self.simulator_binary)
-        self.failures, self.simulator_s = execution.failures, 0.0
+        self.failures, self.simulator_s, self.generated = execution.failures, 0.0, []
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
         waiting = execution.waiting(self.temporary)
         with self.workers.opened() as do:
@@ -235,7 +237,8 @@ class PogobotBatchRunner:
         report_failures(self.failures)
         for output in outputs:
             of_output = [combination for combination in combinations if combination.output == output]
-            join(of_output, self.failures, self.configuration.text)
+            if join(of_output, self.failures, self.configuration.text):
+                self.generated.append(output)
         if self.failures:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
         else:
