@@ -8,12 +8,14 @@ from pathlib import Path
 
 
 def check_readable(names: Iterable[str]) -> None:
-    """Open files; those of a pattern are looked for later.
+    """Open files; those of a pattern, and folders, are looked at later.
 
     Raises:
         OSError: One cannot be read.
     """
     for name in names:
-        if not glob.has_magic(name) or Path(name).exists():
-            with Path(name).open("rb"):
-                pass
+        path = Path(name)
+        if path.is_dir() or (glob.has_magic(name) and not path.exists()):
+            continue
+        with path.open("rb"):
+            pass

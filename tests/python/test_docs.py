@@ -35,6 +35,7 @@ PAGES_WITH_COMMANDS = [
         ROOT / "docs" / f"{name}.md"
         for name in (
             "batches",
+            "calibration",
             "command_line",
             "data_file",
             "examples",

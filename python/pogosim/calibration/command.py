@@ -11,9 +11,11 @@ from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.parameters import NAMES
 from pogosim.calibration.results import LINES, PICTURE, RESULT, write_protocol
 from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM
+from pogosim.command.new import ProjectError
 from pogosim.command.numbers import positive, whole
 from pogosim.command.parser import Parser, complain
 from pogosim.inputs import check_readable
+from pogosim.installation import InstallationError
 from pogosim.outputs import OutputError
 
 INTERRUPTED = 130
@@ -37,7 +39,9 @@ def parser(prog: str) -> Parser:
         help="what the robots ran: a program, a .c or .cpp file, or a project (default: the program of --protocol)",
     )
     made.add_argument(
-        "--protocol", metavar="FILE.c", help="write the program to run on the robots, and do nothing else"
+        "--protocol",
+        metavar="NAME",
+        help="make a project of the program to run on the robots, and do nothing else; NAME.c: write the program alone",
     )
     made.add_argument(
         "--category", metavar="NAME", help="the robots' entry in `objects` (the only one of type pogobot)"
@@ -67,8 +71,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate"
             write_protocol(Path(options.protocol))
             return 0
         if options.tracks is None or options.config is None:
-            made.error("expected TRACKS and -c CONF.yaml, or --protocol FILE.c")
-        check_readable([options.tracks, options.config])
+            made.error("expected TRACKS and -c CONF.yaml, or --protocol NAME")
+        check_readable([options.tracks])
         catch_signals()
         from pogosim.calibration.work import calibrate  # takes a while
 
@@ -78,7 +82,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate"
         return INTERRUPTED
     except MemoryError:
         return complain(prog, "not enough memory for tracks of this length; use a part of the film")
-    except (CalibrationError, OutputError) as error:
+    except (CalibrationError, InstallationError, OutputError, ProjectError) as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, f"{error.filename or options.output_dir}: {(error.strerror or str(error)).lower()}")

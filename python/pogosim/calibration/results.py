@@ -7,6 +7,8 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
+from pogosim.command.new import make_project
+from pogosim.installation import find_installation
 from pogosim.outputs import OutputError, leads_to, partial_output, real_output, say
 
 PROTOCOL = Path(__file__).with_name("protocol.c")
@@ -14,7 +16,16 @@ RESULT, LINES, PICTURE = "calibration.json", "calibration.yaml", "calibration.pn
 
 
 def write_protocol(path: Path) -> None:
-    """Write the program to run on the robots; raises OutputError or OSError if it cannot be written."""
+    """Write the program to run on the robots, or a project with it if the name is that of no C file.
+
+    Raises:
+        InstallationError, OSError, OutputError, ProjectError: It cannot be written.
+    """
+    if path.suffix != ".c":
+        make_project(path, find_installation())
+        shutil.copyfile(PROTOCOL, path / "main.c")
+        say(f"made: {path}, a project whose main.c is the program of the protocol")
+        return
     real = real_output(path)
     if real.exists():
         raise OutputError(f"{path} exists already; choose another name")
