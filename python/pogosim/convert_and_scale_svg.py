@@ -15,7 +15,8 @@ from pogosim.command.parser import Parser, warn
 from pogosim.geometry.actions import check_valid, checked_output, describe, guarded, write_outline
 from pogosim.geometry.arena_file import scaled
 from pogosim.geometry.svg_file import read_svg
-from pogosim.outputs import OutputError, leads_to, say
+from pogosim.lines import say
+from pogosim.outputs import OutputError, leads_to
 from pogosim.scale_csv_arena import AREA_MM2
 
 

@@ -1,11 +1,10 @@
-"""What the tools check before they write a file, and how they report."""
+"""What the tools check before they write a file."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import stat
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Union
@@ -77,22 +76,3 @@ def partial_output(path: Path) -> Iterator[Path]:
         partial.replace(path)
     finally:
         partial.unlink(missing_ok=True)
-
-
-def say(text: str) -> None:
-    """Print a line; what the terminal cannot show is escaped.
-
-    Raises:
-        OSError: The standard output cannot be written. Nothing more is written to it, then.
-    """
-    if sys.stdout is None:
-        return
-    encoding = sys.stdout.encoding or "utf-8"
-    try:
-        print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
-    except OSError:
-        # Python would try again at its end.
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-        os.close(nowhere)
-        raise

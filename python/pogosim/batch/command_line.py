@@ -13,6 +13,7 @@ from typing import NoReturn
 import pogosim
 from pogosim.batch.errors import BatchError, NothingSelectedError, is_text, reason, tell
 from pogosim.batch.slurm_options import add_slurm_options, slurm_jobs
+from pogosim.lines import LineFormatter, say_error
 
 DONE = 0
 NO_SUCH_OUTPUT = 1
@@ -33,11 +34,8 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit: 1 if required options are missing, otherwise 2."""
         is_missing = "required" in message
-        print(f"{self.prog}: {message}", file=sys.stderr)
-        print(
-            f"Usage: {self.prog} -c CONFIG -S PROGRAM [-r RUNS] [-t TEMP] [-o FOLDER]; -h lists all options",
-            file=sys.stderr,
-        )
+        usage = f"Usage: {self.prog} -c CONFIG -S PROGRAM [-r RUNS] [-t TEMP] [-o FOLDER]; -h lists all options"
+        say_error(f"{self.prog}: {message}", usage)
         sys.exit(NO_SUCH_OUTPUT if is_missing else WRONG)
 
 
@@ -92,7 +90,7 @@ def catch_signals() -> None:
 def start_logging(verbose: bool, prog: str) -> None:
     """Print messages on standard error."""
     handler = logging.StreamHandler()
-    handler.setFormatter(logging.Formatter(f"{prog}: %(message)s"))
+    handler.setFormatter(LineFormatter(f"{prog}: %(message)s"))
     log.handlers = [handler]
     log.propagate = False
     log.setLevel(logging.DEBUG if verbose else logging.INFO)

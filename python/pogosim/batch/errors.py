@@ -7,7 +7,7 @@ import errno
 import os
 from pathlib import Path
 
-from pogosim.outputs import say
+from pogosim.lines import say
 
 
 class BatchError(Exception):

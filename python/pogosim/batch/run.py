@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pogosim.batch.errors import reason
+from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
 
 LOG = "log.txt"
@@ -166,11 +167,6 @@ def tail(path: Path) -> str:
     except OSError:
         return ""
     return "\n".join(printable(line) for line in lines[-LOG_LINES:])
-
-
-def printable(line: str) -> str:
-    """Return a line without what a terminal would not show."""
-    return "".join(c if c.isprintable() or c == "\t" else "?" for c in line)
 
 
 def place_in(folder: Path) -> re.Pattern[str]:

@@ -12,11 +12,11 @@ from typing import Any
 from pogosim.batch.backends import Workers
 from pogosim.batch.combinations import CombinationsError, combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
-from pogosim.batch.errors import BatchError, at_least, cannot, tell
+from pogosim.batch.errors import BatchError, at_least, cannot, one_line, tell
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
-from pogosim.batch.names import NamesError, file_name, new_columns
+from pogosim.batch.names import NamesError, file_name, is_linked_out, new_columns
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
@@ -118,9 +118,19 @@ class PogobotBatchRunner:
     def compute_output_filename(self, comb_config: dict[str, Any]) -> str:
         """Return the path of the file with the results of a combination. Several combinations may share a file."""
         try:
-            return str(Path(self.output_dir) / file_name(comb_config))
+            output = str(Path(self.output_dir) / file_name(comb_config))
         except NamesError as error:
             raise self.names_error(error) from None
+        try:
+            is_out = is_linked_out(output, self.output_dir)
+        except (OSError, RuntimeError) as error:  # links in a circle
+            raise BatchError(f"{output} cannot be written: {one_line(error)}") from None
+        if is_out:
+            raise BatchError(
+                f"{output} leads out of the folder of the results, to {Path(output).resolve()}; remove the symbolic "
+                "link, or choose another folder with -o"
+            )
+        return output
 
     def compute_new_columns(self, comb_config: dict[str, Any]) -> dict[str, Any]:
         """Return names and values of the constant columns of a combination."""

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from pogosim.command.new import make_project
 from pogosim.installation import find_installation
-from pogosim.outputs import OutputError, leads_to, partial_output, real_output, say
+from pogosim.lines import say
+from pogosim.outputs import OutputError, leads_to, partial_output, real_output
 
 PROTOCOL = Path(__file__).with_name("protocol.c")
 RESULT, LINES, PICTURE = "calibration.json", "calibration.yaml", "calibration.png"

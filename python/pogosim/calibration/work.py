@@ -32,7 +32,8 @@ from pogosim.calibration.units import (
 from pogosim.command.parser import warn
 from pogosim.command.run import RunError, program_of
 from pogosim.installation import InstallationError, find_installation
-from pogosim.outputs import partial_output, real_output, say
+from pogosim.lines import say
+from pogosim.outputs import partial_output, real_output
 
 NEED_HEADINGS = ("angular_noise_stddev", BIAS)
 
@@ -143,7 +144,7 @@ def report(
         warn(prog, f"the simulation does not reproduce the {line} (another program, or pushes that it does not know?)")
     block = configuration_block(scene.category, found, fitted, with_bias)
     say("")
-    say(block)
+    say(*block.split("\n"))
     if options.output_dir is None:
         return
     from pogosim.calibration.figure import picture

@@ -18,7 +18,7 @@ import pogosim
 from pogosim.command.compilers import COMPILERS
 from pogosim.command.parser import Parser
 from pogosim.installation import Installation, InstallationError, find_installation
-from pogosim.outputs import say
+from pogosim.lines import say
 
 PROGRAM = """#include "pogobase.h"
 typedef struct { int n; } USERDATA;

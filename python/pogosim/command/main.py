@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pogosim
 from pogosim.command.parser import complain
-from pogosim.outputs import say
+from pogosim.lines import say, say_error
 
 WRONG_USAGE = 2
 INTERRUPTED = 130
@@ -45,24 +45,22 @@ SUBCOMMANDS = {
 }
 
 
-def usage() -> str:
+def usage() -> list[str]:
     """Return what `pogosim --help` prints."""
     width = max(map(len, SUBCOMMANDS))
     listed = [f"  {name:{width}}  {command.summary}" for name, command in SUBCOMMANDS.items()]
-    return "\n".join(
-        [
-            "Usage: pogosim COMMAND [OPTIONS]",
-            "",
-            "Simulates swarms of Pogobots.",
-            "",
-            "Commands:",
-            *listed,
-            "",
-            "Options:",
-            "  -h, --help     print this help; pogosim COMMAND --help: that of a command",
-            "  -V, --version  print the version",
-        ]
-    )
+    return [
+        "Usage: pogosim COMMAND [OPTIONS]",
+        "",
+        "Simulates swarms of Pogobots.",
+        "",
+        "Commands:",
+        *listed,
+        "",
+        "Options:",
+        "  -h, --help     print this help; pogosim COMMAND --help: that of a command",
+        "  -V, --version  print the version",
+    ]
 
 
 def unknown(name: str) -> str:
@@ -128,16 +126,16 @@ def last(code: int) -> int:
 def run(name: str, arguments: Sequence[str]) -> int:
     """Run a subcommand, or an option in its place; returns the exit code."""
     if name in ("-h", "--help", "help"):
-        say(usage())
+        say(*usage())
         return 0
     if name in ("-V", "--version"):
         say(f"pogosim {pogosim.__version__}")
         return 0
     if not name:
-        print(usage(), file=sys.stderr)
+        say_error(*usage())
         return WRONG_USAGE
     if name not in SUBCOMMANDS:
-        print(unknown(name), file=sys.stderr)
+        say_error(unknown(name))
         return WRONG_USAGE
     return call(name, arguments, f"pogosim {name}")
 

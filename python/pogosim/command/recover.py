@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Sequence
 
-from pogosim.command.parser import Parser
-from pogosim.outputs import OutputError, say
+from pogosim.command.parser import Parser, complain
+from pogosim.lines import say
+from pogosim.outputs import OutputError
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") -> int:
@@ -23,23 +23,16 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") 
     try:
         unfinished = recover(options.file, options.output)
     except (RecoverError, OutputError) as error:
-        print(f"{prog}: {error}", file=sys.stderr)
-        return 2
+        return complain(prog, error)
     except OSError as error:
         reason = os.strerror(error.errno) if error.errno else error
-        print(f"{prog}: {error.filename or options.file}: {reason}", file=sys.stderr)
-        return 2
+        return complain(prog, f"{error.filename or options.file}: {reason}")
     except (pyarrow.ArrowException, MemoryError) as error:
         reason = "there is not enough memory for its rows" if isinstance(error, MemoryError) else error
-        print(f"{prog}: {options.file} cannot be recovered: {reason}", file=sys.stderr)
-        return 2
+        return complain(prog, f"{options.file} cannot be recovered: {reason}")
     target = options.output or options.file
     try:
         say(f"{target}: {unfinished.up_to}")
     except OSError as error:
-        print(
-            f"{prog}: {target} is complete, but the standard output cannot be written: {error.strerror}",
-            file=sys.stderr,
-        )
-        return 2
+        return complain(prog, f"{target} is complete, but the standard output cannot be written: {error.strerror}")
     return 0

@@ -23,7 +23,8 @@ from pogosim.communication.reception_law import (
     parameter_names,
     parameters_of,
 )
-from pogosim.outputs import OutputError, leads_to, real_output, say
+from pogosim.lines import say
+from pogosim.outputs import OutputError, leads_to, real_output
 
 
 def settings_of(options: argparse.Namespace) -> FitSettings:
@@ -67,7 +68,7 @@ def report(measurements: Measurements, fitted: Fit, compared: pd.DataFrame) -> N
     say(f"MAPE: {shown(found.mape_percent, '.2f')} %")
     say(f"residuals, Shapiro-Wilk: W = {shown(found.shapiro_w, '.4f')}, p = {shown(found.shapiro_p, '.2g')}")
     say("")
-    say(configuration_block(fitted.law))
+    say(*configuration_block(fitted.law).split("\n"))
 
 
 def results_text(settings: FitSettings, fitted: Fit, found: Quality, measurements: Measurements, data: Path) -> str:

@@ -11,7 +11,7 @@ from pogosim.command.parser import warn
 from pogosim.film.encoder import PAGE, encode
 from pogosim.film.replay import write_replay
 from pogosim.film.stills import Look, Stills, size_for
-from pogosim.outputs import say
+from pogosim.lines import say
 from pogosim.picture.errors import PictureError
 from pogosim.picture.loading import load, sayings
 from pogosim.picture.swarm import Recording

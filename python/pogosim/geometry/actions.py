@@ -8,7 +8,8 @@ from pathlib import Path
 
 from pogosim.command.parser import complain, warn
 from pogosim.geometry.arena_file import ArenaError, Outline, as_csv, parse_outline, read_arena, scaled
-from pogosim.outputs import OutputError, leads_to, real_output, say
+from pogosim.lines import say
+from pogosim.outputs import OutputError, leads_to, real_output
 
 PICTURES = ("pdf", "png", "svg")
 

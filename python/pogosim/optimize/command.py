@@ -14,6 +14,7 @@ from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
 from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser
+from pogosim.lines import LineFormatter
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, check_optimizer
 from pogosim.optimize.settings import SECTION, Settings, settings_from
@@ -90,7 +91,7 @@ def add_quality_diversity_options(options: argparse.ArgumentParser, usual: Setti
 def start_logging(verbose: bool) -> None:
     """Print messages on standard error, each with the time: "[15:35:47] [INFO] ..."."""
     handler = logging.StreamHandler()
-    handler.setFormatter(logging.Formatter("[%(asctime)s] [%(levelname)s] %(message)s", datefmt="%H:%M:%S"))
+    handler.setFormatter(LineFormatter("[%(asctime)s] [%(levelname)s] %(message)s", datefmt="%H:%M:%S"))
     for name in ("pogosim.optimize", "pogobatch"):
         own = logging.getLogger(name)
         own.handlers = [handler]

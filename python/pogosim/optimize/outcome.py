@@ -225,7 +225,7 @@ def fresh_runs(folder: Path, search: Search, best: Evaluation) -> Outcome:
     is_initial = search.initial.values == best.values
     candidates = {"best candidate": best}
     if search.initial.fitness is None:
-        log.warning("the initial values have failed, so there is nothing to compare with: %s", search.initial.problem)
+        log.warning("the initial values have failed, so there is nothing to compare the best ones with")
     elif not is_initial:
         candidates["initial values"] = search.initial
     names = list(candidates)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from pogosim.command.parser import Parser, complain
 from pogosim.inputs import check_readable
-from pogosim.outputs import say
+from pogosim.lines import say, say_error
 from pogosim.reports import command_lines
 
 
@@ -55,32 +55,30 @@ ANALYSES: dict[str, Analysis] = {
 }
 
 
-def usage(prog: str) -> str:
+def usage(prog: str) -> list[str]:
     """Return what `pogosim analyze --help` prints."""
     width = max(map(len, ANALYSES), default=0)
     listed = [f"  {name:{width}}  {analysis.summary}" for name, analysis in ANALYSES.items()]
-    return "\n".join(
-        [
-            f"usage: {prog} ANALYSIS -i FILE -o DIR [OPTIONS]",
-            "",
-            "Computes what robots did, and writes tables (CSV) and figures (PDF, PNG).",
-            "",
-            "Analyses:",
-            *listed,
-            "",
-            f"{prog} ANALYSIS --help prints the options of an analysis.",
-        ]
-    )
+    return [
+        f"usage: {prog} ANALYSIS -i FILE -o DIR [OPTIONS]",
+        "",
+        "Computes what robots did, and writes tables (CSV) and figures (PDF, PNG).",
+        "",
+        "Analyses:",
+        *listed,
+        "",
+        f"{prog} ANALYSIS --help prints the options of an analysis.",
+    ]
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze") -> int:
     """Run the command line. Returns the exit code, which is 2 for wrong usage."""
     name, *rest = list(sys.argv[1:] if arguments is None else arguments) or [""]
     if name in ("-h", "--help", "help"):
-        say(usage(prog))
+        say(*usage(prog))
         return 0
     if not name:
-        print(usage(prog), file=sys.stderr)
+        say_error(*usage(prog))
         return 2
     if name not in ANALYSES:
         near = difflib.get_close_matches(name, ANALYSES, n=1)

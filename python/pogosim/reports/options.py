@@ -14,7 +14,8 @@ import pyarrow
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.parser import complain, warn
-from pogosim.outputs import OutputError, leads_to, say
+from pogosim.lines import say
+from pogosim.outputs import OutputError, leads_to
 from pogosim.several_files import files_that_fit, is_pattern
 from pogosim.utils import load_dataframe
 
