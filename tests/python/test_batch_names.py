@@ -35,7 +35,7 @@ def test_name_of_results_that_leads_out_of_their_folder_is_refused_before_any_ru
     assert result.code == 2
     (line,) = result.errors.splitlines()
     assert re.match(
-        rf"pogobatch: many\.yaml:\d+: result_filename_format: '{re.escape(name)}' is not in the folder of the results; ",
+        rf"pogobatch: many\.yaml:\d+: result_filename_format: '{re.escape(name)}' is not in the folder of the results;",
         line,
     )
     assert sorted(tmp_path.rglob("*")) == before
