@@ -26,6 +26,11 @@ class OutputError(Exception):
     """A file cannot be written there; says why."""
 
 
+def told(error: OSError, place: PathLike) -> str:
+    """Return what an error of the system says, with the file that it names, or else the place that was written to."""
+    return f"{error.filename2 or error.filename or place}: {(error.strerror or str(error)).lower()}"
+
+
 def leads_to(path: PathLike, other: PathLike) -> bool:
     """Tell whether two paths lead to one file, by whatever name, symbolic or hard link; there may be none yet."""
     try:
@@ -68,11 +73,17 @@ def partial_output(path: Path) -> Iterator[Path]:
         path: As real_output() returns it.
     """
     partial = path.with_name(f"{path.name}.{os.getpid()}{PARTIAL}")
-    partial.touch()
     try:
+        partial.touch()
         yield partial
         if path.exists():
             partial.chmod(stat.S_IMODE(path.stat().st_mode))
         partial.replace(path)
+    except OSError as error:
+        # What is told is the output: errors of writing name no file, and that of a partial one says nothing to users.
+        named = error.filename2 or error.filename  # of a copy, the target
+        if named in (None, str(partial)) and error.errno is not None:
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
     finally:
         partial.unlink(missing_ok=True)

@@ -167,7 +167,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
     except BatchError as error:
         log.error("%s", error)
     except OSError as error:
-        log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+        log.error("%s: %s", error.filename or parsed.temp_base, reason(error))
     except RuntimeError as error:
         if "start new thread" not in str(error):
             raise

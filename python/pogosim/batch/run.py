@@ -232,7 +232,7 @@ def attempt(task: Task, number: int) -> Outcome:
             problem = ending(code)
             is_fatal = any(words in log for words in DISK_FULL)
             if is_fatal:
-                problem = f"the disk of {task.temp_folder} is full; free space, then give the same command again"
+                problem = disk_full(task)
         elif not data.is_file():
             problem = f"it ended without writing its data file: is {task.program} a program compiled for Pogosim?"
             is_fatal = True
@@ -247,6 +247,11 @@ def attempt(task: Task, number: int) -> Outcome:
     finally:
         if not is_kept:
             shutil.rmtree(folder, ignore_errors=True)
+
+
+def disk_full(task: Task) -> str:
+    """Return what is said when a run cannot write."""
+    return f"the disk of {task.temp_folder} is full; free space, then give the same command again"
 
 
 def is_complete_data(path: Path) -> bool:
@@ -284,9 +289,10 @@ def do_run(task: Task) -> Outcome:
         try:
             outcome = attempt(task, number)
         except OSError as error:
-            full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-            what = error.filename or task.program
-            outcome = Outcome(task.key, f"{what}: {reason(error)}", is_fatal=full or error.errno == errno.ENOEXEC)
+            is_full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+            # What starts the program names it; what cannot be written has no name, and is in the temporary folder.
+            problem = disk_full(task) if is_full else f"{error.filename or task.temp_folder}: {reason(error)}"
+            outcome = Outcome(task.key, problem, is_fatal=is_full or error.errno == errno.ENOEXEC)
         simulator_s += outcome.simulator_s
         if not outcome.problem or outcome.is_fatal:
             break

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from pogosim.command.numbers import positive, whole
 from pogosim.command.parser import Parser, complain
 from pogosim.inputs import check_readable
 from pogosim.installation import InstallationError
-from pogosim.outputs import OutputError
+from pogosim.outputs import OutputError, told
 
 INTERRUPTED = 130
 
@@ -85,7 +86,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate"
     except (CalibrationError, InstallationError, OutputError, ProjectError) as error:
         return complain(prog, error)
     except OSError as error:
-        return complain(prog, f"{error.filename or options.output_dir}: {(error.strerror or str(error)).lower()}")
+        return complain(prog, told(error, f"the folder for temporary files, {tempfile.gettempdir()}"))
     return 0
 
 

@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 
 from pogosim.command.parser import Parser, complain
+from pogosim.inputs import check_readable
 from pogosim.lines import say
 from pogosim.outputs import OutputError
 
@@ -21,12 +22,13 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") 
     from pogosim.recover import RecoverError, recover
 
     try:
+        check_readable([options.file])
         unfinished = recover(options.file, options.output)
     except (RecoverError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
         reason = os.strerror(error.errno) if error.errno else error
-        return complain(prog, f"{error.filename or options.file}: {reason}")
+        return complain(prog, f"{error.filename or options.output or options.file}: {reason}")
     except (pyarrow.ArrowException, MemoryError) as error:
         reason = "there is not enough memory for its rows" if isinstance(error, MemoryError) else error
         return complain(prog, f"{options.file} cannot be recovered: {reason}")

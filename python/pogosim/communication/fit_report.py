@@ -24,7 +24,7 @@ from pogosim.communication.reception_law import (
     parameters_of,
 )
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to, real_output
+from pogosim.outputs import OutputError, leads_to, real_output, told
 
 
 def settings_of(options: argparse.Namespace) -> FitSettings:
@@ -115,8 +115,7 @@ def fit_measurements(options: argparse.Namespace, prog: str) -> int:
     except (MeasurementError, FitError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
-        place = error.filename or options.output_dir or data
-        return complain(prog, f"{place}: {(error.strerror or str(error)).lower()}")
+        return complain(prog, told(error, options.output_dir or data))
     if written:
         say("")
         say(f"written to {options.output_dir}: {', '.join(written)}")

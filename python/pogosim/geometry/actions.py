@@ -9,7 +9,7 @@ from pathlib import Path
 from pogosim.command.parser import complain, warn
 from pogosim.geometry.arena_file import ArenaError, Outline, as_csv, parse_outline, read_arena, scaled
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to, real_output
+from pogosim.outputs import OutputError, leads_to, real_output, told
 
 PICTURES = ("pdf", "png", "svg")
 
@@ -62,7 +62,19 @@ def write_outline(outline: Outline, path: Path, name: str) -> None:
         from pogosim.geometry.svg_file import as_svg
 
         text = as_svg(outline)
-    path.write_bytes(text.encode())
+    write(path, text.encode(), name)
+
+
+def write(path: Path, content: bytes, name: str) -> None:
+    """Write a file; what keeps it from being written is told with its name.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    try:
+        path.write_bytes(content)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, name) from None
 
 
 def describe(outline: Outline, name: str) -> str:
@@ -111,7 +123,7 @@ def show_arena(prog: str, outline: Outline, arena: Outline, radius_mm: float, ou
         path, name = output
         validity = "" if not found else ", not valid"
         title = f"{Path(outline.source).name}: {arena.area:.6g} mm2{validity}"
-        path.write_bytes(rendered(draw(arena, room, title), Path(name).suffix[1:].lower()))
+        write(path, rendered(draw(arena, room, title), Path(name).suffix[1:].lower()), name)
     if found:
         return complain(prog, f"{outline.source}: the simulator does not take this arena: {found[0]}")
     return 0
@@ -170,8 +182,7 @@ def guarded(prog: str, run: Callable[[], int]) -> int:
     except (ArenaError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
-        return complain(prog, f"{place}{(error.strerror or str(error)).lower()}")
+        return complain(prog, told(error, "the output"))
 
 
 ACTIONS: dict[str, Callable[[str, argparse.Namespace], int]] = {

@@ -129,7 +129,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
     except (OptimizeError, BatchError, OutputError, NamesError) as error:
         log.error("%s", error)
     except OSError as error:
-        log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+        log.error("%s: %s", error.filename or parsed.temp_base, reason(error))
     except UnicodeEncodeError:
         log.error("%s: a value is no text in UTF-8 (such as \\ud800)", parsed.config)
     except MemoryError:

@@ -11,14 +11,22 @@ import numpy as np
 
 from pogosim.command.parser import warn
 from pogosim.picture.errors import PictureError
+from pogosim.picture.options import cannot_read
 from pogosim.picture.swarm import Recording, read_recording
 
 
 def load(options: argparse.Namespace, prog: str) -> Recording:
-    """Read the data file that the options name; what is incomplete or left out is a line on standard error."""
+    """Read the data file that the options name; what is incomplete or left out is a line on standard error.
+
+    Raises:
+        PictureError, ValueError: It cannot be drawn, or be read.
+    """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RuntimeWarning)
-        recording = read_recording(options.data, options.run, options.color_by, options.combination)
+        try:
+            recording = read_recording(options.data, options.run, options.color_by, options.combination)
+        except OSError as error:
+            raise PictureError(cannot_read(options.data, error)) from error
     for warning in caught:
         warn(prog, warning.message)
     if recording.left_out:
@@ -32,7 +40,8 @@ def sayings(data: str) -> Iterator[None]:
     try:
         yield
     except PictureError as error:
-        raise PictureError(f"cannot draw {data}: {error}") from error
+        is_told = str(error).startswith("cannot read ")
+        raise PictureError(str(error) if is_told else f"cannot draw {data}: {error}") from error
     except (TypeError, KeyError, IndexError, AttributeError, OverflowError, np.linalg.LinAlgError) as error:
         raise PictureError(f"cannot draw {data}: its columns or metadata are not those of a run: {error}") from error
     except MemoryError as error:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from pogosim.fonts import any_characters
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw, draw_series
 from pogosim.picture.loading import load, sayings
@@ -30,7 +31,8 @@ def rendered(figure: Figure, picture: str, dpi: float) -> bytes:
         )
     content = io.BytesIO()
     try:
-        figure.savefig(content, format=Path(picture).suffix[1:].lower(), dpi=dpi)
+        with any_characters():
+            figure.savefig(content, format=Path(picture).suffix[1:].lower(), dpi=dpi)
     except (MemoryError, OverflowError, RuntimeError, SystemError, ValueError) as error:
         raise PictureError(f"matplotlib cannot make {picture} with --dpi {dpi:g}: {error}") from error
     return content.getvalue()

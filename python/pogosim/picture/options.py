@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from collections.abc import Callable
 
 from pogosim.command.parser import complain
@@ -37,6 +38,14 @@ def add_what_to_draw(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def cannot_read(data: str, error: OSError) -> str:
+    """Return why a data file, or one of those that fit a pattern, cannot be read."""
+    if error.errno is None:  # nothing fits the pattern
+        return f"cannot read '{data}': {error}"
+    reason = "no such file" if isinstance(error, FileNotFoundError) else (error.strerror or str(error)).lower()
+    return f"cannot read '{error.filename or data}': {reason}"
+
+
 def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
     """Make an output; returns the exit code: 0, or 2 after a line that says why it could not be made."""
     try:
@@ -44,9 +53,9 @@ def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
     except (PictureError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
-        is_data = str(error.filename) == data
-        task = f"read '{data}'" if is_data else f"write '{output}'"
-        is_missing = is_data and isinstance(error, FileNotFoundError)
-        reason = "no such file" if is_missing else (error.strerror or str(error)).lower()
-        return complain(prog, f"cannot {task}: {reason}")
+        if str(error.filename) == data:
+            return complain(prog, cannot_read(data, error))
+        # A folder for temporary files that is full, say, is told by its own name.
+        place = f"{error.filename}: " if error.filename not in (None, os.path.realpath(output), output) else ""
+        return complain(prog, f"cannot write '{output}': {place}{(error.strerror or str(error)).lower()}")
     return 0

@@ -15,7 +15,7 @@ from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.parser import complain, warn
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to
+from pogosim.outputs import OutputError, leads_to, told
 from pogosim.several_files import files_that_fit, is_pattern
 from pogosim.utils import load_dataframe
 
@@ -104,8 +104,8 @@ def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Na
     except (AnalysisError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        return complain(prog, f"{where}{(error.strerror or str(error)).lower()}")
+        # Nothing fits a pattern; otherwise, what is written has no name.
+        return complain(prog, str(error) if error.errno is None else told(error, options.output_dir))
     except (*STRANGE_DATA, pyarrow.ArrowException) as error:
         return complain(prog, f"the data cannot be analysed: {str(error) or type(error).__name__}".splitlines()[0])
     return 0
