@@ -17,19 +17,25 @@ import tempfile
 from pathlib import Path
 from types import ModuleType
 
-import analysis_tour
-import first_program
-import formations
-import gallery
-import lamps
-import messages
-import parameter_study
-import reception
-import replay
-import swarm
-import validation
-import window
-from pictures import DOCS, difference, keep
+try:
+    import analysis_tour
+    import first_program
+    import formations
+    import gallery
+    import lamps
+    import messages
+    import parameter_study
+    import reception
+    import replay
+    import swarm
+    import validation
+    import window
+    from pictures import DOCS, difference, keep
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"all.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 SCRIPTS: dict[str, ModuleType] = {
     script.__name__: script

@@ -13,9 +13,15 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-import pandas as pd
-from pictures import DOCS, ROOT, from_figure, keep
-from quotes import quote
+try:
+    import pandas as pd
+    from pictures import DOCS, ROOT, from_figure, keep
+    from quotes import quote
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"learn.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 sys.path.append(str(ROOT / "examples" / "learning"))
 
@@ -27,7 +33,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--keep", action="store_true", help="keep picture and numbers in docs/")
     options = parser.parse_args(arguments)
-    import train  # needs the extra 'learning'
+    try:
+        import train  # needs the extra 'learning'
+    except ImportError as missing:
+        print(f"learn.py: {missing}", file=sys.stderr)
+        return 2
 
     results = {name: train.learnt(name) for name in train.TASKS}
     lines = [line for name, learnt in results.items() for line in train.summary(name, learnt)]

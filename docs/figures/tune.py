@@ -17,9 +17,15 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from pictures import DOCS, from_figure, keep
-from quotes import quote
-from tuning import SCENES
+try:
+    from pictures import DOCS, from_figure, keep
+    from quotes import quote
+    from tuning import SCENES
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"tune.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 PAGE = DOCS / "optimization.md"
 NAMES = ("tuning_archive.png", "tuning_phototaxis.png")  # pictures that --keep draws

@@ -17,9 +17,15 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from pictures import DOCS, keep
-from quotes import quote
-from validation import SCENES, picture_of
+try:
+    from pictures import DOCS, keep
+    from quotes import quote
+    from validation import SCENES, picture_of
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"validate.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 PAGE = DOCS / "validation.md"
 
