@@ -88,3 +88,10 @@ def test_the_script_of_pogoptim_imports_no_large_package(options: list[str]) -> 
     assert "pogosim.optimize.command" in done.stderr
     imported = {line.rpartition("|")[2].strip().partition(".")[0] for line in done.stderr.splitlines()}
     assert imported & set(HEAVY) == set()
+
+
+def test_batch_begins_without_packages_that_compute_or_draw() -> None:
+    code = "import sys, pogosim.batch.runner, pogosim.batch.command_line; print(sorted(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=60)
+    heavy = [name for name in HEAVY if name not in ("numpy", "pyarrow", "tqdm") and f"'{name}'" in done.stdout]
+    assert heavy == []
