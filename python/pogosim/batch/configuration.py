@@ -87,7 +87,7 @@ class Configuration:
             line = error.problem_mark.line + 1 if error.problem_mark else 1
             raise BatchError(f"{path}:{line}: not valid YAML: {one_line(error.problem)}") from None
         except WRONG_VALUES as error:
-            raise BatchError(f"{path} cannot be read: {problem_of(error)}") from None
+            raise BatchError(f"{path} is not valid YAML: {problem_of(error)}") from None
         finally:
             if loader is not None:
                 loader.dispose()
