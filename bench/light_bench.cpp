@@ -17,7 +17,7 @@ constexpr Vec2 kCentre{500, 500};
 /// Steps through the simulated time.
 void run(benchmark::State& state, std::vector<LampSpec> const& lamps) {
     World world = testing::square_world();
-    world.light = make_light_map(world.arena, 100, 100);
+    world.light = make_light_map(world.arena, world.periodic, 100, 100);
     Lighting lighting(lamps, world);
     for (auto _ : state) {
         lighting.update(world);

@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pogosim.batch.option_words import OptionsError
+from pogosim.batch.options import single_value
 from pogosim.command.main import ended
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser
-from pogosim.configuration_values import default_option
 from pogosim.geometry.actions import PICTURES, checked_output, guarded, show_arena
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
 from pogosim.geometry.command import DEFAULT_AREA_MM2, DEFAULT_RADIUS_MM
@@ -87,15 +88,22 @@ def selected(options: argparse.Namespace) -> tuple[Outline, Outline]:
         ArenaError, OSError: Says what is wrong.
     """
     path = Path(options.config)
+
+    def entry(name: str) -> Any:
+        try:
+            return single_value(entries.get(name))
+        except OptionsError as error:
+            raise ArenaError(f"{path}: {name}: {error}") from None
+
     # With all that is needed on the command line, no configuration is.
     is_needed = options.arena_file is None or path.is_file()
     entries = read_configuration(path) if is_needed else {}
-    name = options.arena_file or default_option(entries.get("arena_file"))
+    name = options.arena_file or entry("arena_file")
     if not isinstance(name, str) or not name:
         raise ArenaError(f"{path} has no arena_file; give one with --arena-file")
     outline = read_arena(find_arena(name, path))
-    area_mm2 = options.arena_surface or area_of(default_option(entries.get("arena_surface")), path)
-    return outline, scaled(outline, area_mm2, stretch=default_option(entries.get("arena_stretch")) is True)
+    area_mm2 = options.arena_surface or area_of(entry("arena_surface"), path)
+    return outline, scaled(outline, area_mm2, stretch=entry("arena_stretch") is True)
 
 
 def run(prog: str, options: argparse.Namespace) -> int:

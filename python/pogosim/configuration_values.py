@@ -11,8 +11,3 @@ def number(value: Any, default: float) -> float:
         return float(value)
     except (TypeError, ValueError):
         return default
-
-
-def default_option(value: Any) -> Any:
-    """Return the value that the simulator takes of an entry with options for batches."""
-    return value.get("default_option") if isinstance(value, dict) else value

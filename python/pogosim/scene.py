@@ -11,6 +11,7 @@ import numpy.typing as npt
 from matplotlib.path import Path as Outline
 
 from pogosim.configuration_values import number
+from pogosim.periodic import minimum_image
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -113,14 +114,16 @@ class Lamp:
             return 1
         return 0 if since_s >= 0.0 else -1
 
-    def levels(self, points_mm: Floats, polygons: list[Floats], time_s: float) -> Floats:
+    def levels(self, points_mm: Floats, polygons: list[Floats], time_s: float, period_mm: Floats | None) -> Floats:
         """Light that it gives at points of the arena at a time. Shape (n, 2) to (n,); sensor counts."""
-        offset = points_mm - self.centre_at(time_s)
+        offset = minimum_image(points_mm - self.centre_at(time_s), period_mm)
         if self.shape.kind == "arena":  # the insides of holes, too
             lit = np.any([Outline(polygon).contains_points(points_mm) for polygon in polygons], axis=0)
         else:
             lit = self.shape.holds(offset)
-        return np.where(lit, self.levels_around(offset, self.gradient_reach_mm(polygons, time_s), time_s), 0.0)
+        return np.where(
+            lit, self.levels_around(offset, self.gradient_reach_mm(polygons, time_s, period_mm), time_s), 0.0
+        )
 
     def levels_around(self, offset: Floats, gradient_reach_mm: float, time_s: float) -> Floats:
         """Level at points relative to the centre, wherever the shape ends."""
@@ -135,12 +138,14 @@ class Lamp:
             share = 0.5 + offset @ normal / (2.0 * self.plane_half_span_mm)
         return self.value + (self.edge_value - self.value) * np.clip(share, 0.0, 1.0)
 
-    def gradient_reach_mm(self, polygons: list[Floats], time_s: float) -> float:
+    def gradient_reach_mm(self, polygons: list[Floats], time_s: float, period_mm: Floats | None) -> float:
         """Distance from the centre at which a gradient has its edge value."""
         if self.gradient_radius_mm > 0.0:
             return self.gradient_radius_mm
         if self.shape.kind not in ("global", "arena"):
             return self.shape.bounding_radius_mm
+        if period_mm is not None:
+            return float(np.hypot(*period_mm) / 2.0)
         low, high = bounds(polygons)
         centre = self.centre_at(time_s)
         return float(np.hypot(*np.maximum(centre - low, high - centre)))
@@ -207,6 +212,13 @@ def read_periodic(*configurations: dict[str, Any] | None) -> bool:
     return any(str((own or {}).get("boundary_condition")).lower() == "periodic" for own in configurations)
 
 
+def read_top_speed(configuration: dict[str, Any]) -> float | None:
+    """Return how fast the fastest robots of a configuration drive, mm/s; None if it does not say."""
+    drivers = [settings for _, settings in entries(configuration) if type_of(settings) == "pogobot"]
+    speeds = [number(own.get("max_linear_speed"), math.nan) for own in drivers]
+    return max((speed for speed in speeds if math.isfinite(speed)), default=None)
+
+
 def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
     """All objects except lamps, by their category; of a list of entries, the last one stands for all."""
     return {
@@ -265,7 +277,9 @@ def ray_names(configuration: dict[str, Any]) -> list[str]:
     return [name for name, settings in entries(configuration) if type_of(settings) in RAYS]
 
 
-def light_levels(lamps: list[Lamp], polygons: list[Floats], points_mm: Floats, time_s: float) -> Floats:
+def light_levels(
+    lamps: list[Lamp], polygons: list[Floats], points_mm: Floats, time_s: float, period_mm: Floats | None = None
+) -> Floats:
     """Light of all lamps at points of the arena at a time.
 
     Args:
@@ -273,11 +287,12 @@ def light_levels(lamps: list[Lamp], polygons: list[Floats], points_mm: Floats, t
         polygons: Outlines of the arena, each of shape (vertices, 2), in mm.
         points_mm: Shape (n, 2).
         time_s: Since the start of the run.
+        period_mm: Width and height of a periodic arena, in which the nearest image of each lamp counts. None: walls.
 
     Returns:
         Shape (n,), sensor counts.
     """
     total = np.zeros(len(points_mm))
     for lamp in lamps:
-        total += lamp.levels(points_mm, polygons, time_s)
+        total += lamp.levels(points_mm, polygons, time_s, period_mm)
     return np.minimum(total, BRIGHTEST)

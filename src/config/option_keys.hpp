@@ -1,9 +1,12 @@
-// The keys with which a configuration offers alternative values, for batches and optimisations.
+// The keys with which a configuration offers alternative values, for batches and optimisations. Python has the same
+// lists (pogosim/batch/option_words.py).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <string_view>
+
+#include "config/tree.hpp"
 
 namespace pogosim {
 
@@ -11,17 +14,35 @@ inline constexpr std::string_view kHierarchicalOptions = "batch_hierarchical_opt
 inline constexpr std::string_view kDefaultAlternative = "default";
 inline constexpr std::string_view kAlternativesName = "name";
 inline constexpr std::string_view kDefaultOption = "default_option";
+inline constexpr std::string_view kBatchOptions = "batch_options";
+inline constexpr std::string_view kBatchRange = "batch_options_range";
 inline constexpr std::string_view kOptimizationDomain = "optimization_domain";
 
 /// Written by batch tools: which alternatives they chose.
 inline constexpr char const* kBatchChoices = "_batch_choice_names";
 
 /// Keys of a map that replaces a value.
-inline constexpr std::array kValueOptions{kDefaultOption, std::string_view("batch_options"),
-                                          std::string_view("batch_options_range"), kOptimizationDomain};
+inline constexpr std::array kValueOptions{kDefaultOption, kBatchOptions, kBatchRange, kOptimizationDomain};
+
+/// Keys of `batch_options_range` and of `optimization_domain`.
+inline constexpr std::array<std::string_view, 5> kRangeKeys{"start", "stop", "step", "inclusive", "type"};
+inline constexpr std::array<std::string_view, 6> kDomainKeys{"type", "min", "max", "init", "log", "choices"};
+
+/// Entries of the top level that are no part of the world: nothing in them is an option.
+inline constexpr std::array<std::string_view, 4> kWithoutOptions{"result_filename_format", "result_new_columns",
+                                                                 "optimization", kBatchChoices};
 
 inline bool is_option_key(std::string_view key) {
     return key == kHierarchicalOptions || std::ranges::find(kValueOptions, key) != kValueOptions.end();
 }
+
+/// Whether a map stands for a value to choose.
+bool offers_options(Node const& map);
+
+/// Whether the key is the word but for one or two letters.
+bool is_slip_of(std::string_view word, std::string_view key);
+
+/// The word of options that the key is a slip of; empty when it is one of them, or like none.
+std::string_view misspelt_option(std::string_view key);
 
 }  // namespace pogosim

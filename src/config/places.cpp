@@ -93,6 +93,8 @@ std::string key_of(Setting setting) {
             return "message_log";
         case Setting::physics_engine:
             return "physics_engine";
+        case Setting::save_data_period:
+            return "save_data_period";
         case Setting::speed_up:
             return "GUI_speed_up";
         case Setting::threads:

@@ -20,6 +20,7 @@ enum class Setting {
     frames_name,
     message_log,
     physics_engine,
+    save_data_period,
     speed_up,
     threads,
 };

@@ -1,18 +1,16 @@
 // What a single run makes of batch options, hierarchical alternatives and optimisation domains.
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 #include "base/log.hpp"
+#include "config/check_options.hpp"
 #include "config/option_keys.hpp"
 #include "config/tree.hpp"
 
 namespace pogosim {
 
 namespace {
-
-bool offers_options(Node const& map) {
-    return std::ranges::any_of(kValueOptions, [&map](std::string_view key) { return map.find(key) != nullptr; });
-}
 
 /// `default_option`; without it the point an optimisation starts from; without that nothing, so that the default of
 /// the key holds.
@@ -58,23 +56,28 @@ Node with_default_alternative(Node map) {
     return map;
 }
 
-}  // namespace
-
-Node resolve_options(Node const& node) {
+Node resolved_at(Node const& node, std::string const& path) {
     if (node.find(kHierarchicalOptions) != nullptr) {
-        return resolve_options(with_default_alternative(node));
+        return resolved_at(with_default_alternative(node), path);
     }
     if (offers_options(node)) {
-        return resolve_options(chosen_option(node));
+        refuse_other_keys(node, path);  // which an alternative may have brought
+        return resolved_at(chosen_option(node), path);
     }
     Node resolved = node;
     for (auto& [key, value] : resolved.entries) {
-        value = resolve_options(value);
+        value = resolved_at(value, path.empty() ? key : path + "." + key);
     }
-    for (Node& item : resolved.items) {
-        item = resolve_options(item);
+    for (std::size_t i = 0; i < resolved.items.size(); ++i) {
+        resolved.items[i] = resolved_at(resolved.items[i], path + "." + std::to_string(i));
     }
     return resolved;
+}
+
+}  // namespace
+
+Node resolve_options(Node const& node) {
+    return resolved_at(node, "");
 }
 
 }  // namespace pogosim

@@ -5,6 +5,7 @@
 
 #include "base/nearest_name.hpp"
 #include "config/batch_names.hpp"
+#include "config/check_options.hpp"
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
 #include "config/scenario_keys.hpp"
@@ -16,10 +17,12 @@ namespace {
 
 Node resolved_tree(Node const& written, std::vector<std::string> const& overrides) {
     // What is set replaces what the file's options have come to, and may offer options itself.
+    check_options(written);
     Node root = resolve_options(written);
     for (std::string const& assignment : overrides) {
         apply_override(root, assignment);
     }
+    check_options(root);
     return resolve_options(root);
 }
 

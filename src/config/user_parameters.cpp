@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/nearest_name.hpp"
+#include "config/option_keys.hpp"
 #include "config/source.hpp"
 #include "config/values.hpp"
 
@@ -140,7 +141,10 @@ void UserParameters::collect_unread(Node const& node, std::string const& path, s
         collect_unread(value, path.empty() ? key : fmt::format("{}.{}", path, key), unread);
     }
     if (node.entries.empty() && &node != &parameters_) {
-        unread.push_back(fmt::format("{} ({}{})", shown(path), node.where(), did_you_mean(shown(path), missed_)));
+        std::string_view const option = misspelt_option(std::string_view(path).substr(path.rfind('.') + 1));
+        std::string const hint =
+            option.empty() ? did_you_mean(shown(path), missed_) : fmt::format("; did you mean '{}'?", option);
+        unread.push_back(fmt::format("{} ({}{})", shown(path), node.where(), hint));
     }
 }
 

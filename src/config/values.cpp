@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/log.hpp"
+#include "config/option_keys.hpp"
 
 namespace pogosim {
 
@@ -160,6 +161,16 @@ Node sequence(Values const& values) {
     return node;
 }
 
+/// For a map of options whose words are all misspelt.
+std::string option_hint(Node const& node) {
+    for (auto const& [key, value] : node.entries) {
+        if (std::string_view const word = misspelt_option(key); !word.empty()) {
+            return fmt::format("; did you mean '{}', not '{}'?", word, shown(key));
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string lower_case(std::string text) {
@@ -197,7 +208,7 @@ void fail_at(Place const& place, std::string_view what) {
 }
 
 void fail_expected(Place const& place, std::string_view expected) {
-    fail_at(place, fmt::format("expected {}, found {}", expected, found_text(place.node)));
+    fail_at(place, fmt::format("expected {}, found {}{}", expected, found_text(place.node), option_hint(place.node)));
 }
 
 std::optional<double> number_of(Node const& node) {

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <string>
 
-#include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "geometry/formations/task.hpp"
 
@@ -119,25 +118,6 @@ void check_area(PlacementTask const& task) {
     }
 }
 
-/// The file determines where imported objects are; warns if one overlaps something else.
-void warn_of_clashes(PlacementTask const& task, std::span<float const> radii_mm,
-                     std::span<Placement const> placements) {
-    std::size_t clashes = 0;
-    std::string first;
-    for (std::size_t i = 0; i < placements.size(); ++i) {
-        Vec2 const place = placements[i].position_mm;
-        auto const hit = std::ranges::find_if(
-            task.obstacles, [&](Obstacle const& obstacle) { return gap_mm(obstacle, place) < radii_mm[i]; });
-        if (hit != task.obstacles.end() && clashes++ == 0) {
-            first = fmt::format("object {} at ({:g}, {:g}) mm overlaps {}", i, place.x, place.y, hit->name);
-        }
-    }
-    if (clashes > 0) {
-        log().warn("{}: {}{}", task.spec.filename, first,
-                   clashes > 1 ? fmt::format(", and {} more overlap objects with a fixed place", clashes - 1) : "");
-    }
-}
-
 /// Uniform in (-pi, pi].
 float random_heading(RandomStream& random) {
     return wrap_angle(-random.uniform(-kPi, kPi));
@@ -164,15 +144,11 @@ std::vector<Placement> place(FormationSpec const& spec, std::span<float const> r
     std::vector<float> const radii = placement_radii(spec, radii_mm);
     FreeSpace const space(ground.domain, ground.obstacles);
     PlacementTask const task{spec,   radii,        ground.domain, ground.obstacles, space,
-                             random, read_feather, ground.name,   ground.remedy};
-    bool const by_file = formation.place == place_imported;
-    if (!by_file) {
+                             random, read_feather, ground.name,   ground.remedy,    ground.periodic};
+    if (formation.place != place_imported) {
         check_area(task);
     }
     std::vector<Placement> placements = formation.place(task);
-    if (by_file) {
-        warn_of_clashes(task, radii_mm, placements);
-    }
     for (Placement& placement : placements) {
         if (std::isnan(placement.heading_rad)) {
             placement.heading_rad = formation.aligned ? kCommonHeading : random_heading(random);

@@ -54,6 +54,7 @@ struct FormationGround {
     std::span<Obstacle const> obstacles{};              // that stand there already
     std::string_view name = "arena";                    // of the domain, for messages
     std::string_view remedy = "enlarge arena_surface";  // when there is no room
+    bool periodic = false;                              // all of the bounding box is inside
 };
 
 /// One row of a file for the formation `imported`.
@@ -91,8 +92,7 @@ std::span<std::string const> formation_names();
 /// One pose for each object of the given radii (mm, finite, >= 0), in the same order. Placement radius of object i:
 /// r_i = 1.01 max(radius, min_space). Every object but the imported ones stands inside the domain, at least r_i from
 /// its walls and from every obstacle, and at least r_i + r_j from object j; imported ones stand where the file says,
-/// which must be inside, and a warning names the first that is in an obstacle. Obstacles that are not in the domain
-/// change nothing. `read_feather` reads the file of `imported` when its name ends in ".feather". Headings: pi/2 for
+/// which must be inside. Obstacles that are not in the domain change nothing. `read_feather` reads the file of `imported` when its name ends in ".feather". Headings: pi/2 for
 /// aligned_*, the file's for imported, otherwise uniform in (-pi, pi]. Throws FormationError when they do not fit,
 /// after a bounded search ("initial_formation: 'disk' has places for 31 of 40 objects (largest radius 26.5 mm) in this
 /// arena. ..."); when a value of the spec makes no sense; or when the name is unknown. Throws ConfigError when the

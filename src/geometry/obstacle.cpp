@@ -37,6 +37,33 @@ Obstacle solid_obstacle(std::string name, Shape const& shape, Vec2 position_mm, 
     return {.name = std::move(name), .line = moved(outline(shape), position_mm, heading_rad)};
 }
 
+Obstacle moved_by(Vec2 offset_mm, Obstacle obstacle) {
+    for (Vec2& corner : obstacle.line) {
+        corner = corner + offset_mm;
+    }
+    return obstacle;
+}
+
+std::vector<Obstacle> images_across(Box const& bounds_mm, Obstacle const& obstacle) {
+    Box const box = bounding_box(obstacle.line);
+    Vec2 const size = bounds_mm.size();
+    float const margin = obstacle.half_thickness_mm;
+    std::vector<Obstacle> images;
+    for (int const row : {-1, 0, 1}) {
+        for (int const column : {-1, 0, 1}) {
+            Vec2 const offset{static_cast<float>(column) * size.x, static_cast<float>(row) * size.y};
+            Vec2 const low = box.min + offset - Vec2{margin, margin};
+            Vec2 const high = box.max + offset + Vec2{margin, margin};
+            bool const reaches_in = low.x < bounds_mm.max.x && high.x > bounds_mm.min.x && low.y < bounds_mm.max.y &&
+                                    high.y > bounds_mm.min.y;
+            if (reaches_in && (row != 0 || column != 0)) {
+                images.push_back(moved_by(offset, obstacle));
+            }
+        }
+    }
+    return images;
+}
+
 float gap_mm(Obstacle const& obstacle, Vec2 point_mm) {
     float const to_line_mm = distance_to_outline(obstacle.line, point_mm);
     bool const enclosed = obstacle.solid && contains(obstacle.line, point_mm);

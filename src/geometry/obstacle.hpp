@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "geometry/arena.hpp"
 #include "geometry/shape.hpp"
@@ -19,6 +20,12 @@ struct Obstacle {
 
 /// A rigid body. The shape is a disk, a rectangle or a triangle.
 Obstacle solid_obstacle(std::string name, Shape const& shape, Vec2 position_mm, float heading_rad);
+
+/// The same obstacle elsewhere.
+Obstacle moved_by(Vec2 offset_mm, Obstacle obstacle);
+
+/// Copies of what reaches across the borders of a periodic box, where it comes in again on the other side.
+std::vector<Obstacle> images_across(Box const& bounds_mm, Obstacle const& obstacle);
 
 /// Distance from the point to the obstacle, mm; negative inside of it.
 float gap_mm(Obstacle const& obstacle, Vec2 point_mm);

@@ -49,10 +49,10 @@ struct Lighthouse {
     }
 };
 
-Lighthouse lighthouse_at(Vec2 corner_mm, Vec2 centre_mm, std::vector<std::uint32_t> cells, LightMap const& map) {
+Lighthouse lighthouse_at(Vec2 corner_mm, Vec2 centre_mm, std::vector<LitCell> const& cells) {
     Vec2 const to_centre = centre_mm - corner_mm;
     return {.corner_mm = corner_mm,
-            .cells = BearingOrder(std::move(cells), map, corner_mm),
+            .cells = BearingOrder(cells, corner_mm),
             .to_centre_rad = exact::atan2(static_cast<double>(to_centre.y), static_cast<double>(to_centre.x))};
 }
 
@@ -60,7 +60,7 @@ class AlternatingRaysLamp : public Lamp {
 public:
     AlternatingRaysLamp(AlternatingRaysSpec const& spec, Arena const& arena, LightMap const& map)
         : AlternatingRaysLamp(spec, lit_cells(spec.shape, spec.centre_mm, arena, map),
-                              lit_box(spec.shape, spec.centre_mm, arena), map) {}
+                              lit_box(spec.shape, spec.centre_mm, arena)) {}
 
     Layer layer() const override { return Layer::overwriting; }
 
@@ -93,11 +93,10 @@ public:
     }
 
 private:
-    AlternatingRaysLamp(AlternatingRaysSpec const& spec, std::vector<std::uint32_t> const& cells, Box const& box,
-                        LightMap const& map)
+    AlternatingRaysLamp(AlternatingRaysSpec const& spec, std::vector<LitCell> const& cells, Box const& box)
         : spec_(spec),
-          first_(lighthouse_at({box.min.x, box.max.y}, box.centre(), cells, map)),
-          second_(lighthouse_at(box.max, box.centre(), cells, map)) {
+          first_(lighthouse_at({box.min.x, box.max.y}, box.centre(), cells)),
+          second_(lighthouse_at(box.max, box.centre(), cells)) {
         double const sweep_s = kSweepRad / std::abs(spec.angular_speed_rad_s);  // infinite when it does not turn
         duration_s_ = {spec.long_white_frame_duration_s, sweep_s, spec.short_white_frame_duration_s, sweep_s};
         cycle_s_ = spec.long_white_frame_duration_s + spec.short_white_frame_duration_s + 2.0 * sweep_s;

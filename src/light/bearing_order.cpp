@@ -6,24 +6,23 @@
 #include <utility>
 
 #include "base/exact_math.hpp"
-#include "light/lit_area.hpp"
 
 namespace pogosim {
 
-BearingOrder::BearingOrder(std::vector<std::uint32_t> cells, LightMap const& map, Vec2 apex_mm)
-    : cells_(std::move(cells)) {
+BearingOrder::BearingOrder(std::vector<LitCell> const& cells, Vec2 apex_mm) {
     std::vector<std::pair<float, std::uint32_t>> seen;
-    seen.reserve(cells_.size());
-    for (std::uint32_t const cell : cells_) {
-        Vec2 const offset = cell_centre_mm(map, cell) - apex_mm;
+    seen.reserve(cells.size());
+    for (auto const& [cell, centre_mm] : cells) {
+        Vec2 const offset = centre_mm - apex_mm;
         double const bearing_rad = exact::atan2(static_cast<double>(offset.y), static_cast<double>(offset.x));
         seen.emplace_back(static_cast<float>(bearing_rad), cell);
     }
     std::ranges::sort(seen);
     bearing_rad_.reserve(seen.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        bearing_rad_.push_back(seen[i].first);
-        cells_[i] = seen[i].second;
+    cells_.reserve(seen.size());
+    for (auto const& [bearing_rad, cell] : seen) {
+        bearing_rad_.push_back(bearing_rad);
+        cells_.push_back(cell);
     }
 }
 

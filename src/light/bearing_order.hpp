@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "world/world.hpp"
+#include "light/lit_area.hpp"
 
 namespace pogosim {
 
@@ -17,8 +17,8 @@ using CellRun = std::span<std::uint32_t const>;
 
 class BearingOrder {
 public:
-    /// `cells` of the map as seen from `apex_mm`. A cell with its centre at the apex has bearing 0.
-    BearingOrder(std::vector<std::uint32_t> cells, LightMap const& map, Vec2 apex_mm);
+    /// As seen from `apex_mm`. A cell with its centre at the apex has bearing 0.
+    BearingOrder(std::vector<LitCell> const& cells, Vec2 apex_mm);
 
     CellRun all() const { return cells_; }
 

@@ -52,12 +52,13 @@ std::unique_ptr<Lamp> make_lamp(LampSpec const& spec, LampSetting const& setting
 
 }  // namespace
 
-LightMap make_light_map(Arena const& arena, int columns, int rows) {
+LightMap make_light_map(Arena const& arena, bool periodic, int columns, int rows) {
     Vec2 const size = arena.bounds.size();
     LightMap map{.columns = columns,
                  .rows = rows,
                  .origin_mm = arena.bounds.min,
                  .cell_mm = {size.x / static_cast<float>(columns), size.y / static_cast<float>(rows)},
+                 .periodic = periodic,
                  .level = {}};
     auto const cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     allocate_for([&] { return fmt::format("the light map: {} of {} bytes", cells_text(map), kCellBytes); },

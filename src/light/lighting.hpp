@@ -11,8 +11,9 @@
 
 namespace pogosim {
 
-/// An empty map of the given number of cells over the arena's bounding box.
-LightMap make_light_map(Arena const& arena, int columns, int rows);
+/// A dark map of the given number of cells over the arena's bounding box, which may be periodic: then, each place gets
+/// the light of the nearest image of each lamp.
+LightMap make_light_map(Arena const& arena, bool periodic, int columns, int rows);
 
 /// All lamps of a run. A step costs what changes: the cells that moving lamps light before and after it.
 class Lighting {

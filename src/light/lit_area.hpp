@@ -21,13 +21,26 @@ inline Vec2 cell_centre_mm(LightMap const& map, std::uint32_t cell) {
     return cell_centre_mm(map, static_cast<int>(cell % columns), static_cast<int>(cell / columns));
 }
 
-/// Calls visit(cell, its centre) for the cells whose centre lies in the shape at `centre_mm`, in the order of the map.
-/// Arena counts as everywhere, as in contains().
+/// The point, or that of its images across the borders of a periodic map that is nearest to the centre.
+Vec2 nearest_image(LightMap const& map, Vec2 centre_mm, Vec2 point_mm);
+
+/// Calls visit(cell, its centre) for the cells whose centre lies in the shape at `centre_mm`. Arena counts as everywhere,
+/// as in contains(). In a periodic map, the image of each cell counts that is nearest to `centre_mm`.
 template <class Visit>
 void for_each_cell_in(Shape const& shape, Vec2 centre_mm, LightMap const& map, Visit const& visit);
 
+/// A cell, and where its centre is as seen from a lamp: in a periodic map, that may be beyond its borders.
+struct LitCell {
+    std::uint32_t cell;
+    Vec2 centre_mm;
+};
+
 /// The same cells as a list, for arena those inside any of its polygons (holes included).
-std::vector<std::uint32_t> lit_cells(Shape const& shape, Vec2 centre_mm, Arena const& arena, LightMap const& map);
+std::vector<LitCell> lit_cells(Shape const& shape, Vec2 centre_mm, Arena const& arena, LightMap const& map);
+
+/// What the images of cells are nearest to: the lamp, or for global and arena, whose centre counts from that of the
+/// arena's bounding box, the middle of what it lights.
+Vec2 middle_of_light(Shape const& shape, Vec2 centre_mm, Arena const& arena);
 
 /// Box around what a lamp at `centre_mm` can light: around its shape, or for global and arena the arena's bounding box,
 /// from whose centre `centre_mm` counts then.
@@ -45,8 +58,56 @@ inline CellRange cells_between(float low, float high, int count) {
             static_cast<int>(std::clamp(std::floor(high) + 1.0F, -1.0F, end - 1.0F))};
 }
 
+/// Cells along one axis of a periodic map, counted on across its borders: `first` to `last`, each at most once.
+struct ImageRange {
+    std::int64_t first;
+    std::int64_t last;
+
+    /// The cell of the map.
+    static std::uint32_t cell(std::int64_t image, int count) {
+        std::int64_t const rest = image % count;
+        return static_cast<std::uint32_t>(rest < 0 ? rest + count : rest);
+    }
+};
+
+/// The images nearest to `middle` whose centre may lie between `low` and `high`, counted in cells.
+inline ImageRange images_between(float low, float high, float middle, int count) {
+    constexpr double kRounding = 1e-3;  // with the lamp in the middle of the map, all cells are where they are
+    auto const nearest = static_cast<std::int64_t>(std::ceil(middle - 0.5 * count - 0.5 - kRounding));
+    return {std::max(nearest, static_cast<std::int64_t>(std::floor(low)) - 1),
+            std::min(nearest + count - 1, static_cast<std::int64_t>(std::floor(high)) + 1)};
+}
+
+template <class Visit>
+void for_each_image_in(Shape const& shape, Vec2 centre_mm, LightMap const& map, Visit const& visit) {
+    bool const everywhere = is_everywhere(shape);
+    Vec2 const size_mm{static_cast<float>(map.columns) * map.cell_mm.x, static_cast<float>(map.rows) * map.cell_mm.y};
+    Box const box = everywhere ? Box{-1.0F * size_mm, size_mm} : bounding_box(shape);
+    Vec2 const middle = centre_mm - map.origin_mm;
+    Vec2 const low = box.min + middle;
+    Vec2 const high = box.max + middle;
+    ImageRange const columns =
+        images_between(low.x / map.cell_mm.x, high.x / map.cell_mm.x, middle.x / map.cell_mm.x, map.columns);
+    ImageRange const rows =
+        images_between(low.y / map.cell_mm.y, high.y / map.cell_mm.y, middle.y / map.cell_mm.y, map.rows);
+    for (std::int64_t row = rows.first; row <= rows.last; ++row) {
+        std::uint32_t const row_start = ImageRange::cell(row, map.rows) * static_cast<std::uint32_t>(map.columns);
+        for (std::int64_t column = columns.first; column <= columns.last; ++column) {
+            Vec2 const centre = map.origin_mm + Vec2{(static_cast<float>(column) + 0.5F) * map.cell_mm.x,
+                                                     (static_cast<float>(row) + 0.5F) * map.cell_mm.y};
+            if (everywhere || contains(shape, centre - centre_mm)) {
+                visit(row_start + ImageRange::cell(column, map.columns), centre);
+            }
+        }
+    }
+}
+
 template <class Visit>
 void for_each_cell_in(Shape const& shape, Vec2 centre_mm, LightMap const& map, Visit const& visit) {
+    if (map.periodic) {
+        for_each_image_in(shape, centre_mm, map, visit);
+        return;
+    }
     bool const everywhere = is_everywhere(shape);
     CellRange columns{0, map.columns - 1};
     CellRange rows{0, map.rows - 1};

@@ -31,9 +31,9 @@ class RotatingRayLamp : public Lamp {
 public:
     RotatingRayLamp(RotatingRaySpec const& spec, Arena const& arena, LightMap const& map)
         : spec_(spec),
-          apex_mm_(is_everywhere(spec.shape) ? arena.bounds.centre() + spec.centre_mm : spec.centre_mm),
+          apex_mm_(middle_of_light(spec.shape, spec.centre_mm, arena)),
           cycle_s_(cycle_s(spec)),
-          cells_(lit_cells(spec.shape, spec.centre_mm, arena, map), map, apex_mm_) {}
+          cells_(lit_cells(spec.shape, spec.centre_mm, arena, map), apex_mm_) {}
 
     Layer layer() const override { return Layer::overwriting; }
 

@@ -36,9 +36,12 @@ bool is_seen_moving(SpotSpec const& spec) {
 }
 
 /// Largest distance from the lamp's centre to a point it can light.
-float farthest_mm(Shape const& shape, Vec2 centre_mm, Box const& bounds) {
+float farthest_mm(Shape const& shape, Vec2 centre_mm, Box const& bounds, bool periodic) {
     if (!is_everywhere(shape)) {
         return bounding_radius(shape);
+    }
+    if (periodic) {
+        return 0.5F * length(bounds.size());
     }
     std::array const corners{bounds.min, bounds.max, Vec2{bounds.min.x, bounds.max.y},
                              Vec2{bounds.max.x, bounds.min.y}};
@@ -65,7 +68,9 @@ class SpotLamp : public Lamp {
 public:
     SpotLamp(SpotSpec const& spec, Arena const& arena, LightMap const& map) : spec_(spec), bounds_(arena.bounds) {
         if (spec.shape.kind == ShapeKind::arena) {
-            arena_cells_ = lit_cells(spec.shape, spec.centre_mm, arena, map);
+            for (LitCell const& lit : lit_cells(spec.shape, spec.centre_mm, arena, map)) {
+                arena_cells_.push_back(lit.cell);
+            }
         }
     }
 
@@ -108,8 +113,8 @@ void SpotLamp::paint(LampState const& state, LightMap& map, std::vector<std::uin
         add(
             centre, [&](Vec2) { return spec_.photo_start_value; }, map, painted);
     } else if (spec_.mode == LightMode::gradient) {
-        float const radius =
-            spec_.gradient_radius_mm > 0.0F ? spec_.gradient_radius_mm : farthest_mm(spec_.shape, centre, bounds_);
+        float const radius = spec_.gradient_radius_mm > 0.0F ? spec_.gradient_radius_mm
+                                                             : farthest_mm(spec_.shape, centre, bounds_, map.periodic);
         float const share_per_mm = 1.0F / radius;
         add(
             centre, [&](Vec2 offset) { return blend.at(length(offset) * share_per_mm); }, map, painted);
@@ -139,7 +144,7 @@ void SpotLamp::add(Vec2 centre_mm, LevelAt const& level_at, LightMap& map, std::
         return;
     }
     for (std::uint32_t const cell : arena_cells_) {
-        add_to(cell, cell_centre_mm(map, cell));
+        add_to(cell, nearest_image(map, centre_mm, cell_centre_mm(map, cell)));
     }
 }
 

@@ -40,8 +40,9 @@ void draw_lamps(Scene const& scene, Coverage& scratch) {
     scratch.reset(scene.canvas.clip());
     for (LampMark const& lamp : lamps) {
         if (!is_everywhere(lamp.shape)) {
-            add_outline(scratch, scene.to_pixels(moved(outline(lamp.shape), lamp.shape_mm, 0.0F)),
-                        kOutlineWidth * unit);
+            scene.for_each_image(lamp.shape_mm, bounding_box(lamp.shape), [&](Vec2 where_mm) {
+                add_outline(scratch, scene.to_pixels(moved(outline(lamp.shape), where_mm, 0.0F)), kOutlineWidth * unit);
+            });
         }
     }
     scratch.keep_within(scene.floor);

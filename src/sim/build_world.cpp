@@ -17,6 +17,7 @@
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
 #include "sim/find_file.hpp"
+#include "sim/imported_objects.hpp"
 #include "sim/make_membrane.hpp"
 #include "sim/place_objects.hpp"
 #include "world/assert_world.hpp"
@@ -192,6 +193,7 @@ void add_objects(Scenario const& scenario, World& world, std::uint32_t seed) {
             maker.add(category, placement);
         }
     }
+    warn_of_imported(scenario, world, poses);
 }
 
 void warn_of_repeated_ids(World const& world) {
@@ -260,7 +262,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });
     warn_of_repeated_ids(world);
     make_mailboxes(world);
-    world.light = make_light_map(world.arena, scenario.light_map_columns, scenario.light_map_rows);
+    world.light = make_light_map(world.arena, world.periodic, scenario.light_map_columns, scenario.light_map_rows);
     assert_structure(world);
     return world;
 }

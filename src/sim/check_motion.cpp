@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "config/places.hpp"
 
 namespace pogosim {
@@ -48,6 +50,33 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
 }
 
 }  // namespace
+
+void warn_of_ambiguous_rows(Scenario const& scenario, World const& world) {
+    OutputConfig const& output = scenario.output;
+    double const period_s = output.save_data_period_s;
+    bool const has_steps = output.enable_data_logging && period_s > 0.0 && period_s <= scenario.simulation_time_s;
+    if (!world.periodic || !has_steps) {
+        return;
+    }
+    auto const drives = [](ObjectConfig const& object) {
+        return object.nb > 0 && object.spec.body && object.spec.robot && object.spec.robot->has_wheels;
+    };
+    auto const speed = [&](ObjectConfig const& object) {
+        return drives(object) ? static_cast<double>(object.spec.robot->max_linear_speed_mm_s) : 0.0;
+    };
+    auto const fastest = std::ranges::max_element(scenario.objects, {}, speed);
+    Vec2 const size_mm = world.arena.bounds.size();
+    double const half_mm = 0.5 * static_cast<double>(std::min(size_mm.x, size_mm.y));
+    if (fastest == scenario.objects.end() || speed(*fastest) * period_s <= half_mm) {
+        return;
+    }
+    log().warn(
+        "{}: within {} s, '{}' can cross half of the periodic arena ({} mm) at their {} mm/s (max_linear_speed): the "
+        "shortest way between two rows need not be theirs, and speeds and displacements from the data file may be wrong. "
+        "Use less than {} s",
+        place_of(scenario, Setting::save_data_period), text(period_s), fastest->category, text(half_mm),
+        text(speed(*fastest)), text(rounded_down(half_mm / speed(*fastest))));
+}
 
 void check_motion(Scenario const& scenario, MotionLimits const& limits, double time_step_s) {
     char const* const can_simulate = "can be simulated";

@@ -1,13 +1,18 @@
-// Speeds that the physics cannot follow.
+// Speeds that the physics or the rows of the data file cannot follow.
 #pragma once
 
 #include "config/scenario.hpp"
 #include "physics/physics_engine.hpp"
+#include "world/world.hpp"
 
 namespace pogosim {
 
 /// Throws ConfigError when robots at full speed move or turn further in one step than these limits, naming the largest
 /// speed and the largest step that can be.
 void check_motion(Scenario const& scenario, MotionLimits const& limits, double time_step_s);
+
+/// Warns when robots are fast enough to cross half of a periodic arena between two rows of the data file: what computes
+/// displacements from them takes the shortest way.
+void warn_of_ambiguous_rows(Scenario const& scenario, World const& world);
 
 }  // namespace pogosim

@@ -1,6 +1,7 @@
 #include "sim/lamps_of.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numbers>
 #include <string>
@@ -47,8 +48,10 @@ bool lights_a_cell(LampArea const& area, LightMap const& map) {
     return lights;
 }
 
-/// Where a lamp has its area in the course of time; of an orbit, many places that are in the arena.
-std::vector<LampArea> areas_of(LampSpec const& lamp, Arena const& arena) {
+/// Where a lamp has its area in the course of time; of an orbit, many places that are in the arena, which all are in a
+/// periodic one.
+std::vector<LampArea> areas_of(LampSpec const& lamp, World const& world) {
+    Arena const& arena = world.arena;
     LampArea const start = area_at_start(lamp);
     auto const* const spot = std::get_if<SpotSpec>(&lamp);
     if (spot == nullptr || spot->orbit.radius_mm == 0.0F || spot->orbit.angular_speed_rad_s == 0.0) {
@@ -62,7 +65,7 @@ std::vector<LampArea> areas_of(LampSpec const& lamp, Arena const& arena) {
         Vec2 const centre_mm = spot->centre_mm + spot->orbit.radius_mm * direction(angle_rad);
         bool const inside = is_between(arena.bounds.min.x, centre_mm.x, arena.bounds.max.x) &&
                             is_between(arena.bounds.min.y, centre_mm.y, arena.bounds.max.y);
-        if (inside) {
+        if (inside || world.periodic) {
             areas.push_back({start.shape, centre_mm});
         }
     }
@@ -78,7 +81,7 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
     if (reaches_a_centre && std::holds_alternative<SpotSpec>(lamp)) {
         return;
     }
-    std::vector<LampArea> const areas = areas_of(lamp, world.arena);
+    std::vector<LampArea> const areas = areas_of(lamp, world);
     auto const is_dark = [&map](LampArea const& area) { return !lights_a_cell(area, map); };
     auto const dark = std::ranges::count_if(areas, is_dark);
     if (dark > 0) {
@@ -99,13 +102,42 @@ void warn_of_copies(Scenario const& scenario, ObjectConfig const& object) {
     }
 }
 
+/// The light of a plane rises across all of a periodic arena and has to fall back somewhere: half the arena away from the
+/// lamp. That is at the border when the lamp is in the middle.
+void warn_of_jump(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot, World const& world) {
+    bool const has_jump =
+        world.periodic && spot.mode == LightMode::plane && is_everywhere(spot.shape) && spot.value != spot.edge_value;
+    if (!has_jump) {
+        return;
+    }
+    constexpr float kSmall = 1e-3F;
+    Vec2 const normal = direction(spot.plane_angle_rad);
+    Vec2 const middle = world.arena.bounds.centre();
+    Vec2 const jump = wrapped(world, spot.centre_mm + 0.5F * world.arena.bounds.size());
+    auto const warn = [&](ObjectSetting axis, char const* name, float place_mm, float middle_mm) {
+        log().warn(
+            "{}: the light of a plane cannot go on across the borders of a periodic arena: it jumps at {} = {:.4g} mm, "
+            "half the arena away from the lamp. With {}: {:.4g}, it would jump at the border",
+            place_of(scenario, object, axis), name, place_mm, name, middle_mm);
+    };
+    if (std::abs(normal.x) > kSmall && !is_between(middle.x, spot.centre_mm.x, middle.x)) {
+        warn(ObjectSetting::x, "x", jump.x, middle.x);
+    }
+    if (std::abs(normal.y) > kSmall && !is_between(middle.y, spot.centre_mm.y, middle.y)) {
+        warn(ObjectSetting::y, "y", jump.y, middle.y);
+    }
+}
+
 void look_for_slips(Scenario const& scenario, ObjectConfig const& object, World const& world) {
     LampSpec const& lamp = *object.spec.lamp;
     warn_of_copies(scenario, object);
+    auto const* const spot = std::get_if<SpotSpec>(&lamp);
+    if (spot != nullptr && object.nb > 0) {
+        warn_of_jump(scenario, object, *spot, world);
+    }
     if (object.nb == 0 || is_everywhere(area_at_start(lamp).shape)) {
         return;
     }
-    auto const* const spot = std::get_if<SpotSpec>(&lamp);
     if (spot == nullptr || is_in_arena(scenario, object, *spot, world.arena)) {
         warn_of_dark_lamp(scenario, object, world);
     }

@@ -15,6 +15,7 @@
 #include "sim/lamps_of.hpp"
 #include "sim/make_membrane.hpp"
 #include "sim/place_apart.hpp"
+#include "sim/standing_objects.hpp"
 
 namespace pogosim {
 
@@ -217,7 +218,12 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     }
 
     auto const add_obstacles = [&](std::size_t i) {
-        std::ranges::move(obstacles_of(scenario.objects[i], poses[i]), std::back_inserter(obstacles));
+        for (Obstacle& obstacle : obstacles_of(scenario.objects[i], poses[i])) {
+            if (world.periodic) {
+                std::ranges::move(images_across(world.arena.bounds, obstacle), std::back_inserter(obstacles));
+            }
+            obstacles.push_back(std::move(obstacle));
+        }
     };
     for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
         ObjectConfig const& object = scenario.objects[i];
@@ -255,13 +261,18 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
             of_root.rows_of_others = {.first = 0, .count = rows_before, .may_follow = true};
             formation.rows_of_others = {.first = rows_before, .count = count_objects(scenario, {root})};
             entries.erase(place);
-            place_entries(scenario, of_root, {world.arena, obstacles}, {root}, random, poses);
+            place_entries(scenario, of_root,
+                          {.domain = world.arena, .obstacles = obstacles, .periodic = world.periodic}, {root}, random,
+                          poses);
             add_obstacles(root);
         }
         domain = root_domain(scenario, world, scenario.objects[root], poses[root]);
     }
     try {
-        place_entries(scenario, formation, {domain, obstacles}, entries, random, poses);
+        bool const in_arena = root == kNoEntry;
+        place_entries(scenario, formation,
+                      {.domain = domain, .obstacles = obstacles, .periodic = in_arena && world.periodic}, entries,
+                      random, poses);
     } catch (ConfigError const& error) {
         if (root == kNoEntry) {
             throw;

@@ -25,6 +25,10 @@ Snapshot SnapshotTaker::take(SnapshotParts parts) {
     if (world_.periodic) {
         std::ranges::transform(bodies.position_mm, snapshot.position_mm.begin(),
                                [this](Vec2 position_mm) { return wrapped(world_, position_mm); });
+        for (LampMark& lamp : snapshot.lamps) {
+            lamp.centre_mm = wrapped(world_, lamp.centre_mm);
+            lamp.shape_mm = wrapped(world_, lamp.shape_mm);
+        }
     }
     if (parts.links) {
         range_mm_.clear();

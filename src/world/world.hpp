@@ -153,6 +153,7 @@ struct LightMap {
     int rows = 0;
     Vec2 origin_mm;
     Vec2 cell_mm;
+    bool periodic = false;            // what a lamp lights beyond one border is lit at the opposite one
     std::vector<std::int16_t> level;  // sensor counts, 0 to 32767, row by row
 
     /// Level of the cell under the point; outside the map, that of the nearest cell.

@@ -116,6 +116,47 @@ TEST_F(ImportedFormation, PositionOutsideTheArenaNamesItsLine) {
     EXPECT_EQ(error_of("10,20\n-5,20\n", 1), "");  // a row that nobody needs
 }
 
+TEST_F(ImportedFormation, PositionsOutsideAreCounted) {
+    EXPECT_NE(
+        error_of("10,20\n-5,20\n-6,20\n", 3).find(", and 2 of 3 are; if the file is not in mm, imported_formation_"),
+        std::string::npos);
+}
+
+TEST_F(ImportedFormation, FileInMetresIsRefusedWithWhatToWrite) {
+    // Inside of the arena, in its corner, they would all be in each other.
+    EXPECT_EQ(
+        error_of("0.1,0.1\n0.9,0.4\n0.7,0.45\n", 3),
+        "poses.csv: all 3 positions are within 0.8 x 0.35 mm, less than an object is wide (53 mm); the file looks "
+        "like one in metres: imported_formation_min_coords and imported_formation_max_coords say which of its "
+        "coordinates are the corners of the arena's bounding box");
+    spec_.imported_min = {0, 0};
+    spec_.imported_max = {1, 0.5};
+    EXPECT_EQ(place_from("0.1,0.1\n0.9,0.4\n0.7,0.45\n", 3)[1].position_mm, (Vec2{900, 400}));
+}
+
+TEST_F(ImportedFormation, FewMillimetresApartIsNoFileInMetres) {
+    EXPECT_EQ(error_of("700,400\n701,400\n", 2), "");
+    EXPECT_EQ(error_of("0.1,0.1\n", 1), "");
+    EXPECT_EQ(error_of("0.1,0.1\n900,400\n", 2), "");
+}
+
+TEST_F(ImportedFormation, RowWithoutAPositionIsRefused) {
+    reader_ = [](fs::path const&) {
+        return std::vector<ImportedPose>{{.x = 10, .y = 20}, {.x = std::nan(""), .y = 20, .row = 1}};
+    };
+    spec_.filename = folder_ / "poses.feather";
+    EXPECT_TRUE(error_of("", 2).starts_with("poses.feather:1: the row has no position (x nan, y 20)"))
+        << error_of("", 2);
+}
+
+TEST_F(ImportedFormation, OfAPeriodicArenaMayBeAnywhereInItsBox) {
+    std::ofstream(spec_.filename) << "500,250\n1000,0\n";
+    RandomStream random(1, 1);
+    std::vector<float> const radii(2, 26.5F);
+    EXPECT_EQ(place(spec_, radii, {.domain = kRoom, .periodic = true}, random)[0].position_mm, (Vec2{500, 250}));
+    EXPECT_THROW(place(spec_, radii, {.domain = kRoom}, random), ConfigError);
+}
+
 TEST_F(ImportedFormation, OverlapsAreTheUsersWish) {
     EXPECT_EQ(place_from("100,100\n100,100\n101,100\n", 3).size(), 3U);
 }

@@ -235,5 +235,21 @@ TEST(FormationAmongObstacles, LloydIsMoreEvenThanChance) {
     EXPECT_LT(closest_mm("random"), 125.0);
 }
 
+TEST(ObstacleImages, AreWhereWhatLeavesAPeriodicBoxComesInAgain) {
+    Box const box{{0, 0}, {1000, 500}};
+    EXPECT_TRUE(images_across(box, solid(kDisk, {500, 250})).empty());
+    EXPECT_TRUE(images_across(box, solid(kDisk, {100, 100})).empty());  // just touches the borders
+    auto const right = images_across(box, solid(kDisk, {950, 250}));
+    ASSERT_EQ(right.size(), 1U);
+    EXPECT_EQ(right[0].line, (Polygon{{-50, 250}}));
+    EXPECT_EQ(right[0].half_thickness_mm, 100.0F);
+    EXPECT_EQ(right[0].name, "'thing'");
+    EXPECT_EQ(images_across(box, solid(kBox, {20, 490})).size(), 3U);  // in a corner
+    auto const beam =
+        images_across(box, solid({.kind = ShapeKind::rectangle, .width_mm = 20, .height_mm = 480}, {995, 250}));
+    ASSERT_EQ(beam.size(), 1U);
+    EXPECT_NEAR(gap_mm(beam[0], {10, 250}), 5.0F, kTolerance);
+}
+
 }  // namespace
 }  // namespace pogosim

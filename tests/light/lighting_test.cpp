@@ -169,7 +169,7 @@ TEST(Lighting, KeptUpToDateIsTheSameAsMadeAnewAtAnyTime) {
 
 TEST(Lighting, MapsNeedNotBeSquare) {
     World world = testing::square_world();
-    world.light = make_light_map(world.arena, 7, 200);
+    world.light = make_light_map(world.arena, world.periodic, 7, 200);
     RotatingRaySpec ray;
     ray.shape.kind = ShapeKind::global;
     ray.half_width_rad = 0.3;

@@ -14,7 +14,7 @@ namespace pogosim::testing {
 
 inline World dark_world() {
     World world = square_world();
-    world.light = make_light_map(world.arena, 100, 100);
+    world.light = make_light_map(world.arena, world.periodic, 100, 100);
     return world;
 }
 

@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pogosim.batch.combinations import CombinationsError, combinations_of
+from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.names import NamesError, file_name, new_columns
+from pogosim.batch.option_words import CombinationsError
 from pogosim.pogobatch import BatchError, expand_batch_options, get_by_dotted_path, set_in_dict
 from pogosim.yaml_1_2 import dump_yaml, parse_yaml
 from running import ROOT, example, run_command
@@ -153,7 +154,11 @@ def test_range_of_integers_is_that_of_python(start: int, length: int, step: int,
         ("{a: {batch_options_range: {start: 0, stop: 1, step: true}}}", "a", "step: expected a number"),
         ("{a: {batch_options_range: {start: 0, stop: 1, step: 0.5, type: int}}}", "a", "not a whole number"),
         ("{a: {batch_options_range: {start: 0, stop: 1, step: 0.5, type: long}}}", "a", "expected int or float"),
-        ("{a: {batch_options_range: {start: 0, stop: 1, steps: 0.5}}}", "a", "unknown key 'steps'"),
+        (
+            "{a: {batch_options_range: {start: 0, stop: 1, steps: 0.5}}}",
+            "a.batch_options_range",
+            "unknown key 'steps'; did you mean 'step'?",
+        ),
         ("{a: {batch_options_range: {start: 0, stop: 1e9, step: 1}}}", "a", "larger step"),
         ("{a: {batch_hierarchical_options: 3}}", "a.batch_hierarchical_options", "expected a map of alternatives"),
         ("{a: {batch_hierarchical_options: {name: x}}}", "a.batch_hierarchical_options", "at least one alternative"),

@@ -135,7 +135,10 @@ def test_file_of_poses_rules_and_clashes_are_one_warning(tmp_path: Path) -> None
     robots, _, _ = at_start(done)
     np.testing.assert_allclose(robots, [[1100, 100], [900, 800], [655, 420], [1100, 300]])
     (warning,) = warnings(done)
-    assert "poses.csv: object 1 at (900, 800) mm overlaps 'box', and 1 more" in warning
+    assert (
+        "poses.csv: 2 pairs of objects overlap: first robots 2 at (655, 420) and membranes 65535 at (400, 4" in warning
+    )
+    assert "; physics pushes them apart" in warning
 
 
 def test_fixed_objects_deep_in_each_other_or_in_a_wall_are_named(tmp_path: Path) -> None:

@@ -137,3 +137,19 @@ def test_orbiting_lamp_is_where_it_is_by_then() -> None:
     assert lamp.centre_at(0.0) == pytest.approx([500, 700])
     assert lamp.centre_at(0.5) == pytest.approx([200, 400])  # clockwise on the screen
     assert Lamp(Shape(), (1.0, 2.0)).centre_at(7.0).tolist() == [1.0, 2.0]
+
+
+def test_light_of_a_periodic_arena_is_that_of_the_nearest_image() -> None:
+    period = np.array([1000.0, 1000.0])
+    places = np.array([[995.0, 505.0], [5.0, 505.0], [405.0, 505.0], [805.0, 305.0]])
+    for shape in (Shape("disk", radius_mm=220.0), Shape("global")):
+        for mode in ("static", "gradient", "plane"):
+            middle = Lamp(shape, (505.0, 505.0), mode=mode, value=1000.0, plane_half_span_mm=200.0)
+            moved = Lamp(shape, (985.0, 55.0), mode=mode, value=1000.0, plane_half_span_mm=200.0)
+            shifted = np.mod(places + np.array([480.0, -450.0]), period)
+            levels = light_levels([middle], [SQUARE], places, 0.0, period)
+            np.testing.assert_allclose(light_levels([moved], [SQUARE], shifted, 0.0, period), levels)
+            assert levels.any()
+    seam = Lamp(Shape("disk", radius_mm=220.0), (5.0, 505.0), value=1000.0)
+    assert light_levels([seam], [SQUARE], places, 0.0, period).tolist() == [1000.0, 1000.0, 0.0, 0.0]
+    assert light_levels([seam], [SQUARE], places, 0.0).tolist() == [0.0, 1000.0, 0.0, 0.0]

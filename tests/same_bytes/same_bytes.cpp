@@ -192,7 +192,7 @@ void talk(std::string const& what, ReceptionSpec const& reception, bool is_perio
 void light_up(std::string const& what, LampSpec const& lamp) {
     World world;
     world.arena = arena_of("disk", 1e6);
-    world.light = make_light_map(world.arena, 100, 100);
+    world.light = make_light_map(world.arena, world.periodic, 100, 100);
     Lighting lighting({lamp}, world);
     Hash hash;
     RandomStream random(13, 0);

@@ -17,7 +17,7 @@ namespace {
 /// An arena of 1000 mm x 1000 mm with cells of 10 mm x 20 mm.
 World world_of_cells() {
     World world = testing::square_world();
-    world.light = make_light_map(world.arena, 100, 50);
+    world.light = make_light_map(world.arena, world.periodic, 100, 50);
     return world;
 }
 
@@ -93,6 +93,35 @@ TEST(LampsOf, LampsThatFallBetweenTheCentresOfCellsWarnWithTheKeyOfTheirSize) {
                   dark(7, "side_length"));
         EXPECT_EQ(warning_of_lamp(type, corner + "    geometry: disk\n    radius: 12\n"), "");
     }
+}
+
+/// What is said of a lamp with these keys in a periodic arena.
+std::string warning_of_periodic_lamp(std::string const& type, std::string const& keys) {
+    config_file::Warnings const warnings;
+    Scenario const scenario = config_file::load("objects:\n  lamp:\n    type: " + type + "\n" + keys);
+    World world = testing::square_world();
+    world.periodic = true;
+    world.light = make_light_map(world.arena, world.periodic, 100, 50);
+    std::string const before = warnings.text();
+    lamps_of(scenario, world);
+    return warnings.text().substr(before.size());
+}
+
+TEST(LampsOf, LightOfAPlaneInAPeriodicArenaJumpsOppositeToTheLamp) {
+    std::string const plane = "    geometry: global\n    light_mode: plane\n    value: 100\n";
+    EXPECT_EQ(warning_of_periodic_lamp("static_light", plane + "    x: 200\n    y: 0\n"),
+              "x.yaml:7: objects.lamp.x: the light of a plane cannot go on across the borders of a periodic arena: it "
+              "jumps at x = 700 mm, half the arena away from the lamp. With x: 500, it would jump at the border\n");
+    EXPECT_EQ(warning_of_periodic_lamp("static_light", plane + "    x: 500\n    y: 0\n"), "");
+    EXPECT_NE(warning_of_periodic_lamp("static_light", plane + "    x: 500\n    y: 0\n    plane_angle: 1.0\n")
+                  .find("objects.lamp.y: the light of a plane"),
+              std::string::npos);
+    EXPECT_EQ(warning_of_periodic_lamp("static_light", plane + "    edge_value: 100\n    x: 200\n"), "");
+    EXPECT_EQ(warning_of_periodic_lamp("static_light", "    geometry: global\n    light_mode: gradient\n    x: 200\n"),
+              "");
+    EXPECT_EQ(warning_of_periodic_lamp("static_light", "    geometry: disk\n    radius: 90\n    light_mode: plane\n"),
+              "");
+    EXPECT_EQ(warning_of_lamp("static_light", plane + "    x: 200\n    y: 0\n"), "");
 }
 
 TEST(LampsOf, SmallLampOnTheCentreOfACellIsSeen) {

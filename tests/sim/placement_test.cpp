@@ -1,7 +1,9 @@
 // Categories that say themselves where their objects start.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -221,6 +223,116 @@ TEST(Placement, RowsOfAFileGoToTheCategoriesInTheirOrderAndRowsTooManyAreSaid) {
         built.warnings[0].find("has 4 poses (rows with the first time value) for 3 objects; the last 1 is ignored"),
         std::string::npos)
         << built.warnings[0];
+}
+
+namespace {
+
+std::string const kImported =
+    "arena_file: arena.csv\narena_surface: 1e6\ninitial_formation: imported\nformation_filename: poses.csv\n"
+    "objects:\n";
+
+Built build_imported(std::string const& poses, std::string const& before = kImported, std::string const& more = "") {
+    Folder const folder;
+    Warnings const warnings;
+    auto const count = static_cast<int>(std::ranges::count(poses, '\n'));
+    Folder::write("arena.csv", kSquare);
+    Folder::write("poses.csv", poses);
+    Folder::write("x.yaml",
+                  before + fmt::format("  it: {{type: pogobot, geometry: disk, radius: 25, nb: {}}}\n", count) + more);
+    Built built;
+    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}), 1); });
+    built.warnings = warnings.lines();
+    return built;
+}
+
+using Lines = std::vector<std::string>;
+
+}  // namespace
+
+TEST(ImportedObjects, ThatOverlapAreOneWarningWithTheFirstPair) {
+    EXPECT_EQ(build_imported("100,100\n200,100\n250,100\n").warnings, Lines{});
+    EXPECT_EQ(build_imported("100,100\n200,100\n249.5,100\n").warnings, Lines{});  // a run may leave that
+    EXPECT_EQ(build_imported("100,100\n200,100\n240,100\n").warnings,
+              Lines{"poses.csv: two objects overlap: it 1 at (200, 100) and it 2 at (240, 100) mm by 10.0 mm; physics "
+                    "pushes them apart"});
+    EXPECT_EQ(build_imported("100,500\n800,100\n820,100\n840,100\n").warnings,
+              Lines{"poses.csv: 3 pairs of objects overlap: first it 1 at (800, 100) and it 2 at (820, 100) mm by 30.0 "
+                    "mm; physics pushes them apart"});
+}
+
+TEST(ImportedObjects, ThatAllOverlapMayBeInAnotherUnit) {
+    Lines const warnings = build_imported("300,300\n310,300\n300,310\n").warnings;
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("3 pairs of objects overlap"), std::string::npos);
+    EXPECT_NE(warnings[0].find("All objects do: if the file is not in mm, imported_formation_min_coords"),
+              std::string::npos);
+}
+
+TEST(ImportedObjects, ThatReachIntoAWallAreOneWarning) {
+    EXPECT_EQ(build_imported("24.5,100\n500,500\n").warnings, Lines{});
+    EXPECT_EQ(
+        build_imported("10,100\n500,500\n").warnings,
+        Lines{"poses.csv: an object reaches into a wall: it 0 at (10, 100) mm by 15.0 mm; physics pushes it out"});
+    EXPECT_EQ(
+        build_imported("500,500\n10,100\n500,980\n").warnings,
+        Lines{"poses.csv: 2 objects reach into a wall: first it 1 at (10, 100) mm by 15.0 mm; physics pushes them "
+              "out"});
+}
+
+TEST(ImportedObjects, ThatOverlapAFixedOneAreNamedWithIt) {
+    EXPECT_EQ(
+        build_imported("100,100\n500,500\n", kImported,
+                       "  box: {type: passive_object, geometry: rectangle, body_width: 100, body_height: 100, x: 560, "
+                       "y: 500}\n")
+            .warnings,
+        Lines{"poses.csv: two objects overlap: it 1 at (500, 500) and box 65535 at (560, 500) mm by 15.0 mm; "
+              "physics pushes them apart"});
+}
+
+TEST(Overlaps, AcrossTheSeamOfAPeriodicArenaAreSeen) {
+    std::string const periodic = "boundary_condition: periodic\n";
+    EXPECT_EQ(build_imported("5,500\n990,500\n", periodic + kImported).warnings,
+              Lines{"poses.csv: two objects overlap: it 0 at (5, 500) and it 1 at (990, 500) mm by 35.0 mm; physics "
+                    "pushes them apart. All objects do: if the file is not in mm, imported_formation_min_coords and "
+                    "imported_formation_max_coords say which of its coordinates are the arena's corners"});
+    EXPECT_EQ(build_imported("5,5\n965,965\n", periodic + kImported).warnings, Lines{});  // 57 mm across the corner
+    EXPECT_EQ(build_imported("5,5\n975,975\n", periodic + kImported).warnings.size(), 1U);
+    std::string const scene = periodic + kScene;
+    Built const fixed = build(
+        "  a: {type: passive_object, geometry: disk, radius: 30, x: 10, y: 500}\n"
+        "  b: {type: passive_object, geometry: disk, radius: 30, x: 980, y: 500}\n",
+        kSquare, scene);
+    EXPECT_EQ(fixed.warnings, Lines{"x.yaml:8: objects.b.x: 'b' at (980, 500) overlaps 'a' by 30.0 mm"});
+}
+
+TEST(Overlaps, AcrossTheSeamAreAvoidedByEveryFormation) {
+    std::string const pillar =
+        "  pillar: {type: passive_object, geometry: disk, radius: 150, x: 10, y: 20, body_fixed: true}\n";
+    std::string const bar =
+        "  bar: {type: passive_object, geometry: rectangle, body_width: 300, body_height: 60, x: 500, y: 985}\n";
+    for (std::string const& formation : formation_names()) {
+        if (formation == "imported") {
+            continue;
+        }
+        std::string const scene =
+            "arena_file: arena.csv\narena_surface: 1e6\nboundary_condition: periodic\n"
+            "initial_formation: " +
+            formation + "\nformation_cluster_at_center: false\nobjects:\n";
+        std::string const robots = "{type: pogobot, geometry: disk, radius: 20, nb: 40";
+        for (std::string const& own : {std::string("}\n"), ", initial_formation: " + formation + "}\n",
+                                       std::string(", area: [[0, 0], [1000, 0], [1000, 1000], [0, 1000]]}\n")}) {
+            Built const built = build("  it: " + robots + own + pillar + bar, kSquare, scene);
+            ASSERT_EQ(built.error, "no error") << formation << own;
+            for (Object const& it : built.of("it")) {
+                Vec2 const place = built.place(it);
+                EXPECT_GE(length(minimum_image(built.world, {10, 20}, place)), 170.0F) << formation << own;
+                Vec2 const to_bar = minimum_image(built.world, {500, 985}, place);
+                Vec2 const beyond{std::max(std::abs(to_bar.x) - 150.0F, 0.0F),
+                                  std::max(std::abs(to_bar.y) - 30.0F, 0.0F)};
+                EXPECT_GE(length(beyond), 20.0F) << formation << own;
+            }
+        }
+    }
 }
 
 TEST(FixedBody, StaysWhereItIsWhateverHitsIt) {

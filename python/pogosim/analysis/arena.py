@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.periodic import minimum_image
+
 if TYPE_CHECKING:
     import shapely
 
@@ -33,6 +35,11 @@ class Arena:
         low, high = self.bounds_mm
         return np.asarray(high - low)
 
+    @property
+    def period_mm(self) -> Floats | None:
+        """Width and height after which a periodic arena repeats; None if it has walls."""
+        return self.size_mm if self.is_periodic else None
+
     def shape(self) -> shapely.Polygon:
         """Floor of the arena as a shapely polygon, with holes; self-crossing outlines are mended as GEOS does it."""
         import shapely
@@ -49,8 +56,7 @@ class Arena:
 
     def minimum_image(self, offset_mm: npt.ArrayLike) -> Floats:
         """Return the shortest of all images of an offset. Shape (..., 2) to the same; unchanged unless periodic."""
-        offset = np.asarray(offset_mm, dtype=float)
-        return offset - self.size_mm * np.round(offset / self.size_mm) if self.is_periodic else offset
+        return minimum_image(offset_mm, self.period_mm)
 
     def wrap(self, position_mm: Floats) -> Floats:
         """Return positions in the box of a periodic arena, lower borders included. Others stay. Shape (..., 2), mm."""

@@ -8,6 +8,7 @@ for run in trajectories_of(rows):
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,6 +23,7 @@ from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.errors import AnalysisError
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.configuration_values import number
+from pogosim.periodic import steps_of
 from pogosim.scene import POGOBOT_RADIUS_MM, read_categories
 from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
@@ -51,6 +53,7 @@ class Trajectories:
     rows: pd.DataFrame  # all that the file has on this run
     radius_mm: float  # of a robot
     reach_mm: float  # between the centres of two robots that count as neighbours: communication_radius + 2 radius
+    top_speed_mm_s: float | None = None  # of a robot; None: the file does not say
 
     @cached_property
     def is_there(self) -> npt.NDArray[np.bool_]:
@@ -251,7 +254,16 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         rows=rows,
         radius_mm=radius_mm,
         reach_mm=reach_mm,
+        top_speed_mm_s=top_speed_of(category, setting),
     )
+
+
+def top_speed_of(category: str, setting: Callable[[str], Any]) -> float | None:
+    """Return how fast the robots of a category drive, in mm/s; None where nothing says so, or they do not drive."""
+    if setting(f"objects.{category}.type") != "pogobot":
+        return None
+    speed = number(setting(f"objects.{category}.max_linear_speed"), math.nan)
+    return speed if math.isfinite(speed) else None
 
 
 def sizes_of(category: str, setting: Callable[[str], Any]) -> tuple[float, float]:
@@ -311,6 +323,9 @@ def unwrapped(run: Trajectories) -> Floats:
     Returns:
         Positions, shape (T, N, 2), mm; the first one of each robot is in the arena. Those of the file if its arena has
         walls.
+
+    Warns:
+        AmbiguousStepsWarning: Robots are so fast that another image may be the true one.
     """
     return run.path_mm
 
@@ -322,7 +337,8 @@ def unwrapped_path(run: Trajectories) -> Floats:
     last = np.where(run.is_there, np.arange(len(run.time_s))[:, None], 0)
     np.maximum.accumulate(last, axis=0, out=last)  # the time of the last position up to now
     filled = np.take_along_axis(run.position_mm, last[:, :, None], axis=0)
-    steps = run.arena.minimum_image(np.diff(filled, axis=0))
+    duration = np.where(run.is_there[1:], run.time_s[1:, None] - run.time_s[last[:-1]], np.nan)
+    steps = steps_of(np.diff(filled, axis=0), duration, run.arena.period_mm, run.top_speed_mm_s)
     first = np.take_along_axis(run.position_mm, np.argmax(run.is_there, axis=0)[None, :, None], axis=0)
     path = first + np.concatenate([np.zeros_like(first), np.cumsum(np.nan_to_num(steps), axis=0)])
     return np.where(run.is_there[:, :, None], path, np.nan)

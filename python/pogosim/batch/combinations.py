@@ -11,38 +11,26 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from pogosim.batch.configuration import HIERARCHICAL_OPTIONS
-from pogosim.batch.options import OptionsError, expand_batch_options, offers_options, shown
+from pogosim.batch.option_words import (
+    CHOICES,
+    DEFAULT_ALTERNATIVE,
+    HIERARCHICAL_OPTIONS,
+    NAME,
+    NOT_EXPANDED,
+    CombinationsError,
+    OptionsError,
+    check_options,
+    offers_options,
+    shown,
+)
+from pogosim.batch.options import expand_batch_options
 
-# In the configuration of a combination: the names of the chosen alternatives, by the dotted path of their map.
-CHOICES = "_batch_choice_names"
-
-NAME = "name"
-DEFAULT_ALTERNATIVE = "default"
-# Keys that are no part of a run's world.
-NOT_EXPANDED = ("result_filename_format", "result_new_columns", "optimization", CHOICES)
 MAX_COMBINATIONS = 1_000_000
 MAX_DEPTH = 200
 
 Choices = dict[str, str]
 # The value of a node in one combination, the alternatives chosen in it, and the keys that name them.
 Variant = tuple[Any, Choices, Choices]
-
-
-class CombinationsError(OptionsError):
-    """Options are wrong, or too many.
-
-    Attributes:
-        path: Where: keys from the top level on.
-    """
-
-    def __init__(self, path: tuple[str, ...], message: str) -> None:
-        super().__init__(message)
-        self.path = path
-
-    def __str__(self) -> str:
-        """Return the path and what is wrong there."""
-        return f"{'.'.join(self.path)}: {self.args[0]}" if self.path else str(self.args[0])
 
 
 def overlay(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
@@ -148,6 +136,7 @@ def combinations_of(configuration: dict[str, Any]) -> list[dict[str, Any]]:
     Raises:
         CombinationsError: Options are wrong, or there are more than a million combinations.
     """
+    check_options(configuration)
     combinations = []
     for value, choices, names in variants_of(configuration, ()):
         combination = copy.deepcopy(value)

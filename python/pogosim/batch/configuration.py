@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError, check_options
 from pogosim.yaml_1_2 import (
     WRONG_VALUES,
     ConfigurationDumper,
@@ -19,8 +20,6 @@ from pogosim.yaml_1_2 import (
     dump_yaml,
     problem_of,
 )
-
-HIERARCHICAL_OPTIONS = "batch_hierarchical_options"
 
 # As in the simulator: few aliases of aliases can stand for more values than memory holds.
 MAX_VALUES = 1_000_000
@@ -122,11 +121,30 @@ class Configuration:
         for name, (_, value) in entries.items():
             self.take_repeated_keys(value, (*path, name))
 
-    def where(self, path: Sequence[str]) -> str:
-        """Return where an entry stands: "conf/a.yaml:12: objects.robots.nb"; of all, the name of the file."""
-        if not path:
-            return str(self.path)
-        node, line = self.root, 1
+    def check_options(self) -> None:
+        """Raise BatchError for slips in the keys of options."""
+        try:
+            check_options(self.entries)
+        except CombinationsError as error:
+            raise self.error(error) from None
+
+    def error(self, wrong: CombinationsError) -> BatchError:
+        """Return the error of options, with the place of what is wrong."""
+        return BatchError(f"{self.where(wrong.path, wrong.key)}: {wrong.args[0]}")
+
+    def where(self, path: Sequence[str], key: str = "") -> str:
+        """Return where an entry stands: "conf/a.yaml:12: objects.robots.nb"; of all, the name of the file.
+
+        Args:
+            path: Of the entry.
+            key: A key in it, whose line is given; empty: the line of the entry.
+        """
+        line = self.line_at([*path, key] if key else path)
+        return f"{self.path}{f':{line}' if line else ''}{': ' if path else ''}{'.'.join(path)}"
+
+    def line_at(self, path: Sequence[str]) -> int:
+        """Return the line of an entry, or of the last that there is on the way to it; 0 of the whole file."""
+        node, line = self.root, 0
         for step in path:
             if isinstance(node, yaml.MappingNode):
                 pair = next(((key, value) for key, value in node.value if str(key.value) == step), None)
@@ -138,7 +156,7 @@ class Configuration:
                 line = line_of(node)
             else:
                 break
-        return f"{self.path}:{line}: {'.'.join(path)}"
+        return line or (1 if path else 0)
 
 
 def line_of(node: yaml.Node) -> int:

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.combinations import CHOICES
 from pogosim.batch.errors import BatchError, cannot
 from pogosim.batch.names import COLUMNS, FORMAT
+from pogosim.batch.option_words import CHOICES
 from pogosim.yaml_1_2 import dump_yaml
 
 # Keys that say where results go, not what they are.

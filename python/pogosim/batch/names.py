@@ -9,9 +9,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any
 
-from pogosim.batch.combinations import CHOICES
 from pogosim.batch.errors import is_text
-from pogosim.batch.options import shown
+from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.yaml_1_2 import dump_yaml
 

@@ -6,21 +6,20 @@ import math
 from decimal import Decimal
 from typing import Any
 
-LIST = "batch_options"
-RANGE = "batch_options_range"
-DEFAULT = "default_option"
-DOMAIN = "optimization_domain"
-RANGE_KEYS = ("start", "stop", "step", "inclusive", "type")
+from pogosim.batch.option_words import (
+    DEFAULT,
+    DOMAIN,
+    LIST,
+    RANGE,
+    RANGE_WORDS,
+    OptionsError,
+    offers_options,
+    refuse_other_keys,
+    refuse_unknown,
+    shown,
+)
+
 MAX_VALUES = 1_000_000
-
-
-class OptionsError(ValueError):
-    """The options of a node are wrong; says what was expected and what to write."""
-
-
-def offers_options(node: Any) -> bool:
-    """Tell whether a node stands for a value to choose: what the simulator replaces by `default_option`."""
-    return isinstance(node, dict) and any(key in node for key in (DEFAULT, LIST, RANGE, DOMAIN))
 
 
 def expand_batch_options(node: Any) -> list[Any]:
@@ -39,6 +38,7 @@ def expand_batch_options(node: Any) -> list[Any]:
     """
     if not offers_options(node):
         return [node]
+    refuse_other_keys(node, ())
     if LIST in node and RANGE in node:
         raise OptionsError(f"expected either {LIST} or {RANGE}, found both; remove one")
     if LIST in node:
@@ -49,6 +49,19 @@ def expand_batch_options(node: Any) -> list[Any]:
         return [node[DEFAULT]]
     domain = node[DOMAIN]
     return [domain["init"]] if isinstance(domain, dict) and "init" in domain else [node]
+
+
+def single_value(node: Any) -> Any:
+    """Return the value that a single run takes: `default_option`, else the start of a search, else None.
+
+    Raises:
+        OptionsError: The options have another key.
+    """
+    if not offers_options(node):
+        return node
+    refuse_other_keys(node, ())
+    domain = node.get(DOMAIN)
+    return node[DEFAULT] if DEFAULT in node else domain.get("init") if isinstance(domain, dict) else None
 
 
 def listed(options: Any) -> list[Any]:
@@ -64,8 +77,7 @@ def expand_range(options: Any) -> list[Any]:
     """Return the values of `batch_options_range`; calculated in decimals, so 3 steps of 0.1 are 0.3."""
     if not isinstance(options, dict):
         raise OptionsError(f"{RANGE}: expected a map, such as {{start: 0, stop: 10, step: 1}}, found {shown(options)}")
-    if unknown := [key for key in options if key not in RANGE_KEYS]:
-        raise OptionsError(f"{RANGE}: unknown key '{unknown[0]}'; known are {', '.join(RANGE_KEYS)}")
+    refuse_unknown(options, RANGE_WORDS, (RANGE,))
     start, stop, step = (number_in(options, key) for key in ("start", "stop", "step"))
     if step == 0:
         raise OptionsError(f"{RANGE}: step is 0; give a step from start towards stop")
@@ -99,9 +111,3 @@ def number_in(options: dict[str, Any], key: str) -> Decimal:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not -1e300 < value < 1e300:
         raise OptionsError(f"{RANGE}: {key}: expected a number, found {shown(value)}")
     return Decimal(str(value))
-
-
-def shown(value: Any) -> str:
-    """Return a value as short text for a message."""
-    text = "nothing" if value is None else f"'{value}'" if isinstance(value, str) else str(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -13,11 +13,12 @@ from typing import Any
 import pandas as pd
 
 from pogosim.batch.backends import Do, Workers
-from pogosim.batch.combinations import CombinationsError, combinations_of
+from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import find_program, program_digest, world_digest
 from pogosim.batch.names import new_columns, value_at
+from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import Part, RunFile, check_columns, schema_of, write_results
 from pogosim.batch.run import Outcome, Task, place_in
@@ -168,7 +169,7 @@ class Runs:
         try:
             combined = combinations_of(entries)
         except CombinationsError as error:
-            raise BatchError(f"{self.configuration.where(error.path)}: {error.args[0]}") from None
+            raise self.configuration.error(error) from None
         combinations = []
         for combination in combined:
             check_logs_data(combination, self.configuration)

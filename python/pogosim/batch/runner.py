@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.batch.backends import Workers
-from pogosim.batch.combinations import CombinationsError, combinations_of
+from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, one_line, tell
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
 from pogosim.batch.names import NamesError, file_name, is_linked_out, new_columns
+from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
@@ -113,7 +114,7 @@ class PogobotBatchRunner:
         try:
             return combinations_of(config)
         except CombinationsError as error:
-            raise BatchError(f"{self.configuration.where(error.path)}: {error.args[0]}") from None
+            raise self.configuration.error(error) from None
 
     def compute_output_filename(self, comb_config: dict[str, Any]) -> str:
         """Return the path of the file with the results of a combination. Several combinations may share a file."""

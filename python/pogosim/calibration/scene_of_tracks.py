@@ -13,10 +13,11 @@ import shapely.ops
 from pogosim.arenas import area_of, find_arena
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
+from pogosim.batch.options import single_value
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks
-from pogosim.configuration_values import default_option, number
+from pogosim.configuration_values import number
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
 from pogosim.scene import POGOBOT_RADIUS_MM, read_periodic, type_of
 
@@ -70,6 +71,7 @@ def read_scene(path: Path, category: str | None) -> Scene:
     """
     try:
         configuration = Configuration(path)
+        configuration.check_options()
     except BatchError as error:
         raise CalibrationError(str(error)) from None
     entries = configuration.entries
@@ -95,10 +97,10 @@ def arena_of(entries: dict[str, Any], path: Path) -> Outline:
     Raises:
         CalibrationError: They cannot be read.
     """
-    name = default_option(entries.get("arena_file"))
+    name = single_value(entries.get("arena_file"))
     if not isinstance(name, str):
         raise CalibrationError(f"{path} has no arena_file; expected the arena in which the robots were tracked")
-    area_mm2, stretch = (default_option(entries.get(key)) for key in ("arena_surface", "arena_stretch"))
+    area_mm2, stretch = (single_value(entries.get(key)) for key in ("arena_surface", "arena_stretch"))
     try:
         outline = scaled(read_arena(find_arena(name, path)), area_of(area_mm2, path), stretch=stretch is True)
     except ArenaError as error:

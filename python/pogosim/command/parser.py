@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
-from typing import NoReturn
+import warnings
+from collections.abc import Iterator
+from typing import Any, NoReturn
 
 from pogosim.lines import say_error
 
@@ -21,6 +24,25 @@ class Parser(argparse.ArgumentParser):
 def warn(prog: str, text: object) -> None:
     """Print a warning as one line."""
     say_error(f"{prog}: warning: {text}")
+
+
+@contextlib.contextmanager
+def warnings_told(prog: str, kind: type[Warning]) -> Iterator[None]:
+    """Print Python's warnings of a kind as lines of a command, each once."""
+    told = set()
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", kind)
+        show_others = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+            if not issubclass(category, kind):
+                show_others(message, category, *place, **more)
+            elif str(message) not in told:
+                told.add(str(message))
+                warn(prog, message)
+
+        warnings.showwarning = show
+        yield
 
 
 def complain(prog: str, problem: object) -> int:

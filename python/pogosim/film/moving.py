@@ -54,6 +54,7 @@ class Moving:
             links: Whether lines join robots near enough to hear each other.
         """
         swarm = recording.last
+        swarm.check_steps()
         self.tail_s = tail_s
         self.has_links = links
         self.swarm = swarm

@@ -84,6 +84,7 @@ def page_of(head: dict[str, Any], data: str, name: str) -> str:
 def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, list[str]]:
     """Return what the page knows of the run: its description, its tables as text, and what had to be left out."""
     swarm = recording.last
+    swarm.check_steps()
     bodies = timeline_of(recording, swarm.rows, ["object"], *span_s)
     packer = Packer()
     columns, warnings = column_tables(packer, bodies, recording)
@@ -161,8 +162,7 @@ def pose_tables(packer: Packer, timeline: Timeline) -> dict[str, Any]:
 
 def column_tables(packer: Packer, bodies: Timeline, recording: Recording) -> tuple[list[dict[str, Any]], list[str]]:
     """Add all columns that can be shown, colours of LEDs first; returns what they are, and what cannot be shown."""
-    is_periodic = recording.last.is_periodic
-    rows = with_speed(bodies.rows, bodies.high_mm - bodies.low_mm if is_periodic else None)
+    rows = with_speed(bodies.rows, recording.last.period_mm, recording.last.top_speed_mm_s)
     columns = [base_table(packer, bodies, recording)]
     warnings = []
     for name in rows.columns:
@@ -245,7 +245,7 @@ def light_tables(packer: Packer, recording: Recording, bodies: Timeline) -> list
         if key == before:
             continue
         before = key
-        opacity = layers.light_opacity(swarm.lamps, swarm.polygons, time_s, LIGHT_CELLS)
+        opacity = layers.light_opacity(swarm, time_s, LIGHT_CELLS)
         lights.append([int(index), packer.add(np.round(opacity * 255.0).astype(np.uint16).reshape(1, -1))])
     return lights
 

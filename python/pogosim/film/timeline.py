@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from pogosim.periodic import minimum_image
 from pogosim.picture.errors import PictureError
 from pogosim.picture.swarm import Recording
 from pogosim.scene import Floats, bounds
@@ -95,10 +96,8 @@ def between(start: Floats, end: Floats, share: float, size: Floats, is_periodic:
     Steps of more than half the arena are no way that a robot has gone: in a periodic arena they lead across the
     border, and elsewhere it stays at its start.
     """
-    step = end - start
-    if is_periodic:
-        step -= size * np.round(step / size)
-    else:
+    step = minimum_image(end - start, size if is_periodic else None)
+    if not is_periodic:
         near = np.all(np.abs(step) <= size / 2.0, axis=1, keepdims=True)
         step = np.where(near, step, 0.0)
     return np.asarray(start + share * step)

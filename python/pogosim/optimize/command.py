@@ -8,12 +8,13 @@ import sys
 from collections.abc import Sequence
 
 import pogosim
+from pogosim.ambiguity import AmbiguousStepsWarning
 from pogosim.batch.command_line import catch_signals
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
 from pogosim.batch.slurm_options import add_slurm_options
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, warnings_told
 from pogosim.lines import LineFormatter
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, check_optimizer
@@ -125,7 +126,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
         check_optimizer(settings.optimizer)
         from pogosim.optimize.execution import optimize  # takes a while
 
-        return optimize(parsed, configuration, settings)
+        with warnings_told(prog, AmbiguousStepsWarning):
+            return optimize(parsed, configuration, settings)
     except (OptimizeError, BatchError, OutputError, NamesError) as error:
         log.error("%s", error)
     except OSError as error:

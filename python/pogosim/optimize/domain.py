@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pogosim.batch.options import DEFAULT, DOMAIN, LIST, OptionsError, shown
+from pogosim.batch.option_words import DEFAULT, DOMAIN, DOMAIN_WORDS, LIST, OptionsError, refuse_unknown, shown
 
-KEYS = ("type", "min", "max", "init", "log", "choices")
 TYPES = ("int", "float", "categorical")
 LARGEST = 1e300
 LARGEST_WHOLE = 2**52  # so that positions from 0 to 1 tell whole numbers apart
@@ -162,8 +161,7 @@ def domain_of(node: dict[str, Any]) -> Domain:
         raise OptionsError(
             f"{DOMAIN}: expected a map such as {{type: int, min: 10, max: 1000}}, found {shown(entries)}"
         )
-    if unknown := [key for key in entries if key not in KEYS]:
-        raise OptionsError(f"{DOMAIN}: unknown key '{unknown[0]}'; known are {', '.join(KEYS)}")
+    refuse_unknown(entries, DOMAIN_WORDS, (DOMAIN,))
     choices = entries.get("choices", node.get(LIST))
     kind = entries.get("type", "categorical" if choices is not None else None)
     if kind not in TYPES:

@@ -9,8 +9,8 @@ import time
 from pathlib import Path
 
 from pogosim.batch.backends import Workers
-from pogosim.batch.combinations import CombinationsError
 from pogosim.batch.configuration import Configuration
+from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
 from pogosim.batch.slurm_options import slurm_jobs
@@ -73,7 +73,7 @@ def optimize(arguments: argparse.Namespace, configuration: Configuration, settin
     try:
         space = Space(configuration.entries)
     except CombinationsError as error:
-        raise OptimizeError(f"{configuration.where(error.path)}: {error.args[0]}") from None
+        raise configuration.error(error) from None
     objective = objective_of(settings)
     with_features = settings.optimizer in WITH_FEATURES
     if with_features and settings.qd_init_samples + 1 >= settings.max_evals:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from pogosim.batch.options import shown
+from pogosim.batch.option_words import shown
 from pogosim.optimize.errors import OptimizeError
 
 SECTION = "optimization"

@@ -11,9 +11,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.batch.combinations import NAME, NOT_EXPANDED, CombinationsError, alternatives_of, overlay
-from pogosim.batch.configuration import HIERARCHICAL_OPTIONS
-from pogosim.batch.options import DOMAIN, OptionsError
+from pogosim.batch.combinations import alternatives_of, overlay
+from pogosim.batch.option_words import (
+    DOMAIN,
+    HIERARCHICAL_OPTIONS,
+    NAME,
+    NOT_EXPANDED,
+    CombinationsError,
+    OptionsError,
+    check_options,
+)
 from pogosim.optimize.domain import Categorical, Domain, domain_of, has_init
 
 Floats = npt.NDArray[np.float64]
@@ -109,10 +116,11 @@ class Space:
         variables: In order of appearance; at least one. A point has as many coordinates, from 0 to 1.
 
     Raises:
-        CombinationsError: A domain is wrong, or there is none.
+        CombinationsError: Options or a domain are wrong, or there is no domain.
     """
 
     def __init__(self, entries: dict[str, Any]) -> None:
+        check_options(entries)
         self.entries = entries
         self.variables = with_own_names(variables_of(entries))
         if not self.variables:

@@ -14,7 +14,7 @@ from matplotlib.path import Path as Outline
 from pogosim.picture.links import links_at_end
 from pogosim.picture.palette import DARK_LED, DARK_WALL, EDGE, FLOOR, LAMPLIGHT, LINK, MAX_LAMPLIGHT, PAPER, WALL
 from pogosim.picture.swarm import RGB, Swarm
-from pogosim.scene import MEMBRANES, Category, Floats, Lamp, Shape, bounds, light_levels
+from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, light_levels
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500
@@ -77,6 +77,7 @@ def draw_arena(axes: Axes, polygons: list[Floats]) -> PathPatch:
 
 def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float, max_snapshots: int = MAX_SNAPSHOTS) -> None:
     """Draw the last `tail_s` seconds of all trajectories, fading into the past, from so many snapshots at most."""
+    swarm.check_steps()
     start_s = swarm.end_s - tail_s
     rows = swarm.rows[~is_membrane(swarm)]  # the pose of those is their first dot's
     recent = rows[rows["time"] >= start_s]
@@ -110,12 +111,11 @@ def placed(outline: Floats, position: Floats, angle: Floats) -> Floats:
     return np.asarray(turned_outline + position[:, None, :])
 
 
-def light_opacity(lamps: list[Lamp], polygons: list[Floats], time_s: float, cells: int = LIGHT_CELLS) -> Floats:
+def light_opacity(swarm: Swarm, time_s: float, cells: int = LIGHT_CELLS) -> Floats:
     """Opacity of the lamplight over the floor, where lamps shine more than where they shine least.
 
     Args:
-        lamps: Spots of light.
-        polygons: Outlines of the arena, mm.
+        swarm: With its lamps and its arena.
         time_s: Since the start of the run.
         cells: Along either side of the arena.
 
@@ -123,11 +123,12 @@ def light_opacity(lamps: list[Lamp], polygons: list[Floats], time_s: float, cell
         Shape (cells * cells,), row by row from the top left; 0 to 1 as shares of the greatest opacity. All 0 if
         the light is even.
     """
+    polygons = swarm.polygons
     low, high = bounds(polygons)
     share = (np.arange(cells) + 0.5) / cells
     x, y = np.meshgrid(*(low[:, None] + (high - low)[:, None] * share))
     points = np.column_stack([x.ravel(), y.ravel()])
-    levels = light_levels(lamps, polygons, points, time_s)
+    levels = light_levels(swarm.lamps, polygons, points, time_s, swarm.period_mm)
     inside = floor_outline(polygons).contains_points(points)
     darkest = levels[inside].min() if inside.any() else levels.min()
     brightest = levels.max()
@@ -139,7 +140,7 @@ def light_opacity(lamps: list[Lamp], polygons: list[Floats], time_s: float, cell
 def draw_light(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Brighten the floor where lamps shine more than where they shine least. An even light shows nothing."""
     low, high = bounds(swarm.polygons)
-    opacity = MAX_LAMPLIGHT * light_opacity(swarm.lamps, swarm.polygons, swarm.end_s)
+    opacity = MAX_LAMPLIGHT * light_opacity(swarm, swarm.end_s)
     if not opacity.any():
         return
     image = np.concatenate([np.full((len(opacity), 3), LAMPLIGHT), opacity[:, None]], axis=1)

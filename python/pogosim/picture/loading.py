@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from pogosim.ambiguity import AmbiguousStepsWarning
 from pogosim.command.parser import warn
 from pogosim.picture.errors import PictureError
 from pogosim.picture.options import cannot_read
@@ -28,7 +29,10 @@ def load(options: argparse.Namespace, prog: str) -> Recording:
         except OSError as error:
             raise PictureError(cannot_read(options.data, error)) from error
     for warning in caught:
-        warn(prog, warning.message)
+        if issubclass(warning.category, AmbiguousStepsWarning):
+            warnings.warn(warning.message, stacklevel=2)  # which may come again: see report()
+        else:
+            warn(prog, warning.message)
     if recording.left_out:
         warn(prog, f"{options.data} holds {recording.left_out}")
     return recording

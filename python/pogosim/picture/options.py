@@ -7,7 +7,8 @@ import math
 import os
 from collections.abc import Callable
 
-from pogosim.command.parser import complain
+from pogosim.ambiguity import AmbiguousStepsWarning
+from pogosim.command.parser import complain, warnings_told
 from pogosim.outputs import OutputError
 from pogosim.picture.errors import PictureError
 
@@ -49,7 +50,8 @@ def cannot_read(data: str, error: OSError) -> str:
 def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
     """Make an output; returns the exit code: 0, or 2 after a line that says why it could not be made."""
     try:
-        make()
+        with warnings_told(prog, AmbiguousStepsWarning):
+            make()
     except (PictureError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:

@@ -5,29 +5,48 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from pogosim.periodic import steps_of
 from pogosim.scene import Floats
 
 SPEED = "speed"  # mm/s
 
 
-def with_speed(rows: pd.DataFrame, size_mm: Floats | None) -> pd.DataFrame:
+def object_steps(
+    rows: pd.DataFrame, period_mm: Floats | None, top_speed_mm_s: float | None
+) -> tuple[pd.DataFrame, Floats, Floats]:
+    """Return the steps of all objects since their record before; see `steps_of` for the warning.
+
+    Args:
+        rows: With columns object, time, x and y.
+        period_mm: Width and height of a periodic arena, across whose borders the shorter way counts. None: walls.
+        top_speed_mm_s: Of the objects. None: unknown.
+
+    Returns:
+        The rows by object and time, n of them; their steps, shape (n, 2), mm, and the time since the record before,
+        shape (n,), s; NaN in the first record of each object.
+    """
+    ordered = rows.sort_values(["object", "time"], kind="stable")
+    offset = np.diff(ordered[["x", "y"]].to_numpy(dtype=float), axis=0, prepend=np.nan)
+    duration = np.diff(ordered["time"].to_numpy(dtype=float), prepend=np.nan)
+    is_first = np.diff(ordered["object"].to_numpy(), prepend=-1) != 0
+    offset[is_first], duration[is_first] = np.nan, np.nan
+    return ordered, steps_of(offset, duration, period_mm, top_speed_mm_s), duration
+
+
+def with_speed(rows: pd.DataFrame, period_mm: Floats | None, top_speed_mm_s: float | None) -> pd.DataFrame:
     """Add a column `speed`: the distance from an object's place in the record before, by the time since then, mm/s.
 
     Args:
         rows: With columns object, time, x and y; a column `speed` of the file's own stays as it is.
-        size_mm: Width and height of a periodic arena, across whose borders the shorter way counts. None: walls.
+        period_mm: Width and height of a periodic arena, across whose borders the shorter way counts. None: walls.
+        top_speed_mm_s: Of the objects. None: unknown.
 
     Returns:
         The rows; NaN in the first record of each object.
     """
     if SPEED in rows:
         return rows
-    ordered = rows.sort_values(["object", "time"], kind="stable")
-    steps = np.diff(ordered[["x", "y"]].to_numpy(dtype=float), axis=0, prepend=np.nan)
-    if size_mm is not None:
-        steps -= size_mm * np.round(steps / size_mm)
-    duration = np.diff(ordered["time"].to_numpy(dtype=float), prepend=np.nan)
-    is_first = np.diff(ordered["object"].to_numpy(), prepend=-1) != 0
+    ordered, steps, duration = object_steps(rows, period_mm, top_speed_mm_s)
     with np.errstate(invalid="ignore", divide="ignore"):
-        speed = np.where(is_first | ~(duration > 0.0), np.nan, np.hypot(*steps.T) / duration)
+        speed = np.where(duration > 0.0, np.hypot(*steps.T) / duration, np.nan)
     return rows.assign(**{SPEED: pd.Series(speed, index=ordered.index)})

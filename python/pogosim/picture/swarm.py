@@ -15,7 +15,7 @@ from pogosim.picture.colouring import Colouring, colouring_of
 from pogosim.picture.errors import PictureError
 from pogosim.picture.palette import NO_LED, led_colours
 from pogosim.picture.selection import checked, one_run
-from pogosim.picture.speed import SPEED, with_speed
+from pogosim.picture.speed import SPEED, object_steps, with_speed
 from pogosim.scene import (
     COMMUNICATION_RADIUS_MM,
     POGOBOT_RADIUS_MM,
@@ -23,10 +23,12 @@ from pogosim.scene import (
     Floats,
     Lamp,
     Shape,
+    bounds,
     ray_names,
     read_categories,
     read_lamps,
     read_periodic,
+    read_top_speed,
 )
 from pogosim.utils import load_dataframe
 
@@ -51,7 +53,19 @@ class Swarm:
     rays: list[str]  # categories of lighthouses
     end_s: float
     is_periodic: bool = False
+    top_speed_mm_s: float | None = None  # of the robots that drive; None: the file does not say
     colouring: Colouring | None = None  # what colours mean; None: LEDs
+
+    @property
+    def period_mm(self) -> Floats | None:
+        """Width and height after which a periodic arena repeats; None if it has walls."""
+        low, high = bounds(self.polygons)
+        return high - low if self.is_periodic else None
+
+    def check_steps(self) -> None:
+        """Warn (AmbiguousStepsWarning) if objects need not have gone the shortest way between their records."""
+        if self.is_periodic:
+            object_steps(self.rows, self.period_mm, self.top_speed_mm_s)
 
     def category(self, name: str) -> Category:
         """Look up how the objects of a category look."""
@@ -139,8 +153,9 @@ def read_recording(
     categories = read_categories(configuration)
     rows = completed(with_defaults(rows))
     is_periodic = read_periodic(configuration, metadata.get("resolved_configuration"))
+    top_speed_mm_s = read_top_speed(metadata.get("resolved_configuration") or configuration)
     if color_by == SPEED:
-        rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic and polygons else None)
+        rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic and polygons else None, top_speed_mm_s)
     rows, colouring = coloured(rows, categories, color_by)
 
     # In files of earlier versions, walls have no pose.
@@ -160,6 +175,7 @@ def read_recording(
         rays=ray_names(configuration),
         end_s=float(objects["time"].iloc[-1]),
         is_periodic=is_periodic,
+        top_speed_mm_s=top_speed_mm_s,
         colouring=colouring,
     )
     return Recording(last, rows[is_wall], left_out)

@@ -11,6 +11,8 @@ from typing import Any
 from pogosim.analysis.arena import Arena
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, setting_of, sizes_of, with_arenas_told_apart
+from pogosim.batch.option_words import OptionsError
+from pogosim.batch.options import single_value
 from pogosim.geometry.arena_file import ArenaError, read_arena, scaled
 from pogosim.utils import parse_configuration
 
@@ -36,8 +38,10 @@ def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: arg
     """Return a run with the arena that a configuration says, and its robots' sizes."""
 
     def value(name: str) -> Any:
-        found = run.labels.get(name, configuration.get(name))
-        return found.get("default_option") if isinstance(found, dict) else found  # of a batch
+        try:
+            return single_value(run.labels.get(name, configuration.get(name)))  # of a batch
+        except OptionsError as error:
+            raise AnalysisError(f"{options.config}: {name}: {error}") from None
 
     metadata = {"configuration": configuration}
     if value("arena_file") is None:

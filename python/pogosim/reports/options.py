@@ -13,9 +13,10 @@ import pyarrow
 
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
-from pogosim.command.parser import complain, warn
+from pogosim.command.parser import complain, warn, warnings_told
 from pogosim.lines import say
 from pogosim.outputs import OutputError, leads_to, told
+from pogosim.periodic import AmbiguousStepsWarning
 from pogosim.several_files import files_that_fit, is_pattern
 from pogosim.utils import load_dataframe
 
@@ -99,7 +100,8 @@ def labelled(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
 def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Namespace, str], None]) -> int:
     """Do an analysis, and say in one line where its results are, or what is wrong. Returns the exit code, 0 or 2."""
     try:
-        work(options, prog)
+        with warnings_told(prog, AmbiguousStepsWarning):
+            work(options, prog)
         say(f"written to {options.output_dir}")
     except (AnalysisError, OutputError) as error:
         return complain(prog, error)

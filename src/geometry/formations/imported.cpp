@@ -2,9 +2,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -140,10 +142,12 @@ public:
                             "found ({:g}, {:g}) and ({:g}, {:g})",
                             min.x, min.y, max.x, max.y));
         }
-        Box const box = task.domain.bounds;
+        is_given_ = true;
         source_ = {min, max};
-        target_ = box;
+        target_ = task.domain.bounds;
     }
+
+    bool is_given() const { return is_given_; }
 
     Vec2 to_mm(ImportedPose const& pose) const {
         Vec2 const from = source_.size();
@@ -153,9 +157,65 @@ public:
     }
 
 private:
+    bool is_given_ = false;
     Box source_{{0.0F, 0.0F}, {1.0F, 1.0F}};
     Box target_{{0.0F, 0.0F}, {1.0F, 1.0F}};
 };
+
+bool is_inside(PlacementTask const& task, Vec2 point_mm) {
+    return task.periodic ? task.domain.bounds.contains(point_mm) : task.domain.contains(point_mm);
+}
+
+struct Unit {
+    char const* name;
+    float mm;
+};
+constexpr Unit kMetres{"metres", 1000.0F};
+constexpr std::array kUnits{kMetres, Unit{"centimetres", 10.0F}};
+
+/// Whether all numbers of the file would be places of the arena in this unit.
+bool fits(PlacementTask const& task, std::vector<Vec2> const& places, Unit const& unit) {
+    return std::ranges::all_of(places, [&](Vec2 place) { return is_inside(task, unit.mm * place); });
+}
+
+/// How to say that the file has another unit, and which it may be.
+std::string remedy(PlacementTask const& task, std::vector<Vec2> const& places) {
+    auto const unit = std::ranges::find_if(kUnits, [&](Unit const& own) { return fits(task, places, own); });
+    std::string const what =
+        unit == kUnits.end() ? "if the file is not in mm," : fmt::format("the file looks like one in {}:", unit->name);
+    return what +
+           " imported_formation_min_coords and imported_formation_max_coords say which of its coordinates are the "
+           "corners of the arena's bounding box";
+}
+
+/// Throws when a place is outside, or when all are so near to each other that the unit must be a wrong one.
+void check_places(PlacementTask const& task, std::vector<ImportedPose> const& poses, std::vector<Vec2> const& places,
+                  bool has_frame) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (std::isnan(places[i].x) || std::isnan(places[i].y)) {
+            throw ConfigError(fmt::format("{}:{}: the row has no position (x {:g}, y {:g})", task.spec.filename,
+                                          poses[i].row, poses[i].x, poses[i].y));
+        }
+    }
+    auto const outside = [&](Vec2 place) { return !is_inside(task, place); };
+    if (auto const first = std::ranges::find_if(places, outside); first != places.end()) {
+        auto const count = std::ranges::count_if(places, outside);
+        throw ConfigError(fmt::format("{}:{}: the position ({:g}, {:g}) mm is outside the walls of {}{}{}",
+                                      task.spec.filename, poses[static_cast<std::size_t>(first - places.begin())].row,
+                                      first->x, first->y, arena_text(task.domain),
+                                      count > 1 ? fmt::format(", and {} of {} are", count, places.size()) : "",
+                                      has_frame ? "" : "; " + remedy(task, places)));
+    }
+    Vec2 const extent = bounding_box(places).size();
+    float const smallest_mm = 2.0F * *std::ranges::min_element(task.radii_mm) / kPlacementMargin;
+    bool const all_overlap = places.size() > 1 && std::max(extent.x, extent.y) < smallest_mm;
+    if (all_overlap && !has_frame && fits(task, places, kMetres)) {
+        throw ConfigError(
+            fmt::format("{}: all {} positions are within {:.3g} x {:.3g} mm, less than an object is wide "
+                        "({:.4g} mm); {}",
+                        task.spec.filename, places.size(), extent.x, extent.y, smallest_mm, remedy(task, places)));
+    }
+}
 
 }  // namespace
 
@@ -181,15 +241,14 @@ std::vector<Placement> place_imported(PlacementTask const& task) {
     poses.resize(count);
 
     ImportedFrame const frame(task);
+    std::vector<Vec2> places;
+    std::ranges::transform(poses, std::back_inserter(places),
+                           [&](ImportedPose const& pose) { return frame.to_mm(pose); });
+    check_places(task, poses, places, frame.is_given());
     std::vector<Placement> placements;
-    for (ImportedPose const& pose : poses) {
-        Vec2 const place = frame.to_mm(pose);
-        if (!task.domain.contains(place)) {
-            throw ConfigError(fmt::format("{}:{}: the position ({:g}, {:g}) mm is outside the walls of {}",
-                                          task.spec.filename, pose.row, place.x, place.y, arena_text(task.domain)));
-        }
+    for (std::size_t i = 0; i < poses.size(); ++i) {
         // A heading that the file does not give stays NaN.
-        placements.push_back({place, wrap_angle(static_cast<float>(pose.heading_rad))});
+        placements.push_back({places[i], wrap_angle(static_cast<float>(poses[i].heading_rad))});
     }
     return placements;
 }

@@ -31,6 +31,7 @@ struct PlacementTask {
     PoseReader const& read_feather;
     std::string_view ground = "arena";  // what messages call the domain
     std::string_view remedy = "enlarge arena_surface";
+    bool periodic = false;  // all of the domain's bounding box is inside
 };
 
 /// Random sequential addition: each object at a uniform random place where it fits. B. Widom, "Random sequential

@@ -1,0 +1,201 @@
+"""The keys with which a configuration offers alternative values, and slips in them.
+
+A slip would leave out a part of a study without a word. The simulator has the same lists (src/config/option_keys.hpp),
+and refuses the same (src/config/check_options.cpp).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pogosim.nearest_name import advice, edit_distance
+
+DEFAULT = "default_option"
+LIST = "batch_options"
+RANGE = "batch_options_range"
+DOMAIN = "optimization_domain"
+HIERARCHICAL_OPTIONS = "batch_hierarchical_options"
+
+# Keys of a map that replaces a value, of its ranges, and of its domains.
+VALUE_WORDS = (DEFAULT, LIST, RANGE, DOMAIN)
+RANGE_WORDS = ("start", "stop", "step", "inclusive", "type")
+DOMAIN_WORDS = ("type", "min", "max", "init", "log", "choices")
+
+# Keys of a map of alternatives; all others are their names.
+NAME = "name"
+DEFAULT_ALTERNATIVE = "default"
+
+# In the configuration of a combination: the names of the chosen alternatives, by the dotted path of their map.
+CHOICES = "_batch_choice_names"
+# Keys of the top level that are no part of a run's world; nothing in them is an option.
+TOOL_KEYS = ("result_filename_format", "result_new_columns", "optimization")
+NOT_EXPANDED = (*TOOL_KEYS, CHOICES)
+
+SLIP = 2  # letters at most
+
+Path = tuple[str, ...]
+
+
+class OptionsError(ValueError):
+    """The options of a node are wrong; says what was expected and what to write."""
+
+
+class CombinationsError(OptionsError):
+    """Options are wrong, or too many.
+
+    Attributes:
+        path: Where: keys from the top level on.
+        key: The entry there that is wrong; empty: all of it.
+    """
+
+    def __init__(self, path: Path, message: str, key: str = "") -> None:
+        super().__init__(message)
+        self.path = path
+        self.key = key
+
+    def __str__(self) -> str:
+        """Return the path and what is wrong there."""
+        return f"{'.'.join(self.path)}: {self.args[0]}" if self.path else str(self.args[0])
+
+
+def shown(value: Any) -> str:
+    """Return a value as short text for a message."""
+    text = "nothing" if value is None else f"'{value}'" if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def offers_options(node: Any) -> bool:
+    """Tell whether a node stands for a value to choose: what the simulator replaces by `default_option`."""
+    return isinstance(node, dict) and any(key in node for key in VALUE_WORDS)
+
+
+def is_slip_of(word: str, key: str) -> bool:
+    """Tell whether a key is a word but for one or two letters."""
+    return key != word and abs(len(key) - len(word)) <= SLIP and edit_distance(key, word) <= SLIP
+
+
+def misspelt_option(key: Any) -> str | None:
+    """Return the word that a key is a slip of; None if it is one of them, or like none."""
+    words = (*VALUE_WORDS, HIERARCHICAL_OPTIONS)
+    if not isinstance(key, str) or key in words:
+        return None
+    return next((word for word in words if is_slip_of(word, key)), None)
+
+
+def refuse_unknown(entries: Mapping[Any, Any], words: Iterable[str], path: Path = (), beside: str = "") -> None:
+    """Raise CombinationsError for the first key that is none of the words, naming the nearest."""
+    words = tuple(words)
+    for key in entries:
+        if key not in words:
+            where = f" beside '{beside}'" if beside else ""
+            raise CombinationsError(path, f"unknown key {shown(str(key))}{where}{advice(str(key), words)}", str(key))
+
+
+def refuse_other_keys(node: Mapping[Any, Any], path: Path) -> None:
+    """Raise CombinationsError for the first key of a map of options that is none of its words."""
+    beside = next(key for key in node if key in VALUE_WORDS)
+    refuse_unknown(
+        {key: value for key, value in node.items() if key != HIERARCHICAL_OPTIONS}, VALUE_WORDS, path, beside
+    )
+
+
+def check_options(entries: dict[str, Any]) -> None:
+    """Look for slips in all keys of options.
+
+    Raises:
+        CombinationsError: A map of options has another key, or their ranges and domains do; or a key is a slip of these
+            words and so makes a map that is none. Names that users choose may be like them, those of parameters, of
+            categories and of alternatives, unless all of a map looks like options.
+    """
+    for key in entries:
+        if slip := next((word for word in TOOL_KEYS if is_slip_of(word, str(key))), None):
+            raise CombinationsError((), f"unknown key {shown(str(key))}; did you mean '{slip}'?", str(key))
+    look_at(entries, (), "top level")
+
+
+def look_at(node: Any, path: Path, names: str) -> None:
+    """Look at a node and at all below it; `names` says who chooses its keys.
+
+    "top level": the simulator, and tools. "": the simulator. "categories": the user, but not those below. "parameters":
+    the user, and those below, too.
+    """
+    if isinstance(node, list):
+        for number, item in enumerate(node):
+            look_at(item, (*path, str(number)), below(names))
+    if not isinstance(node, dict):
+        return
+    if offers_options(node):
+        look_at_options(node, path, names)
+    else:
+        for key, value in node.items():
+            if key != HIERARCHICAL_OPTIONS and not (names == "top level" and key in NOT_EXPANDED):
+                if (word := misspelt_option(key)) and not may_be_a_name(key, word, node, names):
+                    raise CombinationsError(path, f"unknown key '{key}'; did you mean '{word}'?", str(key))
+                is_named = names == "top level" and key in ("objects", "parameters")
+                inner = {"objects": "categories", "parameters": "parameters"}[key] if is_named else below(names)
+                look_at(value, (*path, str(key)), inner)
+    if isinstance(node.get(HIERARCHICAL_OPTIONS), dict):
+        look_at_alternatives(node[HIERARCHICAL_OPTIONS], (*path, HIERARCHICAL_OPTIONS), names)
+
+
+def below(names: str) -> str:
+    """Return who chooses the keys of what is below."""
+    return names if names == "parameters" else ""
+
+
+def look_at_options(node: dict[str, Any], path: Path, names: str) -> None:
+    """Look at a map of options, and at the values that they offer, which stand where the map does."""
+    refuse_other_keys(node, path)
+    if isinstance(node.get(RANGE), dict):
+        refuse_unknown(node[RANGE], RANGE_WORDS, (*path, RANGE))
+    values = [((*path, DEFAULT), node.get(DEFAULT)), *listed(node.get(LIST), (*path, LIST))]
+    if isinstance(domain := node.get(DOMAIN), dict):
+        refuse_unknown(domain, DOMAIN_WORDS, (*path, DOMAIN))
+        values += [((*path, DOMAIN, "init"), domain.get("init"))]
+        values += listed(domain.get("choices"), (*path, DOMAIN, "choices"))
+    for where, value in values:
+        look_at(value, where, names)
+
+
+def listed(values: Any, path: Path) -> list[tuple[Path, Any]]:
+    """Return the items of a list with their paths."""
+    return [((*path, str(number)), value) for number, value in enumerate(values)] if isinstance(values, list) else []
+
+
+def may_be_a_name(key: str, word: str, node: dict[Any, Any], names: str) -> bool:
+    """Tell whether a key of a map that is like a word of options may be a name that the user has chosen."""
+    value = node[key]
+    if names == "top level":
+        return not isinstance(value, (dict, list))  # perhaps the name of an alternative
+    if names == "categories":
+        return word != HIERARCHICAL_OPTIONS
+    if names == "parameters":
+        return not isinstance(value, dict) if word == HIERARCHICAL_OPTIONS else not is_meant_as_options(node)
+    return False
+
+
+def is_meant_as_options(node: dict[Any, Any]) -> bool:
+    """Tell whether a map has nothing but slips, and one of them with what goes with its word."""
+    kinds = {LIST: list, RANGE: dict, DOMAIN: dict, HIERARCHICAL_OPTIONS: dict}
+    words = {key: misspelt_option(key) for key in node}
+    fits = [isinstance(node[key], kinds[word]) for key, word in words.items() if word in kinds]
+    return None not in words.values() and any(fits)
+
+
+def look_at_alternatives(alternatives: dict[str, Any], path: Path, names: str) -> None:
+    """Look at what stands under `batch_hierarchical_options`."""
+    for key, value in alternatives.items():
+        if key == NAME:
+            continue
+        if not isinstance(value, dict) and value is not None and key != DEFAULT_ALTERNATIVE:
+            slip = f"; did you mean '{NAME}'?" if is_slip_of(NAME, str(key)) else ""
+            raise CombinationsError((*path, str(key)), f"expected a map of keys and values, found {shown(value)}{slip}")
+        if DEFAULT_ALTERNATIVE not in alternatives and is_slip_of(DEFAULT_ALTERNATIVE, str(key)):
+            raise CombinationsError(
+                path,
+                f"there is no '{DEFAULT_ALTERNATIVE}', which a single run takes; did you mean '{DEFAULT_ALTERNATIVE}', "
+                f"not '{key}'?",
+                str(key),
+            )
+        look_at(value, (*path, str(key)), names)

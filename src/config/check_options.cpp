@@ -1,0 +1,202 @@
+#include "config/check_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "base/nearest_name.hpp"
+#include "config/batch_names.hpp"
+#include "config/option_keys.hpp"
+#include "config/values.hpp"
+
+namespace pogosim {
+
+namespace {
+
+using Words = std::span<std::string_view const>;
+
+/// Who chooses the keys of a map.
+enum class Names {
+    top_level,   // the simulator, and batch tools add the names of alternatives
+    ours,        // the simulator
+    categories,  // the user; below them, the simulator
+    parameters,  // the user, and below them, too
+};
+
+std::string child(std::string const& path, std::string_view key) {
+    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+}
+
+bool is_in(Words words, std::string_view key) {
+    return std::ranges::find(words, key) != words.end();
+}
+
+std::string advice(std::string_view key, Words words) {
+    std::vector<std::string> const names(words.begin(), words.end());
+    std::string const nearest = did_you_mean(shown(key), names);
+    return nearest.empty() ? fmt::format("; known are {}", fmt::join(names, ", ")) : nearest;
+}
+
+/// `beside`: a word that tells what map it is; may be empty.
+void refuse_others(Node const& map, std::string const& path, Words words, std::string_view beside) {
+    for (auto const& [key, value] : map.entries) {
+        if (!is_in(words, key)) {
+            fail_at({value, path},
+                    fmt::format("unknown key '{}'{}{}", shown(key),
+                                beside.empty() ? "" : fmt::format(" beside '{}'", beside), advice(key, words)));
+        }
+    }
+}
+
+class OptionsCheck {
+public:
+    explicit OptionsCheck(Node const& root) : names_of_batches_(batch_names(root)) {}
+
+    void look_at(Node const& node, std::string const& path, Names names) const {
+        for (std::size_t i = 0; i < node.items.size(); ++i) {
+            look_at(node.items[i], child(path, std::to_string(i)), below(names));
+        }
+        if (offers_options(node)) {
+            look_at_options(node, path, names);
+        } else {
+            look_at_entries(node, path, names);
+        }
+        if (Node const* const alternatives = node.find(kHierarchicalOptions)) {
+            look_at_alternatives(*alternatives, child(path, kHierarchicalOptions), names);
+        }
+    }
+
+private:
+    static Names below(Names names) { return names == Names::parameters ? names : Names::ours; }
+
+    static Names names_in(std::string_view key, Names names) {
+        if (names != Names::top_level) {
+            return below(names);
+        }
+        return key == "objects" ? Names::categories : key == "parameters" ? Names::parameters : Names::ours;
+    }
+
+    void look_at_options(Node const& options, std::string const& path, Names names) const {
+        refuse_other_keys(options, path);
+        for (auto const& [key, value] : options.entries) {
+            std::string const inner = child(path, key);
+            if (key == kBatchRange) {
+                refuse_others(value, inner, kRangeKeys, {});
+            } else if (key == kOptimizationDomain) {
+                look_at_domain(value, inner, names);
+            } else if (key == kBatchOptions) {
+                look_at_each(value, inner, names);
+            } else if (key == kDefaultOption) {
+                look_at(value, inner, names);
+            }
+        }
+    }
+
+    void look_at_domain(Node const& domain, std::string const& path, Names names) const {
+        refuse_others(domain, path, kDomainKeys, {});
+        if (Node const* const choices = domain.find("choices")) {
+            look_at_each(*choices, child(path, "choices"), names);
+        }
+        if (Node const* const init = domain.find("init")) {
+            look_at(*init, child(path, "init"), names);
+        }
+    }
+
+    /// The items stand where the list of them does.
+    void look_at_each(Node const& list, std::string const& path, Names names) const {
+        for (std::size_t i = 0; i < list.items.size(); ++i) {
+            look_at(list.items[i], child(path, std::to_string(i)), names);
+        }
+    }
+
+    void look_at_entries(Node const& map, std::string const& path, Names names) const {
+        for (auto const& entry : map.entries) {
+            auto const& [key, value] = entry;
+            bool const has_options = names != Names::top_level || !is_in(kWithoutOptions, key);
+            if (key == kHierarchicalOptions || !has_options) {
+                continue;
+            }
+            std::string_view const word = misspelt_option(key);
+            if (!word.empty() && !may_be_a_name(entry, word, map, names)) {
+                fail_at({value, path.empty() ? "the top level" : path},
+                        fmt::format("unknown key '{}'; did you mean '{}'?", shown(key), word));
+            }
+            look_at(value, child(path, key), names_in(key, names));
+        }
+    }
+
+    /// Whether a key that is like a word of options may be a name that the user has chosen.
+    bool may_be_a_name(Node::Entry const& entry, std::string_view word, Node const& map, Names names) const {
+        bool const is_map = entry.value.kind == Node::Kind::map;
+        switch (names) {
+            case Names::top_level:  // single values may be the names of alternatives
+                return entry.value.kind == Node::Kind::scalar || is_name_of_batches(entry.key);
+            case Names::categories:
+                return word != kHierarchicalOptions;
+            case Names::parameters:
+                return word == kHierarchicalOptions ? !is_map : !is_meant_as_options(map);
+            case Names::ours:
+                break;
+        }
+        return false;
+    }
+
+    /// Nothing but slips, and one of them with what goes with its word.
+    static bool is_meant_as_options(Node const& map) {
+        auto const is_slip = [](Node::Entry const& entry) { return !misspelt_option(entry.key).empty(); };
+        auto const fits = [](Node::Entry const& entry) {
+            std::string_view const word = misspelt_option(entry.key);
+            Node::Kind const kind = entry.value.kind;
+            return word == kBatchOptions ? kind == Node::Kind::sequence
+                                         : word != kDefaultOption && kind == Node::Kind::map;
+        };
+        return std::ranges::all_of(map.entries, is_slip) && std::ranges::any_of(map.entries, fits);
+    }
+
+    bool is_name_of_batches(std::string const& key) const {
+        return std::ranges::find(names_of_batches_, key) != names_of_batches_.end();
+    }
+
+    void look_at_alternatives(Node const& alternatives, std::string const& path, Names names) const {
+        bool const has_default = alternatives.find(kDefaultAlternative) != nullptr;
+        for (auto const& [key, value] : alternatives.entries) {
+            if (key == kAlternativesName) {
+                continue;
+            }
+            bool const is_alternative = value.kind == Node::Kind::map || value.kind == Node::Kind::null;
+            if (!is_alternative && key != kDefaultAlternative) {
+                bool const is_name = is_slip_of(kAlternativesName, key);
+                fail_at({value, child(path, key)},
+                        fmt::format("expected a map of keys and values, found {}{}", found_text(value),
+                                    is_name ? fmt::format("; did you mean '{}'?", kAlternativesName) : ""));
+            }
+            if (!has_default && is_slip_of(kDefaultAlternative, key)) {
+                fail_at({value, path},
+                        fmt::format("there is no '{0}', which a single run takes; did you mean '{0}', not '{1}'?",
+                                    kDefaultAlternative, shown(key)));
+            }
+            look_at(value, child(path, key), names);
+        }
+    }
+
+    std::vector<std::string> names_of_batches_;
+};
+
+}  // namespace
+
+void refuse_other_keys(Node const& options, std::string const& path) {
+    auto const beside =
+        std::ranges::find_if(options.entries, [](Node::Entry const& entry) { return is_in(kValueOptions, entry.key); });
+    Node words = options;
+    std::erase_if(words.entries, [](Node::Entry const& entry) { return entry.key == kHierarchicalOptions; });
+    refuse_others(words, path, kValueOptions, beside->key);
+}
+
+void check_options(Node const& root) {
+    OptionsCheck(root).look_at(root, "", Names::top_level);
+}
+
+}  // namespace pogosim

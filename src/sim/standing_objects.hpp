@@ -1,0 +1,57 @@
+// Objects where they stand at time 0, to find those that overlap.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/grid.hpp"
+#include "config/scenario.hpp"
+#include "geometry/obstacle.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+struct StandingObject {
+    ObjectConfig const* object;
+    Vec2 position_mm;
+    float radius_mm;  // of the disk around it
+    Obstacle obstacle;
+};
+
+/// One obstacle for each of these poses of a tangible entry: a rigid body is solid, a membrane encloses free space.
+std::vector<Obstacle> obstacles_of(ObjectConfig const& object, std::vector<Placement> const& poses);
+
+/// Appends the objects of a tangible entry at these poses.
+void add_standing(ObjectConfig const& object, std::vector<Placement> const& poses,
+                  std::vector<StandingObject>& objects);
+
+/// Half the thickness of an object at its thinnest, mm.
+float half_thickness_mm(ObjectSpec const& spec);
+
+struct Overlap {
+    std::size_t other;  // index of a standing object
+    float depth_mm;
+};
+
+/// Finds overlaps; in a periodic world across the seams, too.
+class OverlapFinder {
+public:
+    /// Both must outlive the finder.
+    OverlapFinder(std::vector<StandingObject> const& objects, World const& world);
+
+    /// With the objects before this one, in their order.
+    std::vector<Overlap> with_earlier(std::size_t object) const;
+
+    /// How deep the object reaches into walls, mm; 0 in a periodic world, which has none.
+    float into_walls_mm(std::size_t object) const;
+
+private:
+    float depth_mm(StandingObject const& one, StandingObject const& other) const;
+
+    std::vector<StandingObject> const& objects_;
+    World const& world_;
+    float largest_mm_ = 0.0F;
+    UniformGrid grid_;
+};
+
+}  // namespace pogosim
