@@ -77,7 +77,7 @@ def measure(runs: int, workers: int) -> tuple[float, float, int]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the share. The exit code is 1 if it is below the floor."""
     parser = argparse.ArgumentParser(description="Share of a batch's time that is spent in simulators.")
-    parser.add_argument("--runs", type=at_least_one, default=10_000, help="number of runs (default 10000)")
+    parser.add_argument("--runs", type=at_least_one, default=10_000, help="number of runs (default %(default)s)")
     parser.add_argument(
         "--workers", type=at_least_one, default=os.cpu_count() or 1, help="runs at the same time (all cores)"
     )

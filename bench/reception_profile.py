@@ -145,8 +145,8 @@ def simulate_all(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table. The exit code is 1 if a setting is further from the equation than the tolerance."""
     parser = argparse.ArgumentParser(description="Reception probability in whole simulations against the equation.")
-    parser.add_argument("--seeds", type=at_least_one, default=10, help="simulations per setting (default 10)")
-    parser.add_argument("--time", type=seconds, default=60.0, help="simulated time of each, s (default 60)")
+    parser.add_argument("--seeds", type=at_least_one, default=10, help="simulations per setting (default %(default)s)")
+    parser.add_argument("--time", type=seconds, default=60.0, help="simulated time of each, s (default %(default)g)")
     options = parser.parse_args(arguments)
     check_built(parser, PROBES)
 

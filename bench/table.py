@@ -115,7 +115,7 @@ def main() -> int:
     parser.add_argument("--programs", nargs="+", choices=PROGRAMS, default=PROGRAMS)
     parser.add_argument("--threads", type=at_least_one, nargs="+", default=[1, 2], help="of the disk engine")
     parser.add_argument(
-        "--most-box2d", type=at_least_one, default=10_000, help="most robots that Box2D moves, default 10000"
+        "--most-box2d", type=at_least_one, default=10_000, help="most robots that Box2D moves, default %(default)s"
     )
     options = parser.parse_args()
     try:

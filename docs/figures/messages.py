@@ -1,4 +1,4 @@
-"""The figure of docs/message_log.md: how many messages get through in a run of conf/demo.yaml, and what the law says.
+"""What docs/message_log.md says of conf/demo.yaml: how many messages get through, and what the law says.
 
 .venv/bin/python docs/figures/all.py messages
 """
@@ -12,12 +12,35 @@ import pandas as pd
 from pictures import ROOT, Picture, from_figure
 from pogosim.reports.command import analyze
 from pogosim.reports.messages import drawn
+from pogosim.utils import load_dataframe
+from quotes import Quote, paragraph
 
-NAMES = ("messages.png",)
-SETTINGS = ("simulation_time=30", "objects.robots.msg_success_rate={type: dynamic}")
+DURATION_S = 30
+NAMES = ("messages.png", "message_log.md: size", "message_log.md: table", "message_log.md: caption")
+SETTINGS = (f"simulation_time={DURATION_S}", "objects.robots.msg_success_rate={type: dynamic}")
 
 
-def draw(folder: Path) -> dict[str, Picture]:
+def size(log: Path, rows: pd.DataFrame) -> Quote:
+    """Say how large a log is."""
+    robots, count, kilobytes = rows["sender"].nunique(), len(rows) / DURATION_S, log.stat().st_size / 1000 / DURATION_S
+    return paragraph(
+        f"A crowd makes many rows: the {robots} robots of the demonstration, `conf/demo.yaml`, write "
+        f"{round(count, -2):.0f} rows ({round(kilobytes, -1):.0f} kB) per simulated second."
+    )
+
+
+def caption(rows: pd.DataFrame) -> Quote:
+    """Say what the figure shows."""
+    p, m = rows["send_probability"].unique(), rows["message_bytes"].unique()
+    return paragraph(
+        "*Dots: shares with their 95 % confidence intervals ([Wilson "
+        "1927](https://doi.org/10.1080/01621459.1927.10502953)). Lines: the law, here the article's equation with "
+        f"p = {', '.join(f'{value:g}' for value in p)} and m = {', '.join(map(str, m))}. It does not depend on the "
+        "distance: what is left of it is that distant robots have somewhat larger clusters around their senders.*"
+    )
+
+
+def draw(folder: Path) -> dict[str, Picture | Quote]:
     """Run the demonstration with the article's equation."""
     log = folder / "messages.feather"
     command = ["examples/hanabi/hanabi", "-c", "conf/demo.yaml", "-g", "-q"]
@@ -30,4 +53,10 @@ def draw(folder: Path) -> dict[str, Picture]:
         pd.read_csv(folder / "out" / f"reception_by_{name}.csv") for name in ("distance", "cluster_size")
     )
     shown = [table.drop(columns="z").round(9) for table in (distance, cluster)]
-    return {"messages.png": from_figure(drawn(distance, cluster, ["sender_category"]), 80, *shown)}
+    rows = load_dataframe(log)[0]
+    return {
+        "messages.png": from_figure(drawn(distance, cluster, ["sender_category"]), 80, *shown),
+        "message_log.md: size": size(log, rows),
+        "message_log.md: table": Quote(tuple((folder / "out" / "messages.csv").read_text().splitlines())),
+        "message_log.md: caption": caption(rows),
+    }

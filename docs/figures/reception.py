@@ -1,7 +1,6 @@
-"""The reception laws against the measurements on real robots.
+"""The reception laws against the measurements on real robots: how well each law fits, and a figure.
 
-    .venv/bin/python docs/figures/reception.py        # prints how well each law fits
-    .venv/bin/python docs/figures/all.py reception    # draws
+    .venv/bin/python docs/figures/all.py reception
 
 Bytes are those of the message: payload and header.
 """
@@ -18,8 +17,9 @@ from pictures import Picture, from_figure
 from pogosim.communication.measurements import ROBOTS_OWN, read_measurements
 from pogosim.communication.quality import compare, quality
 from pogosim.communication.reception_law import SHORT_HEADER_BYTES, DynamicLaw, Law, PowerLaw
+from quotes import Quote
 
-NAMES = ("reception.png",)
+NAMES = ("reception.png", "communication.md: quality")
 NEIGHBOURS = (1, 2, 6)
 COLOURS = {3: "#1b6ca8", 20: "#d98200", 100: "#a8321b"}  # by bytes of payload
 
@@ -48,20 +48,18 @@ def draw_panels(measured: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw(_folder: Path) -> dict[str, Picture]:
+def table() -> Quote:
+    """Return R2 and mean absolute error of both laws."""
+    laws: dict[str, Law] = {"article's equation": DynamicLaw(), "four-parameter law": PowerLaw()}
+    lines = ["| law | R2 | mean absolute error |", "|---|---|---|"]
+    for name, law in laws.items():
+        found = quality(compare(law, read_measurements()))
+        lines.append(f"| {name} | {found.r2:.6f} | {found.mae:.6f} |")
+    return Quote(tuple(lines))
+
+
+def draw(_folder: Path) -> dict[str, Picture | Quote]:
     """Draw the law and the measurements."""
     measured = pd.read_csv(ROBOTS_OWN)
     drawn = measured.assign(predicted=predicted(measured).round(9))
-    return {"reception.png": from_figure(draw_panels(measured), 110, drawn)}
-
-
-def main() -> None:
-    """Print R2 and mean absolute error of both laws."""
-    laws: dict[str, Law] = {"article's equation": DynamicLaw(), "four-parameter law": PowerLaw()}
-    for name, law in laws.items():
-        found = quality(compare(law, read_measurements()))
-        print(f"{name}: R2 = {found.r2:.6f}, MAE = {found.mae:.6f}")
-
-
-if __name__ == "__main__":
-    main()
+    return {"reception.png": from_figure(draw_panels(measured), 110, drawn), "communication.md: quality": table()}

@@ -1,4 +1,4 @@
-"""The picture at the top of the README: what ./demo.sh draws.
+"""The picture of docs/data_file.md: what ./demo.sh draws.
 
     .venv/bin/python docs/figures/all.py swarm
 

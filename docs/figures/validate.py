@@ -2,9 +2,9 @@
 
     .venv/bin/python docs/figures/validate.py                    # all; takes several minutes
     .venv/bin/python docs/figures/validate.py --quick vicsek     # one scene with fewer runs, wider tolerances
-    .venv/bin/python docs/figures/validate.py --keep             # also draws, and writes the numbers into the page
 
-The exit code is 1 if a scene disagrees, 2 if one cannot run. Needs the library and the examples (./build.sh).
+docs/figures/all.py writes the numbers into the page, and draws. The exit code is 1 if a scene disagrees, 2 if one
+cannot run. Needs the library and the examples (./build.sh).
 """
 
 from __future__ import annotations
@@ -18,16 +18,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 try:
-    from pictures import DOCS, keep
-    from quotes import quote
-    from validation import SCENES, picture_of
+    from validation import SCENES
 except ImportError as missing:
     if __name__ != "__main__":
         raise
     print(f"validate.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
     sys.exit(2)
-
-PAGE = DOCS / "validation.md"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,12 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(SCENES)}; without: all")
     parser.add_argument("--quick", action="store_true", help="fewer runs")
-    parser.add_argument("--keep", action="store_true", help="keep pictures and numbers in docs/")
     options = parser.parse_args(arguments)
     if unknown := sorted(set(options.names) - set(SCENES)):
         parser.error(f"no scene is called {', '.join(unknown)}; there are {', '.join(SCENES)}")
-    if options.quick and options.keep:
-        parser.error("--keep needs all runs, not --quick")
     disagreements = 0
     for name in options.names or SCENES:
         start_s = time.monotonic()
@@ -51,9 +44,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"{name}: {error}. ./build.sh builds the library and the examples", file=sys.stderr)
             return 2
         print(f"{name} ({time.monotonic() - start_s:.0f} s)", *outcome.lines, sep="\n", flush=True)
-        if options.keep:
-            keep(picture_of(outcome), DOCS / f"validation_{name}.png")
-            quote(PAGE, name, outcome.lines)
         disagreements += sum(not comparison.agrees for comparison in outcome.comparisons)
     return 1 if disagreements else 0
 

@@ -1,4 +1,4 @@
-"""The picture of the window: a screenshot of examples/hanabi.
+"""The picture of the window: a screenshot of the demonstration, conf/demo.yaml, while colours spread.
 
     .venv/bin/python docs/figures/all.py window
 
@@ -19,18 +19,19 @@ import pandas as pd
 from pictures import ROOT, Picture, fingerprint
 from PIL import Image
 from pogosim.utils import load_dataframe
+from quotes import Quote, paragraph
 
 sys.path.append(str(ROOT / "tests" / "python"))
 
 from display import Display, open_display, read_xwd, wait_for
 
-NAMES = ("window.png",)
+NAMES = ("window.png", "window.md: caption")
 
 WIDTH, HEIGHT = 1240, 740  # pixels
 FIT = 0.95  # share of the window that the arena fills
-SEED = 41  # three colours are on their way at the end
-PRESSES = 1000  # of S
-DURATION_S = 10.0  # of all steps
+FIRST_S, LAST_S = 8, 30  # the picture shows a second between these
+COLOURS, ROBOTS = 3, 15  # that many colours, with that many robots each, are on their way then
+STEP_S = 0.01  # time_step of conf/demo.yaml
 ROBOT = 24  # the one that is selected
 NO_LIMIT = (187, 102)  # "max" in the panel "Run"
 VIEW_HEADER = (60, 168)
@@ -43,6 +44,20 @@ SETTINGS: dict[str, object] = {
     "show_trajectory_traces": "true",
     "show_communication_channels": "true",
 }
+
+
+def colours(rows: pd.DataFrame) -> list[int]:
+    """Return how many robots have each colour in one state, the most frequent one first."""
+    return rows["rgb_colors_index"].value_counts().tolist()
+
+
+def moment(rows: pd.DataFrame) -> tuple[int, list[int]]:
+    """Return the first second at which several colours are on their way, and how many robots have each."""
+    for second in range(FIRST_S, LAST_S + 1):
+        counts = colours(rows[np.isclose(rows["time"], second, atol=1e-3)])
+        if len(counts) >= COLOURS and counts[COLOURS - 1] >= ROBOTS:
+            return second, counts
+    sys.exit(f"no {COLOURS} colours have {ROBOTS} robots each from {FIRST_S} to {LAST_S} s: choose another seed")
 
 
 def place_of(data: Path, robot: int) -> tuple[int, int]:
@@ -98,9 +113,9 @@ class Screen:
         return pictures[-1]
 
 
-def advance(screen: Screen) -> None:
+def advance(screen: Screen, seconds: int) -> None:
     """Press S for each step."""
-    for _ in range(PRESSES // 10):
+    for _ in range(round(seconds / STEP_S) // 10):
         screen.display.xdotool("key", "--delay", "0", "--repeat", "10", "--repeat-delay", "1", "s")
 
 
@@ -113,16 +128,18 @@ def picture_of(image: Image.Image, rows: pd.DataFrame) -> Picture:
 
 def command_with(data: Path, settings: dict[str, object]) -> list[str]:
     """Return the command of a run."""
-    command = [str(ROOT / "examples/hanabi/hanabi"), "-c", str(ROOT / "conf/demo.yaml"), "-q", "-s", str(SEED)]
+    command = [str(ROOT / "examples/hanabi/hanabi"), "-c", str(ROOT / "conf/demo.yaml"), "-q"]
     for key, value in {**settings, "data_filename": data}.items():
         command += ["--set", f"{key}={value}"]
     return command
 
 
-def draw(folder: Path) -> dict[str, Picture]:
+def draw(folder: Path) -> dict[str, Picture | Quote]:
     """Run the demonstration in a window on a display in memory."""
-    alone, data = folder / "alone.feather", folder / "data.feather"
-    subprocess.run([*command_with(alone, {"simulation_time": DURATION_S}), "-g"], check=True, timeout=120)
+    whole, alone, data = (folder / f"{name}.feather" for name in ("whole", "alone", "data"))
+    subprocess.run([*command_with(whole, {"simulation_time": LAST_S}), "-g"], check=True, timeout=120)
+    second, counts = moment(load_dataframe(whole)[0])
+    subprocess.run([*command_with(alone, {"simulation_time": second}), "-g"], check=True, timeout=120)
     with open_display() as display:
         command = command_with(data, SETTINGS)
         with subprocess.Popen(command, cwd=folder, env=display.environment) as run:
@@ -130,7 +147,7 @@ def draw(folder: Path) -> dict[str, Picture]:
             display.xdotool("key", "space")
             screen.click(NO_LIMIT)
             screen.click(NO_LIMIT)  # real time again
-            advance(screen)
+            advance(screen, second)
             screen.still()
             screen.click(place_of(alone, ROBOT))
             screen.click(VIEW_HEADER)
@@ -141,5 +158,14 @@ def draw(folder: Path) -> dict[str, Picture]:
                 sys.exit(f"{command[0]} ended with exit code {code}")
     rows = load_dataframe(data)[0]
     if not rows.equals(load_dataframe(alone)[0]):
-        sys.exit(f"the window shows t = {rows['time'].max()} s of {DURATION_S} s, or another run")
-    return {"window.png": picture_of(window, rows)}
+        sys.exit(f"the window shows t = {rows['time'].max()} s of {second} s, or another run")
+    return {"window.png": picture_of(window, rows), "window.md: caption": caption(second, counts)}
+
+
+def caption(second: int, counts: list[int]) -> Quote:
+    """Say what the picture shows."""
+    shares = f"{', '.join(map(str, counts[:-1]))} and {counts[-1]}"
+    return paragraph(
+        f"*The demonstration after {second} s, with trails (F2) and communication channels (F5). New colours have "
+        f"spread to {shares} robots. Robot {ROBOT} is selected.*"
+    )

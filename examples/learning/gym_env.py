@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 from commanded_robots import ACTIONS, OBSERVATIONS, Array, CommandedRobots
+from pogosim.extras import installing
 
 try:
     import gymnasium
     from gymnasium import spaces
 except ImportError as error:
-    message = "this environment needs the Python package 'gymnasium'; install it: pip install 'pogosim[learning]'"
+    message = f"this environment needs the Python package 'gymnasium'; install it: {installing('learning')}"
     raise ImportError(message) from error
 
 BRIGHTEST = 30000.0  # sensor counts, below the lamp

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 from commanded_robots import ACTIONS, OBSERVATIONS, Array, CommandedRobots
+from pogosim.extras import installing
 
 try:
     from gymnasium import spaces
     from pettingzoo import ParallelEnv
 except ImportError as error:
-    message = "this environment needs the Python package 'pettingzoo'; install it: pip install 'pogosim[learning]'"
+    message = f"this environment needs the Python package 'pettingzoo'; install it: {installing('learning')}"
     raise ImportError(message) from error
 
 NEAR_MM = 200.0

@@ -45,13 +45,17 @@ POGO_BEGIN_API
 // ---- Globals of the main loop. Each robot has its own. ----
 
 /// Number of ticks executed; incremented at the end of each tick.
+/// @range from 0
 extern POGO_PER_ROBOT uint32_t pogobot_ticks;
 /// Requested ticks per second, initially 60. The sleep between ticks is truncated to milliseconds, so 60 gives 62.5.
 /// 0: no sleep, i.e. one tick per `time_step` in the simulator.
+/// @range Hz, 0 to 255; initially 60
 extern POGO_PER_ROBOT uint8_t main_loop_hz;
 /// Maximum number of messages passed to msg_rx_fn per tick, initially 3; any others waiting are dropped.
+/// @range 0 to 255; initially 3
 extern POGO_PER_ROBOT uint8_t max_nb_processed_msg_per_tick;
 /// Chance (0 to 100 %) that msg_tx_fn is called in a tick, initially 20. Reception also depends on it.
+/// @range %, 0 to 100; initially 20
 extern POGO_PER_ROBOT uint8_t percent_msgs_sent_per_ticks;
 /// Called with each received message, after the step; NULL (initially): messages stay in the queue.
 extern POGO_PER_ROBOT void (*msg_rx_fn)(message_t*);
@@ -59,10 +63,12 @@ extern POGO_PER_ROBOT void (*msg_rx_fn)(message_t*);
 extern POGO_PER_ROBOT bool (*msg_tx_fn)(void);
 ///@{
 /// Messages sent (msg_tx_fn returned true) and received (msg_rx_fn was called) so far.
+/// @range from 0
 extern POGO_PER_ROBOT uint32_t nb_msgs_sent;
 extern POGO_PER_ROBOT uint32_t nb_msgs_recv;
 ///@}
 /// LED that shows error codes, 0 to 4, initially 3; negative: none.
+/// @range 0 to 4, negative: none; initially 3
 extern POGO_PER_ROBOT int8_t error_codes_led_idx;
 
 // Stopwatches and times of the library itself.
@@ -72,6 +78,7 @@ extern POGO_PER_ROBOT uint32_t _current_time_milliseconds;
 extern POGO_PER_ROBOT uint32_t _error_code_initial_time;
 
 /// Milliseconds since this robot started, by its own clock.
+/// @range returns ms, from 0
 uint32_t current_time_milliseconds(void);
 
 /// Error codes that a robot shows on its error LED.
@@ -88,10 +95,11 @@ void pogo_main_loop_step(void (*user_step)(void));
 
 // ---- Entry point ----
 
-/// `pogobot_start(user_init, user_step)` or `pogobot_start(user_init, user_step, "category")`: called by main() once
-/// per category of objects the program controls (default "robots"). user_init runs once, user_step in each tick; both
-/// may be NULL. On a real robot, the call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns;
-/// in the simulator all calls return, and objects of a category without a call do nothing, with a warning.
+/// Says which functions control the objects of a category: `pogobot_start(user_init, user_step)` or
+/// `pogobot_start(user_init, user_step, "category")`, called by main() once per category of objects the program
+/// controls (default "robots"). user_init runs once, user_step in each tick; both may be NULL. On a real robot, the
+/// call whose category is `ROBOT_CATEGORY` (an option of `make bin`) never returns; in the simulator all calls return,
+/// and objects of a category without a call do nothing, with a warning.
 #define pogobot_start(...) POGO_START_PICK(__VA_ARGS__, pogobot_start_3, pogobot_start_2, )(__VA_ARGS__)
 #define POGO_START_PICK(init, step, category, chosen, ...) chosen
 #define pogobot_start_2(init, step) pogobot_start_3(init, step, "robots")
@@ -131,8 +139,8 @@ bool current_robot_category_is(char const* category);
 // ---- Default controller of active walls ----
 
 ///@{
-/// `pogobot_start(default_walls_user_init, default_walls_user_step, "walls")`: sends the five bytes "wall\0" as a long
-/// message in all directions, 7.5 times per second.
+/// Active walls that send the five bytes "wall\0" as a long message in all directions, 7.5 times per second:
+/// `pogobot_start(default_walls_user_init, default_walls_user_step, "walls")`.
 void default_walls_user_init(void);
 void default_walls_user_step(void);
 ///@}

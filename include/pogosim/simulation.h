@@ -16,6 +16,7 @@ POGO_BEGIN_API
 // ---- The run ----
 
 /// Number of objects that run code: robots, pogobjects, active objects, walls and membranes.
+/// @range returns 0 or more
 uint32_t get_nb_robots(void);
 /// Ends the run after the current time step, with a complete data file and exit code 0.
 void stop_simulation(void);
@@ -47,6 +48,7 @@ extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 /// Sets the variable to the value of `parameters.NAME` (dots address entries of maps and lists), or to the default if
 /// it is absent. A value of the wrong type or outside the range of the variable's type is an error; for integers,
 /// fractions are truncated, with a warning.
+/// @range the range of the type
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
 void init_float_from_configuration(float* variable, char const* name, float const default_value);
 void init_double_from_configuration(double* variable, char const* name, double const default_value);
@@ -61,20 +63,24 @@ void init_uint8_from_configuration(uint8_t* variable, char const* name, uint8_t 
 ///@{
 /// Sets an array to the first `size` numbers of the list `parameters.NAME`. An absent or empty list changes
 /// nothing; a shorter one is an error.
+/// @range size: numbers
 void init_float_array_from_configuration(float* array, char const* name, size_t const size);
 void init_double_array_from_configuration(double* array, char const* name, size_t const size);
 ///@}
 /// Sets a string (an array of `size` characters) to `parameters.NAME`, truncated to `size` - 1 characters;
 /// an absent one changes nothing.
+/// @range size: bytes, with the final 0
 void init_string_from_configuration(char* text, char const* name, size_t const size);
 
 /// Rejects the value of `parameters.NAME`: ends the run with exit code 2 and a message that gives its line, what was
 /// `expected` and what was found.
 void refuse_parameter(char const* name, char const* expected);
 /// Does the same unless `value`, which was read from `parameters.NAME`, is from `min` to `max` (NaN never is).
+/// @range value: min to max
 void check_parameter_range(char const* name, double value, double min, double max);
 /// Ends the run with a message, like refuse_parameter(), unless a variable set by init_from_configuration() is a number
 /// from `min` to `max`: `check_parameter(heartbeat_hz, 1, 1000)`.
+/// @range variable: min to max
 #define check_parameter(variable, min, max) check_parameter_range(#variable, (double)(variable), (min), (max))
 
 // ---- Data file ----
@@ -97,6 +103,7 @@ void data_add_column_float16(char const* name);
 /// warning. A column that is not set is null, and so is a NULL string. An unknown column, or a type other than
 /// declared, is an error; columns omitted from `data_logger_fields` are ignored. float has 24 significant bits, float16
 /// has 11 and is at most 65504.
+/// @range the range of the type
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
 void data_set_value_int32(char const* name, int32_t value);

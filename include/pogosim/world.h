@@ -36,20 +36,25 @@ typedef struct pogosim_velocity_t {
 } pogosim_velocity_t;
 
 /// Simulated time, s.
+/// @range returns s, from 0
 double pogosim_world_time(void);
 
 // ---- Objects ----
 
 /// Number of objects.
+/// @range returns 0 or more
 uint32_t pogosim_world_object_count(void);
 /// Number of objects of a category, such as "robots"; 0 for one that the configuration does not have.
+/// @range returns 0 or more
 uint32_t pogosim_world_category_size(char const* category);
 /// Index of an object of a category: `number` is from 0 to pogosim_world_category_size(category) - 1, others and
 /// unknown categories are errors.
+/// @range number: from 0; returns an index
 uint32_t pogosim_world_object(char const* category, uint32_t number);
 /// Category of an object, as in the configuration.
 char const* pogosim_world_category(uint32_t object);
 /// What the data file shows as robot_id.
+/// @range returns 0 to 65535
 uint32_t pogosim_world_id(uint32_t object);
 /// Whether the object runs the program: robots, pogobjects, active objects, walls, membranes.
 bool pogosim_world_runs_program(uint32_t object);
@@ -65,6 +70,7 @@ void pogosim_world_velocity(uint32_t object, pogosim_velocity_t* velocity);
 bool pogosim_world_set_pose(uint32_t object, double x_mm, double y_mm, double heading_rad);
 
 /// Colour of an LED: 0 head, 1 front, 2 right, 3 back, 4 left. Only for objects that run the program.
+/// @range led: 0 to 4; r, g, b: 0 to 255
 void pogosim_world_led(uint32_t object, uint8_t led, uint8_t* r, uint8_t* g, uint8_t* b);
 
 /// Variables of the object, a USERDATA*, to be read and written; NULL if it runs no program.
@@ -81,11 +87,14 @@ void pogosim_world_set_alive(uint32_t object, bool alive);
 // ---- Light ----
 
 /// Light level on the floor, sensor counts, 0 to 32767, without noise. Outside of the arena, that of its border.
+/// @range returns sensor counts, 0 to 32767
 double pogosim_world_light_at(double x_mm, double y_mm);
 /// Light level at an object: the mean of a robot's three photosensors, without noise or bias; of others, in the middle.
+/// @range returns sensor counts, 0 to 32767
 double pogosim_world_light(uint32_t object);
 
 /// Number of lamps, in the order of the configuration.
+/// @range returns 0 or more
 uint32_t pogosim_world_lamp_count(void);
 /// Category of a lamp, as in the configuration.
 char const* pogosim_world_lamp_category(uint32_t lamp);
@@ -96,6 +105,7 @@ void pogosim_world_set_lamp_on(uint32_t lamp, bool on);
 ///@}
 ///@{
 /// Brightness of a lamp, at first 1: its levels are those of the configuration times this, at most 32767. At least 0.
+/// @range intensity: a factor, from 0
 double pogosim_world_lamp_intensity(uint32_t lamp);
 void pogosim_world_set_lamp_intensity(uint32_t lamp, double intensity);
 ///@}
@@ -114,6 +124,7 @@ void pogosim_world_set_lamp_position(uint32_t lamp, double x_mm, double y_mm);
 /// these functions may be called, too (for the rows of time 0); earlier is an error. Integer columns take whole numbers
 /// in their range, bool columns 0 and 1; columns of strings cannot be set. The last call counts. Without a data file,
 /// nothing happens.
+/// @range value: the range of the column's type
 void pogosim_world_set_column(char const* name, double value);
 void pogosim_world_set_object_column(uint32_t object, char const* name, double value);
 ///@}

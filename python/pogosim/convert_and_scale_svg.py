@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "convert_and_scale_
     parser.add_argument("drawing", metavar="IN.svg", help="SVG file")
     parser.add_argument("output", metavar="OUT.csv", help="arena file to write, in units of the drawing")
     parser.add_argument("scaled", metavar="SCALED.svg", help="drawing to write, scaled to the area")
-    parser.add_argument("--area", type=positive, default=AREA_MM2, metavar="MM2", help="area to scale to (150000)")
+    parser.add_argument("--area", type=positive, default=AREA_MM2, metavar="MM2", help="area to scale to (%(default)g)")
     options = parser.parse_args(arguments)
     return guarded(prog, lambda: run(prog, options.drawing, options.output, options.scaled, options.area))
 

@@ -93,6 +93,7 @@ def find_installation() -> Installation:
         if (tree / "build.sh").is_file():
             raise InstallationError(f"the simulator in {tree} is not built: run ./build.sh there")
         raise InstallationError(
-            f"the package in {PACKAGE} has no simulator in it: install it again (pip install pogosim)"
+            f"the package in {PACKAGE} has no simulator in it: install its wheel again, or build a checkout "
+            "(not from PyPI, which has another program of that name)"
         )
     return found

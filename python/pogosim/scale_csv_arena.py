@@ -22,7 +22,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "scale_csv_arena") 
     parser = Parser(prog=prog, description="Scales an arena to an area; pogosim arena scale does the same.")
     parser.add_argument("arena", metavar="IN.csv", help="arena file")
     parser.add_argument("output", metavar="OUT", help="arena file (.csv) or drawing (.svg) to write, in mm")
-    parser.add_argument("--area", type=positive, default=AREA_MM2, metavar="MM2", help="area to scale to (150000)")
+    parser.add_argument("--area", type=positive, default=AREA_MM2, metavar="MM2", help="area to scale to (%(default)g)")
     options = parser.parse_args(arguments)
 
     def run() -> int:

@@ -165,6 +165,9 @@ def markdown_of(element: Element) -> str:
             text += "\n\n" + "\n".join(f"- {item}" for item in items) + "\n\n"
         elif child.tag in {"verbatim", "programlisting"}:
             text += "\n\n```c\n" + all_text(child).strip("\n") + "\n```\n\n"
+        elif child.tag == "simplesect":  # @range
+            title, paragraph = child.find("title"), child.find("para")
+            text += f"\n\n{all_text(title)} {markdown_of(paragraph).strip() if paragraph is not None else ''}\n\n"
         elif child.tag == "ndash":
             text += "–"  # noqa: RUF001
         else:

@@ -14,6 +14,7 @@ from batches import COMMAND, ENVIRONMENT, arguments, batch, batch_apart, ended, 
 from pogosim.batch import reports
 from pogosim.batch.command_line import parser
 from pogosim.batch.identity import seed_of
+from pogosim.extras import installing
 from running import ROOT, example
 
 
@@ -133,7 +134,7 @@ def test_dask_that_is_not_installed_is_one_line(tmp_path: Path) -> None:
     result = ended(command, tmp_path)
     assert (result.code, result.errors) == (
         2,
-        "pogobatch: --backend dask needs the Python package 'distributed'; install it: pip install 'pogosim[dask]'\n",
+        f"pogobatch: --backend dask needs the Python package 'distributed'; install it: {installing('dask')}\n",
     )
 
 

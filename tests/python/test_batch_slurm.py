@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 from batches import COMMAND, ENVIRONMENT, arguments, batch, results, script, wait_until_gone
 from batches import write_options as write
+from pogosim.extras import installing
 from running import ROOT, Run, example, run_command
 from searches import COMMAND as SEARCH
 from searches import history, search, write_search
@@ -271,7 +272,7 @@ def test_missing_slurm_and_missing_package_are_one_line(tmp_path: Path) -> None:
     options = [*arguments(example("helloworld"), "--slurm")[len(COMMAND) :]]
     hidden = tmp_path / "hidden"
     hidden.mkdir()
-    for name, said in (("", "there is no command 'sbatch'"), ("dask_jobqueue", "pip install 'pogosim[slurm]'")):
+    for name, said in (("", "there is no command 'sbatch'"), ("dask_jobqueue", installing("slurm"))):
         if name:
             (hidden / f"{name}.py").write_text("raise ImportError('not installed')\n")
         command = [f"PATH={hidden}", f"PYTHONPATH={hidden}", f"HOME={tmp_path}", *COMMAND, *options]

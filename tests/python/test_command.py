@@ -277,7 +277,7 @@ def test_doctor_gets_through_whatever_is_broken(variable: str, value: str, tmp_p
     assert (result.code, result.errors) == (2, "")
     found = findings(result)
     assert found["C programs"][0] == "missing"
-    assert len(found) == 10
+    assert len(found) == 11
 
 
 def test_run_says_which_variable_cannot_be_understood(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from gym_env import LightSeeker
 from gymnasium.utils.env_checker import check_env
 from parallel_env import Gathering
 from pettingzoo.test import parallel_api_test, parallel_seed_test
+from pogosim.extras import installing
 from running import ROOT, example, run
 from train import TASKS, Learnt, Trainer, figure_of, learn, linear, main
 
@@ -170,5 +171,5 @@ def test_missing_packages_are_named_with_how_to_install_them(tmp_path: Path) -> 
         code += f"runpy.run_path({str(ROOT / 'examples/learning/train.py')!r}, run_name='__main__')"
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
         assert done.returncode == 2
-        advice = f"this environment needs the Python package '{package}'; install it: pip install 'pogosim[learning]'"
+        advice = f"this environment needs the Python package '{package}'; install it: {installing('learning')}"
         assert done.stderr == f"train.py: {advice}\n"

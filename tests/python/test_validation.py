@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 import validate
 import validation
+from all import differences
 from matplotlib.figure import Figure
-from quotes import quote, quoted
+from quotes import Quote, quote, quoted
 from running import ROOT, compile_program, pkg_config
+from studies import outcome_print
 from validation.agreement import FALSE_ALARM, Comparison, absolute, relative, two_samples
 from validation.experiment import Outcome, batch, changed
 from validation.kuramoto_order import theory
@@ -31,6 +33,9 @@ def test_robots_do_what_theory_says_and_the_page_quotes_it(scene: str, tmp_path:
     outcome = validation.SCENES[scene](tmp_path, True)
     assert [comparison.line for comparison in outcome.comparisons if not comparison.agrees] == []
     assert validation.picture_of(outcome).image.startswith(b"\x89PNG")
+
+    short = Quote((), data=outcome_print(outcome.lines, outcome.tables))
+    assert differences({f"validation.md: {scene}": short}) == [], "to renew: .venv/bin/python docs/figures/all.py"
 
     lines = quoted(PAGE, scene)[1:]
     assert [line for line in lines if not line.endswith("% of the tolerance: agrees")] == []
@@ -153,7 +158,7 @@ def test_numbers_are_written_into_the_page(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [(["flocks"], "no scene is called flocks; there are "), (["--quick", "--keep"], "--keep needs all runs")],
+    [(["flocks"], "no scene is called flocks; there are "), (["--keep"], "unrecognized arguments: --keep")],
 )
 def test_mistakes_on_the_command_line_get_one_line(
     arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]

@@ -11,3 +11,6 @@ from .searches import Outcome
 Scene = Callable[[Path, bool], Outcome]
 
 SCENES: dict[str, Scene] = {module.NAME: module.measure for module in (longest_runs, phototaxis, archive, throughput)}
+
+DRAWN = frozenset({archive.NAME, phototaxis.NAME})  # scenes with a picture
+TIMES = frozenset({throughput.NAME})  # scenes whose numbers are those of a clock

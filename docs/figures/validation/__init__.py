@@ -16,14 +16,8 @@ SCENES: dict[str, Scene] = {
     module.NAME: module.measure
     for module in (walks, vicsek_order, kuramoto_order, voter_consensus, reception_runs, lamp_density)
 }
-NAMES = tuple(f"validation_{name}.png" for name in SCENES)
 
 
 def picture_of(outcome: Outcome) -> Picture:
     """Draw a scene's figure."""
     return from_figure(outcome.figure, 110, *outcome.tables)
-
-
-def draw(folder: Path) -> dict[str, Picture]:
-    """Run all scenes; takes several minutes."""
-    return {name: picture_of(SCENES[scene](folder, False)) for name, scene in zip(NAMES, SCENES, strict=True)}

@@ -56,12 +56,16 @@ using ::pogosim_vprintf;
 
 /// Prints like the robot's own C library, where `long` has 32 bits: `%ld` and `%lu` print an int32_t or uint32_t.
 /// Returns the number of characters, or a negative value for a bad format.
+/// @range returns the number of characters
 #define printf(...) pogosim_printf(__VA_ARGS__)
 /// Prints one character and returns it.
+/// @range character: 0 to 255, which it returns
 #define putchar(character) pogosim_putchar(character)
 /// Prints a string and a newline. Returns 0.
+/// @range returns 0
 #define puts(text) pogosim_puts(text)
 /// Like printf(), with the arguments in a va_list.
+/// @range returns the number of characters
 #define vprintf(format, arguments) pogosim_vprintf(format, arguments)
 
 #endif

@@ -116,29 +116,37 @@ POGO_BEGIN_API
 
 /// Sends a long message (8 bytes of header and `message_size` of payload) through all emitters at once; receivers see
 /// `_sender_ir_index` 4. Returns 0, or 1 if nothing was sent because the payload is longer than 382 bytes or NULL.
+/// @range message_size: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size);
 /// Sends four long messages, one through each emitter, so that receivers see which one. Returns 0, or the number of
 /// messages that were not sent.
+/// @range message_size: bytes, 0 to 382; returns how many of the four were not sent, 0 to 4
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size);
 /// Sends a long message through one emitter; with `ir_all`, like pogobot_infrared_sendLongMessage_omniGen(). Same
 /// return values.
+/// @range message_size: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* const message, uint16_t const message_size);
 /// Sends a short message (3 bytes of header: no sender, no emitter) through all emitters at once. Returns 0, or 1 if
 /// nothing was sent because the payload is longer than 382 bytes or NULL.
+/// @range message_size: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size);
 /// Sends a short message through one emitter, or with `ir_all` through all at once. Same return values.
+/// @range message_size: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size);
-/// Sends a long message unchanged, through the emitters whose power in `_emitting_power_list` is not 0 (if all are 0,
-/// nothing is sent, with a warning), with the range of the largest of these powers. Sets type and sender. Returns 0, or
-/// 1 if nothing was sent because the message is NULL or `payload_length` is above 382.
+/// Sends a long message unchanged, through the emitters whose power in `_emitting_power_list` is not 0. If all are 0,
+/// nothing is sent, with a warning. The range is that of the largest of these powers. Sets type and sender. Returns 0,
+/// or 1 if nothing was sent because the message is NULL or `payload_length` is above 382.
+/// @range payload_length: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message);
 /// Sends a short message unchanged, through one emitter or, with `ir_all`, all. Sets the type. Same return values as
 /// for long ones.
+/// @range payload_length: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message);
 
 /// Power of the emitters for the functions above except raw long messages: 0 to 3 (more counts as 3), initially 1. 0
 /// sends nothing. In the simulator, `communication_radius_by_power` sets the ranges of 1 to 3; by default they are
 /// equal.
+/// @range power: 0 (silent) to 3
 void pogobot_infrared_set_power(uint8_t power);
 
 // Receiving, without msg_rx_fn. When the queue is full, new messages are dropped.
@@ -148,6 +156,7 @@ void pogobot_infrared_set_power(uint8_t power);
 void pogobot_infrared_update(void);
 /// Non-zero if a message is waiting. A loop that waits for it goes on when a message comes; call
 /// pogobot_infrared_update() and msleep() in it.
+/// @range returns 0: none, or another number
 int pogobot_infrared_message_available(void);
 /// Drops all waiting messages.
 void pogobot_infrared_clear_message_queue(void);
@@ -155,6 +164,7 @@ void pogobot_infrared_clear_message_queue(void);
 void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes);
 
 /// Error counters of receiver `ir_index`, 0 to 3: always zero in the simulator. NULL does nothing.
+/// @range ir_index: 0 to 3
 void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t ir_index);
 /// Resets the error counters of a real robot; does nothing in the simulator.
 void pogobot_infrared_reset_receiver_error_counter(void);

@@ -16,10 +16,12 @@ extern "C" {
 POGO_BEGIN_API
 
 /// Colour of the head LED (0), 0 to 255 per channel. It stays until it is changed.
+/// @range r, g, b: 0 to 255
 void pogobot_led_setColor(uint8_t const r, uint8_t const g, uint8_t const b);
 
 /// Colour of LED `id`: 0 head, 1 front, 2 right, 3 back, 4 left. Other values do nothing. On real robots, 1 to 4
 /// require a board with five LEDs.
+/// @range r, g, b: 0 to 255; id: 0 to 4
 void pogobot_led_setColors(uint8_t const r, uint8_t const g, uint8_t const b, uint8_t id);
 
 POGO_END_API

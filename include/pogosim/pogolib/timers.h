@@ -21,8 +21,10 @@ POGO_BEGIN_API
 /// Starts a stopwatch: origin = now.
 void pogobot_stopwatch_reset(time_reference_t* stopwatch);
 /// Time since the origin, us.
+/// @range returns us, -2^31 to 2^31 - 1
 int32_t pogobot_stopwatch_get_elapsed_microseconds(time_reference_t* stopwatch);
 /// Time since the origin, us; then resets the origin to now.
+/// @range returns us, -2^31 to 2^31 - 1
 int32_t pogobot_stopwatch_lap(time_reference_t* stopwatch);
 /// Moves the origin: a positive offset makes the elapsed time smaller.
 void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, int32_t microseconds_offset);
@@ -30,6 +32,7 @@ void pogobot_stopwatch_offset_origin_microseconds(time_reference_t* stopwatch, i
 /// Starts a timer that expires after this many microseconds.
 void pogobot_timer_init(time_reference_t* timer, int32_t microseconds_to_go);
 /// Time left, us; negative once it has expired.
+/// @range returns us, -2^31 to 2^31 - 1
 int32_t pogobot_timer_get_remaining_microseconds(time_reference_t* timer);
 /// True if the time left is negative.
 bool pogobot_timer_has_expired(time_reference_t* timer);

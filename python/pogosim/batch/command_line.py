@@ -51,11 +51,11 @@ def parser(prog: str) -> Parser:
     add = options.add_argument
     add("-c", "--config", required=True, help="configuration with options (YAML)")
     add("-S", "--simulator-binary", metavar="PROGRAM", help="program compiled for Pogosim")
-    add("-r", "--runs", type=int, default=1, help="runs per combination (1)")
+    add("-r", "--runs", type=int, default=1, help="runs per combination (%(default)s)")
     add("-t", "--temp-base", metavar="FOLDER", default="tmp", help="folder for temporary files (tmp)")
     add("-o", "--output-dir", metavar="FOLDER", default=".", help="folder of the results (.)")
     add("-j", "--workers", type=int, metavar="N", help="runs at the same time (one per processor)")
-    add("-R", "--retries", type=int, default=5, help="how many times a failed run is repeated (5)")
+    add("-R", "--retries", type=int, default=5, help="how many times a failed run is repeated (%(default)s)")
     add(
         "--seed-from",
         metavar="run|config",

@@ -12,6 +12,7 @@ from typing import Any
 
 from pogosim.batch.errors import BatchError, one_line
 from pogosim.batch.run import Outcome, Task, do_run
+from pogosim.extras import installing
 
 CONNECT_S = 5
 POLL_S = 0.2
@@ -29,9 +30,7 @@ def imported(flag: str, extra: str) -> tuple[Any, Any]:
         settings.config.set({"logging": dict.fromkeys(("distributed", "distributed.client", "tornado"), "critical")})
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
-        raise BatchError(
-            f"{flag} needs the Python package 'distributed'; install it: pip install 'pogosim[{extra}]'"
-        ) from None
+        raise BatchError(f"{flag} needs the Python package 'distributed'; install it: {installing(extra)}") from None
     return settings, distributed
 
 

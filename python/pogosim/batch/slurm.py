@@ -23,6 +23,7 @@ from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm_jobs import Jobs, check_commands, counted, own_folder
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB, TIME, SlurmJobs
 from pogosim.batch.slurm_worker import do_in_job
+from pogosim.extras import installing
 
 LOSSES_PER_RUN = 5
 ROLES = ("scheduler", "worker", "client")
@@ -129,9 +130,7 @@ def imported_jobqueue() -> Any:
         return importlib.import_module("dask_jobqueue")
     except ImportError as error:
         package = "cryptography" if error.name == "cryptography" else "dask-jobqueue"
-        raise BatchError(
-            f"--slurm needs the Python package '{package}'; install it: pip install 'pogosim[slurm]'"
-        ) from None
+        raise BatchError(f"--slurm needs the Python package '{package}'; install it: {installing('slurm')}") from None
     finally:
         signal.signal(signal.SIGINT, on_interrupt)  # dask_jobqueue puts its own
 

@@ -55,8 +55,10 @@ def parser(prog: str) -> Parser:
     units.add_argument("--angle-unit", choices=list(ANGLES_RAD))
     units.add_argument("--y-up", action="store_true", help="y points up, and angles are counter-clockwise")
     units.add_argument("--fps", type=positive, metavar="N", help="frames per second, if times are frame numbers")
-    made.add_argument("--runs", type=whole(1, 1000), default=3, metavar="N", help="runs to average (3)")
-    made.add_argument("--seed", type=whole(0, 2**32 - 10**4), default=42, metavar="N", help="of the first run (42)")
+    made.add_argument("--runs", type=whole(1, 1000), default=3, metavar="N", help="runs to average (%(default)s)")
+    made.add_argument(
+        "--seed", type=whole(0, 2**32 - 10**4), default=42, metavar="N", help="of the first run (%(default)s)"
+    )
     made.add_argument(
         "-j", "--workers", type=whole(1, 10**4), metavar="N", help="runs at the same time (one per processor)"
     )

@@ -17,7 +17,8 @@ from pathlib import Path
 import pogosim
 from pogosim.command.compilers import COMPILERS
 from pogosim.command.parser import Parser
-from pogosim.installation import Installation, InstallationError, find_installation
+from pogosim.extras import installing
+from pogosim.installation import PACKAGE, Installation, InstallationError, find_installation
 from pogosim.lines import say
 
 PROGRAM = """#include "pogobase.h"
@@ -60,6 +61,30 @@ def last_line(done: subprocess.CompletedProcess[str]) -> str:
     """Return the last line that a command has printed."""
     lines = (done.stdout + done.stderr).strip().splitlines()
     return lines[-1] if lines else f"exit code {done.returncode}"
+
+
+def others_of_that_name() -> list[str]:
+    """Return where other programs by the name of pogosim are: packages that Python could find, and the command."""
+    places = [Path(folder or ".", "pogosim") for folder in sys.path]
+    others = [str(place) for place in places if is_package(place) and not (place / "simulation").is_dir()]
+    command = shutil.which("pogosim")
+    if command and b"pogosim.command.main" not in Path(command).read_bytes():
+        others.append(command)
+    return list(dict.fromkeys(others))
+
+
+def is_package(place: Path) -> bool:
+    """Tell whether a folder is a package other than this one."""
+    return place.is_dir() and any(place.glob("*.py")) and place.resolve() != PACKAGE
+
+
+def check_name(found: Installation) -> Finding:  # noqa: ARG001
+    """Look for the program on PyPI that has the same name."""
+    others = others_of_that_name()
+    if others:
+        advice = "see docs/other_pogosim.md: pip uninstall pogosim, then install this one again"
+        return Finding("Name", False, f"another program named pogosim is installed: {', '.join(others)}", advice)
+    return Finding("Name", True, f"this Pogosim is the only one, in {PACKAGE}")
 
 
 def check_c(found: Installation) -> Finding:
@@ -157,7 +182,7 @@ def check_clusters(found: Installation) -> Finding:  # noqa: ARG001
     lacking = [name for name in ("distributed", "dask_jobqueue") if importlib.util.find_spec(name) is None]
     slurm = "SLURM's sbatch is there" if shutil.which("sbatch") else "no sbatch of SLURM"
     if "distributed" in lacking:
-        return Finding("Clusters", False, f"Dask is not installed; {slurm}", 'pip install "pogosim[dask]"')
+        return Finding("Clusters", False, f"Dask is not installed; {slurm}", installing("dask"))
     jobqueue = "without dask-jobqueue" if lacking else "with dask-jobqueue"
     return Finding("Clusters", True, f"Dask is installed, {jobqueue}; {slurm}")
 
@@ -169,7 +194,7 @@ def check_searches(found: Installation) -> Finding:  # noqa: ARG001
     if not lacking:
         return Finding("Searches", True, "all optimizers of pogoptim work")
     without = ", ".join(needs[name] for name in lacking)
-    return Finding("Searches", False, f"without the optimizers {without}", 'pip install "pogosim[optimize]"')
+    return Finding("Searches", False, f"without the optimizers {without}", installing("optimize"))
 
 
 def check_robots(found: Installation) -> Finding:  # noqa: ARG001
@@ -190,6 +215,7 @@ def check_robots(found: Installation) -> Finding:  # noqa: ARG001
 
 # By purpose, what is most important first.
 CHECKS: dict[str, Callable[[Installation], Finding]] = {
+    "Name": check_name,
     "C programs": check_c,
     "C++ programs": check_cpp,
     "Projects": check_make,

@@ -63,7 +63,7 @@ def parser(prog: str) -> Parser:
         help="r2: least squares (default); huber: strange measurements count for less",
     )
     made.add_argument(
-        "--huber-delta", type=positive, default=0.1, help="residual from which Huber's loss is linear (0.1)"
+        "--huber-delta", type=positive, default=0.1, help="residual from which Huber's loss is linear (%(default)g)"
     )
     names = ", ".join(parameter_names(LAWS["dynamic"]))
     made.add_argument(
@@ -84,8 +84,10 @@ def parser(prog: str) -> Parser:
         metavar="N",
         help="header of the messages: 3 in short ones (default), 8 in long ones",
     )
-    made.add_argument("--seed", type=whole(1, 2**32 - 10**4), default=42, metavar="N", help="of the search (42)")
-    made.add_argument("--restarts", type=whole(0, 1000), default=2, metavar="N", help="more searches (2)")
+    made.add_argument(
+        "--seed", type=whole(1, 2**32 - 10**4), default=42, metavar="N", help="of the search (%(default)s)"
+    )
+    made.add_argument("--restarts", type=whole(0, 1000), default=2, metavar="N", help="more searches (%(default)s)")
     return made
 
 

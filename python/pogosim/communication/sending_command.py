@@ -41,7 +41,12 @@ def parser(prog: str) -> Parser:
         defaults = ", ".join(f"{law}: {by_name[name]:g}" for law, by_name in all_defaults().items() if name in by_name)
         made.add_argument(*short, f"--{name}", type=finite, help=f"parameter of the law ({defaults})")
     made.add_argument(
-        "-f", "--frequency", type=positive, default=30.0, metavar="HZ", help="ticks per second, main_loop_hz (30)"
+        "-f",
+        "--frequency",
+        type=positive,
+        default=30.0,
+        metavar="HZ",
+        help="ticks per second (%(default)g): main_loop_hz of the program",
     )
     made.add_argument("-u", "--no-clip", action="store_true", help="print the maximum of the formula even if above 1")
     return made

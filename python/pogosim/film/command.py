@@ -47,8 +47,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim film") -> 
     parser.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="film to write (.mp4, .webm, .gif), or page (.html)"
     )
-    parser.add_argument("--speed", type=positive, default=1.0, metavar="X", help="times real time (1)")
-    parser.add_argument("--fps", type=positive, default=30.0, help="frames per second of the film (30)")
+    parser.add_argument("--speed", type=positive, default=1.0, metavar="X", help="times real time (%(default)g)")
+    parser.add_argument("--fps", type=positive, default=30.0, help="frames per second of the film (%(default)g)")
     parser.add_argument("--from", dest="start", type=moment, metavar="SECONDS", help="time of the first frame (first)")
     parser.add_argument("--to", dest="end", type=moment, metavar="SECONDS", help="time of the last frame (last)")
     parser.add_argument("--tail", type=positive, metavar="SECONDS", help="length of the trails (none)")

@@ -28,7 +28,7 @@ def parser(prog: str) -> Parser:
     add_area(show, DEFAULT_AREA_MM2, "1e6, as in configurations")
     show.add_argument("--stretch", action="store_true", help="as with arena_stretch: true")
     show.add_argument(
-        "--radius", type=positive, default=DEFAULT_RADIUS_MM, metavar="MM", help="radius of the robots (26.5)"
+        "--radius", type=positive, default=DEFAULT_RADIUS_MM, metavar="MM", help="radius of the robots (%(default)g)"
     )
 
     scale = actions.add_parser("scale", help="scale an arena to an area")
@@ -50,7 +50,7 @@ def parser(prog: str) -> Parser:
         type=positive,
         default=1e-4,
         metavar="SHARE",
-        help="how far walls may be from curves, as a share of the diagonal of the drawing (1e-4)",
+        help="how far walls may be from curves, as a share of the diagonal of the drawing (%(default)g)",
     )
 
     to_svg = actions.add_parser("to-svg", help="make a drawing of an arena")

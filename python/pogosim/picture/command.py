@@ -36,7 +36,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "swarm_picture") ->
     )
     parser.add_argument("data", metavar="DATA.feather", help="data file of a run")
     parser.add_argument("picture", metavar="OUT.png", help=f"picture to write ({', '.join(PICTURES)})")
-    parser.add_argument("--dpi", type=positive, default=150.0, help="dots per inch (150)")
+    parser.add_argument("--dpi", type=positive, default=150.0, help="dots per inch (%(default)g)")
     parser.add_argument("--tail", type=positive, metavar="SECONDS", help="length of the trails (whole run)")
     parser.add_argument(
         "--at",

@@ -45,12 +45,16 @@ def locomotion(prog: str) -> Parser:
         "Computes speeds, displacements, diffusion, persistence and densities of robots: tables in DIR/stats, figures "
         "(PDF, PNG) in DIR, and DIR/SUMMARY.txt.",
     )
-    parser.add_argument("--window", type=positive, default=2.0, metavar="S", help="sliding window of speeds (2 s)")
+    parser.add_argument(
+        "--window", type=positive, default=2.0, metavar="S", help="sliding window of speeds (%(default)g s)"
+    )
     parser.add_argument(
         "--characteristic-length", type=positive, metavar="MM", help="length of the Peclet number (2 radius)"
     )
-    parser.add_argument("--bins", type=whole(1, 2000), default=30, metavar="N", help="bins of heat maps (30)")
-    parser.add_argument("--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (20)")
+    parser.add_argument("--bins", type=whole(1, 2000), default=30, metavar="N", help="bins of heat maps (%(default)s)")
+    parser.add_argument(
+        "--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (%(default)s)"
+    )
     parser.add_argument("--gif", action="store_true", help="make films of the traces, too: traces/*.gif")
     return parser
 
@@ -64,7 +68,9 @@ def neighbors(prog: str) -> Parser:
         metavar="COLUMN",
         help=f"neighbours are the robots whose ids are listed there ({NEIGHBOURS}, if the data have it)",
     )
-    parser.add_argument("--k", type=at_least(1), default=3, metavar="K", help="without lists: the K nearest (3)")
+    parser.add_argument(
+        "--k", type=at_least(1), default=3, metavar="K", help="without lists: the K nearest (%(default)s)"
+    )
     parser.add_argument(
         "--statBasis",
         "--stat-basis",
@@ -79,7 +85,11 @@ def network(prog: str) -> Parser:
     """Return the parser of `pogosim analyze network`."""
     parser = analysis_parser(prog, "Components, degrees and Laplacian spectra of the proximity graph of robots.")
     parser.add_argument(
-        "--k-first", type=whole(1, 10_000), default=5, metavar="K", help="how many small non-zero eigenvalues (5)"
+        "--k-first",
+        type=whole(1, 10_000),
+        default=5,
+        metavar="K",
+        help="how many small non-zero eigenvalues (%(default)s)",
     )
     parser.add_argument(
         "--avg-window-s",
@@ -88,7 +98,11 @@ def network(prog: str) -> Parser:
         help="graphs are averaged over windows of this many seconds (auto: rc / mean speed, and 10 save periods)",
     )
     parser.add_argument(
-        "--zero-tol", type=positive, default=1e-10, metavar="X", help="eigenvalues up to this count as zero (1e-10)"
+        "--zero-tol",
+        type=positive,
+        default=1e-10,
+        metavar="X",
+        help="eigenvalues up to this count as zero (%(default)g)",
     )
     return parser
 
@@ -118,17 +132,17 @@ def collective(prog: str) -> Parser:
         metavar="MM_S",
         help=f"slower robots have no direction ({MIN_SPEED_MM_S} mm/s)",
     )
-    add("--psi-k", type=whole(1, 100), default=6, metavar="K", help="symmetry of the bond order (6)")
-    add("--gr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of g(r) (200)")
-    add("--gr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (2)")
-    add("--sk-nx", type=whole(4, 4096), default=128, metavar="N", help="columns of the grid of S(k) (128)")
-    add("--sk-ny", type=whole(4, 4096), default=128, metavar="N", help="rows of it (128)")
+    add("--psi-k", type=whole(1, 100), default=6, metavar="K", help="symmetry of the bond order (%(default)s)")
+    add("--gr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of g(r) (%(default)g)")
+    add("--gr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (%(default)g)")
+    add("--sk-nx", type=whole(4, 4096), default=128, metavar="N", help="columns of the grid of S(k) (%(default)s)")
+    add("--sk-ny", type=whole(4, 4096), default=128, metavar="N", help="rows of it (%(default)s)")
     add("--v2-ref", type=positive, metavar="MM2_S2", help="mean square speed that Teff_ratio is for (that of all runs)")
-    add("--vort-nx", type=whole(2, 4096), default=64, metavar="N", help="columns of the velocity field (64)")
-    add("--vort-ny", type=whole(2, 4096), default=64, metavar="N", help="rows of it (64)")
+    add("--vort-nx", type=whole(2, 4096), default=64, metavar="N", help="columns of the velocity field (%(default)s)")
+    add("--vort-ny", type=whole(2, 4096), default=64, metavar="N", help="rows of it (%(default)s)")
     add("--milling-center", choices=("cm", "arena"), default="cm", help="centre of mass, or of the arena (cm)")
-    add("--aligncorr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of C(r) (200)")
-    add("--aligncorr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (2)")
+    add("--aligncorr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of C(r) (%(default)g)")
+    add("--aligncorr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (%(default)g)")
     add("--aligncorr-fluctuations", action="store_true", help="subtract the mean of all robots first")
     add("-N", "--no-csv", action="store_true", help="do not write CSV files")
     return own
@@ -147,7 +161,9 @@ def messages(prog: str) -> Parser:
     )
     parser.add_argument("-o", "--output-dir", default=".", metavar="DIR", help="folder for tables and figures (.)")
     parser.add_argument("--category", metavar="NAME", help="senders to analyse (all)")
-    parser.add_argument("--bin", type=positive, default=10.0, metavar="MM", help="width of the bins of distance (10)")
+    parser.add_argument(
+        "--bin", type=positive, default=10.0, metavar="MM", help="width of the bins of distance (%(default)g)"
+    )
     return parser
 
 

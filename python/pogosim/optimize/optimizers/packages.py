@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+from pogosim.extras import installing
 from pogosim.optimize.errors import OptimizeError
 
 
@@ -19,5 +20,5 @@ def imported(name: str, optimizer: str) -> Any:
     except ImportError:
         package = name.partition(".")[0]
         raise OptimizeError(
-            f"--optimizer {optimizer} needs the Python package '{package}'; install it: pip install 'pogosim[optimize]'"
+            f"--optimizer {optimizer} needs the Python package '{package}'; install it: {installing('optimize')}"
         ) from None

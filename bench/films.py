@@ -1,0 +1,77 @@
+"""What films and frames cost: processor time for a frame of `pogosim film`, and for one that a run draws itself.
+
+    .venv/bin/python bench/films.py
+
+Runs examples/hanabi (./build.sh) with 100 and 1000 robots. Processor time is that of all threads and of ffmpeg.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PROGRAM = ROOT / "examples" / "hanabi" / "hanabi"
+ROBOTS = (100, 1000)
+DURATION_S = 10
+FPS = 30
+FILMS = {
+    "robots": [],
+    "with links": ["--links"],
+    "with trails": ["--tail", "5"],
+    "with both": ["--links", "--tail", "5"],
+}
+PERIODS_S = (-1, 1, 0.1)  # of frames; -1: none
+
+
+def spent_s(command: list[str], folder: Path) -> float:
+    """Run a command; return its processor time."""
+    before = os.times()
+    subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    after = os.times()
+    return after.children_user + after.children_system - before.children_user - before.children_system
+
+
+def running(robots: int, *settings: str) -> list[str]:
+    """Return the command of a run without a window."""
+    every = (f"simulation_time={DURATION_S}", f"objects.robots.nb={robots}", f"arena_surface={robots * 1e4}", *settings)
+    command = [str(PROGRAM), "-c", str(ROOT / "conf" / "demo.yaml"), "-g", "-q"]
+    return [*command, *(f"--set={setting}" for setting in every)]
+
+
+def measure(folder: Path) -> None:
+    """Print all times."""
+    for robots in ROBOTS:
+        spent_s(running(robots, "data_filename=data.feather"), folder)
+        for name, options in FILMS.items():
+            film = [sys.executable, "-m", "pogosim", "film", "data.feather", "-o", "film.mp4", "--fps", str(FPS)]
+            each_ms = 1e3 * spent_s([*film, *options], folder) / (DURATION_S * FPS)
+            print(f"film of {robots:4d} robots, {name:12s} {each_ms:5.0f} ms per frame", flush=True)
+        for period_s in PERIODS_S:
+            frames = (f"save_video_period={period_s}", "frames_name=f{:06.3f}.png", "enable_data_logging=false")
+            name = "no frames" if period_s < 0 else f"a frame every {period_s:g} s"
+            run_s = spent_s(running(robots, *frames), folder)
+            print(f"run  of {robots:4d} robots for {DURATION_S} s, {name:20s} {run_s:5.2f} s", flush=True)
+
+
+def main() -> int:
+    """Run the command line; returns the exit code."""
+    argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0]).parse_args()
+    if not PROGRAM.is_file():
+        print(f"films.py: {PROGRAM} is missing: ./build.sh builds it", file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            measure(Path(folder))
+        except subprocess.CalledProcessError as error:
+            print(f"films.py: {error}: {error.stderr.decode(errors='replace').strip()}", file=sys.stderr)
+            return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

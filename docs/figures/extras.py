@@ -1,0 +1,29 @@
+"""The table of docs/installing.md: packages that only some tools need.
+
+.venv/bin/python docs/figures/all.py extras
+"""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+from pogosim.extras import EXTRAS
+from quotes import Quote
+
+NAMES = ("installing.md: extras",)
+PURPOSES = {
+    "dask": "batches with `--backend dask` or `--scheduler`",
+    "slurm": "batches with `--slurm`",
+    "learning": "[learning](learning.md)",
+    "optimize": "`pogoptim` with `tpe`, `mapelites`, `cma_me` and `cma_mae`",
+}
+
+
+def draw(_folder: Path) -> dict[str, Quote]:
+    """Write the table."""
+    rows = [
+        f"| {PURPOSES[extra]} | `.venv/bin/python -m pip install {shlex.join(packages)}` |"
+        for extra, packages in EXTRAS.items()
+    ]
+    return {NAMES[0]: Quote(("| for | command in a checkout |", "|---|---|", *rows))}
