@@ -60,7 +60,9 @@ def processor_s(program: Path, robots: int, seconds: float) -> float:
 def main() -> None:
     """Measure the kinds by turns."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("robots", nargs="?", type=at_least_one, default=1000, help="number of robots (default 1000)")
+    parser.add_argument(
+        "robots", nargs="?", type=at_least_one, default=1000, help="number of robots (default %(default)s)"
+    )
     robots = parser.parse_args().robots
     check_built(parser, ROOT / "build" / "release" / "pogosim.pc")
     for tool in ("cc", "pkg-config"):

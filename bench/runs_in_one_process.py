@@ -70,7 +70,7 @@ def seconds(function: Callable[[int, Path], int], runs: int) -> tuple[float, flo
 def main() -> None:
     """Measure both ways."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("runs", nargs="?", type=at_least_one, default=1000, help="number of runs (default 1000)")
+    parser.add_argument("runs", nargs="?", type=at_least_one, default=1000, help="number of runs (default %(default)s)")
     runs = parser.parse_args().runs
     check_built(parser, PROGRAM, Path(f"{PROGRAM}.so"))
     for name, function in (("one process each", run_process), ("one process", run_inside)):
