@@ -34,7 +34,8 @@ try:
 except ImportError as missing:
     if __name__ != "__main__":
         raise
-    print(f"train.py: {missing}; .venv/bin/python has all packages, once ./build.sh has made it", file=sys.stderr)
+    remedy = "; run it with .venv/bin/python, which ./build.sh makes" if missing.name else ""
+    print(f"train.py: {missing}{remedy}", file=sys.stderr)
     sys.exit(2)
 
 Array = npt.NDArray[Any]
