@@ -19,8 +19,16 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-import yaml
-from pogosim.pogobatch import PogobotBatchRunner
+try:
+    import yaml
+    from pogosim.pogobatch import PogobotBatchRunner
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"batch_overhead.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
+
+from options import at_least_one, check_built
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = ROOT / "examples" / "hanabi" / "hanabi"
@@ -69,9 +77,12 @@ def measure(runs: int, workers: int) -> tuple[float, float, int]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the share. The exit code is 1 if it is below the floor."""
     parser = argparse.ArgumentParser(description="Share of a batch's time that is spent in simulators.")
-    parser.add_argument("--runs", type=int, default=10_000, help="number of runs (default %(default)s)")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="runs at the same time (all cores)")
+    parser.add_argument("--runs", type=at_least_one, default=10_000, help="number of runs (default %(default)s)")
+    parser.add_argument(
+        "--workers", type=at_least_one, default=os.cpu_count() or 1, help="runs at the same time (all cores)"
+    )
     options = parser.parse_args(arguments)
+    check_built(parser, PROGRAM)
     wall_s, simulator_s, size = measure(options.runs, options.workers)
     share = simulator_s / (wall_s * options.workers)
     print(

@@ -8,12 +8,21 @@ Prints a table in Markdown: means over the seeds, with the standard deviation be
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
-import pogosim
+try:
+    import numpy as np
+    import numpy.typing as npt
+    import pogosim
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"compare_engines.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
+
+from options import at_least_one, check_built, seconds
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = ROOT / "examples" / "run_and_tumble" / "run_and_tumble.so"
@@ -70,10 +79,14 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("arenas", nargs="*", default=["disk", "annulus", "H"], help="files in arenas/, without .csv")
-    parser.add_argument("--robots", type=int, default=300)
-    parser.add_argument("--seeds", type=int, default=6)
-    parser.add_argument("--time-step", type=float, default=0.01, help="s")
+    parser.add_argument("--robots", type=at_least_one, default=300)
+    parser.add_argument("--seeds", type=at_least_one, default=6)
+    parser.add_argument("--time-step", type=seconds, default=0.01, help="s")
     options = parser.parse_args()
+    check_built(parser, PROGRAM)
+    for arena in options.arenas:
+        if not (ROOT / "arenas" / f"{arena}.csv").is_file():
+            parser.error(f"there is no arena {arena} in arenas/")
     print("| arena | engine |" + "|".join(f" {name} " for name in COLUMNS) + "|")
     print("|---" * (len(COLUMNS) + 2) + "|")
     for arena in options.arenas:

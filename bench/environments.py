@@ -5,18 +5,24 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 sys.path.append(str(Path(__file__).resolve().parents[1] / "examples" / "learning"))
 
-from commanded_robots import DECISION_STEPS
-from gym_env import LightSeeker
-from parallel_env import Gathering
+try:
+    import numpy as np
+    from commanded_robots import DECISION_STEPS
+    from gym_env import LightSeeker
+    from parallel_env import Gathering
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"environments.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 STEPS, RESETS, ROUNDS = 1000, 50, 5
 ACTION = np.array([1.0, 0.9], np.float32)
@@ -46,6 +52,7 @@ def measure(env: Any, action: Any) -> tuple[float, float, float]:
 
 def main() -> None:
     """Measure both environments."""
+    argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0]).parse_args()
     for env in (LightSeeker(episode_steps=STEPS), Gathering(episode_steps=STEPS)):
         action = dict.fromkeys(env.possible_agents, ACTION) if isinstance(env, Gathering) else ACTION
         env.reset(seed=0)

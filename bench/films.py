@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -61,6 +62,11 @@ def measure(folder: Path) -> None:
 def main() -> int:
     """Run the command line; returns the exit code."""
     argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0]).parse_args()
+    if find_spec("pogosim") is None:
+        print(
+            "films.py: No module named 'pogosim'; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr
+        )
+        return 2
     if not PROGRAM.is_file():
         print(f"films.py: {PROGRAM} is missing: ./build.sh builds it", file=sys.stderr)
         return 2

@@ -9,11 +9,14 @@ one that has used least processor time counts.
 
 from __future__ import annotations
 
+import argparse
 import os
+import shutil
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
+
+from options import at_least_one, check_built
 
 ROOT = Path(__file__).resolve().parents[1]
 KINDS = {"USERDATA": "pogosim", "GLOBALS": "pogosim", "SDK": "pogosim-sdk"}
@@ -56,7 +59,15 @@ def processor_s(program: Path, robots: int, seconds: float) -> float:
 
 def main() -> None:
     """Measure the kinds by turns."""
-    robots = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument(
+        "robots", nargs="?", type=at_least_one, default=1000, help="number of robots (default %(default)s)"
+    )
+    robots = parser.parse_args().robots
+    check_built(parser, ROOT / "build" / "release" / "pogosim.pc")
+    for tool in ("cc", "pkg-config"):
+        if shutil.which(tool) is None:
+            parser.error(f"{tool} is not installed (Debian, Ubuntu: apt install gcc pkg-config)")
     with tempfile.TemporaryDirectory() as name:
         programs = {kind: compiled(Path(name), kind) for kind in KINDS}
         start_s = {kind: processor_s(program, robots, 0.01) for kind, program in programs.items()}

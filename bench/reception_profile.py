@@ -26,10 +26,18 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-import yaml
-from pogosim.communication.measurements import ROBOTS_OWN
-from pogosim.communication.reception_law import SHORT_HEADER_BYTES, DynamicLaw
-from pogosim.utils import load_dataframe
+try:
+    import yaml
+    from pogosim.communication.measurements import ROBOTS_OWN
+    from pogosim.communication.reception_law import SHORT_HEADER_BYTES, DynamicLaw
+    from pogosim.utils import load_dataframe
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"reception_profile.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
+
+from options import at_least_one, check_built, seconds
 
 ROOT = Path(__file__).resolve().parents[1]
 PROBES = ROOT / "examples" / "probes" / "probes"
@@ -137,9 +145,10 @@ def simulate_all(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table. The exit code is 1 if a setting is further from the equation than the tolerance."""
     parser = argparse.ArgumentParser(description="Reception probability in whole simulations against the equation.")
-    parser.add_argument("--seeds", type=int, default=10, help="simulations per setting (default %(default)s)")
-    parser.add_argument("--time", type=float, default=60.0, help="simulated time of each, s (default %(default)g)")
+    parser.add_argument("--seeds", type=at_least_one, default=10, help="simulations per setting (default %(default)s)")
+    parser.add_argument("--time", type=seconds, default=60.0, help="simulated time of each, s (default %(default)g)")
     options = parser.parse_args(arguments)
+    check_built(parser, PROBES)
 
     measurements = read_measurements()
     parameters = read_parameters()

@@ -8,6 +8,7 @@ On a busy machine, compare the processor time.
 
 from __future__ import annotations
 
+import argparse
 import resource
 import subprocess
 import sys
@@ -18,7 +19,15 @@ from concurrent.futures import ThreadPoolExecutor
 from os import cpu_count
 from pathlib import Path
 
-import pogosim
+try:
+    import pogosim
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"runs_in_one_process.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
+
+from options import at_least_one, check_built
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = ROOT / "examples" / "run_and_tumble" / "run_and_tumble"
@@ -60,7 +69,10 @@ def seconds(function: Callable[[int, Path], int], runs: int) -> tuple[float, flo
 
 def main() -> None:
     """Measure both ways."""
-    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("runs", nargs="?", type=at_least_one, default=1000, help="number of runs (default %(default)s)")
+    runs = parser.parse_args().runs
+    check_built(parser, PROGRAM, Path(f"{PROGRAM}.so"))
     for name, function in (("one process each", run_process), ("one process", run_inside)):
         seconds(function, 10)  # programs and libraries are in memory then
         duration_s, used_s = seconds(function, runs)

@@ -17,9 +17,17 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
-import pandas as pd
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+try:
+    import matplotlib.pyplot as plt
+    import pandas as pd
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"table.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
+
+from options import at_least_one
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAMS = ("run_and_tumble", "hanabi", "push_sum", "moving_oscillators", "phototaxis", "walls_and_membranes")
@@ -103,14 +111,17 @@ def main() -> int:
     """Run the command line; returns the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("-o", "--output", type=Path, default=Path("build/bench"), help="folder, default build/bench")
-    parser.add_argument("--robots", type=int, nargs="+", default=[100, 1000, 10_000, 100_000])
+    parser.add_argument("--robots", type=at_least_one, nargs="+", default=[100, 1000, 10_000, 100_000])
     parser.add_argument("--programs", nargs="+", choices=PROGRAMS, default=PROGRAMS)
-    parser.add_argument("--threads", type=int, nargs="+", default=[1, 2], help="of the disk engine")
+    parser.add_argument("--threads", type=at_least_one, nargs="+", default=[1, 2], help="of the disk engine")
     parser.add_argument(
-        "--most-box2d", type=int, default=10_000, help="most robots that Box2D moves, default %(default)s"
+        "--most-box2d", type=at_least_one, default=10_000, help="most robots that Box2D moves, default %(default)s"
     )
     options = parser.parse_args()
-    options.output.mkdir(parents=True, exist_ok=True)
+    try:
+        options.output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        parser.error(f"--output: cannot make the folder {options.output}: {error.strerror}")
     measurements = []
     for program, engine, threads, robots in asked(options):
         measurements.append(measure(program, engine, threads, robots))

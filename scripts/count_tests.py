@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 import xml.etree.ElementTree as ET
 
 
@@ -13,5 +13,11 @@ def passed(case: ET.Element) -> bool:
 
 
 if __name__ == "__main__":
-    outcomes = [passed(case) for case in ET.parse(sys.argv[1]).iter("testcase")]
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition(":")[0])
+    parser.add_argument("report", help="JUnit report (XML)")
+    report = parser.parse_args().report
+    try:
+        outcomes = [passed(case) for case in ET.parse(report).iter("testcase")]
+    except (OSError, ET.ParseError) as error:
+        parser.error(f"{report} cannot be read: {error}")
     print(sum(outcomes), len(outcomes) - sum(outcomes))

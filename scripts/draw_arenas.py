@@ -162,9 +162,12 @@ def main() -> None:
     default = Path(__file__).resolve().parent.parent / "arenas"
     parser.add_argument("--output", type=Path, default=default, help="folder for the csv files (default: arenas)")
     folder: Path = parser.parse_args().output
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, arena in arenas().items():
-        (folder / f"{name}.csv").write_bytes(as_text(arena, periodic=name in PERIODIC).encode("ascii"))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, arena in arenas().items():
+            (folder / f"{name}.csv").write_bytes(as_text(arena, periodic=name in PERIODIC).encode("ascii"))
+    except OSError as error:
+        parser.error(f"cannot write to {folder}: {error.strerror}")
 
 
 if __name__ == "__main__":

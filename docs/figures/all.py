@@ -20,25 +20,31 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
-import analysis_tour
-import extras
-import first_program
-import formations
-import functions
-import gallery
-import lamps
-import messages
-import mistakes
-import parameter_study
-import printed
-import reception
-import replay
-import swarm
-import window
-from pictures import DOCS, Picture, difference, keep
-from quotes import Quote, keep_quote, quote_difference
-from studies import STUDIES
-from times import TIMES
+try:
+    import analysis_tour
+    import extras
+    import first_program
+    import formations
+    import functions
+    import gallery
+    import lamps
+    import messages
+    import mistakes
+    import parameter_study
+    import printed
+    import reception
+    import replay
+    import swarm
+    import window
+    from pictures import DOCS, Picture, difference, keep
+    from quotes import Quote, keep_quote, quote_difference
+    from studies import STUDIES
+    from times import TIMES
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"all.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 SCRIPTS: dict[str, ModuleType] = {
     script.__name__: script

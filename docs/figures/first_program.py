@@ -9,13 +9,20 @@ they print must be in their output. `make bin` is left out unless POGO_SDK says 
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from pathlib import Path
 
-from pages import check_printed, code_blocks, run
-from pictures import DOCS, ROOT, Picture, fingerprint
-from pogosim.utils import load_dataframe
+try:
+    from pages import check_printed, code_blocks, run
+    from pictures import DOCS, ROOT, Picture, fingerprint
+    from pogosim.utils import load_dataframe
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"first_program.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 PLACES = {"~/pogosim": str(ROOT), "~/pogobot-sdk": os.environ.get("POGO_SDK", "")}
 FILES = {"c": "main.c", "yaml": "conf/crowds.yaml", "python": "plot.py"}
@@ -59,4 +66,9 @@ def draw(folder: Path) -> dict[str, Picture]:
 
 
 if __name__ == "__main__":
-    follow(DOCS / "first_program.md", Path(sys.argv[1]))
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("folder", type=Path, help="folder to follow the page in")
+    options = parser.parse_args()
+    if not options.folder.is_dir():
+        parser.error(f"there is no folder {options.folder}")
+    follow(DOCS / "first_program.md", options.folder)

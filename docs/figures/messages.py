@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pandas as pd
 from pictures import ROOT, Picture, from_figure
-from pogosim.reports.messages import drawn, main
+from pogosim.reports.command import analyze
+from pogosim.reports.messages import drawn
 from pogosim.utils import load_dataframe
 from quotes import Quote, paragraph
 
@@ -46,7 +47,7 @@ def draw(folder: Path) -> dict[str, Picture | Quote]:
     for setting in (*SETTINGS, f"data_filename={folder / 'data.feather'}", f"message_log={log}"):
         command += ["--set", setting]
     subprocess.run(command, cwd=ROOT, check=True, timeout=120)
-    if main(["-i", str(log), "-o", str(folder / "out")]) != 0:
+    if analyze("messages", ["-i", str(log), "-o", str(folder / "out")], "pogosim analyze messages") != 0:
         raise RuntimeError(f"{log} cannot be analysed")
     distance, cluster = (
         pd.read_csv(folder / "out" / f"reception_by_{name}.csv") for name in ("distance", "cluster_size")

@@ -17,7 +17,13 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation import SCENES
+try:
+    from validation import SCENES
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"validate.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

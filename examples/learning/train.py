@@ -21,21 +21,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cma
-import numpy as np
-import numpy.typing as npt
-from commanded_robots import ACTIONS, OBSERVATIONS
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
-
 try:
+    import cma
+    import numpy as np
+    import numpy.typing as npt
+    from commanded_robots import ACTIONS, OBSERVATIONS
     from gym_env import LightSeeker
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
     from parallel_env import Gathering
 except ImportError as missing:
     if __name__ != "__main__":
         raise
-    print(f"train.py: {missing}", file=sys.stderr)
+    remedy = "; run it with .venv/bin/python, which ./build.sh makes" if missing.name else ""
+    print(f"train.py: {missing}{remedy}", file=sys.stderr)
     sys.exit(2)
 
 Array = npt.NDArray[Any]
@@ -252,6 +252,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"no task is called {', '.join(unknown)}; there are {', '.join(TASKS)}")
     if options.generations < 1 or options.seed < 1:
         parser.error("--generations and --seed: expected integers from 1 on")
+    if not options.output.parent.is_dir():
+        parser.error(f"--output: there is no folder {options.output.parent}")
     results = {}
     for name in options.tasks or TASKS:
         results[name] = learnt(name, options.generations, options.seed)

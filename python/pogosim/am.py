@@ -6,6 +6,7 @@ python -m pogosim.am -i results/result.feather -o results/collective
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 
 from pogosim.analysis.bond_order import bond_order
 from pogosim.analysis.correlations import correlation_length, pair_correlation, vector_correlation
@@ -16,7 +17,7 @@ from pogosim.analysis.milling import centre_of_mass, milling
 from pogosim.analysis.motion import velocity
 from pogosim.analysis.order import local_alignment, nematic_order, polar_order
 from pogosim.analysis.structure_factor import structure_factor
-from pogosim.reports.collective import main
+from pogosim.reports.command import analyze
 
 __all__ = [
     "VelocityField",
@@ -40,5 +41,11 @@ __all__ = [
     "velocity_fields",
 ]
 
+
+def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.am") -> int:
+    """Run the command line, which is that of `pogosim analyze collective`. Returns the exit code."""
+    return analyze("collective", arguments, prog)
+
+
 if __name__ == "__main__":
-    sys.exit(main(prog="python -m pogosim.am"))
+    sys.exit(main())

@@ -17,10 +17,11 @@ from pogosim.batch.options import single_value
 from pogosim.command.main import ended
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser
+from pogosim.geometry.actions import PICTURES, checked_output, guarded, show_arena
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
-from pogosim.geometry.command import DEFAULT_AREA_MM2, DEFAULT_RADIUS_MM, PICTURES, checked_output, guarded, show_arena
+from pogosim.geometry.command import DEFAULT_AREA_MM2, DEFAULT_RADIUS_MM
 from pogosim.installation import InstallationError, find_installation
-from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
+from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml, problem_of
 
 
 def parser(prog: str) -> Parser:
@@ -48,7 +49,7 @@ def read_configuration(path: Path) -> dict[str, Any]:
     try:
         entries = parse_yaml(path.read_bytes().decode("utf-8"))
     except WRONG_VALUES as error:
-        raise ArenaError(f"{path} is not a configuration: {' '.join(str(error).split())}") from None
+        raise ArenaError(f"{path} is not a configuration: {problem_of(error)}") from None
     if not isinstance(entries, dict):
         raise ArenaError(f"{path} is not a configuration; expected keys such as arena_file")
     return entries

@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from pogosim.command.main import ended
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser, warn
+from pogosim.geometry.actions import check_valid, checked_output, describe, guarded, write_outline
 from pogosim.geometry.arena_file import scaled
-from pogosim.geometry.command import check_valid, checked_output, describe, guarded, write_outline
 from pogosim.geometry.svg_file import read_svg
-from pogosim.outputs import OutputError, leads_to, say
+from pogosim.lines import say
+from pogosim.outputs import OutputError, leads_to
 from pogosim.scale_csv_arena import AREA_MM2
 
 

@@ -6,12 +6,19 @@ python -m pogosim.coverage -i results/result.feather -o figures
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 
 from pogosim.analysis.coverage import coverage_over_time, covered_area
 from pogosim.analysis.voronoi import voronoi_areas, voronoi_cells
-from pogosim.reports.coverage import main
+from pogosim.reports.command import analyze
 
 __all__ = ["coverage_over_time", "covered_area", "main", "voronoi_areas", "voronoi_cells"]
 
+
+def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.coverage") -> int:
+    """Run the command line, which is that of `pogosim analyze coverage`. Returns the exit code."""
+    return analyze("coverage", arguments, prog)
+
+
 if __name__ == "__main__":
-    sys.exit(main(prog="python -m pogosim.coverage"))
+    sys.exit(main())

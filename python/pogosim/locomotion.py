@@ -26,7 +26,7 @@ from pogosim.analysis.persistence import (
     persistence_time,
     velocity_autocorrelation,
 )
-from pogosim.reports.locomotion import main as analyze
+from pogosim.reports.command import analyze
 
 __all__ = [
     "angular_velocity",
@@ -55,7 +55,7 @@ __all__ = [
 
 def main(arguments: Sequence[str] | None = None, prog: str = "locomotion") -> int:
     """Run the command line, which is that of `pogosim analyze locomotion`. Returns the exit code."""
-    return analyze(arguments, prog)
+    return analyze("locomotion", arguments, prog)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ python -m pogosim.neighbors -i results/result.feather -o figures
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
 from pogosim.analysis.neighbourhood import (
@@ -17,7 +18,7 @@ from pogosim.analysis.neighbourhood import (
     neighbour_pairs,
     neighbours,
 )
-from pogosim.reports.neighbors import main
+from pogosim.reports.command import analyze
 
 __all__ = [
     "cluster_sizes",
@@ -32,5 +33,11 @@ __all__ = [
     "neighbours",
 ]
 
+
+def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.neighbors") -> int:
+    """Run the command line, which is that of `pogosim analyze neighbors`. Returns the exit code."""
+    return analyze("neighbors", arguments, prog)
+
+
 if __name__ == "__main__":
-    sys.exit(main(prog="python -m pogosim.neighbors"))
+    sys.exit(main())

@@ -6,10 +6,11 @@ python -m pogosim.network -i results/result.feather -o figures
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 
 from pogosim.analysis.laplacian import Spectrum, largest_component, spectrum
 from pogosim.analysis.network import averaged_spectra, contact_time_s, graph_over_time, instantaneous_spectra
-from pogosim.reports.network import main
+from pogosim.reports.command import analyze
 
 __all__ = [
     "Spectrum",
@@ -22,5 +23,11 @@ __all__ = [
     "spectrum",
 ]
 
+
+def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.network") -> int:
+    """Run the command line, which is that of `pogosim analyze network`. Returns the exit code."""
+    return analyze("network", arguments, prog)
+
+
 if __name__ == "__main__":
-    sys.exit(main(prog="python -m pogosim.network"))
+    sys.exit(main())

@@ -1,11 +1,10 @@
-"""What the tools check before they write a file, and how they report."""
+"""What the tools check before they write a file."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import stat
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Union
@@ -25,6 +24,11 @@ KINDS = (
 
 class OutputError(Exception):
     """A file cannot be written there; says why."""
+
+
+def told(error: OSError, place: PathLike) -> str:
+    """Return what an error of the system says, with the file that it names, or else the place that was written to."""
+    return f"{error.filename2 or error.filename or place}: {(error.strerror or str(error)).lower()}"
 
 
 def leads_to(path: PathLike, other: PathLike) -> bool:
@@ -69,30 +73,17 @@ def partial_output(path: Path) -> Iterator[Path]:
         path: As real_output() returns it.
     """
     partial = path.with_name(f"{path.name}.{os.getpid()}{PARTIAL}")
-    partial.touch()
     try:
+        partial.touch()
         yield partial
         if path.exists():
             partial.chmod(stat.S_IMODE(path.stat().st_mode))
         partial.replace(path)
+    except OSError as error:
+        # What is told is the output: errors of writing name no file, and that of a partial one says nothing to users.
+        named = error.filename2 or error.filename  # of a copy, the target
+        if named in (None, str(partial)) and error.errno is not None:
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
     finally:
         partial.unlink(missing_ok=True)
-
-
-def say(text: str) -> None:
-    """Print a line; what the terminal cannot show is escaped.
-
-    Raises:
-        OSError: The standard output cannot be written. Nothing more is written to it, then.
-    """
-    if sys.stdout is None:
-        return
-    encoding = sys.stdout.encoding or "utf-8"
-    try:
-        print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
-    except OSError:
-        # Python would try again at its end.
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-        os.close(nowhere)
-        raise

@@ -11,14 +11,12 @@ import warnings
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.ambiguity import AmbiguousStepsWarning as AmbiguousStepsWarning
+
 Floats = npt.NDArray[np.float64]
 
 # Robots may be a little faster than their motors drive them: noise, and others that push.
 MARGIN = 1.05
-
-
-class AmbiguousStepsWarning(RuntimeWarning):
-    """Rows are so far apart in time that robots may have gone another way than the shortest."""
 
 
 def minimum_image(offset_mm: npt.ArrayLike, size_mm: Floats | None) -> Floats:

@@ -9,14 +9,13 @@ files look for. The rows that are there are kept, and the metadata, with an entr
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import math
 import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
@@ -25,7 +24,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import ipc
 
-from pogosim.outputs import OutputError, PathLike, leads_to, real_output, say
+from pogosim.outputs import PathLike, leads_to, real_output
 from pogosim.tables import (
     CSV,
     EXPECTED,
@@ -331,38 +330,7 @@ def copy_over(scratch: Path, target: Path) -> None:
         raise RecoverError(f"{target} cannot be overwritten: {error.strerror}. All rows are in {scratch}") from error
 
 
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") -> int:
-    """Run the command. Returns its exit code: 0 done, 2 nothing could be done, or nothing be said of it."""
-    parser = argparse.ArgumentParser(
-        prog=prog, description="Makes a complete file of a data file whose run was killed."
-    )
-    parser.add_argument("file", help="data file of the run")
-    parser.add_argument("-o", "--output", help="file to write; without it, the data file is replaced")
-    options = parser.parse_args(arguments)
-    try:
-        unfinished = recover(options.file, options.output)
-    except (RecoverError, OutputError) as error:
-        print(f"{prog}: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        reason = os.strerror(error.errno) if error.errno else error
-        print(f"{prog}: {error.filename or options.file}: {reason}", file=sys.stderr)
-        return 2
-    except (pa.ArrowException, MemoryError) as error:
-        reason = "there is not enough memory for its rows" if isinstance(error, MemoryError) else error
-        print(f"{prog}: {options.file} cannot be recovered: {reason}", file=sys.stderr)
-        return 2
-    target = options.output or options.file
-    try:
-        say(f"{target}: {unfinished.up_to}")
-    except OSError as error:
-        print(
-            f"{prog}: {target} is complete, but the standard output cannot be written: {error.strerror}",
-            file=sys.stderr,
-        )
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
+    from pogosim.command.recover import main
+
     sys.exit(main())

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from pogosim.command.main import ended
 from pogosim.command.numbers import positive
 from pogosim.command.parser import Parser
+from pogosim.geometry.actions import checked_output, convert, guarded
 from pogosim.geometry.arena_file import read_arena
-from pogosim.geometry.command import checked_output, convert, guarded
 
 AREA_MM2 = 150_000.0
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.path import Path as Outline
 
+from pogosim.configuration_values import number
 from pogosim.periodic import minimum_image
 
 Floats = npt.NDArray[np.float64]
@@ -27,14 +28,6 @@ COMMUNICATION_RADIUS_MM = 80.0
 
 # Levels of light are sensor counts, and sums of them stop here.
 BRIGHTEST = 32767
-
-
-def number(value: Any, default: float) -> float:
-    """Return a configuration's value as a number; `default` if it is none."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return default
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import glob
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,19 +13,9 @@ import pandas as pd
 from pogosim.outputs import PathLike
 from pogosim.run_columns import is_one_run, tells_runs_apart
 from pogosim.times import with_exact_times
+from pogosim.varied import varied_parameters
 
 Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
-
-# What differs between any two runs without being a parameter.
-NO_PARAMETERS = (
-    "seed",
-    "data_filename",
-    "message_log",
-    "console_filename",
-    "frames_name",
-    "result_filename_format",
-    "result_new_columns",
-)
 
 MISSING = object()
 
@@ -62,32 +52,10 @@ def natural_order(text: str) -> list[tuple[int, int, str]]:
     return parts
 
 
-def leaves(node: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the values of a configuration with their dotted paths; a list is one value."""
-    if isinstance(node, dict) and node:
-        for key, value in node.items():
-            yield from leaves(value, f"{path}.{key}" if path else str(key))
-    elif path:
-        yield path, node
-
-
 def configuration_of(metadata: dict[str, Any]) -> dict[str, Any]:
     """Return the configuration with all defaults if the file has it, otherwise the one that was given."""
     configuration: dict[str, Any] = metadata.get("resolved_configuration") or metadata.get("configuration") or {}
     return configuration
-
-
-def varied_parameters(configurations: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
-    """Return what differs between configurations: dotted paths, with a value for each (None: not there)."""
-    flat = [dict(leaves(configuration)) for configuration in configurations]
-    paths = list(dict.fromkeys(path for leaf in flat for path in leaf if path not in NO_PARAMETERS))
-    values = {path: [leaf.get(path) for leaf in flat] for path in paths}
-    return {path: found for path, found in values.items() if any(differ(value, found[0]) for value in found[1:])}
-
-
-def differ(a: Any, b: Any) -> bool:
-    """Tell whether two values of configurations differ; two that are not a number do not."""
-    return bool(a != b) and not (a != a and b != b)
 
 
 def plain(value: Any) -> Any:

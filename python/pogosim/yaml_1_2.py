@@ -17,7 +17,46 @@ FLOAT = "tag:yaml.org,2002:float"
 ONLY_IN_YAML_1_1 = (INTEGER, FLOAT, "tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
 
 
-class ConfigurationLoader(yaml.SafeLoader):
+MAX_DEPTH = 100  # as in the simulator
+TOO_DEEP = f"nested deeper than {MAX_DEPTH} levels once aliases are followed"
+
+
+class StructureError(yaml.MarkedYAMLError):
+    """Valid YAML that is no configuration: nested without end, or by an alias within itself."""
+
+
+class BoundedComposer(Composer):
+    """Composes nodes up to a depth; PyYAML knows no bound but that of Python's calls."""
+
+    around: tuple[str | None, ...] = ()  # anchors of the values in which the next one is, None: it has none
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        """Compose a node, at any place.
+
+        Raises:
+            StructureError: It is nested too deeply, or in itself.
+        """
+        event: Any = self.peek_event()  # type: ignore[attr-defined]
+        mark: Any = event.start_mark
+        if isinstance(event, yaml.AliasEvent) and event.anchor in self.around:
+            problem = f"this alias (*{event.anchor}) is inside the value it refers to"
+            raise StructureError(problem=problem, problem_mark=mark)
+        if len(self.around) > MAX_DEPTH:
+            raise StructureError(problem=TOO_DEEP, problem_mark=mark)
+        outer, self.around = self.around, (*self.around, event.anchor)
+        node: yaml.Node | None = super().compose_node(parent, index)
+        self.around = outer
+        return node
+
+
+def problem_of(error: Exception) -> str:
+    """Return what is wrong with text that cannot be parsed, in one line."""
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
+        return f"line {error.problem_mark.line + 1}: {' '.join(str(error.problem).split())}"
+    return TOO_DEEP if isinstance(error, RecursionError) else " ".join(str(error).split())
+
+
+class ConfigurationLoader(BoundedComposer, yaml.SafeLoader):
     """YAML with the numbers of YAML 1.2, as the simulator reads them: 2.22e6 and 1e3 are numbers, 010 is ten."""
 
     # Resolvers that are added to a class are added to a copy of this.
@@ -62,7 +101,7 @@ def fast_loader() -> type[Any]:
     except ImportError:
         return ConfigurationLoader
 
-    class FastLoader(Composer, CParser, SafeConstructor, Resolver):
+    class FastLoader(BoundedComposer, CParser, SafeConstructor, Resolver):
         yaml_implicit_resolvers = ConfigurationLoader.yaml_implicit_resolvers
         yaml_constructors = ConfigurationLoader.yaml_constructors
 

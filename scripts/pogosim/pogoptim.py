@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-try:
-    from pogosim.pogoptim import main
-except ImportError:
+# Looked for and not imported, so that help does not wait.
+if find_spec("pogosim") and find_spec("pyarrow"):
+    from pogosim.optimize.command import main
+else:
     python = ROOT / ".venv" / "bin" / "python"
     if not python.exists():
         sys.exit("pogoptim.py: the package pogosim is not installed: ./build.sh installs it into .venv")

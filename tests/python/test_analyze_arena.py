@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from pogosim.reports.arena import main
+from pogosim.reports.command import analyze
 from swarms import metadata_of, rows_of, write_rows
 
 
 def analysed(folder: Path, rows: pd.DataFrame, **metadata: object) -> pd.DataFrame:
     write_rows(folder / "data.feather", rows, {**metadata_of(), **metadata})
-    assert main(["-i", str(folder / "data.feather"), "-o", str(folder / "out")]) == 0
+    assert analyze("arena", ["-i", str(folder / "data.feather"), "-o", str(folder / "out")], "arena") == 0
     return pd.read_csv(folder / "out" / "arenas.csv")
 
 
@@ -58,5 +58,5 @@ def test_walls_that_cross_are_named(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 def test_data_without_an_arena_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write_rows(tmp_path / "data.feather", rows_of(np.ones((2, 2, 2))), {})
-    assert main(["-i", str(path), "-o", str(tmp_path)], "arena") == 2
+    assert analyze("arena", ["-i", str(path), "-o", str(tmp_path)], "arena") == 2
     assert capsys.readouterr().err == f"arena: {path} has no arena_polygons; give a configuration with -c\n"

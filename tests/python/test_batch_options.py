@@ -218,7 +218,12 @@ def test_place_of_an_entry_has_its_line(tmp_path: Path) -> None:
         (b"a: [1", "many.yaml:1: not valid YAML"),
         (b"a: 1\nb: !python/object:os.system {}\n", "many.yaml:2: not valid YAML"),
         (b"\xff\xfe\x00", "not text in UTF-8"),
-        (b"a: &a [*a]\n", "it refers to itself"),
+        (b"a: 1\nb: &a [*a]\n", "many.yaml:2: this alias (*a) is inside the value it refers to"),
+        (b"a: &a {b: {c: *a}}\n", "many.yaml:1: this alias (*a) is inside the value it refers to"),
+        (b"a: " + b"{b: " * 20000, "many.yaml:1: nested deeper than 100 levels once aliases are followed"),
+        (b"a: " + b"[" * 20000, "many.yaml:1: nested deeper than 100 levels once aliases are followed"),
+        (b"".join(b" " * n + b"k:\n" for n in range(300)), "many.yaml:101: nested deeper than 100 levels"),
+        (b"&a x: 1\nb: *a\nc: *d\n", "many.yaml:3: not valid YAML: found undefined alias 'd'"),
     ],
 )
 def test_what_is_no_configuration_is_refused_in_one_line(content: bytes, what: str, tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ import pytest
 from pogosim.batch.errors import BatchError
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm import (
-    SlurmJobs,
     SlurmWorkers,
     bytes_of,
     close,
@@ -24,6 +23,7 @@ from pogosim.batch.slurm import (
     with_keys,
 )
 from pogosim.batch.slurm_jobs import LOST_PER_JOB, Jobs, own_folder
+from pogosim.batch.slurm_options import SlurmJobs
 
 SBATCH = 'cat > script; echo "sbatch $*" >> asked; echo x >> jobs; echo "$(wc -l < jobs);cluster"'
 SQUEUE = 'echo "squeue $*" >> asked; cat states 2>/dev/null'

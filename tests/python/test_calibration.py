@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,11 +15,12 @@ import pandas as pd
 import pytest
 import yaml
 from pogosim.calibration import statistics
-from pogosim.calibration.command import PROTOCOL, main
+from pogosim.calibration.command import main
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.fit import bias_range
 from pogosim.calibration.identifiability import verdicts, weakest_direction, without_own_effect
-from pogosim.calibration.reading import TrackTable, column_of
+from pogosim.calibration.reading import TrackTable, column_of, read_track_table
+from pogosim.calibration.results import PROTOCOL
 from pogosim.calibration.scene_of_tracks import handedness
 from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
 from pogosim.calibration.units import UnitOptions, in_millimetres, in_radians, y_down
@@ -185,6 +188,98 @@ def test_protocol_is_written_once(here: Path, capsys: pytest.CaptureFixture[str]
     assert main(["--protocol", "main.c"]) == 2
     assert (here / "main.c").read_text() == "mine"
     assert "main.c exists already" in capsys.readouterr().err
+
+
+def test_protocol_becomes_a_project_that_runs_in_the_simulator(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--protocol", "film"]) == 0
+    assert (here / "film" / "main.c").read_text() == PROTOCOL.read_text()
+    assert capsys.readouterr().out == "made: film, a project whose main.c is the program of the protocol\n"
+    command = [sys.executable, "-m", "pogosim", "run", "film", "-g", "-q", "--set", "simulation_time=1"]
+    assert subprocess.run(command, cwd=here, check=False, timeout=120).returncode == 0
+    assert main(["--protocol", "film"]) == 2
+    assert "film is there already, with files in it" in capsys.readouterr().err
+
+
+# TrackMate.
+
+MANY = ("LABEL", "ID", "TRACK_ID", "QUALITY", "POSITION_X", "POSITION_Y", "POSITION_Z", "POSITION_T", "FRAME", "RADIUS")
+
+
+def write_spots(
+    rows: pd.DataFrame, path: Path, length: str = "pixel", time: str = "sec", encoding: str = "utf-8"
+) -> None:
+    """Write tracks as TrackMate exports the table of spots; the first spot is of no track."""
+    spots = [f"ID{9000 + i},{9000 + i}" for i in range(len(rows))]
+    lines = [
+        ",".join(MANY),
+        "Label,Spot ID,Track ID,Quality,X,Y,Z,T,Frame,Radius",
+        "Label,Spot ID,Track ID,Quality,X,Y,Z,T,Frame,R",
+        f",,,(quality),({length}),({length}),({length}),({time}),,({length})",
+        "ID1,1,,0.5,1,1,0,0,0,5",
+        *(
+            f"{spot},{robot:.0f},0.9,{x:.4f},{y:.4f},0,{at:.4f},{at / PERIOD_S:.0f},5"
+            for spot, (at, robot, x, y) in zip(spots, rows[["time", "id", "x", "y"]].to_numpy(float), strict=True)
+        ),
+    ]
+    path.write_text("\n".join(lines) + "\n", encoding=encoding)
+
+
+def read_spots(path: Path) -> tuple[TrackTable, list[str]]:
+    """Read tracks, and return them with all warnings."""
+    said: list[str] = []
+    return read_track_table(path, "robots", said.append), said
+
+
+@pytest.mark.parametrize(
+    ("length", "unit", "encoding"),
+    [
+        ("pixel", "px", "utf-8"),
+        ("mm", "mm", "utf-8"),
+        ("\u00b5m", "um", "utf-8"),
+        ("\u00b5m", "um", "latin-1"),
+        ("micron", "um", "utf-8"),
+        ("inch", "inch", "utf-8"),
+    ],
+)
+def test_spots_of_trackmate_are_read_as_they_are_exported(
+    length: str, unit: str, encoding: str, tmp_path: Path
+) -> None:
+    tracks = short_tracks()
+    write_spots(tracks, tmp_path / "spots.csv", length, encoding=encoding)
+    table, said = read_spots(tmp_path / "spots.csv")
+    assert (table.units["x"], table.units["time"]) == (unit, "s")
+    assert said == [f"{tmp_path / 'spots.csv'}: 1 of 201 rows without a time, an id or a position are left out"]
+    np.testing.assert_allclose(table.rows[["time", "x", "y"]], tracks[["time", "x", "y"]], atol=1e-4)
+    assert table.rows["id"].astype(int).tolist() == tracks["id"].tolist()
+
+
+def test_spots_of_trackmate_whose_times_count_frames_need_the_frame_rate(tmp_path: Path) -> None:
+    tracks = short_tracks()
+    write_spots(tracks.assign(time=tracks["time"] * 10.0), tmp_path / "spots.csv", time="frame")
+    table, _ = read_spots(tmp_path / "spots.csv")
+    assert "time" not in table.rows
+    with pytest.raises(CalibrationError, match="frame numbers but no times; say how many frames a second: --fps N"):
+        frame_numbers(table, None, pytest.fail)
+    _, frame_s = frame_numbers(table, 25.0, pytest.fail)
+    assert frame_s == 0.04
+
+
+def test_another_table_of_trackmate_says_which_is_needed(tmp_path: Path) -> None:
+    (tmp_path / "edges.csv").write_text("LABEL,TRACK_ID,SPOT_SOURCE_ID\nLabel,Track ID,Source\na,0,1\n")
+    with pytest.raises(
+        CalibrationError, match=r"has no column x, y, time; .*; of TrackMate, export the table of spots"
+    ):
+        read_spots(tmp_path / "edges.csv")
+
+
+def test_tracks_of_trackmate_are_calibrated(
+    here: Path, camera: pd.DataFrame, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pixels = camera.assign(x=camera["x"] / MM_PER_PIXEL, y=camera["y"] / MM_PER_PIXEL)
+    write_spots(pixels, here / "tracks.csv")
+    found = calibrated(here, "--mm-per-pixel", str(MM_PER_PIXEL), "--parameters", "max_linear_speed")
+    assert found["parameters"]["max_linear_speed"]["value"] == pytest.approx(TRUE["max_linear_speed"], rel=0.1)
+    assert f"tracks: {ROBOTS} robots, " in capsys.readouterr().out
 
 
 # What is wrong with the input is said in one line.

@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 from pogosim import am
 from pogosim.reports import collective
-from pogosim.reports.collective import main
 from pogosim.reports.collective_metrics import METRICS
+from pogosim.reports.command import analyze as command
 from swarms import Floats, metadata_of, rows_of, write_rows
 
 KEYS = [
@@ -43,16 +43,16 @@ def analyze(data: Path, *options: str, draw: bool = False) -> Path:
     folder = data.parent / f"results{len(list(data.parent.iterdir()))}"
     arguments = ["-i", str(data), "-o", str(folder), *SMALL, *options]
     if draw:
-        assert main(arguments, PROG) == 0
+        assert command("collective", arguments, PROG) == 0
     else:
         with patch.object(collective, "draw_metric"), patch.object(collective, "draw_vorticity_fields"):
-            assert main(arguments, PROG) == 0
+            assert command("collective", arguments, PROG) == 0
     return folder
 
 
 def refused(data: Path, capsys: pytest.CaptureFixture[str], *options: str) -> str:
     """Run the command in vain; returns what it says, one line."""
-    assert main(["-i", str(data), "-o", str(data.parent / "results"), *SMALL, *options], PROG) == 2
+    assert command("collective", ["-i", str(data), "-o", str(data.parent / "results"), *SMALL, *options], PROG) == 2
     said = capsys.readouterr()
     assert said.out == ""
     assert said.err.count("\n") == 1
@@ -231,12 +231,13 @@ def test_outputs_do_not_take_the_place_of_inputs_or_files(data: Path, capsys: py
 )
 def test_wrong_options_are_refused(options: list[str], data: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as end:
-        main(["-i", str(data), *options], PROG)
+        command("collective", ["-i", str(data), *options], PROG)
     assert end.value.code == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_the_module_am_is_the_same_command() -> None:
-    assert am.main is main
+def test_the_module_am_is_the_same_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert am.main(["-i", "none.feather"]) == 2
+    assert capsys.readouterr().err == "python -m pogosim.am: none.feather: no such file or directory\n"
     direction: Floats = np.array([[[1.0, 0.0], [0.0, 1.0]]])
     assert am.polar_order(direction) == pytest.approx(np.sqrt(0.5))

@@ -321,7 +321,7 @@ def test_simulator_in_a_folder_of_the_system_is_found(name: str, tmp_path: Path)
 
 @pytest.mark.parametrize("name", ["pogosim", "pogobatch"])
 def test_interrupt_while_modules_are_imported_ends_it_without_a_traceback(name: str, tmp_path: Path) -> None:
-    (tmp_path / "pandas.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
+    (tmp_path / "tqdm.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
     arguments = ["batch"] if name == "pogosim" else []
     done = subprocess.run(
         [Path(sys.executable).parent / name, *arguments, "-c", "a.yaml", "-S", "b"],
@@ -330,4 +330,6 @@ def test_interrupt_while_modules_are_imported_ends_it_without_a_traceback(name: 
         text=True,
         check=False,
     )
-    assert (done.returncode, done.stderr) == (130, "")
+    prog = " ".join([name, *arguments])
+    said = f"{prog}: interrupted; finished runs are kept in tmp: the same command continues\n"
+    assert (done.returncode, done.stderr) == (130, said)

@@ -15,6 +15,7 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 from pogosim import recover
+from pogosim.command.recover import main as recover_command
 from pogosim.utils import load_dataframe
 from pyarrow import feather, ipc
 
@@ -58,7 +59,7 @@ def unfinished_file(folder: Path, content: bytes | None = None) -> Path:
 
 def recovered(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str]:
     """Code, and what was said: one line."""
-    code = recover.main([str(argument) for argument in arguments])
+    code = recover_command([str(argument) for argument in arguments])
     said = capsys.readouterr()
     (line,) = (said.err if code else said.out).splitlines()
     return code, line

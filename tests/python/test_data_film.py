@@ -12,7 +12,8 @@ import numpy.typing as npt
 import pandas as pd
 import pytest
 from pogosim.film.brush import DISK
-from pogosim.film.command import frame_times, main
+from pogosim.film.command import main
+from pogosim.film.making import frame_times
 from pogosim.film.stills import Look, Stills, size_for
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.picture import layers

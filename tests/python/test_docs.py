@@ -36,6 +36,7 @@ PAGES_WITH_COMMANDS = [
         ROOT / "docs" / f"{name}.md"
         for name in (
             "batches",
+            "calibration",
             "command_line",
             "data_file",
             "examples",

@@ -243,7 +243,7 @@ def test_windows_can_be_chosen(tmp_path: Path) -> None:
 @pytest.mark.parametrize("options", [("--k-first", "0"), ("--avg-window-s", "-1"), ("--zero-tol", "x"), ("--rc", "0")])
 def test_wrong_options_are_one_line(options: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
-        network.main(options)
+        analyze(["network", *options])
     assert ended.value.code == 2
     assert options[0] in capsys.readouterr().err
 

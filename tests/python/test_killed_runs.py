@@ -12,6 +12,7 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 from pogosim import recover
+from pogosim.command.recover import main as recover_command
 from pogosim.utils import load_dataframe, read_table
 from pyarrow import feather, ipc
 from running import Run, compile_program, example, run, run_command, start
@@ -117,7 +118,7 @@ def test_disk_that_fills_up_leaves_the_rows_up_to_there_and_says_how_to_have_the
     assert f"up to t = {rows['time'].max():.4f} s" in line
     assert not list(tmp_path.glob("*.pogosim-new"))
     command = shlex.split(line[line.index("pogosim-recover") :])
-    assert recover.main([str(tmp_path / command[1])]) == 0
+    assert recover_command([str(tmp_path / command[1])]) == 0
     assert len(result.frame()) == len(rows)
 
 
@@ -161,7 +162,7 @@ def test_child_of_a_program_does_not_keep_the_next_run_from_its_file(tmp_path: P
 
 
 def recovered(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
-    code = recover.main([str(argument) for argument in arguments])
+    code = recover_command([str(argument) for argument in arguments])
     said = capsys.readouterr()
     return code, said.out, said.err
 

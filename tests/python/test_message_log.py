@@ -16,6 +16,7 @@ import pytest
 import yaml
 from batches import batch, write_options
 from pogosim import recover
+from pogosim.command.recover import main as recover_command
 from pogosim.communication.reception_law import DynamicLaw
 from pogosim.utils import load_dataframe, read_table
 from running import ROOT, Run, compile_program, example, run, start, write_scene
@@ -255,7 +256,7 @@ def test_killed_run_leaves_its_first_messages(counts: Path, busy: Run, tmp_path:
     with pytest.warns(RuntimeWarning, match=r"is incomplete: .* up to t = .* s; .*pogosim-recover"):
         rows, _ = load_dataframe(path)
     pd.testing.assert_frame_equal(rows, busy.frame("m.feather").iloc[: len(rows)], check_dtype=False)
-    assert recover.main([str(path)]) == 0
+    assert recover_command([str(path)]) == 0
     pd.testing.assert_frame_equal(load_dataframe(path)[0], rows)
     assert read_table(path).schema.field("payload").type == pa.binary()
 

@@ -10,7 +10,7 @@ import pytest
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.reception import attempts, outcomes, reception_rates, wilson_interval
 from pogosim.communication.reception_law import DynamicLaw
-from pogosim.reports.messages import main
+from pogosim.reports.command import analyze
 from running import run_shipped
 from swarms import metadata_of, rows_of, write_rows
 
@@ -99,7 +99,7 @@ def test_table_without_the_columns_of_a_log_is_refused(column: str) -> None:
 def analyzed(tmp_path: Path, log: pd.DataFrame, *options: str) -> Path:
     path = write_rows(tmp_path / "m.feather", log, metadata_of())
     folder = tmp_path / "out"
-    assert main(["-i", str(path), "-o", str(folder), *options], PROG) == 0
+    assert analyze("messages", ["-i", str(path), "-o", str(folder), *options], PROG) == 0
     return folder
 
 
@@ -157,7 +157,7 @@ def test_what_is_no_log_is_one_message(
 ) -> None:
     path = write_rows(tmp_path / "data.feather", rows_of(np.zeros((2, 3, 2))), metadata_of())
     try:
-        code = main(["-i", str(path), "-o", str(tmp_path / "out"), *options], PROG)
+        code = analyze("messages", ["-i", str(path), "-o", str(tmp_path / "out"), *options], PROG)
     except SystemExit as end:
         code = int(end.code or 0)
     assert code == 2
@@ -168,19 +168,19 @@ def test_what_is_no_log_is_one_message(
 def test_unknown_category_and_empty_log_are_one_message(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = log_of(("a", 2, 0.8, 10, 3))
     path = write_rows(tmp_path / "m.feather", log, metadata_of())
-    assert main(["-i", str(path), "--category", "c"], PROG) == 2
+    assert analyze("messages", ["-i", str(path), "--category", "c"], PROG) == 2
     assert "nobody of the category 'c' sends; senders: a\n" in capsys.readouterr().err
     write_rows(path, log.iloc[:0], metadata_of())
-    assert main(["-i", str(path)], PROG) == 2
+    assert analyze("messages", ["-i", str(path)], PROG) == 2
     assert "has no message: no robot sent one\n" in capsys.readouterr().err
-    assert main(["-i", str(tmp_path / "none.feather")], PROG) == 2
+    assert analyze("messages", ["-i", str(tmp_path / "none.feather")], PROG) == 2
     assert "none.feather" in capsys.readouterr().err
 
 
 def test_run_of_probes_follows_the_articles_equation(tmp_path: Path) -> None:
     changes = {"simulation_time": 20.0, "message_log": str(tmp_path / "m.feather"), "parameters.send_percent": 80}
     run_shipped("probes", tmp_path, changes)
-    assert main(["-i", str(tmp_path / "m.feather"), "-o", str(tmp_path / "out")], PROG) == 0
+    assert analyze("messages", ["-i", str(tmp_path / "m.feather"), "-o", str(tmp_path / "out")], PROG) == 0
     table = pd.read_csv(tmp_path / "out" / "reception_by_cluster_size.csv").set_index("cluster_size")
     law = DynamicLaw().probability(6, 0.8, table.index.to_numpy(float))
     np.testing.assert_allclose(table["law"], law, rtol=1e-6)
@@ -193,7 +193,7 @@ def test_several_logs_have_a_curve_for_each_combination(tmp_path: Path) -> None:
     for percent in (20, 80):
         changes = {"message_log": str(tmp_path / f"{percent}.feather"), "parameters.send_percent": percent}
         run_shipped("probes", tmp_path, {"simulation_time": 2.0, **changes})
-    assert main(["-i", str(tmp_path / "[28]0.feather"), "-o", str(tmp_path / "out")], PROG) == 0
+    assert analyze("messages", ["-i", str(tmp_path / "[28]0.feather"), "-o", str(tmp_path / "out")], PROG) == 0
     table = pd.read_csv(tmp_path / "out" / "reception_by_cluster_size.csv")
     assert set(table["parameters.send_percent"]) == {20, 80}
     messages = pd.read_csv(tmp_path / "out" / "messages.csv")

@@ -13,6 +13,7 @@ from pogosim.optimize.optimizers.base import Answer, Optimizer
 from pogosim.optimize.optimizers.mutation import mutated
 from pogosim.optimize.optimizers.quality_diversity import CmaMe, MapElites, folded
 from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, optimizer_for
+from pogosim.optimize.optimizers.tpe import Tpe
 from pogosim.optimize.settings import Settings
 from pogosim.optimize.variables import Space, Variable
 
@@ -212,14 +213,40 @@ def test_parzen_estimator_finds_the_right_choices_among_many() -> None:
     assert max(by_tpe) == 5
 
 
-def test_parzen_estimator_starts_with_init() -> None:
+def begun(optimizer: Optimizer, space: Space, fitness: float | None) -> None:
+    """Let an optimiser ask for its first points, and tell it what came out at the initial values, and nothing else."""
+    optimizer.ask()
+    features = {} if fitness is None else {"first": 0.25, "last": 0.75}
+    optimizer.begin(Answer(1, space.init, Judgement(fitness, features)))
+    optimizer.tell([])
+
+
+@pytest.mark.parametrize("fitness", [1.5, None])
+def test_parzen_estimator_knows_the_initial_values(fitness: float | None) -> None:
     space = space_of(
         {"type": "int", "min": 0, "max": 9, "init": 2},
         {"choices": list("abcd"), "init": "c"},
         {"type": "float", "min": 1, "max": 100, "log": True, "init": 10},
     )
-    first = space.values_at(made("tpe", space).ask()[0])
-    assert (first["x0"], first["x1"], first["x2"]) == (2, "c", pytest.approx(10.0))
+    optimizer = made("tpe", space, popsize=3)
+    begun(optimizer, space, fitness)
+    assert isinstance(optimizer, Tpe)
+    trial = optimizer.study.trials[-1]
+    assert (trial.params, trial.state.name) == (
+        {"x0": 2, "x1": 2, "x2": pytest.approx(0.5)},
+        "FAIL" if fitness is None else "COMPLETE",
+    )
+    assert len(optimizer.ask()) == 3
+
+
+@pytest.mark.parametrize("name", WITH_FEATURES)
+def test_initial_values_are_in_the_archive_unless_they_failed(name: str) -> None:
+    for fitness, count in ((1.5, 1), (None, 0)):
+        space = reals(2)
+        optimizer = made(name, space, qd_shape=(4, 4), qd_init_samples=3)
+        begun(optimizer, space, fitness)
+        assert isinstance(optimizer, MapElites)
+        assert [(elite.cell, elite.number) for elite in optimizer.elites()] == [((1, 3), 1)] * count
 
 
 @pytest.mark.parametrize("name", WITH_FEATURES)

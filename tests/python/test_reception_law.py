@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from pogosim.communication.fit import FitError, FitSettings, fit, huber
+from pogosim.communication.fit import fit, huber
+from pogosim.communication.fit_settings import FitError, FitSettings
 from pogosim.communication.measurements import MeasurementError, Measurements, read_measurements
 from pogosim.communication.quality import compare, quality
 from pogosim.communication.reception_law import DynamicLaw, Law, PowerLaw, configuration_block, with_point

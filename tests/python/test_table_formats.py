@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from batches import batch, write_options
 from pogosim import recover, swarm_picture
+from pogosim.command.recover import main as recover_command
 from pogosim.tables import format_of
 from pogosim.utils import load_dataframe, read_table
 from running import PROGRAMS, Run, compile_program, example, run, start
@@ -134,13 +135,13 @@ def test_killed_run_leaves_its_rows_and_recover_gives_them_their_format(tmp_path
     with pytest.warns(RuntimeWarning, match="is incomplete"):
         rows, _ = load_dataframe(path)
     assert len(rows) > 0
-    assert recover.main([str(path)]) == 0
+    assert recover_command([str(path)]) == 0
     recovered, metadata = load_dataframe(path)
     pd.testing.assert_frame_equal(recovered, rows)
     assert metadata["configuration"]["seed"] == 1
     assert "these are the rows that were saved" in metadata["recovered"]
     assert path.read_bytes().startswith(b"PAR1" if ending == "parquet" else b'"time"')
-    assert recover.main([str(path)]) == 2  # complete
+    assert recover_command([str(path)]) == 2  # complete
 
 
 @pytest.mark.parametrize("ending", FORMATS)
@@ -167,7 +168,7 @@ def test_full_disk_leaves_the_rows_and_says_how_to_have_them(tmp_path: Path, end
     assert result.code == 2
     assert f"pogosim-recover 'd.{ending}'" in result.errors
     assert sorted(path.name for path in tmp_path.iterdir()) == [f"d.{ending}", "limited", "scene.yaml"]
-    assert recover.main([str(tmp_path / f"d.{ending}")]) == 0
+    assert recover_command([str(tmp_path / f"d.{ending}")]) == 0
     assert len(load_dataframe(tmp_path / f"d.{ending}")[0]) > 0
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 from pogosim.batch.results import Part, RunFile, write_results
-from pogosim.film.command import frame_times
+from pogosim.film.making import frame_times
 from pogosim.picture.swarm import read_recording
 from pogosim.times import as_float64
 from pogosim.utils import load_dataframe

@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pogosim.analysis.arena import Floats
+from pogosim.analysis.defaults import MIN_SPEED_MM_S
 from pogosim.analysis.motion import velocity
 from pogosim.analysis.trajectories import Trajectories
-
-# Slower robots have no direction. Positions are saved to about 0.0001 mm, a pogobot drives at 60 mm/s or more.
-MIN_SPEED_MM_S = 0.1
 
 
 def unit_vectors(vector: Floats, min_length: float = 0.0) -> Floats:

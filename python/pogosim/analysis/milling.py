@@ -7,7 +7,8 @@ from typing import Literal
 import numpy as np
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.directions import MIN_SPEED_MM_S, unit_vectors
+from pogosim.analysis.defaults import MIN_SPEED_MM_S
+from pogosim.analysis.directions import unit_vectors
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
 

@@ -23,10 +23,11 @@ from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.errors import AnalysisError
 from pogosim.arguments import Arguments
 from pogosim.batch.paths import get_by_dotted_path
+from pogosim.configuration_values import number
 from pogosim.far_away import is_near
 from pogosim.periodic import steps_of
 from pogosim.run_columns import is_one_run
-from pogosim.scene import POGOBOT_RADIUS_MM, number, read_categories
+from pogosim.scene import POGOBOT_RADIUS_MM, read_categories
 from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
 

@@ -14,10 +14,9 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
-from pogosim.batch.dask_backend import dask
 from pogosim.batch.errors import BatchError, at_least
 from pogosim.batch.run import Outcome, Task, do_run, simulators
-from pogosim.batch.slurm import CORES, SlurmJobs, slurm
+from pogosim.batch.slurm_options import CORES, SlurmJobs
 
 Outcomes = Generator[Outcome, None, None]
 Do = Callable[[Sequence[Task]], Outcomes]
@@ -79,6 +78,8 @@ class Workers:
             BatchError: It cannot be had.
         """
         if self.slurm_jobs is not None:
+            from pogosim.batch.slurm import slurm
+
             return slurm(self.slurm_jobs, keep_idle)
         if self.backend == "ray":
             log.warning("--backend ray is replaced by --backend dask")
@@ -100,6 +101,8 @@ def parallel(workers: Workers) -> AbstractContextManager[Do]:
 
 def by_dask(workers: Workers) -> AbstractContextManager[Do]:
     """Let Dask do runs."""
+    from pogosim.batch.dask_backend import dask
+
     return dask(workers.count, workers.scheduler)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -13,8 +12,8 @@ from typing import NoReturn
 
 import pogosim
 from pogosim.batch.errors import BatchError, NothingSelectedError, is_text, reason, tell
-from pogosim.batch.runner import PogobotBatchRunner
-from pogosim.batch.slurm import CORES, JOBS, MEMORY_PER_CORE_GB, TIME, SlurmJobs
+from pogosim.batch.slurm_options import add_slurm_options, slurm_jobs
+from pogosim.lines import LineFormatter, say_error
 
 DONE = 0
 NO_SUCH_OUTPUT = 1
@@ -35,11 +34,8 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit: 1 if required options are missing, otherwise 2."""
         is_missing = "required" in message
-        print(f"{self.prog}: {message}", file=sys.stderr)
-        print(
-            f"Usage: {self.prog} -c CONFIG -S PROGRAM [-r RUNS] [-t TEMP] [-o FOLDER]; -h lists all options",
-            file=sys.stderr,
-        )
+        usage = f"Usage: {self.prog} -c CONFIG -S PROGRAM [-r RUNS] [-t TEMP] [-o FOLDER]; -h lists all options"
+        say_error(f"{self.prog}: {message}", usage)
         sys.exit(NO_SUCH_OUTPUT if is_missing else WRONG)
 
 
@@ -74,48 +70,9 @@ def parser(prog: str) -> Parser:
     add("--list-outputs", action="store_true", help="print the paths of all results, and exit")
     add("--keep-temp", action="store_true", help="keep the folders of single runs")
     add("--gui", action="store_true", help="let each run open its window")
-    add("-v", "--verbose", action="store_true", help="say more")
+    add("-v", "--verbose", action="store_true", help="also say tasks, rows, and which runs failed")
     add("-V", "--version", action="version", version=f"{prog} {pogosim.__version__}")
     return options
-
-
-def add_slurm_options(options: argparse.ArgumentParser) -> None:
-    """Add what is asked of SLURM; each entry that is not given is that of the site's jobqueue.yaml."""
-    group = options.add_argument_group(
-        "SLURM",
-        "Jobs of SLURM do the runs. What is not given is taken from the site's jobqueue.yaml, see docs/batches.md.",
-    )
-    add = group.add_argument
-    add("--slurm", action="store_true", help="let jobs of SLURM do the runs")
-    add("--slurm-jobs", type=int, metavar="N", help=f"jobs at the same time, at most ({JOBS})")
-    add("--slurm-cores", type=int, metavar="N", help=f"cores per job: runs at the same time in it ({CORES})")
-    add("--slurm-memory", metavar="SIZE", help=f"memory per job, such as 4G ({MEMORY_PER_CORE_GB}G per core)")
-    add("--slurm-time", metavar="TIME", help=f"time limit of a job, such as 04:00:00 or 2-12 for 2.5 days ({TIME})")
-    add("--slurm-partition", metavar="NAME", help="partition, or queue (the cluster's default)")
-    add("--slurm-account", metavar="NAME", help="account that pays (your default)")
-    add(
-        "--slurm-option",
-        metavar="OPTION",
-        action="append",
-        help="another option of sbatch, such as qos=long or constraint=skylake; may be given several times",
-    )
-    add("--slurm-wait", type=float, metavar="MINUTES", help="give up if no job has started by then (wait)")
-
-
-def slurm_jobs(arguments: argparse.Namespace) -> SlurmJobs | None:
-    """Return what is asked of SLURM, if it is to do the runs.
-
-    Raises:
-        BatchError: Options for SLURM are given without --slurm, or have a wrong form.
-    """
-    names = ("jobs", "cores", "memory", "time", "partition", "account", "option", "wait")
-    given = {name: value for name in names if (value := getattr(arguments, f"slurm_{name}")) is not None}
-    if not arguments.slurm:
-        if given:
-            raise BatchError(f"--slurm-{next(iter(given))} goes with --slurm")
-        return None
-    options = tuple(given.pop("option", ()))
-    return SlurmJobs(options=options, wait_min=given.pop("wait", None), **given)
 
 
 def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
@@ -133,7 +90,7 @@ def catch_signals() -> None:
 def start_logging(verbose: bool, prog: str) -> None:
     """Print messages on standard error."""
     handler = logging.StreamHandler()
-    handler.setFormatter(logging.Formatter(f"{prog}: %(message)s"))
+    handler.setFormatter(LineFormatter(f"{prog}: %(message)s"))
     log.handlers = [handler]
     log.propagate = False
     log.setLevel(logging.DEBUG if verbose else logging.INFO)
@@ -164,6 +121,8 @@ def run_batch(arguments: argparse.Namespace) -> int:
         BatchError: It cannot be done.
     """
     check_names(arguments)
+    from pogosim.batch.runner import PogobotBatchRunner  # takes a while
+
     runner = PogobotBatchRunner(
         arguments.config,
         arguments.runs,
@@ -185,12 +144,10 @@ def run_batch(arguments: argparse.Namespace) -> int:
         for output in runner.list_outputs():
             tell(output)
         return DONE
-    outputs = runner.run_all()
-    unwritten = {output for output in outputs if not os.path.exists(output)}  # noqa: PTH110
+    runner.run_all()
     tell("Batch run completed. Generated output files:")
-    for output in outputs:
-        if output not in unwritten:
-            tell(f" - {output}")
+    for output in runner.generated:
+        tell(f" - {output}")
     return RUNS_FAILED if runner.failures else DONE
 
 
@@ -210,7 +167,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
     except BatchError as error:
         log.error("%s", error)
     except OSError as error:
-        log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+        log.error("%s: %s", error.filename or parsed.temp_base, reason(error))
     except RuntimeError as error:
         if "start new thread" not in str(error):
             raise

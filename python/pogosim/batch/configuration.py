@@ -12,7 +12,14 @@ import yaml
 
 from pogosim.batch.errors import BatchError, cannot, one_line
 from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError, check_options
-from pogosim.yaml_1_2 import WRONG_VALUES, ConfigurationDumper, ConfigurationLoader, dump_yaml
+from pogosim.yaml_1_2 import (
+    WRONG_VALUES,
+    ConfigurationDumper,
+    ConfigurationLoader,
+    StructureError,
+    dump_yaml,
+    problem_of,
+)
 
 # As in the simulator: few aliases of aliases can stand for more values than memory holds.
 MAX_VALUES = 1_000_000
@@ -73,12 +80,13 @@ class Configuration:
             if isinstance(self.root, yaml.MappingNode):
                 self.take_repeated_keys(self.root, ())
                 self.entries: dict[str, Any] = loader.construct_document(self.root)
+        except StructureError as error:
+            raise BatchError(f"{path}:{problem_of(error).removeprefix('line ')}") from None
         except yaml.MarkedYAMLError as error:
             line = error.problem_mark.line + 1 if error.problem_mark else 1
             raise BatchError(f"{path}:{line}: not valid YAML: {one_line(error.problem)}") from None
         except WRONG_VALUES as error:
-            what = "it refers to itself" if isinstance(error, RecursionError) else one_line(error)
-            raise BatchError(f"{path} is not valid YAML: {what}") from None
+            raise BatchError(f"{path} is not valid YAML: {problem_of(error)}") from None
         finally:
             if loader is not None:
                 loader.dispose()

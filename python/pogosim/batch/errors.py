@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 
 from pogosim.arguments import Arguments, shown
-from pogosim.outputs import say
+from pogosim.lines import say
 
 
 class BatchError(Exception):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Generator, Sequence
 
-from pogosim.batch.errors import cannot, tell
+from pogosim.batch.errors import cannot
 from pogosim.batch.reports import Failure
 from pogosim.batch.results import Part, RunFile, check_output, write_results
 from pogosim.batch.run import Outcome
@@ -27,7 +27,7 @@ def remove_stale(output: str) -> None:
             real.unlink()
             if format_of(real) == CSV:
                 metadata_path(real).unlink(missing_ok=True)
-            tell(f"Removed stale result file: {output}")
+            log.debug("Removed stale result file: %s", output)
     except OSError as error:
         raise cannot("remove", output, error) from None
 
@@ -52,8 +52,8 @@ def removing_stale(outputs: Sequence[str], outcomes: Generator[Outcome, None, No
         outcomes.close()
 
 
-def join(combinations: Sequence[Combination], failures: Sequence[Failure], text: str) -> None:
-    """Write one file of results.
+def join(combinations: Sequence[Combination], failures: Sequence[Failure], text: str) -> bool:
+    """Write one file of results. Returns whether there was anything to write.
 
     Args:
         combinations: Those whose results are in it, at least one.
@@ -75,9 +75,8 @@ def join(combinations: Sequence[Combination], failures: Sequence[Failure], text:
     output = combinations[0].output
     if not any(part.runs for part in parts):
         log.error("%s is not written: none of its runs ended well", output)
-        return
+        return False
     written = write_results(output, parts, text)
-    is_new = True
-    for rows in written.rows:
-        tell(f"Created {output} with {rows} rows" if is_new else f"Appended {rows} rows to {output}")
-        is_new = False
+    of_each = f" ({', '.join(map(str, written.rows))})" if len(written.rows) > 1 else ""
+    log.debug("Created %s with %d rows%s", output, sum(written.rows), of_each)
+    return True

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import string
 from collections.abc import Mapping, Sequence
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import Any
 
 from pogosim.batch.errors import is_text
@@ -101,7 +102,22 @@ def file_name(combination: dict[str, Any]) -> str:
         raise NamesError(FORMAT, f"'{pattern}' gives a name that is no text in UTF-8")
     if format_of(name) is None:
         raise NamesError(FORMAT, f"the format of {shown(name)} is unknown; expected {EXPECTED}")
+    if leads_out(name):
+        raise NamesError(
+            FORMAT, f"{shown(name)} is not in the folder of the results; name a file in it, and the folder with -o"
+        )
     return name
+
+
+def leads_out(name: str) -> bool:
+    """Tell whether a path leads out of the folder that it is relative to, as it is written."""
+    return os.path.isabs(name) or os.path.normpath(name).split("/")[0] == ".."  # noqa: PTH117
+
+
+def is_linked_out(path: str, folder: str) -> bool:
+    """Tell whether a path in a folder leads out of it by symbolic links."""
+    real = Path(folder).resolve()
+    return not Path(path).resolve().is_relative_to(real)
 
 
 def new_columns(combination: dict[str, Any]) -> dict[str, Any]:

@@ -127,7 +127,7 @@ class Runs:
         self,
         configurations: Sequence[dict[str, Any]],
         seeds: Sequence[Sequence[int]],
-        save: Callable[[int], tuple[Path, str]] | None = None,
+        save: Callable[[int], tuple[Path, str] | None] | None = None,
     ) -> Iterator[Finished]:
         """Yield the runs of several configurations, each when all its runs are done, in the order of that.
 

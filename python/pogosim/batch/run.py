@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pogosim.batch.errors import reason
+from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
 
 LOG = "log.txt"
@@ -168,11 +169,6 @@ def tail(path: Path) -> str:
     return "\n".join(printable(line) for line in lines[-LOG_LINES:])
 
 
-def printable(line: str) -> str:
-    """Return a line without what a terminal would not show."""
-    return "".join(c if c.isprintable() or c == "\t" else "?" for c in line)
-
-
 def place_in(folder: Path) -> re.Pattern[str]:
     """Return what finds places in the configuration of a run, which is a temporary file, in a text."""
     return re.compile(re.escape(str(folder)) + r"/test\.yaml(:\d+)?")
@@ -236,7 +232,7 @@ def attempt(task: Task, number: int) -> Outcome:
             problem = ending(code)
             is_fatal = any(words in log for words in DISK_FULL)
             if is_fatal:
-                problem = f"the disk of {task.temp_folder} is full; free space, then give the same command again"
+                problem = disk_full(task)
         elif not data.is_file():
             problem = f"it ended without writing its data file: is {task.program} a program compiled for Pogosim?"
             is_fatal = True
@@ -251,6 +247,11 @@ def attempt(task: Task, number: int) -> Outcome:
     finally:
         if not is_kept:
             shutil.rmtree(folder, ignore_errors=True)
+
+
+def disk_full(task: Task) -> str:
+    """Return what is said when a run cannot write."""
+    return f"the disk of {task.temp_folder} is full; free space, then give the same command again"
 
 
 def is_complete_data(path: Path) -> bool:
@@ -288,9 +289,10 @@ def do_run(task: Task) -> Outcome:
         try:
             outcome = attempt(task, number)
         except OSError as error:
-            full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-            what = error.filename or task.program
-            outcome = Outcome(task.key, f"{what}: {reason(error)}", is_fatal=full or error.errno == errno.ENOEXEC)
+            is_full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+            # What starts the program names it; what cannot be written has no name, and is in the temporary folder.
+            problem = disk_full(task) if is_full else f"{error.filename or task.temp_folder}: {reason(error)}"
+            outcome = Outcome(task.key, problem, is_fatal=is_full or error.errno == errno.ENOEXEC)
         simulator_s += outcome.simulator_s
         if not outcome.problem or outcome.is_fatal:
             break

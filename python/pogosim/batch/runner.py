@@ -12,16 +12,16 @@ from typing import Any
 from pogosim.batch.backends import Workers
 from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
-from pogosim.batch.errors import BatchError, at_least, cannot, given, tell
+from pogosim.batch.errors import BatchError, at_least, cannot, given, one_line, tell
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
-from pogosim.batch.names import NamesError, file_name, new_columns
+from pogosim.batch.names import NamesError, file_name, is_linked_out, new_columns
 from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
-from pogosim.batch.slurm import SlurmJobs
+from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 
@@ -58,6 +58,7 @@ class PogobotBatchRunner:
     Attributes:
         failures: Runs of the last `run_all()` that failed.
         simulator_s: Wall-clock time, in s, that simulators of the last `run_all()` took, added up.
+        generated: Files of results that the last `run_all()` wrote, each once.
 
     Raises:
         BatchError: An argument is wrong, or the configuration cannot be read. Also raised by all methods: its message
@@ -97,6 +98,7 @@ class PogobotBatchRunner:
         self.seed_from = seed_from
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
+        self.generated: list[str] = []
         self.queue: list[Combination] | None = None
         self.run_settings: RunSettings | None = None
         # Configurations of combinations that were written: their text and entries by path.
@@ -117,9 +119,19 @@ class PogobotBatchRunner:
     def compute_output_filename(self, comb_config: dict[str, Any]) -> str:
         """Return the path of the file with the results of a combination. Several combinations may share a file."""
         try:
-            return str(Path(self.output_dir) / file_name(comb_config))
+            output = str(Path(self.output_dir) / file_name(comb_config))
         except NamesError as error:
             raise self.names_error(error) from None
+        try:
+            is_out = is_linked_out(output, self.output_dir)
+        except (OSError, RuntimeError) as error:  # links in a circle
+            raise BatchError(f"{output} cannot be written: {one_line(error)}") from None
+        if is_out:
+            raise BatchError(
+                f"{output} leads out of the folder of the results, to {Path(output).resolve()}; remove the symbolic "
+                "link, or choose another folder with -o"
+            )
+        return output
 
     def compute_new_columns(self, comb_config: dict[str, Any]) -> dict[str, Any]:
         """Return names and values of the constant columns of a combination."""
@@ -208,7 +220,7 @@ class PogobotBatchRunner:
                 outputs = []
                 for config, output in selected:
                     path = self.write_temp_yaml(config)
-                    tell(f"Task: Config file {path} -> Output: {output}")
+                    log.debug("Task: Config file %s -> Output: %s", path, output)
                     outputs.append(self.run_launcher_for_combination(path, output))
                 queue = self.queue
             finally:
@@ -219,7 +231,7 @@ class PogobotBatchRunner:
     def do_all(self, combinations: Sequence[Combination]) -> None:
         """Do the runs that are not done yet, and write the results."""
         execution = Execution(combinations, self.simulator_binary)
-        self.failures, self.simulator_s = execution.failures, 0.0
+        self.failures, self.simulator_s, self.generated = execution.failures, 0.0, []
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
         waiting = execution.waiting(self.temporary)
         with self.workers.opened() as do:
@@ -236,7 +248,8 @@ class PogobotBatchRunner:
         report_failures(self.failures)
         for output in outputs:
             of_output = [combination for combination in combinations if combination.output == output]
-            join(of_output, self.failures, self.configuration.text)
+            if join(of_output, self.failures, self.configuration.text):
+                self.generated.append(output)
         if self.failures:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
         else:

@@ -8,7 +8,7 @@ from typing import Any
 
 from pogosim.batch.errors import NothingSelectedError
 from pogosim.batch.names import COLUMNS, NamesError, has_key, new_columns
-from pogosim.several_files import varied_parameters
+from pogosim.varied import varied_parameters
 
 
 def with_output(named: Sequence[tuple[dict[str, Any], str]], wanted: str) -> list[tuple[dict[str, Any], str]]:

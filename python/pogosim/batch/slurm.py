@@ -11,11 +11,9 @@ import contextlib
 import hashlib
 import importlib
 import logging
-import re
 import shutil
 import signal
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,62 +21,13 @@ from pogosim.batch.dask_backend import imported, outcomes_of
 from pogosim.batch.errors import BatchError, one_line, tell
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm_jobs import Jobs, check_commands, counted, own_folder
+from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB, TIME, SlurmJobs
 from pogosim.batch.slurm_worker import do_in_job
 from pogosim.extras import installing
 
-JOBS = 8
-CORES = 1
-MEMORY_PER_CORE_GB = 2
-TIME = "01:00:00"
 LOSSES_PER_RUN = 5
 ROLES = ("scheduler", "worker", "client")
-TIME_FORM = re.compile(r"(\d+-\d{1,2}|\d+)(:[0-5]?\d){0,2}")
-MEMORY_FORM = re.compile(r"([1-9]\d*)([KMGT]?)")
 POWERS = {"K": 1, "": 2, "M": 2, "G": 3, "T": 4}
-
-
-@dataclass(frozen=True)
-class SlurmJobs:
-    """What to ask SLURM for. None: what the site's jobqueue.yaml says, or else a default.
-
-    Args:
-        jobs: Jobs at the same time.
-        cores: Cores per job, each of which does one run at a time (1).
-        memory: Memory per job, as for sbatch --mem: "500M", "4G" (2G per core).
-        time: Time limit of a job, as for sbatch --time: "04:00:00", "2-12" (1 h).
-        partition: Partition.
-        account: Account.
-        options: More options of sbatch: "qos=long".
-        wait_min: How long to wait for the first job to start, in minutes; None: as long as it takes.
-
-    Raises:
-        BatchError: One of them has a wrong form.
-    """
-
-    jobs: int = JOBS
-    cores: int | None = None
-    memory: str | None = None
-    time: str | None = None
-    partition: str | None = None
-    account: str | None = None
-    options: tuple[str, ...] = ()
-    wait_min: float | None = None
-
-    def __post_init__(self) -> None:
-        for name, number in (("jobs", self.jobs), ("cores", self.cores)):
-            if number is not None and number < 1:
-                raise BatchError(f"--slurm-{name}: expected a whole number of at least 1; found {number}")
-        if self.time is not None and not TIME_FORM.fullmatch(self.time):
-            raise BatchError(
-                f"--slurm-time: expected minutes, hours:minutes:seconds or days-hours, such as 04:00:00; found "
-                f"'{self.time}'"
-            )
-        if self.memory is not None and not MEMORY_FORM.fullmatch(self.memory):
-            raise BatchError(f"--slurm-memory: expected a number with K, M, G or T, such as 4G; found '{self.memory}'")
-        texts = [("option", option) for option in self.options]
-        for name, text in [*texts, ("partition", self.partition), ("account", self.account)]:
-            if text is not None and (not text.strip() or "\n" in text):
-                raise BatchError(f"--slurm-{name}: expected one line of text; found {text!r}")
 
 
 @contextlib.contextmanager

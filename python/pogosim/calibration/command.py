@@ -2,47 +2,24 @@
 
 from __future__ import annotations
 
-import argparse
-import os
-import shutil
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from pogosim.batch.backends import Workers
 from pogosim.batch.command_line import catch_signals
-from pogosim.batch.errors import BatchError
-from pogosim.batch.rows import Runs
 from pogosim.calibration.errors import CalibrationError
-from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile
-from pogosim.calibration.parameters import BIAS, NAMES, chosen, start_bias, start_values
-from pogosim.calibration.reading import read_track_table
-from pogosim.calibration.result import as_json, bias_is_known, configuration_block, found_parameters, misfits
-from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses
-from pogosim.calibration.simulation import Simulator
-from pogosim.calibration.statistics import check_motion, statistics_of, tracker_noise
-from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
-from pogosim.calibration.units import (
-    ANGLES_RAD,
-    LENGTHS_MM,
-    UnitOptions,
-    in_millimetres,
-    in_radians,
-    with_headings,
-    y_down,
-)
+from pogosim.calibration.parameters import NAMES
+from pogosim.calibration.results import LINES, PICTURE, RESULT, write_protocol
+from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM
+from pogosim.command.new import ProjectError
 from pogosim.command.numbers import positive, whole
-from pogosim.command.parser import Parser, complain, warn
-from pogosim.command.run import RunError, program_of
-from pogosim.installation import InstallationError, find_installation
-from pogosim.outputs import OutputError, leads_to, partial_output, real_output, say
+from pogosim.command.parser import Parser, complain
+from pogosim.inputs import check_readable
+from pogosim.installation import InstallationError
+from pogosim.outputs import OutputError, told
 
 INTERRUPTED = 130
-NEED_HEADINGS = ("angular_noise_stddev", BIAS)
-PROTOCOL = Path(__file__).with_name("protocol.c")
-RESULT, LINES, PICTURE = "calibration.json", "calibration.yaml", "calibration.png"
 
 
 def parser(prog: str) -> Parser:
@@ -63,7 +40,9 @@ def parser(prog: str) -> Parser:
         help="what the robots ran: a program, a .c or .cpp file, or a project (default: the program of --protocol)",
     )
     made.add_argument(
-        "--protocol", metavar="FILE.c", help="write the program to run on the robots, and do nothing else"
+        "--protocol",
+        metavar="NAME",
+        help="make a project of the program to run on the robots, and do nothing else; NAME.c: write the program alone",
     )
     made.add_argument(
         "--category", metavar="NAME", help="the robots' entry in `objects` (the only one of type pogobot)"
@@ -86,97 +65,6 @@ def parser(prog: str) -> Parser:
     return made
 
 
-@dataclass(frozen=True)
-class Prepared:
-    """Tracks that are ready to be compared with.
-
-    Attributes:
-        tracks: In mm and rad, with headings.
-        noise: First guess of the errors of the tracker in mm and rad.
-        facts: What was said of them.
-    """
-
-    tracks: Tracks
-    noise: tuple[float, float]
-    facts: list[str]
-
-
-def prepare(prog: str, options: argparse.Namespace, scene: Scene) -> Prepared:
-    """Read tracks, and say how they are understood.
-
-    Raises:
-        CalibrationError: They cannot be used.
-        OSError: They cannot be read.
-    """
-    facts: list[str] = []
-
-    def tell(text: str) -> None:
-        facts.append(text)
-        say(text)
-
-    def caution(text: str) -> None:
-        warn(prog, text)
-
-    table = read_track_table(Path(options.tracks), scene.category, caution)
-    tracks = on_grid(table, *frame_numbers(table, options.fps, caution), caution)
-    robots = f"{tracks.robots} robot{'' if tracks.robots == 1 else 's'}"
-    tell(f"tracks: {robots}, {tracks.length_s:.4g} s, {1.0 / tracks.frame_s:.4g} frames/s")
-    unit_options = UnitOptions(options.length_unit, options.mm_per_pixel, options.angle_unit, options.y_up)
-    tracks = in_millimetres(tracks, table.units.get("x"), unit_options, scene.size_mm, tell, caution)
-    tracks = cut(tracks, scene.radius_mm, caution)
-    tracks = in_radians(tracks, table.units.get("angle"), unit_options, tell, caution)
-    tracks = in_arena(continuous(y_down(tracks, unit_options, scene.size_mm[1], tell)), scene, caution)
-    noise = tracker_noise(tracks)
-    check_motion(tracks, noise[0])
-    return Prepared(with_headings(tracks, noise[0]), noise, facts)
-
-
-def compiled(what: str | None, temporary: Path) -> Path:
-    """Return the program that the robots ran.
-
-    Raises:
-        CalibrationError: There is none.
-    """
-    source = Path(what) if what else Path(shutil.copy(PROTOCOL, temporary / "protocol.c"))
-    try:
-        return program_of(source, find_installation())
-    except (InstallationError, RunError, ValueError) as error:
-        raise CalibrationError(str(error)) from None
-
-
-def trial_runs(scene: Scene, program: Path, temporary: Path, workers: int | None) -> Runs:
-    """Return what runs the program in the scene; raises CalibrationError if it is no program of the simulator."""
-    try:
-        return Runs(
-            scene.configuration, str(program), str(temporary), str(temporary), Workers(number=workers), retries=0
-        )
-    except BatchError as error:
-        raise CalibrationError(str(error)) from None
-
-
-def write_protocol(path: Path) -> None:
-    """Write the program to run on the robots; raises OutputError or OSError if it cannot be written."""
-    real = real_output(path)
-    if real.exists():
-        raise OutputError(f"{path} exists already; choose another name")
-    with partial_output(real) as partial:
-        shutil.copyfile(PROTOCOL, partial)
-    say(f"written: {path}")
-
-
-def check_outputs(folder: Path, inputs: Sequence[Path]) -> None:
-    """Make the folder of results; raises OutputError or OSError if they cannot be written there."""
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(f"{folder} is not a folder; choose another one with -o")
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in (RESULT, LINES, PICTURE):
-        real_output(folder / name)
-        if any(leads_to(folder / name, path) for path in inputs):
-            raise OutputError(f"{folder / name} is an input, which would be lost; choose another folder with -o")
-    if not os.access(folder, os.W_OK):
-        raise OutputError(f"{folder} cannot be written; choose another folder with -o")
-
-
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate") -> int:
     """Run the command. Returns its exit code: 0 done, 2 nothing could be fitted, or written, 130 interrupted."""
     made = parser(prog)
@@ -186,94 +74,22 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate"
             write_protocol(Path(options.protocol))
             return 0
         if options.tracks is None or options.config is None:
-            made.error("expected TRACKS and -c CONF.yaml, or --protocol FILE.c")
+            made.error("expected TRACKS and -c CONF.yaml, or --protocol NAME")
+        check_readable([options.tracks])
         catch_signals()
+        from pogosim.calibration.work import calibrate  # takes a while
+
         calibrate(prog, options)
     except KeyboardInterrupt:
         complain(prog, "interrupted; nothing is written")
         return INTERRUPTED
     except MemoryError:
         return complain(prog, "not enough memory for tracks of this length; use a part of the film")
-    except (CalibrationError, OutputError) as error:
+    except (CalibrationError, InstallationError, OutputError, ProjectError) as error:
         return complain(prog, error)
     except OSError as error:
-        return complain(prog, f"{error.filename or options.output_dir}: {(error.strerror or str(error)).lower()}")
+        return complain(prog, told(error, f"the folder for temporary files, {tempfile.gettempdir()}"))
     return 0
-
-
-def calibrate(prog: str, options: argparse.Namespace) -> None:
-    """Fit, print, and write if a folder is given."""
-    free, scene = chosen(options.parameters), read_scene(Path(options.config), options.category)
-    if options.output_dir is not None:
-        check_outputs(Path(options.output_dir), [Path(options.tracks), Path(options.config)])
-    prepared = prepare(prog, options, scene)
-    poses = start_poses(prepared.tracks, scene, lambda text: warn(prog, text))
-    with tempfile.TemporaryDirectory(prefix="pogosim-calibrate-") as folder:
-        temporary = Path(folder)
-        program = compiled(options.simulator_binary, temporary)
-        runs = trial_runs(scene, program, temporary, options.workers)
-        simulator = Simulator(runs, scene.entries, scene.category, poses, prepared.tracks)
-        if not prepared.tracks.has_angles and options.parameters is None:
-            free = [name for name in free if name not in NEED_HEADINGS]
-            warn(prog, f"without angles, {' and '.join(NEED_HEADINGS)} are not fitted (--parameters to try)")
-        settings = Settings(free, start_values(scene.settings), start_bias(scene.settings), options.seed, options.runs)
-        matcher = Matcher(simulator, statistics_of(prepared.tracks), settings)
-        progress = say if sys.stdout is not None and sys.stdout.isatty() else (lambda _text: None)
-        with runs.opened():
-            fitted = fit(matcher, prepared.noise, progress)
-    report(prog, options, scene, prepared, matcher, fitted)
-
-
-def report(
-    prog: str, options: argparse.Namespace, scene: Scene, prepared: Prepared, matcher: Matcher, fitted: Fit
-) -> None:
-    """Print the result, what is doubtful about it, and write it if a folder is given."""
-    settings, noise = matcher.settings, fitted.values
-    found = found_parameters(fitted, settings.start)
-    with_bias = BIAS in settings.free
-    of_angle = f", {noise['tracker_noise_rad']:.2g} rad" if noise["tracker_noise_rad"] else ""
-    say(f"noise of the tracker: {noise['tracker_noise_mm']:.2g} mm{of_angle}")
-    side = handedness(median_profile(prepared.tracks), median_profile(fitted.tracks), fitted.tracks.frame_s)
-    say_what_is_doubtful(prog, side, with_bias and bias_is_known(fitted))
-    for line in misfits(matcher.measured, fitted):
-        warn(prog, f"the simulation does not reproduce the {line} (another program, or pushes that it does not know?)")
-    block = configuration_block(scene.category, found, fitted, with_bias)
-    say("")
-    say(block)
-    if options.output_dir is None:
-        return
-    from pogosim.calibration.figure import picture
-
-    facts = {
-        "tracks": Path(options.tracks).name,
-        "program": Path(options.simulator_binary).name if options.simulator_binary else PROTOCOL.name,
-        "seed": settings.seed,
-        "runs": settings.runs,
-        "robots": prepared.tracks.robots,
-        "length_s": prepared.tracks.length_s,
-        "understood": prepared.facts,
-        "turns": side,
-    }
-    content = {
-        RESULT: as_json(scene.category, found, fitted, matcher.measured, facts).encode(),
-        LINES: (block + "\n").encode(),
-        PICTURE: picture(prepared.tracks, fitted.tracks),
-    }
-    for name, data in content.items():
-        with partial_output(real_output(Path(options.output_dir) / name)) as partial:
-            partial.write_bytes(data)
-    say("")
-    say(f"written to {options.output_dir}: {', '.join(content)}")
-
-
-def say_what_is_doubtful(prog: str, side: str, bias: bool) -> None:
-    """Say whether tracks may be mirrored, which changes the sign of the bias."""
-    if side == "mirrored":
-        warn(prog, "the robots turn to the other side than the program says: is the film mirrored, or y up (--y-up)?")
-    elif side == "unknown" and bias:
-        say("the sign of the bias: as that of the angles; a mirrored film cannot be told with this program")
-    elif bias:
-        say("turns: to the same side as in the program, so the tracks are not mirrored")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from typing import Any
 
 from pogosim.batch.options import single_value
 from pogosim.calibration.errors import CalibrationError
-from pogosim.scene import number
+from pogosim.configuration_values import number
 
 BIAS = "angular_systematic_bias_domain"
 BIAS_LIMIT = 1023  # motor power units

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.calibration.errors import CalibrationError
+from pogosim.calibration.trackmate import MARK, encoding_of, spots
 from pogosim.run_columns import RUN, is_one_run
 from pogosim.tables import is_our_metadata, metadata_path
 from pogosim.utils import load_dataframe
@@ -78,7 +79,9 @@ def read_track_table(path: Path, category: str, warn: Warn) -> TrackTable:
     if is_of_run:
         return numbers_only(read_run(path, category, warn), warn)
     try:
-        table = pd.read_csv(path, comment="#", encoding="utf-8-sig", index_col=False, sep=separator(path))
+        encoding = encoding_of(path)
+        sep = separator(path, encoding)
+        table = pd.read_csv(path, comment="#", encoding=encoding, index_col=False, low_memory=False, sep=sep)
     except pd.errors.EmptyDataError:
         raise CalibrationError(f"{path} is empty; {EXPECTED}") from None
     except (ValueError, pd.errors.ParserWarning) as error:
@@ -86,9 +89,9 @@ def read_track_table(path: Path, category: str, warn: Warn) -> TrackTable:
     return numbers_only(named(table, path), warn)
 
 
-def separator(path: Path) -> str:
+def separator(path: Path, encoding: str) -> str:
     """Return what separates the columns of a CSV file: the most frequent of comma, semicolon and tab in its header."""
-    with path.open(encoding="utf-8-sig") as file:
+    with path.open(encoding=encoding) as file:
         header = next((line for line in file if line.strip() and not line.startswith("#")), "")
     return max(",;\t", key=header.count)
 
@@ -122,6 +125,9 @@ def named(table: pd.DataFrame, path: Path) -> TrackTable:
     """Return the columns that are needed, by their usual names; of several synonyms, the first one."""
     columns: dict[str, pd.Series] = {}
     units: dict[str, str] = {}
+    there = ", ".join(map(str, table.columns))
+    if MARK in table:
+        table, units = spots(table)
     for name in table.columns:
         found = column_of(str(name))
         if found and found[0] not in columns:
@@ -130,8 +136,8 @@ def named(table: pd.DataFrame, path: Path) -> TrackTable:
     missing = [name for name in ("id", "x", "y") if name not in columns]
     missing += [] if {"time", "frame"} & set(columns) else ["time"]
     if missing:
-        there = ", ".join(map(str, table.columns))
-        raise CalibrationError(f"{path} has no column {', '.join(missing)}; {EXPECTED}, found {there}")
+        other = "; of TrackMate, export the table of spots" if "TRACK_ID" in there and MARK not in there else ""
+        raise CalibrationError(f"{path} has no column {', '.join(missing)}; {EXPECTED}, found {there}{other}")
     return TrackTable(pd.DataFrame(columns), str(path), units)
 
 

@@ -17,8 +17,9 @@ from pogosim.batch.options import single_value
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks
+from pogosim.configuration_values import number
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
-from pogosim.scene import POGOBOT_RADIUS_MM, number, read_periodic, type_of
+from pogosim.scene import POGOBOT_RADIUS_MM, read_periodic, type_of
 
 CLOSE_MM = 10.0  # a start so far beyond where a robot can be is an error of the tracker
 LEAST_CORRELATION, CLEARLY = 0.5, 1.25  # of turn rates over time

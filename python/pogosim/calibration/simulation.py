@@ -15,7 +15,7 @@ from pogosim.batch.rows import Runs
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.parameters import BIAS
 from pogosim.calibration.tracks import Floats, Tracks
-from pogosim.scene import number
+from pogosim.configuration_values import number
 
 TIME_STEP_S = 0.01  # default of the configuration
 PLACEMENT = ("nb", "x", "y", "angle", "poses", "area", "initial_formation")

@@ -12,9 +12,8 @@ import numpy as np
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks, continuous
+from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM, RARE_LENGTHS_MM
 
-LENGTHS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
-ANGLES_RAD = {"rad": 1.0, "deg": math.pi / 180.0}
 ARENA_TOLERANCE = 1.1  # tracks may extend over so much more than the arena: cameras are not perfect
 SMALL_SHARE = 0.1  # of the arena; tracks within less suggest another unit
 STRIDE_S = 0.4  # motion in which a direction shows
@@ -66,7 +65,9 @@ def in_millimetres(
         unit, why = recognised_length(extent, arena_mm), "recognised by the size of the arena"
     if unit == "px" and options.mm_per_pixel is None:
         raise CalibrationError("positions in pixels need the size of a pixel: --mm-per-pixel MM")
-    scale = options.mm_per_pixel if unit == "px" and options.mm_per_pixel else LENGTHS_MM.get(unit, 1.0)
+    scale = (
+        options.mm_per_pixel if unit == "px" and options.mm_per_pixel else (LENGTHS_MM | RARE_LENGTHS_MM).get(unit, 1.0)
+    )
     size, arena = (f"{a:.0f} x {b:.0f} mm" for a, b in (extent * scale, arena_mm))
     if (extent * scale > ARENA_TOLERANCE * arena_mm).any():
         raise CalibrationError(

@@ -19,7 +19,7 @@ from pogosim.command.compilers import COMPILERS
 from pogosim.command.parser import Parser
 from pogosim.extras import installing
 from pogosim.installation import PACKAGE, Installation, InstallationError, find_installation
-from pogosim.outputs import say
+from pogosim.lines import say
 
 PROGRAM = """#include "pogobase.h"
 typedef struct { int n; } USERDATA;

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pogosim
 from pogosim.command.parser import complain
-from pogosim.outputs import say
+from pogosim.lines import say, say_error
 
 WRONG_USAGE = 2
 INTERRUPTED = 130
@@ -28,12 +28,14 @@ class Subcommand(NamedTuple):
 SUBCOMMANDS = {
     "new": Subcommand("pogosim.command.new", "make a project: a program, a configuration and a Makefile"),
     "run": Subcommand("pogosim.command.run", "compile a project or a source file, and run it"),
-    "batch": Subcommand("pogosim.pogobatch", "run a program many times, with every combination of options"),
-    "optimize": Subcommand("pogosim.pogoptim", "search for the parameters that make an objective as large as possible"),
+    "batch": Subcommand("pogosim.batch.command_line", "run a program many times, with every combination of options"),
+    "optimize": Subcommand(
+        "pogosim.optimize.command", "search for the parameters that make an objective as large as possible"
+    ),
     "analyze": Subcommand("pogosim.reports.command", "compute what robots did: tables and figures of a data file"),
-    "picture": Subcommand("pogosim.swarm_picture", "draw the trajectories of a run"),
+    "picture": Subcommand("pogosim.picture.command", "draw the trajectories of a run"),
     "film": Subcommand("pogosim.film.command", "make a film of a run, or a page to replay it in a browser"),
-    "recover": Subcommand("pogosim.recover", "make a complete data file of a run that was killed"),
+    "recover": Subcommand("pogosim.command.recover", "make a complete data file of a run that was killed"),
     "arena": Subcommand("pogosim.geometry.command", "draw, check, scale and convert arenas"),
     "calibrate": Subcommand("pogosim.calibration.command", "fit the motion of simulated robots to tracks of real ones"),
     "fit-comm": Subcommand("pogosim.communication.fit_command", "fit a law of reception to measurements"),
@@ -43,24 +45,22 @@ SUBCOMMANDS = {
 }
 
 
-def usage() -> str:
+def usage() -> list[str]:
     """Return what `pogosim --help` prints."""
     width = max(map(len, SUBCOMMANDS))
     listed = [f"  {name:{width}}  {command.summary}" for name, command in SUBCOMMANDS.items()]
-    return "\n".join(
-        [
-            "Usage: pogosim COMMAND [OPTIONS]",
-            "",
-            "Simulates swarms of Pogobots.",
-            "",
-            "Commands:",
-            *listed,
-            "",
-            "Options:",
-            "  -h, --help     print this help; pogosim COMMAND --help: that of a command",
-            "  -V, --version  print the version",
-        ]
-    )
+    return [
+        "Usage: pogosim COMMAND [OPTIONS]",
+        "",
+        "Simulates swarms of Pogobots.",
+        "",
+        "Commands:",
+        *listed,
+        "",
+        "Options:",
+        "  -h, --help     print this help; pogosim COMMAND --help: that of a command",
+        "  -V, --version  print the version",
+    ]
 
 
 def unknown(name: str) -> str:
@@ -126,16 +126,16 @@ def last(code: int) -> int:
 def run(name: str, arguments: Sequence[str]) -> int:
     """Run a subcommand, or an option in its place; returns the exit code."""
     if name in ("-h", "--help", "help"):
-        say(usage())
+        say(*usage())
         return 0
     if name in ("-V", "--version"):
         say(f"pogosim {pogosim.__version__}")
         return 0
     if not name:
-        print(usage(), file=sys.stderr)
+        say_error(*usage())
         return WRONG_USAGE
     if name not in SUBCOMMANDS:
-        print(unknown(name), file=sys.stderr)
+        say_error(unknown(name))
         return WRONG_USAGE
     return call(name, arguments, f"pogosim {name}")
 

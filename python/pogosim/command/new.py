@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pogosim.command.parser import Parser, complain
 from pogosim.installation import Installation, InstallationError, find_installation
-from pogosim.outputs import say
+from pogosim.lines import say
 
 FILES = ("main.c", "conf/test.yaml", "Makefile", "robot.mk", "README.md", ".gitignore")
 LINK = "pogosim"
@@ -85,5 +85,5 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim new") -> i
     except OSError as error:
         return complain(prog, f"cannot make {folder}: {error.strerror}")
     say(f"Made {folder}: main.c (the program), conf/test.yaml (the world), Makefile. Next:")
-    say(f"  cd {folder}\n  make sim\n  ./{name_of(folder)} -c conf/test.yaml      # -g: without a window")
+    say(f"  cd {folder}", "  make sim", f"  ./{name_of(folder)} -c conf/test.yaml      # -g: without a window")
     return 0

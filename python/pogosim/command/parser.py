@@ -9,19 +9,21 @@ import warnings
 from collections.abc import Iterator
 from typing import Any, NoReturn
 
+from pogosim.lines import say_error
+
 
 class Parser(argparse.ArgumentParser):
     """Says in one line what is wrong, then ends with exit code 2."""
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong, and exit."""
-        print(f"{self.prog}: {message}; {self.prog} --help explains the options", file=sys.stderr)
+        say_error(f"{self.prog}: {message}; {self.prog} --help explains the options")
         sys.exit(2)
 
 
 def warn(prog: str, text: object) -> None:
     """Print a warning as one line."""
-    print(f"{prog}: warning: {text}", file=sys.stderr)
+    say_error(f"{prog}: warning: {text}")
 
 
 @contextlib.contextmanager
@@ -45,5 +47,5 @@ def warnings_told(prog: str, kind: type[Warning]) -> Iterator[None]:
 
 def complain(prog: str, problem: object) -> int:
     """Print what is wrong; returns the exit code 2."""
-    print(f"{prog}: {problem}", file=sys.stderr)
+    say_error(f"{prog}: {problem}")
     return 2

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from pogosim.command.parser import Parser, complain
 from pogosim.installation import InstallationError, find_installation
-from pogosim.outputs import say
+from pogosim.lines import say
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim path") -> int:

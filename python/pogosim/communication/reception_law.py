@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-import numpy.typing as npt
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+    from pogosim.communication.equations import Floats
 
 SHORT_HEADER_BYTES = 3
 LONG_HEADER_BYTES = 8
@@ -71,10 +71,9 @@ class DynamicLaw:
         theta: npt.ArrayLike,
     ) -> Floats:
         """Return the probability for many sets of parameters at once; all shapes are broadcast."""
-        m, p, c = as_arrays(message_bytes, send_probability, cluster_size)
-        a, b, g, d, z, t = as_arrays(alpha, beta, gamma, delta, zeta, theta)
-        with np.errstate(over="ignore", invalid="ignore"):
-            return clamped_inverse(a + b * p**g * c**d * np.exp(z * m) + t * p * c)
+        from pogosim.communication import equations  # numpy takes a while
+
+        return equations.dynamic(message_bytes, send_probability, cluster_size, alpha, beta, gamma, delta, zeta, theta)
 
 
 @dataclass(frozen=True)
@@ -114,26 +113,13 @@ class PowerLaw:
         delta: npt.ArrayLike,
     ) -> Floats:
         """Return the probability for many sets of parameters at once; all shapes are broadcast."""
-        m, p, c = as_arrays(message_bytes, send_probability, cluster_size)
-        a, b, g, d = as_arrays(alpha, beta, gamma, delta)
-        with np.errstate(over="ignore", invalid="ignore"):
-            return clamped_inverse(1.0 + a * m**b * p**g * c**d)
+        from pogosim.communication import equations
+
+        return equations.power(message_bytes, send_probability, cluster_size, alpha, beta, gamma, delta)
 
 
 Law = DynamicLaw | PowerLaw
 LAWS: dict[str, type[DynamicLaw] | type[PowerLaw]] = {law.NAME: law for law in (DynamicLaw, PowerLaw)}
-
-
-def as_arrays(*values: npt.ArrayLike) -> list[Floats]:
-    """Return numbers as arrays."""
-    return [np.asarray(value, dtype=float) for value in values]
-
-
-def clamped_inverse(denominator: Floats) -> Floats:
-    """Return 1 / denominator within [0, 1]; 0 where it is no positive number, as unusual parameters make it."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = 1.0 / denominator
-        return np.where(inverse > 0.0, np.minimum(inverse, 1.0), 0.0)
 
 
 def parameter_names(law: type[DynamicLaw] | type[PowerLaw]) -> tuple[str, ...]:

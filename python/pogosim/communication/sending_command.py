@@ -9,7 +9,7 @@ from pogosim.command.numbers import finite, positive
 from pogosim.command.parser import Parser, complain
 from pogosim.communication.reception_law import LAWS, DynamicLaw, Law, PowerLaw, parameter_names, parameters_of
 from pogosim.communication.sending import SENDING_DEFAULTS, SendingError, best_sending
-from pogosim.outputs import say
+from pogosim.lines import say
 
 
 def cluster(text: str) -> float:

@@ -24,6 +24,7 @@ FORMATS = {
     ".webm": ["-vf", VIDEO, "-pix_fmt", "yuv420p", *COLOURS, *WEBM, "-f", "webm"],
     ".gif": ["-filter_complex", PALETTES, "-loop", "0", "-f", "gif"],
 }
+PAGE = ".html"  # no film, but a page that replays the run
 ENCODERS = {".mp4": "libx264", ".webm": "libvpx-vp9", ".gif": "gif"}
 
 

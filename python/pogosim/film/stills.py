@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from pogosim.film.brush import Brush
 from pogosim.film.moving import Moving
 from pogosim.film.timeline import timeline_of
+from pogosim.fonts import any_characters
 from pogosim.picture import layers
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw_key, draw_notes, draw_scale_bar, notes, title, width_of_key
@@ -110,7 +111,8 @@ class Stills:
         figure.text(0.15 / width, y, heading, color=INK, fontsize=11, va="center")
         if swarm.colouring:
             draw_key(figure, swarm.colouring, share, beside)
-        self.canvas.draw()
+        with any_characters():
+            self.canvas.draw()
         self.still = self.canvas.copy_from_bbox(figure.bbox)
         self.clock = figure.text(share - 0.15 / width, y, "", color=INK, fontsize=11, va="center", ha="right")
 

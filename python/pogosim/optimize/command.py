@@ -3,41 +3,26 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import logging
 import sys
-import time
 from collections.abc import Sequence
-from pathlib import Path
 
 import pogosim
-from pogosim.batch.backends import Workers
-from pogosim.batch.command_line import add_slurm_options, catch_signals, slurm_jobs
+from pogosim.ambiguity import AmbiguousStepsWarning
+from pogosim.batch.command_line import catch_signals
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
-from pogosim.batch.option_words import CombinationsError
-from pogosim.batch.reports import Progress
-from pogosim.batch.rows import Runs
-from pogosim.batch.tasks import check_logs_data
+from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warnings_told
+from pogosim.lines import LineFormatter
 from pogosim.optimize.errors import OptimizeError
-from pogosim.optimize.history import JOURNAL, Journal
-from pogosim.optimize.objective import Objective, load_objective
-from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, optimizer_for
-from pogosim.optimize.outcome import finish, refresh
-from pogosim.optimize.results import check_outputs, remove_stale
-from pogosim.optimize.search import Search, description_of
+from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, check_optimizer
 from pogosim.optimize.settings import SECTION, Settings, settings_from
-from pogosim.optimize.variables import Space
 from pogosim.outputs import OutputError
-from pogosim.periodic import AmbiguousStepsWarning
 
-DONE = 0
 WRONG = 2
-NOTHING_FOUND = 3
 INTERRUPTED = 130
-REFRESHING = 20  # how much longer a search runs than it writes down what it has found so far
 
 EPILOG = """Settings can also stand in the section "optimization" of the configuration; the command line comes first.
 Exit codes: 0 the search is complete; 2 usage, configuration or file error; 3 all candidates failed; 130 interrupted."""
@@ -107,7 +92,7 @@ def add_quality_diversity_options(options: argparse.ArgumentParser, usual: Setti
 def start_logging(verbose: bool) -> None:
     """Print messages on standard error, each with the time: "[15:35:47] [INFO] ..."."""
     handler = logging.StreamHandler()
-    handler.setFormatter(logging.Formatter("[%(asctime)s] [%(levelname)s] %(message)s", datefmt="%H:%M:%S"))
+    handler.setFormatter(LineFormatter("[%(asctime)s] [%(levelname)s] %(message)s", datefmt="%H:%M:%S"))
     for name in ("pogosim.optimize", "pogobatch"):
         own = logging.getLogger(name)
         own.handlers = [handler]
@@ -128,107 +113,25 @@ def check_names(arguments: argparse.Namespace) -> None:
             raise OptimizeError(f"{flag}: the name {name!a} has a line break or bytes that are not UTF-8; rename it")
 
 
-def objective_of(settings: Settings) -> Objective:
-    """Return the functions that judge candidates; without a file, the usual ones, with a warning.
-
-    Raises:
-        OptimizeError: They cannot be had.
-    """
-    if settings.objective:
-        return load_objective(settings.objective, settings.objective_func, settings.features_func)
-    for name in ("objective_func", "features_func"):
-        if getattr(settings, name) is not None:
-            raise OptimizeError(f"--{name.replace('_', '-')} goes with --objective FILE.py")
-    log.warning(
-        "No objective script provided; DEFAULT fitness = mean MSD (features default to [max MSD, std MSD]). "
-        "Yours: --objective FILE.py"
-    )
-    return Objective()
-
-
-def optimize(arguments: argparse.Namespace) -> int:
-    """Do what the command line says; returns the exit code.
-
-    Raises:
-        OptimizeError, BatchError, OutputError: It cannot be done.
-    """
-    check_names(arguments)
-    configuration = Configuration(arguments.config)
-    settings = settings_from(
-        configuration.entries.get(SECTION), vars(arguments), configuration.where, lambda text: log.warning("%s", text)
-    )
-    try:
-        space = Space(configuration.entries)
-    except CombinationsError as error:
-        raise configuration.error(error) from None
-    objective = objective_of(settings)
-    with_features = settings.optimizer in WITH_FEATURES
-    if with_features and settings.qd_init_samples >= settings.max_evals:
-        log.warning(
-            "all %d evaluations are random samples: --max-evals is not more than --qd-init-samples, %d",
-            settings.max_evals,
-            settings.qd_init_samples,
-        )
-    folder = Path(settings.output_dir)
-    check_outputs(folder, [arguments.config, arguments.simulator_binary, *filter(None, [settings.objective])])
-    check_logs_data(configuration.entries, configuration)
-    optimizer = optimizer_for(space, settings)
-    workers = Workers(settings.backend, arguments.workers, arguments.scheduler, slurm_jobs(arguments))
-    runs = Runs(
-        configuration,
-        arguments.simulator_binary,
-        arguments.temp_base,
-        settings.output_dir,
-        workers,
-        settings.retries,
-        arguments.keep_temp,
-    )
-    digests = runs.digests | objective.digests
-    journal = Journal(folder / JOURNAL, description_of(space, settings, digests), arguments.resume)
-    started_s = time.monotonic()
-    with contextlib.closing(journal), runs.opened():
-        if journal.replaces:
-            log.info("An earlier search in %s is finished; the results of this one replace it", folder)
-        if journal.known:
-            log.info("Resuming: %d evaluations are done already", len(journal.known))
-        log.info(
-            "Starting optimization: %s | dim=%d | max_evals=%d (normalized space)",
-            settings.optimizer.upper(),
-            len(space.variables),
-            settings.max_evals,
-        )
-        progress = Progress(settings.max_evals, "evaluation")
-        search = Search(space, objective, settings, optimizer, runs, journal, with_features, progress.update)
-        try:
-            with progress.beside(log, logging.getLogger("pogobatch")):
-                due_s = 0.0
-                for _ in search.generations():
-                    began_s = time.monotonic()
-                    if not due_s and not journal.known:
-                        remove_stale(folder)
-                    if began_s >= due_s:
-                        refresh(folder, search)
-                        # All is written each time, which takes longer and longer; the journal has every evaluation.
-                        due_s = time.monotonic() + REFRESHING * (time.monotonic() - began_s)
-                refresh(folder, search)
-        finally:
-            progress.close()
-        is_found = finish(folder, search, configuration, time.monotonic() - started_s)
-    return DONE if is_found else NOTHING_FOUND
-
-
 def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
     """Run the command. Returns its exit code, see its help."""
     parsed = parser(prog).parse_args(arguments)
     start_logging(parsed.verbose)
     catch_signals()
     try:
+        check_names(parsed)
+        configuration = Configuration(parsed.config)
+        section = configuration.entries.get(SECTION)
+        settings = settings_from(section, vars(parsed), configuration.where, lambda text: log.warning("%s", text))
+        check_optimizer(settings.optimizer)
+        from pogosim.optimize.execution import optimize  # takes a while
+
         with warnings_told(prog, AmbiguousStepsWarning):
-            return optimize(parsed)
+            return optimize(parsed, configuration, settings)
     except (OptimizeError, BatchError, OutputError, NamesError) as error:
         log.error("%s", error)
     except OSError as error:
-        log.error("%s%s", f"{error.filename}: " if error.filename else "", reason(error))
+        log.error("%s: %s", error.filename or parsed.temp_base, reason(error))
     except UnicodeEncodeError:
         log.error("%s: a value is no text in UTF-8 (such as \\ud800)", parsed.config)
     except MemoryError:

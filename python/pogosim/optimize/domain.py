@@ -31,7 +31,9 @@ class Real:
     init: float
 
     def value_at(self, position: float) -> float:
-        """Return the value at a position from 0 to 1."""
+        """Return the value at a position from 0 to 1; at the start exactly `init`, without rounding."""
+        if position == self.start:
+            return self.init
         if self.is_log:
             value = math.pow(self.low, 1.0 - position) * math.pow(self.high, position)
         else:
@@ -138,6 +140,12 @@ class Categorical:
 Domain = Real | Whole | Categorical
 
 
+def has_init(node: dict[str, Any], domain: Domain) -> bool:
+    """Tell whether a node says where a search starts in its domain, with `init` or `default_option`."""
+    start = domain.choices[domain.init] if isinstance(domain, Categorical) else domain.init
+    return same(node[DOMAIN].get("init", node.get(DEFAULT)), start)
+
+
 def domain_of(node: dict[str, Any]) -> Domain:
     """Return what the `optimization_domain` of a node of the configuration says.
 
@@ -207,7 +215,7 @@ def number(entries: dict[str, Any], kind: str, default: Any) -> Real | Whole:
     if kind == "int":
         middle: float = Whole(int(low), int(high), is_log, 0).value_at(0.5)
     else:
-        middle = Real(low, high, is_log, 0.0).value_at(0.5)
+        middle = Real(low, high, is_log, low).value_at(0.5)
     init = entries.get("init")
     if init is None:
         init = default if is_number(default, kind) and low <= default <= high else middle

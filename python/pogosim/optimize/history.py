@@ -6,6 +6,7 @@ ended. A last line that is not complete belongs to an evaluation that does not c
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import json
 import os
@@ -218,9 +219,10 @@ class Journal:
 
     def close(self) -> None:
         """Let others write. An empty file goes away."""
-        if self.path.exists() and self.path.stat().st_size == 0:
-            self.path.unlink()
-        self.file.close()
+        with contextlib.suppress(OSError):  # what could not be written has been told
+            if self.path.exists() and self.path.stat().st_size == 0:
+                self.path.unlink()
+            self.file.close()
 
 
 def line_of(entry: Mapping[str, Any]) -> bytes:

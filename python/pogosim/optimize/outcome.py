@@ -1,9 +1,11 @@
-"""The end of a search: the best candidate runs on seeds that the search has not seen, and all is written down."""
+"""The end of a search: the best candidate and the initial values run on fresh seeds, and all is written down."""
 
 from __future__ import annotations
 
 import logging
 import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import pandas as pd
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import cannot
+from pogosim.batch.rows import Finished
 from pogosim.confidence import mean_over_runs
 from pogosim.optimize.archive import write_archive
 from pogosim.optimize.history import Evaluation
@@ -64,7 +67,7 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
         search.journal.finish(len(search.history))
         return False
     warn_if_flat(search)
-    fresh = fresh_runs(folder, search, best)
+    outcome = fresh_runs(folder, search, best)
     archive = write_archive(folder, search, configuration)
     summary: dict[str, Any] = {
         "optimizer": search.settings.optimizer,
@@ -77,7 +80,11 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
         "best_eval": best.number,
         "best_fitness": best.fitness,
         "best_values": best.values,
-        "best_fresh": None if fresh is None else as_entries(fresh),
+        "best_fresh": as_entries(outcome.best),
+        "initial_values": search.initial.values,
+        "initial_fitness": search.initial.fitness,
+        "initial_fresh": as_entries(outcome.initial),
+        "gain": as_entries(outcome.gain),
         **({} if archive is None else {"qd": archive}),
         "workers": search.runs.workers.count,
         "wall_clock_s": round(wall_clock_s, 3),
@@ -87,13 +94,13 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
             "history_table": HISTORY_TABLE,
             "best_config": BEST,
             "convergence": CONVERGENCE,
-            **({} if fresh is None else {"best_results": BEST_ROWS}),
+            **({} if outcome.best is None else {"best_results": BEST_ROWS}),
         },
     }
     write_summary(folder, summary)
     search.journal.finish(len(search.history))
-    draw_convergence(folder / CONVERGENCE, search.history, fresh)
-    tell(best, fresh)
+    draw_convergence(folder / CONVERGENCE, search.history, outcome.best, outcome.initial)
+    tell(search, best, outcome)
     if archive is not None:
         cells = f"{archive['cells_filled']} of {math.prod(archive['shape'])} cells"
         log.info("Archive: %s filled; see %s and %s", cells, folder / ARCHIVE, folder / ELITES)
@@ -114,19 +121,52 @@ def warn_if_flat(search: Search) -> None:
         )
 
 
-def tell(best: Evaluation, fresh: FreshRuns | None) -> None:
-    """Say what the best candidate is."""
-    if fresh is None:
+def tell(search: Search, best: Evaluation, outcome: Outcome) -> None:
+    """Say what the best candidate is, and whether it is better than the initial values."""
+    if outcome.best is None:
         log.info("Done. Best fitness: %.6g, in the search", best.fitness)
     else:
-        interval = f" (95 % interval {fresh.low:.6g} to {fresh.high:.6g})" if np.isfinite(fresh.low) else ""
-        seeds = f"{len(fresh.seeds)} fresh seed{'s' if len(fresh.seeds) != 1 else ''}"
-        log.info("Done. Best fitness: %.6g on %s%s; %.6g in the search", fresh.mean, seeds, interval, best.fitness)
+        seeds = f"{len(outcome.best.seeds)} fresh seed{'s' if len(outcome.best.seeds) != 1 else ''}"
+        log.info(
+            "Done. Best fitness: %s; %.6g in the search", with_interval(outcome.best, f" on {seeds}"), best.fitness
+        )
+    if best.values == search.initial.values:
+        log.warning("the best values are the initial ones: no candidate was better")
+    elif outcome.initial is not None and outcome.gain is not None:
+        in_search = search.initial.fitness
+        log.info(
+            "Initial values: %s; %.6g in the search", with_interval(outcome.initial, " on the same seeds"), in_search
+        )
+        log.info("Gain: %s", with_interval(outcome.gain, ", the mean difference seed by seed"))
+        warn_of_gain(outcome.gain)
     log.info("Best values: %s", as_json(best.values))
 
 
-def as_entries(fresh: FreshRuns) -> dict[str, Any]:
+def with_interval(fresh: FreshRuns, what: str) -> str:
+    """Return a mean with what it is of, and its confidence interval if there is one."""
+    interval = f" (95 % interval {fresh.low:.6g} to {fresh.high:.6g})" if np.isfinite(fresh.low) else ""
+    return f"{fresh.mean:.6g}{what}{interval}"
+
+
+def warn_of_gain(gain: FreshRuns) -> None:
+    """Say so if the best candidate is not clearly better than the initial values."""
+    if not np.isfinite(gain.low):
+        log.warning("one fresh run says nothing of chance: --final-runs 10 gives an interval of the gain")
+    elif gain.high < 0.0:
+        log.warning(
+            "the best values are worse than the initial ones: the search has taken luck for fitness; raise --runs"
+        )
+    elif gain.low <= 0.0:
+        log.warning(
+            "the interval of the gain contains 0: tuning may have gained nothing; more --final-runs make the interval "
+            "narrower, more --runs and --max-evals the search better"
+        )
+
+
+def as_entries(fresh: FreshRuns | None) -> dict[str, Any] | None:
     """Return what fresh runs say, for the summary; no interval: null."""
+    if fresh is None:
+        return None
     low, high = (value if np.isfinite(value) else None for value in (fresh.low, fresh.high))
     return {
         "mean": fresh.mean,
@@ -137,8 +177,39 @@ def as_entries(fresh: FreshRuns) -> dict[str, Any]:
     }
 
 
-def fresh_runs(folder: Path, search: Search, best: Evaluation) -> FreshRuns | None:
-    """Run the best candidate on fresh seeds, and judge each run alone; None if that cannot be done.
+@dataclass(frozen=True)
+class Outcome:
+    """What fresh runs say; None: there are none that could be judged.
+
+    Attributes:
+        best: Of the best candidate.
+        initial: Of the initial values, with the same seeds.
+        gain: The best less the initial ones, seed by seed, on those seeds that both have.
+    """
+
+    best: FreshRuns | None = None
+    initial: FreshRuns | None = None
+
+    @property
+    def gain(self) -> FreshRuns | None:
+        """See above. Chance that the seeds have in common, such as the first places of robots, is not in it."""
+        if self.best is None or self.initial is None:
+            return None
+        before = dict(zip(self.initial.seeds, self.initial.fitness, strict=True))
+        after = dict(zip(self.best.seeds, self.best.fitness, strict=True))
+        return averaged({seed: value - before[seed] for seed, value in after.items() if seed in before})
+
+
+def averaged(values: Mapping[int, float]) -> FreshRuns | None:
+    """Return values of seeds with their mean and its confidence interval; None if there are none."""
+    if not values:
+        return None
+    row = mean_over_runs(pd.DataFrame([values])).iloc[0]
+    return FreshRuns(list(values), list(values.values()), float(row["mean"]), float(row["low"]), float(row["high"]))
+
+
+def fresh_runs(folder: Path, search: Search, best: Evaluation) -> Outcome:
+    """Run the best candidate and the initial values on the same fresh seeds, and judge each run alone.
 
     The greatest of many noisy values is too great: only runs that had no part in choosing the candidate say what it
     does.
@@ -150,23 +221,37 @@ def fresh_runs(folder: Path, search: Search, best: Evaluation) -> FreshRuns | No
     except OSError as error:
         raise cannot("remove", path, error) from None
     if not seeds:
-        return None
-    configurations = [search.space.configuration(best.values)]
-    text = best_text(search, best)
-    (finished,) = search.runs.rows_of(configurations, [seeds], lambda _: (path, text))
+        return Outcome()
+    is_initial = search.initial.values == best.values
+    candidates = {"best candidate": best}
+    if search.initial.fitness is None:
+        log.warning("the initial values have failed, so there is nothing to compare the best ones with")
+    elif not is_initial:
+        candidates["initial values"] = search.initial
+    names = list(candidates)
+    configurations = [search.space.configuration(candidate.values) for candidate in candidates.values()]
+    kept = [(path, best_text(search, best)), None]
+    found = {
+        names[finished.number]: judged(search, finished, seeds, names[finished.number])
+        for finished in search.runs.rows_of(configurations, [seeds] * len(names), lambda number: kept[number])
+    }
+    first = found["best candidate"]
+    return Outcome(first, first if is_initial else found.get("initial values"))
+
+
+def judged(search: Search, finished: Finished, seeds: Sequence[int], name: str) -> FreshRuns | None:
+    """Judge the fresh runs of a candidate, each alone; None if there are none, which is said."""
     if finished.rows is None:
-        log.warning("the best candidate has no fresh runs: %s", finished.problem)
+        log.warning("no fresh runs of the %s: %s", name, finished.problem)
         return None
     # Runs of a batch are numbered 0, 1, ...; each has all combinations of the options that remain.
-    judged = {
+    said = {
         seed: search.objective.judge(finished.rows[finished.rows[RUN] == run].reset_index(drop=True))
         for run, seed in enumerate(seeds)
     }
-    fitness = {seed: judgement.fitness for seed, judgement in judged.items() if judgement.fitness is not None}
+    fitness = {seed: judgement.fitness for seed, judgement in said.items() if judgement.fitness is not None}
     if len(fitness) < len(seeds):
-        problem = next(judgement.problem for judgement in judged.values() if judgement.problem)
-        log.warning("%d of %d fresh runs have failed: %s", len(seeds) - len(fitness), len(seeds), problem)
-    if not fitness:
-        return None
-    row = mean_over_runs(pd.DataFrame([fitness])).iloc[0]
-    return FreshRuns(list(fitness), list(fitness.values()), float(row["mean"]), float(row["low"]), float(row["high"]))
+        problem = next(judgement.problem for judgement in said.values() if judgement.problem)
+        failed = len(seeds) - len(fitness)
+        log.warning("%d of %d fresh runs of the %s have failed: %s", failed, len(seeds), name, problem)
+    return averaged(fitness)

@@ -13,11 +13,13 @@ from pogosim.optimize.results import FreshRuns, best_so_far
 from pogosim.picture.palette import INK
 from pogosim.reports.figures import new_figure, save
 
-DOT, LINE, FRESH, FAILED = "#8fa8c8", "#1f4e9e", "#c2571a", "#b3261e"
+DOT, LINE, FRESH, INITIAL, FAILED = "#8fa8c8", "#1f4e9e", "#c2571a", "#5c7a29", "#b3261e"
 
 
-def draw_convergence(path: Path, history: Sequence[Evaluation], fresh: FreshRuns | None) -> None:
-    """Draw the fitness of all candidates, the best one so far, and what that one does with fresh seeds."""
+def draw_convergence(
+    path: Path, history: Sequence[Evaluation], best: FreshRuns | None, initial: FreshRuns | None
+) -> None:
+    """Draw the fitness of all candidates, the best one so far, and it and the initial values on fresh seeds."""
     figure, ((axes,),) = new_figure()
     number = np.array([e.number for e in history])
     fitness = np.array([np.nan if e.fitness is None else e.fitness for e in history])
@@ -27,10 +29,12 @@ def draw_convergence(path: Path, history: Sequence[Evaluation], fresh: FreshRuns
     if len(failed):
         axes.plot(failed, np.zeros(len(failed)), "|", color=FAILED, transform=axes.get_xaxis_transform(), clip_on=False)
         axes.plot([], [], "|", color=FAILED, label="failed")
-    if fresh is not None:
-        axes.axhline(fresh.mean, color=FRESH, label=f"best, {len(fresh.seeds)} fresh seeds")
+    for fresh, colour, name in ((best, FRESH, "best"), (initial, INITIAL, "initial values")):
+        if fresh is None or (fresh is best and colour == INITIAL):
+            continue
+        axes.axhline(fresh.mean, color=colour, label=f"{name}, {len(fresh.seeds)} fresh seeds")
         if np.isfinite(fresh.low):
-            axes.axhspan(fresh.low, fresh.high, color=FRESH, alpha=0.2, linewidth=0)
+            axes.axhspan(fresh.low, fresh.high, color=colour, alpha=0.2, linewidth=0)
     axes.set_xlabel("evaluation")
     axes.set_ylabel("fitness")
     axes.xaxis.get_major_locator().set_params(integer=True)

@@ -42,11 +42,11 @@ NOT_FOR_ONE_RUN = (SECTION, FORMAT, COLUMNS)
 
 @dataclass(frozen=True)
 class FreshRuns:
-    """What the best candidate does in runs that the search has not seen.
+    """What a candidate does in runs that the search has not seen, or how much better it is than another there.
 
     Attributes:
         seeds: Of the runs that could be judged.
-        fitness: Of each, alone.
+        fitness: Of each, alone; or the difference.
         mean: Their mean.
         low: Lower end of the 95 % confidence interval of the mean, NaN for fewer than two runs.
         high: Upper end.

@@ -60,8 +60,15 @@ class Search:
         known = [evaluation for evaluation in self.history if evaluation.fitness is not None]
         return max(known, key=lambda evaluation: evaluation.fitness or 0.0, default=None)
 
+    @property
+    def initial(self) -> Evaluation:
+        """The evaluation of the initial values, which is the first one."""
+        return self.history[0]
+
     def generations(self) -> Iterator[None]:
         """Search until all evaluations are done; after each generation, others may look.
+
+        The initial values are evaluated first, whatever the optimiser, together with its first generation.
 
         Raises:
             BatchError: Runs cannot be done.
@@ -70,10 +77,15 @@ class Search:
         generation = 0
         while len(self.history) < self.settings.max_evals:
             generation += 1
-            points = self.optimizer.ask()[: self.settings.max_evals - len(self.history)]
-            evaluations = self.evaluated(generation, points)
+            is_first = generation == 1
+            asked = self.optimizer.ask()
+            points = np.vstack([self.space.init, asked]) if is_first else asked
+            evaluations = self.evaluated(generation, points[: self.settings.max_evals - len(self.history)])
             self.history += evaluations
-            self.optimizer.tell([Answer(e.number, np.array(e.point), e.judgement) for e in evaluations])
+            answers = [Answer(e.number, np.array(e.point), e.judgement) for e in evaluations]
+            if is_first:
+                self.optimizer.begin(answers.pop(0))
+            self.optimizer.tell(answers)
             self.say(generation, evaluations)
             yield
 

@@ -21,7 +21,7 @@ from pogosim.batch.option_words import (
     OptionsError,
     check_options,
 )
-from pogosim.optimize.domain import Categorical, Domain, domain_of
+from pogosim.optimize.domain import Categorical, Domain, domain_of, has_init
 
 Floats = npt.NDArray[np.float64]
 Path = tuple[str, ...]
@@ -37,11 +37,13 @@ class Variable:
             which it is. The path of a map with alternatives stands for the choice of one.
         domain: Its values.
         label: The `name` that alternatives have in the configuration, or empty.
+        has_init: The configuration says where a search starts; otherwise it is the middle, or the first choice.
     """
 
     path: Path
     domain: Domain
     label: str = ""
+    has_init: bool = False
 
     @property
     def name(self) -> str:
@@ -76,7 +78,7 @@ def variables_in(node: Any, path: Path) -> Iterator[Variable]:
             domain = domain_of(node)
         except OptionsError as error:
             raise CombinationsError(path, str(error)) from None
-        yield Variable(path, domain)
+        yield Variable(path, domain, has_init=has_init(node, domain))
         return
     for key, value in node.items():
         if key != HIERARCHICAL_OPTIONS:

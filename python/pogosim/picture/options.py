@@ -1,22 +1,16 @@
-"""What the commands that draw a data file share: options, reading the file, and saying what went wrong."""
+"""What the commands that draw a data file share: options, and saying what went wrong."""
 
 from __future__ import annotations
 
 import argparse
-import contextlib
 import math
-import warnings
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable
 
-import numpy as np
-
-from pogosim.command.parser import complain, warn, warnings_told
+from pogosim.ambiguity import AmbiguousStepsWarning
+from pogosim.command.parser import complain, warnings_told
 from pogosim.outputs import OutputError
-from pogosim.periodic import AmbiguousStepsWarning
 from pogosim.picture.errors import PictureError
-from pogosim.picture.swarm import Recording, read_recording
-
-MAX_PANELS = 100
 
 
 def positive(text: str) -> float:
@@ -46,35 +40,12 @@ def add_what_to_draw(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-q", "--quiet", action="store_true", help="do not say what was written")
 
 
-def load(options: argparse.Namespace, prog: str) -> Recording:
-    """Read the data file that the options name; what is incomplete or left out is a line on standard error."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", RuntimeWarning)
-        recording = read_recording(options.data, options.run, options.color_by, options.combination)
-    for warning in caught:
-        if issubclass(warning.category, AmbiguousStepsWarning):
-            warnings.warn(warning.message, stacklevel=2)  # which may come again: see report()
-        else:
-            warn(prog, warning.message)
-    if recording.left_out:
-        warn(prog, f"{options.data} holds {recording.left_out}")
-    return recording
-
-
-@contextlib.contextmanager
-def sayings(data: str) -> Iterator[None]:
-    """Turn what keeps a data file from being drawn into a PictureError that names the file."""
-    try:
-        yield
-    except PictureError as error:
-        raise PictureError(f"cannot draw {data}: {error}") from error
-    except (TypeError, KeyError, IndexError, AttributeError, OverflowError, np.linalg.LinAlgError) as error:
-        raise PictureError(f"cannot draw {data}: its columns or metadata are not those of a run: {error}") from error
-    except MemoryError as error:
-        raise PictureError(f"cannot draw {data}: there is not enough memory") from error
-    except ValueError as error:
-        named = str(data) in str(error)
-        raise PictureError(str(error) if named else f"cannot draw {data}: {error}") from error
+def cannot_read(data: str, error: OSError) -> str:
+    """Return why a data file, or one of those that fit a pattern, cannot be read."""
+    if error.errno is None:  # nothing fits the pattern
+        return f"cannot read '{data}': {error}"
+    reason = "no such file" if isinstance(error, FileNotFoundError) else (error.strerror or str(error)).lower()
+    return f"cannot read '{error.filename or data}': {reason}"
 
 
 def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
@@ -85,9 +56,9 @@ def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
     except (PictureError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
-        is_data = str(error.filename) == data
-        task = f"read '{data}'" if is_data else f"write '{output}'"
-        is_missing = is_data and isinstance(error, FileNotFoundError)
-        reason = "no such file" if is_missing else (error.strerror or str(error)).lower()
-        return complain(prog, f"cannot {task}: {reason}")
+        if str(error.filename) == data:
+            return complain(prog, cannot_read(data, error))
+        # A folder for temporary files that is full, say, is told by its own name.
+        place = f"{error.filename}: " if error.filename not in (None, os.path.realpath(output), output) else ""
+        return complain(prog, f"cannot write '{output}': {place}{(error.strerror or str(error)).lower()}")
     return 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +19,8 @@ from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.drawing import draw
 from pogosim.geometry.validity import Room, problems, room_for
 from pogosim.reports.figures import save
-from pogosim.reports.missing_arenas import add_options, with_arenas
-from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
+from pogosim.reports.missing_arenas import with_arenas
+from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
 
 def outline_of(run: Trajectories) -> Outline:
@@ -107,11 +106,3 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
                 warn(prog, f"{run.arena.name}: {problem}")
             save(drawn(run, room), folder / f"arena_{run.arena.name}.pdf")
     write_table(pd.concat(tables, ignore_index=True), Path(folder, "arenas.csv"), options.input)
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze arena") -> int:
-    """Run the command line. Returns the exit code: 0, or 2 if the data cannot be analysed."""
-    parser = analysis_parser(prog, "Says how large arenas are, what room they have, and how much of them was visited.")
-    add_options(parser)
-    options = parser.parse_args(arguments)
-    return reported(prog, options, analyze)

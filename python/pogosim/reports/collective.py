@@ -4,55 +4,24 @@ from __future__ import annotations
 
 import argparse
 import pickle
-import sys
 from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
-from pogosim.analysis.directions import MIN_SPEED_MM_S
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.milling import centre_of_arena
 from pogosim.analysis.motion import speed
 from pogosim.analysis.trajectories import Trajectories, need_columns
-from pogosim.command.numbers import positive, whole
-from pogosim.command.parser import Parser, warn
+from pogosim.command.parser import warn
 from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
 from pogosim.reports.collective_metrics import METRICS, Metric
 from pogosim.reports.collective_summary import write_summaries
 from pogosim.reports.collective_swarm import Settings, Swarm, Vortices
 from pogosim.reports.figures import groups_of
-from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
+from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
 MAX_BINS = 100_000
-
-
-def parser(prog: str) -> Parser:
-    """Return the parser of the command line."""
-    own = analysis_parser(prog, "Measures order, structure and flow of a swarm.")
-    add = own.add_argument
-    add("--direction", choices=("velocity", "heading"), default="velocity", help="what is aligned (velocity)")
-    add(
-        "--min-speed",
-        type=positive,
-        default=MIN_SPEED_MM_S,
-        metavar="MM_S",
-        help=f"slower robots have no direction ({MIN_SPEED_MM_S} mm/s)",
-    )
-    add("--psi-k", type=whole(1, 100), default=6, metavar="K", help="symmetry of the bond order (%(default)s)")
-    add("--gr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of g(r) (%(default)g)")
-    add("--gr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (%(default)g)")
-    add("--sk-nx", type=whole(4, 4096), default=128, metavar="N", help="columns of the grid of S(k) (%(default)s)")
-    add("--sk-ny", type=whole(4, 4096), default=128, metavar="N", help="rows of it (%(default)s)")
-    add("--v2-ref", type=positive, metavar="MM2_S2", help="mean square speed that Teff_ratio is for (that of all runs)")
-    add("--vort-nx", type=whole(2, 4096), default=64, metavar="N", help="columns of the velocity field (%(default)s)")
-    add("--vort-ny", type=whole(2, 4096), default=64, metavar="N", help="rows of it (%(default)s)")
-    add("--milling-center", choices=("cm", "arena"), default="cm", help="centre of mass, or of the arena (cm)")
-    add("--aligncorr-rmax", type=positive, default=200.0, metavar="MM", help="largest distance of C(r) (%(default)g)")
-    add("--aligncorr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (%(default)g)")
-    add("--aligncorr-fluctuations", action="store_true", help="subtract the mean of all robots first")
-    add("-N", "--no-csv", action="store_true", help="do not write CSV files")
-    return own
 
 
 def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Settings:
@@ -88,12 +57,6 @@ def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Se
         # A robot turns with this vorticity if it circles at half the reach.
         vorticity_range=float(f"{4.0 * np.sqrt(mean_square) / runs[0].reach_mm:.1g}") or 1.0,
     )
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze collective") -> int:
-    """Run the command line. Returns the exit code, which is 2 for wrong usage or data."""
-    options = parser(prog).parse_args(arguments)
-    return reported(prog, options, analyze)
 
 
 def analyze(options: argparse.Namespace, prog: str) -> None:
@@ -151,7 +114,3 @@ def warn_of_missing(prog: str, runs: Sequence[Trajectories], tables: dict[str, l
         warn(
             prog, f"no values of {', '.join(empty)}: too few robots ({robots}) or times ({times}), or robots that stand"
         )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,23 +16,14 @@ from pogosim.analysis.trajectories import Trajectories
 from pogosim.confidence import mean_over_runs
 from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
 from pogosim.reports.groups import by_arena, by_combination, draw_over_time, save_over_time
-from pogosim.reports.missing_arenas import add_options, with_arenas
-from pogosim.reports.options import analysis_parser, output_folder, read_runs, reported, write_table
+from pogosim.reports.missing_arenas import with_arenas
+from pogosim.reports.options import output_folder, read_runs, write_table
 from pogosim.reports.voronoi_diagram import draw_diagrams
 
 TABLE = "voronoi_metrics_per_arena.csv"
 POISSON_CV = np.sqrt(0.280)  # Gilbert 1962, see `coverage_over_time`
 
 AREA_PANELS = {"mean_area": "mean area of cells (mm²)", "std_area": "standard deviation of areas (mm²)"}
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze coverage") -> int:
-    """Run the command line. Returns the exit code, which is 2 for what cannot be analysed."""
-    parser = analysis_parser(prog, "Areas of the Voronoi cells of robots, and the share of the arena within reach.")
-    add_options(parser)
-    parser.add_argument("--run", type=int, metavar="N", help="analyse only the runs with this number (all)")
-    options = parser.parse_args(arguments)
-    return reported(prog, options, analyze)
 
 
 def analyze(options: argparse.Namespace, prog: str) -> None:
@@ -106,7 +96,3 @@ def save_mean_of_arenas(
     ]
     table = pd.concat(parts).rename(columns={"runs": "n_arenas", "group": "combination"})
     write_table(table, folder / "cv_mean_across_arenas_over_time.csv", inputs)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.confidence import mean_over_runs
+from pogosim.fonts import any_characters
 
 DPI = 150
 FORMATS = (".pdf", ".png")
@@ -36,7 +37,8 @@ def save(figure: Figure, path: Path) -> None:
         figure.set_layout_engine("none")
     stem = path.stem if path.suffix in METADATA else path.name  # arenas may have dots in their names
     for suffix in FORMATS:
-        figure.savefig(path.with_name(stem + suffix), dpi=DPI, metadata=METADATA[suffix])
+        with any_characters():
+            figure.savefig(path.with_name(stem + suffix), dpi=DPI, metadata=METADATA[suffix])
 
 
 def group_names(runs: Sequence[Trajectories]) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,7 +11,6 @@ import pandas as pd
 
 from pogosim.analysis.density import count_outside
 from pogosim.analysis.trajectories import Trajectories
-from pogosim.command.numbers import at_least, positive, whole
 from pogosim.command.parser import warn
 from pogosim.reports.figures import group_names, group_of
 from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
@@ -28,33 +26,12 @@ from pogosim.reports.locomotion_tables import (
     run_row,
     time_table,
 )
-from pogosim.reports.options import analysis_parser, output_folder, read_runs, reported, write_table
+from pogosim.reports.options import output_folder, read_runs, write_table
 from pogosim.reports.traces import draw_traces, film_traces
 
 FRAMES = 120
 
 UNITS = {"mm_s": "mm/s", "rad_s": "rad/s", "mm2_s": "mm²/s", "mm": "mm", "s": "s"}
-
-
-def parse(arguments: Sequence[str] | None, prog: str) -> argparse.Namespace:
-    """Read the command line."""
-    parser = analysis_parser(
-        prog,
-        "Computes speeds, displacements, diffusion, persistence and densities of robots: tables in DIR/stats, figures "
-        "(PDF, PNG) in DIR, and DIR/SUMMARY.txt.",
-    )
-    parser.add_argument(
-        "--window", type=positive, default=2.0, metavar="S", help="sliding window of speeds (%(default)g s)"
-    )
-    parser.add_argument(
-        "--characteristic-length", type=positive, metavar="MM", help="length of the Peclet number (2 radius)"
-    )
-    parser.add_argument("--bins", type=whole(1, 2000), default=30, metavar="N", help="bins of heat maps (%(default)s)")
-    parser.add_argument(
-        "--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (%(default)s)"
-    )
-    parser.add_argument("--gif", action="store_true", help="make films of the traces, too: traces/*.gif")
-    return parser.parse_args(arguments)
 
 
 def tables_of(run: Trajectories, options: argparse.Namespace) -> RunTables:
@@ -163,13 +140,3 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     draw_traces(runs, names, folder, options.steps)
     if options.gif:
         film_traces(runs, names, folder, options.steps, FRAMES)
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze locomotion") -> int:
-    """Run the command line. Returns the exit code, which is 2 if the data cannot be analysed."""
-    options = parse(arguments, prog)
-    return reported(prog, options, analyze)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

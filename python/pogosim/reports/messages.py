@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,10 +18,9 @@ from matplotlib.ticker import MaxNLocator
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.reception import attempts, outcomes, reception_rates
 from pogosim.analysis.trajectories import label_columns
-from pogosim.command.numbers import positive
-from pogosim.command.parser import Parser, warn
+from pogosim.command.parser import warn
 from pogosim.reports.figures import new_figure, save
-from pogosim.reports.options import output_folder, reported, write_table
+from pogosim.reports.options import output_folder, write_table
 from pogosim.utils import load_dataframe
 
 SENDER = "sender_category"
@@ -120,27 +118,3 @@ def drawn(distance: pd.DataFrame, cluster: pd.DataFrame, by: Sequence[str]) -> F
     right.plot([], [], color="0.3", marker="_", markersize=9, label="law")
     right.legend(frameon=False, fontsize="small")
     return figure
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze messages") -> int:
-    """Run the command line. Returns the exit code: 0, or 2 if the data cannot be analysed."""
-    parser = Parser(prog=prog, description="Says what became of messages, and how many got through.")
-    parser.add_argument(
-        "-i",
-        "--input",
-        nargs="+",
-        required=True,
-        metavar="FILE",
-        help="message log of a run (message_log of its configuration), several, or a pattern in quotes",
-    )
-    parser.add_argument("-o", "--output-dir", default=".", metavar="DIR", help="folder for tables and figures (.)")
-    parser.add_argument("--category", metavar="NAME", help="senders to analyse (all)")
-    parser.add_argument(
-        "--bin", type=positive, default=10.0, metavar="MM", help="width of the bins of distance (%(default)g)"
-    )
-    options = parser.parse_args(arguments)
-    return reported(prog, options, analyze)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -17,16 +17,6 @@ from pogosim.geometry.arena_file import ArenaError, read_arena, scaled
 from pogosim.utils import parse_configuration
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add -c and --arenas-dir to a command line."""
-    parser.add_argument(
-        "-c", "--config", metavar="FILE", help="configuration of the runs, for data that do not have their arena"
-    )
-    parser.add_argument(
-        "--arenas-dir", default="arenas", metavar="DIR", help="folder of the arena files of this configuration (arenas)"
-    )
-
-
 def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[Trajectories]:
     """Return the runs, those without an arena with that of the configuration.
 

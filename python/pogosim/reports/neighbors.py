@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,15 +24,14 @@ from pogosim.analysis.neighbourhood import (
     nearest_distances,
 )
 from pogosim.analysis.trajectories import Trajectories
-from pogosim.command.numbers import at_least
 from pogosim.command.parser import warn
 from pogosim.confidence import mean_over_runs
 from pogosim.outputs import OutputError, leads_to
+from pogosim.reports.command_lines import NEIGHBOURS
 from pogosim.reports.figures import draw_bands, new_figure, save
 from pogosim.reports.groups import by_combination, draw_each_run, draw_over_time
-from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
+from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
-LISTS = "neighbors_list"  # the column that programs usually have
 STATISTICS = "neighbors_stats.pkl"
 
 
@@ -45,29 +43,6 @@ class Found:
     histogram: pd.DataFrame  # a row per degree
     distance_mm: pd.DataFrame  # from each robot (columns) to its neighbours, in the mean; a row per time
     unknown: int  # listed ids that are no robot's
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze neighbors") -> int:
-    """Run the command line. Returns the exit code, which is 2 for what cannot be analysed."""
-    parser = analysis_parser(prog, "Distances to neighbours, degrees, Fano factor and clusters of robots over time.")
-    parser.add_argument(
-        "--neighborsCol",
-        "--neighbors-col",
-        metavar="COLUMN",
-        help=f"neighbours are the robots whose ids are listed there ({LISTS}, if the data have it)",
-    )
-    parser.add_argument(
-        "--k", type=at_least(1), default=3, metavar="K", help="without lists: the K nearest (%(default)s)"
-    )
-    parser.add_argument(
-        "--statBasis",
-        "--stat-basis",
-        choices=("run", "robot", "both"),
-        default="both",
-        help="distances are averaged over runs, or over the robots of all runs (both)",
-    )
-    options = parser.parse_args(arguments)
-    return reported(prog, options, analyze)
 
 
 def analyze(options: Namespace, prog: str) -> None:
@@ -95,7 +70,7 @@ def analyze(options: Namespace, prog: str) -> None:
 
 def column_of(run: Trajectories, wanted: str | None) -> str | None:
     """Return the column with lists of neighbours: the wanted one, the usual one if it is there, or none."""
-    return wanted if wanted is not None else LISTS if LISTS in run.rows else None
+    return wanted if wanted is not None else NEIGHBOURS if NEIGHBOURS in run.rows else None
 
 
 def find(run: Trajectories, column: str | None, count: int) -> Found:
@@ -237,7 +212,3 @@ def save_first_and_last(histograms: dict[str, list[pd.DataFrame]], path: Path) -
             panel.set_title(name, fontsize="medium")
         panel.legend(frameon=False, fontsize="small")
     save(figure, path)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

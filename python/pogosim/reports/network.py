@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,11 +17,10 @@ from pogosim.analysis.network import (
     ten_periods_s,
 )
 from pogosim.analysis.trajectories import Trajectories
-from pogosim.command.numbers import positive, whole
 from pogosim.command.parser import warn
 from pogosim.reports.figures import group_names, group_of, groups_of
 from pogosim.reports.groups import by_arena, save_over_time, save_violins
-from pogosim.reports.options import analysis_parser, labelled, output_folder, read_runs, reported, write_table
+from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
 GRAPH_PANELS = {
     "n_components": "connected components",
@@ -34,38 +32,6 @@ SPECTRUM_PANELS = {
     "lcc_lambda_nz_1": "algebraic connectivity\nof the largest component",
     "swarm_lambda_max": "largest eigenvalue",
 }
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze network") -> int:
-    """Run the command line. Returns the exit code, which is 2 for what cannot be analysed."""
-    parser = analysis_parser(prog, "Components, degrees and Laplacian spectra of the proximity graph of robots.")
-    parser.add_argument(
-        "--k-first",
-        type=whole(1, 10_000),
-        default=5,
-        metavar="K",
-        help="how many small non-zero eigenvalues (%(default)s)",
-    )
-    parser.add_argument(
-        "--avg-window-s",
-        type=window,
-        metavar="S",
-        help="graphs are averaged over windows of this many seconds (auto: rc / mean speed, and 10 save periods)",
-    )
-    parser.add_argument(
-        "--zero-tol",
-        type=positive,
-        default=1e-10,
-        metavar="X",
-        help="eigenvalues up to this count as zero (%(default)g)",
-    )
-    options = parser.parse_args(arguments)
-    return reported(prog, options, analyze)
-
-
-def window(text: str) -> float | None:
-    """Return a number of seconds from the command line; None for auto."""
-    return None if text == "auto" else positive(text)
 
 
 def analyze(options: argparse.Namespace, prog: str) -> None:
@@ -110,7 +76,3 @@ def windows_of(runs: Sequence[Trajectories], window_s: float | None) -> dict[str
 def write_runs(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], path: Path, inputs: Sequence[str]) -> None:
     """Write the tables of all runs as one."""
     write_table(pd.concat([labelled(table, run) for run, table in zip(runs, tables, strict=True)]), path, inputs)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

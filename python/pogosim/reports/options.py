@@ -1,4 +1,4 @@
-"""What all analyses have in common: their options, reading the data, and what they say when it cannot be done."""
+"""What all analyses have in common: reading the data, writing tables, and what they say when it cannot be done."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ import pyarrow
 
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
-from pogosim.command.numbers import positive
-from pogosim.command.parser import Parser, complain, warn, warnings_told
-from pogosim.outputs import OutputError, leads_to, say
+from pogosim.command.parser import complain, warn, warnings_told
+from pogosim.lines import say
+from pogosim.outputs import OutputError, leads_to, told
 from pogosim.periodic import AmbiguousStepsWarning
 from pogosim.several_files import files_that_fit, is_pattern
 from pogosim.utils import load_dataframe
@@ -25,25 +25,6 @@ STRANGE_DATA = (ArithmeticError, IndexError, KeyError, MemoryError, RuntimeError
 
 OUTPUT_FOLDERS = ("arenas", "stats", "traces")
 OUTPUT_SUFFIXES = (".csv", ".gif", ".json", ".pdf", ".pkl", ".png", ".txt")
-
-
-def analysis_parser(prog: str, description: str) -> Parser:
-    """Return a parser with the options that all analyses have."""
-    parser = Parser(prog=prog, description=description)
-    parser.add_argument(
-        "-i",
-        "--input",
-        nargs="+",
-        default=["results/result.feather"],
-        metavar="FILE",
-        help="data file of a run or a batch, several, or a pattern in quotes (results/result.feather)",
-    )
-    parser.add_argument("-o", "--output-dir", default=".", metavar="DIR", help="folder for tables and figures (.)")
-    parser.add_argument("--category", metavar="NAME", help="objects to analyse (robots, or all with a program)")
-    parser.add_argument(
-        "--rc", type=positive, metavar="MM", help="neighbours are closer than this (communication_radius + 2 radius)"
-    )
-    return parser
 
 
 def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
@@ -126,8 +107,8 @@ def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Na
     except (AnalysisError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        return complain(prog, f"{where}{(error.strerror or str(error)).lower()}")
+        # Nothing fits a pattern; otherwise, what is written has no name.
+        return complain(prog, str(error) if error.errno is None else told(error, options.output_dir))
     except (*STRANGE_DATA, pyarrow.ArrowException) as error:
         return complain(prog, f"the data cannot be analysed: {str(error) or type(error).__name__}".splitlines()[0])
     return 0

@@ -349,7 +349,7 @@ class Simulation:
 
     @property
     def velocities(self) -> npt.NDArray[Any]:
-        """Velocities of the robots, mm/s: displacements in the last step, by its duration. Shape (robots, 2); read-only.
+        """Velocities of the robots, mm/s: displacements in the last step by its duration. Shape (robots, 2); read-only.
 
         0 for a robot that has just been put elsewhere. One that its motors press against a wall bounces by a millimetre
         (`wall_restitution`): take the mean of some steps.

@@ -35,10 +35,14 @@ class Optimizer(Protocol):
     """A search in the unit cube, for the greatest fitness.
 
     Whatever is random in it comes from `settings.seed`, and it must not depend on time or on the machine: a search is
-    continued by asking and telling everything again.
+    continued by asking and telling everything again. The order is: ask, begin, tell, ask, tell, ...
     """
 
     def __init__(self, space: Space, settings: Settings) -> None: ...
+
+    def begin(self, answer: Answer) -> None:
+        """Take what came out at `space.init`, which is evaluated together with the first points that are asked for."""
+        ...
 
     def ask(self) -> Floats:
         """Return the points of the next generation, of shape (points, variables), each coordinate from 0 to 1."""

@@ -54,6 +54,9 @@ class CmaEs:
             warnings.simplefilter("ignore")
             return cma.CMAEvolutionStrategy(point, self.sigma0, options)
 
+    def begin(self, answer: Answer) -> None:
+        """Learn nothing: the first points are drawn around it."""
+
     def ask(self) -> Floats:
         """Return the next generation."""
         self.asked = self.strategy.ask()

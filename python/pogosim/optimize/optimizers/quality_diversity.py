@@ -81,20 +81,21 @@ class MapElites:
         self.random = np.random.default_rng(settings.seed)
         self.archive: Any = None
         self.ranges: list[tuple[float, float]] = []
-        self.is_first = True
+        self.first: list[Answer] = []
+
+    def begin(self, answer: Answer) -> None:
+        """Keep the initial values for the archive, which is made when their features and others are known."""
+        self.first = [answer]
 
     def ask(self) -> Floats:
         """Return the next points."""
         if self.archive is not None:
             return self.emitted()
-        points = self.random.random((self.settings.qd_init_samples, len(self.space.variables)))
-        if self.is_first:
-            points[0] = self.space.init
-            self.is_first = False
-        return points
+        return self.random.random((self.settings.qd_init_samples, len(self.space.variables)))
 
     def tell(self, answers: Sequence[Answer]) -> None:
         """Put the points into the archive."""
+        answers, self.first = [*self.first, *answers], []
         known = [answer for answer in answers if answer.judgement.fitness is not None]
         if not known:
             return

@@ -23,6 +23,9 @@ class RandomSearch:
         self.shape = (settings.popsize or POPULATION, len(space.variables))
         self.random = np.random.default_rng(settings.seed)
 
+    def begin(self, answer: Answer) -> None:
+        """Learn nothing."""
+
     def ask(self) -> Floats:
         """Return the next points."""
         return self.random.random(self.shape)

@@ -1,26 +1,38 @@
-"""All optimisers by name. A new one is a class with `ask` and `tell`, and a line here."""
+"""All optimisers by name. A new one is a class with `ask`, `begin` and `tell`, and a line here."""
 
 from __future__ import annotations
 
-from pogosim.optimize.errors import OptimizeError
-from pogosim.optimize.optimizers.base import Optimizer
-from pogosim.optimize.optimizers.cmaes import CmaEs
-from pogosim.optimize.optimizers.quality_diversity import CmaMae, CmaMe, MapElites
-from pogosim.optimize.optimizers.random_search import RandomSearch
-from pogosim.optimize.optimizers.tpe import Tpe
-from pogosim.optimize.settings import Settings
-from pogosim.optimize.variables import Space
+import importlib
+from typing import TYPE_CHECKING, Any
 
-OPTIMIZERS: dict[str, type[Optimizer]] = {
-    "cmaes": CmaEs,
-    "random": RandomSearch,
-    "mapelites": MapElites,
-    "cma_me": CmaMe,
-    "cma_mae": CmaMae,
-    "tpe": Tpe,
+from pogosim.optimize.errors import OptimizeError
+
+if TYPE_CHECKING:
+    from pogosim.optimize.optimizers.base import Optimizer
+    from pogosim.optimize.settings import Settings
+    from pogosim.optimize.variables import Space
+
+# Module in this folder, and class; imported when it is used.
+OPTIMIZERS = {
+    "cmaes": ("cmaes", "CmaEs"),
+    "random": ("random_search", "RandomSearch"),
+    "mapelites": ("quality_diversity", "MapElites"),
+    "cma_me": ("quality_diversity", "CmaMe"),
+    "cma_mae": ("quality_diversity", "CmaMae"),
+    "tpe": ("tpe", "Tpe"),
 }
 # Those that need features.
 WITH_FEATURES = ("mapelites", "cma_me", "cma_mae")
+
+
+def check_optimizer(name: str) -> None:
+    """Check the name of an optimiser.
+
+    Raises:
+        OptimizeError: There is none of that name.
+    """
+    if name not in OPTIMIZERS:
+        raise OptimizeError(f"--optimizer: expected one of {', '.join(OPTIMIZERS)}; found '{name}'")
 
 
 def optimizer_for(space: Space, settings: Settings) -> Optimizer:
@@ -29,6 +41,8 @@ def optimizer_for(space: Space, settings: Settings) -> Optimizer:
     Raises:
         OptimizeError: There is none of that name, or it needs a package that is not installed.
     """
-    if settings.optimizer not in OPTIMIZERS:
-        raise OptimizeError(f"--optimizer: expected one of {', '.join(OPTIMIZERS)}; found '{settings.optimizer}'")
-    return OPTIMIZERS[settings.optimizer](space, settings)
+    check_optimizer(settings.optimizer)
+    module, name = OPTIMIZERS[settings.optimizer]
+    chosen: Any = getattr(importlib.import_module(f"pogosim.optimize.optimizers.{module}"), name)
+    made: Optimizer = chosen(space, settings)
+    return made

@@ -32,8 +32,6 @@ class Tpe:
             sampler = self.optuna.samplers.TPESampler(seed=settings.seed, constant_liar=True)
             self.study = self.optuna.create_study(direction="maximize", sampler=sampler)
         self.distributions = {variable.name: self.distribution_of(variable) for variable in self.variables}
-        start = zip(self.variables, space.init, strict=True)
-        self.study.enqueue_trial({variable.name: coordinate_of(variable, x) for variable, x in start})
         self.trials: list[Any] = []
 
     def distribution_of(self, variable: Variable) -> Any:
@@ -45,6 +43,18 @@ class Tpe:
         if isinstance(domain, Whole) and not domain.is_log:
             return kinds.IntDistribution(domain.low, domain.high)
         return kinds.FloatDistribution(0.0, 1.0)
+
+    def begin(self, answer: Answer) -> None:
+        """Add the initial values to what Optuna knows."""
+        start = zip(self.variables, answer.point, strict=True)
+        states = self.optuna.trial.TrialState
+        trial = self.optuna.trial.create_trial(
+            params={variable.name: coordinate_of(variable, x) for variable, x in start},
+            distributions=self.distributions,
+            value=answer.judgement.fitness,
+            state=states.FAIL if answer.judgement.fitness is None else states.COMPLETE,
+        )
+        self.study.add_trial(trial)
 
     def ask(self) -> Floats:
         """Return the next generation."""

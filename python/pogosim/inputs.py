@@ -1,0 +1,21 @@
+"""What the tools look at before they import what reads data, so that a wrong name is told at once."""
+
+from __future__ import annotations
+
+import glob
+from collections.abc import Iterable
+from pathlib import Path
+
+
+def check_readable(names: Iterable[str]) -> None:
+    """Open files; those of a pattern, and folders, are looked at later.
+
+    Raises:
+        OSError: One cannot be read.
+    """
+    for name in names:
+        path = Path(name)
+        if path.is_dir() or (glob.has_magic(name) and not path.exists()):
+            continue
+        with path.open("rb"):
+            pass

@@ -1,0 +1,61 @@
+"""All lines that the tools print: what stands in them, such as names of files, cannot steer a terminal."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import sys
+import unicodedata
+
+LONGEST = 10_000  # characters of a line; longer names than those of files are cut
+
+
+def printable(text: object) -> str:
+    """Return a text as one line: control characters, marks of direction and bytes that are no text are escaped."""
+    line = str(text)
+    if len(line) > LONGEST:
+        line = f"{line[:LONGEST]}... and {len(line) - LONGEST} more characters"
+    if line.isprintable():
+        return line
+    return "".join(c if c.isprintable() or unicodedata.category(c) == "Zs" else escaped(c) for c in line)
+
+
+def escaped(character: str) -> str:
+    """Return a character as Python writes it in a string."""
+    return character.encode("unicode_escape").decode("ascii")
+
+
+def say(*lines: object) -> None:
+    """Print lines; what the terminal cannot show is escaped.
+
+    Raises:
+        OSError: The standard output cannot be written. Nothing more is written to it, then.
+    """
+    if sys.stdout is None:
+        return
+    encoding = sys.stdout.encoding or "utf-8"
+    text = "\n".join(map(printable, lines))
+    try:
+        print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+    except OSError:
+        # Python would try again at its end.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+        raise
+
+
+def say_error(*lines: object) -> None:
+    """Print lines on standard error, if it can be written."""
+    with contextlib.suppress(OSError):
+        if sys.stderr is not None:
+            print(*map(printable, lines), sep="\n", file=sys.stderr)
+
+
+class LineFormatter(logging.Formatter):
+    """Makes one line of a record of the log."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line."""
+        return printable(super().format(record))

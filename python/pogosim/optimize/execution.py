@@ -1,0 +1,131 @@
+"""A whole search, from the command line to the results."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import logging
+import time
+from pathlib import Path
+
+from pogosim.batch.backends import Workers
+from pogosim.batch.configuration import Configuration
+from pogosim.batch.option_words import CombinationsError
+from pogosim.batch.reports import Progress
+from pogosim.batch.rows import Runs
+from pogosim.batch.slurm_options import slurm_jobs
+from pogosim.batch.tasks import check_logs_data
+from pogosim.optimize.errors import OptimizeError
+from pogosim.optimize.history import JOURNAL, Journal
+from pogosim.optimize.objective import Objective, load_objective
+from pogosim.optimize.optimizers.table import WITH_FEATURES, optimizer_for
+from pogosim.optimize.outcome import finish, refresh
+from pogosim.optimize.results import check_outputs, remove_stale
+from pogosim.optimize.search import Search, description_of
+from pogosim.optimize.settings import Settings
+from pogosim.optimize.variables import Space, as_json
+
+DONE = 0
+NOTHING_FOUND = 3
+REFRESHING = 20  # how much longer a search runs than it writes down what it has found so far
+
+log = logging.getLogger("pogosim.optimize")
+
+
+def objective_of(settings: Settings) -> Objective:
+    """Return the functions that judge candidates; without a file, the usual ones, with a warning.
+
+    Raises:
+        OptimizeError: They cannot be had.
+    """
+    if settings.objective:
+        return load_objective(settings.objective, settings.objective_func, settings.features_func)
+    for name in ("objective_func", "features_func"):
+        if getattr(settings, name) is not None:
+            raise OptimizeError(f"--{name.replace('_', '-')} goes with --objective FILE.py")
+    log.warning(
+        "No objective script provided; DEFAULT fitness = mean MSD (features default to [max MSD, std MSD]). "
+        "Yours: --objective FILE.py"
+    )
+    return Objective()
+
+
+def say_where_it_starts(space: Space) -> None:
+    """Say what the initial values are, and which of them the configuration does not say."""
+    log.info("Evaluation 1, the initial values: %s", as_json(space.values_at(space.init)))
+    if unsaid := [variable.name for variable in space.variables if not variable.has_init]:
+        log.info(
+            "Without init, these start in the middle of their range, or with the first choice: %s", ", ".join(unsaid)
+        )
+
+
+def optimize(arguments: argparse.Namespace, configuration: Configuration, settings: Settings) -> int:
+    """Do what the command line says; returns the exit code.
+
+    Args:
+        arguments: The command line.
+        configuration: In which the search begins.
+        settings: Those of the command line and of the configuration together.
+
+    Raises:
+        OptimizeError, BatchError, OutputError: It cannot be done.
+    """
+    try:
+        space = Space(configuration.entries)
+    except CombinationsError as error:
+        raise configuration.error(error) from None
+    objective = objective_of(settings)
+    with_features = settings.optimizer in WITH_FEATURES
+    if with_features and settings.qd_init_samples + 1 >= settings.max_evals:
+        log.warning(
+            "all evaluations but the first are random samples: --max-evals is %d, and --qd-init-samples %d",
+            settings.max_evals,
+            settings.qd_init_samples,
+        )
+    folder = Path(settings.output_dir)
+    check_outputs(folder, [arguments.config, arguments.simulator_binary, *filter(None, [settings.objective])])
+    check_logs_data(configuration.entries, configuration)
+    optimizer = optimizer_for(space, settings)
+    workers = Workers(settings.backend, arguments.workers, arguments.scheduler, slurm_jobs(arguments))
+    runs = Runs(
+        configuration,
+        arguments.simulator_binary,
+        arguments.temp_base,
+        settings.output_dir,
+        workers,
+        settings.retries,
+        arguments.keep_temp,
+    )
+    digests = runs.digests | objective.digests
+    journal = Journal(folder / JOURNAL, description_of(space, settings, digests), arguments.resume)
+    started_s = time.monotonic()
+    with contextlib.closing(journal), runs.opened():
+        if journal.replaces:
+            log.info("An earlier search in %s is finished; the results of this one replace it", folder)
+        if journal.known:
+            log.info("Resuming: %d evaluations are done already", len(journal.known))
+        log.info(
+            "Starting optimization: %s | dim=%d | max_evals=%d (normalized space)",
+            settings.optimizer.upper(),
+            len(space.variables),
+            settings.max_evals,
+        )
+        say_where_it_starts(space)
+        progress = Progress(settings.max_evals, "evaluation")
+        search = Search(space, objective, settings, optimizer, runs, journal, with_features, progress.update)
+        try:
+            with progress.beside(log, logging.getLogger("pogobatch")):
+                due_s = 0.0
+                for _ in search.generations():
+                    began_s = time.monotonic()
+                    if not due_s and not journal.known:
+                        remove_stale(folder)
+                    if began_s >= due_s:
+                        refresh(folder, search)
+                        # All is written each time, which takes longer and longer; the journal has every evaluation.
+                        due_s = time.monotonic() + REFRESHING * (time.monotonic() - began_s)
+                refresh(folder, search)
+        finally:
+            progress.close()
+        is_found = finish(folder, search, configuration, time.monotonic() - started_s)
+    return DONE if is_found else NOTHING_FOUND

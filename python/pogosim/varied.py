@@ -1,0 +1,39 @@
+"""What differs between configurations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+# What differs between any two runs without being a parameter.
+NO_PARAMETERS = (
+    "seed",
+    "data_filename",
+    "message_log",
+    "console_filename",
+    "frames_name",
+    "result_filename_format",
+    "result_new_columns",
+)
+
+
+def leaves(node: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of a configuration with their dotted paths; a list is one value."""
+    if isinstance(node, dict) and node:
+        for key, value in node.items():
+            yield from leaves(value, f"{path}.{key}" if path else str(key))
+    elif path:
+        yield path, node
+
+
+def varied_parameters(configurations: Sequence[dict[str, Any]]) -> dict[str, list[Any]]:
+    """Return what differs between configurations: dotted paths, with a value for each (None: not there)."""
+    flat = [dict(leaves(configuration)) for configuration in configurations]
+    paths = list(dict.fromkeys(path for leaf in flat for path in leaf if path not in NO_PARAMETERS))
+    values = {path: [leaf.get(path) for leaf in flat] for path in paths}
+    return {path: found for path, found in values.items() if any(differ(value, found[0]) for value in found[1:])}
+
+
+def differ(a: Any, b: Any) -> bool:
+    """Tell whether two values of configurations differ; two that are not a number do not."""
+    return bool(a != b) and not (a != a and b != b)
