@@ -11,11 +11,11 @@ namespace pogosim {
 /// "drawing pictures". Throws std::system_error if the system has no thread left.
 std::thread start_background_thread(char const* activity, std::function<void()> body);
 
-/// What a thread that was started so does; null in all others.
+/// The activity of a thread started this way; null in all others.
 char const* background_activity();
 
-/// A thread that was started so has crashed, and has been stopped where it was: nobody must wait for it. For signal
-/// handlers.
+/// Notes that a thread started this way has crashed and has been stopped where it was: no thread may wait for it any
+/// more. For signal handlers.
 void note_crash_of_background_thread();
 bool has_background_thread_crashed();
 

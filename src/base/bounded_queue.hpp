@@ -1,4 +1,4 @@
-// From one thread to others, in order, and never more than a given number of items in between.
+// A first-in, first-out queue between threads, with a limited number of waiting items.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,8 @@ public:
     /// `capacity`: the most items that wait, > 0.
     explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Waits until there is room, or until `gives_up()`, which is asked every 0.1 s: then the item is dropped. Not
-    /// after close().
+    /// Waits until there is room; drops the item as soon as `gives_up()`, which is called every 0.1 s, is true. Must
+    /// not be called after close().
     template <class GivesUp>
     void push(Item item, GivesUp const& gives_up) {
         constexpr auto kPatience = std::chrono::milliseconds(100);
@@ -36,7 +36,7 @@ public:
         push(std::move(item), [] { return false; });
     }
 
-    /// Waits for the next item. Nothing once the queue is closed and empty.
+    /// Waits for the next item. None once the queue is closed and empty.
     std::optional<Item> pop() {
         std::unique_lock lock(mutex_);
         has_items_.wait(lock, [this] { return !items_.empty() || is_closed_; });
@@ -49,7 +49,7 @@ public:
         return item;
     }
 
-    /// No more items will come.
+    /// Declares that no more items will be pushed.
     void close() {
         std::lock_guard const lock(mutex_);
         is_closed_ = true;

@@ -1,10 +1,10 @@
 // Elementary functions that give the same bits on every machine and with every compiler: additions, multiplications,
 // divisions and square roots of double in a fixed order, and a rounding to float at the end. Those of the C library may
-// differ in the last bit from one library to the next, and a swarm soon makes another run of that.
+// differ in the last bit from one library to the next, and the motion of a swarm amplifies such a difference.
 //
 // Series of M. Abramowitz and I. A. Stegun, "Handbook of Mathematical Functions" (1964), 4.1.27, 4.2.1, 4.3.65, 4.3.66
 // and 4.4.42, arguments reduced as in W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980).
-// They need -ffp-contract=off, and no more of IEEE 754 than every processor of today has.
+// They need -ffp-contract=off, and only those parts of IEEE 754 that all current processors implement.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace pogosim::exact {
 
-/// Added to a number below 2^51, it leaves no bits for what is behind the point.
+/// Added to a number below 2^51, it leaves no bits for the fraction.
 inline constexpr double kShift = 0x1.8p52;
 
 /// Nearest whole number, for |x| < 2^51.
@@ -29,13 +29,13 @@ struct SineCosine {
     double cosine;
 };
 
-/// For |x| < 10^6 with an error below 10^-11; above, far below the spacing of float. Without branches: nobody could
-/// predict in which quarter the angle of a robot is.
+/// For |x| < 10^6 with an error below 10^-11; above, far below the spacing of float. Branch-free: the quadrant of a
+/// robot's angle cannot be predicted.
 constexpr SineCosine sine_cosine(double x) {
     // pi / 2 in two parts, the first of 33 bits.
     constexpr double high = 0x1.921fb544p+0;
     constexpr double low = 0x1.0b4611a626331p-34;
-    double const shifted = x * 0x1.45f306dc9c883p-1 + kShift;  // its last bits are those of the number of quarters
+    double const shifted = x * 0x1.45f306dc9c883p-1 + kShift;  // its last bits are those of the quadrant number
     double const quarters = shifted - kShift;
     double const r = x - quarters * high - quarters * low;
     double const r2 = r * r;
@@ -45,7 +45,7 @@ constexpr SineCosine sine_cosine(double x) {
         1.0 +
         r2 * (-1.0 / 2 + r2 * (1.0 / 24 + r2 * (-1.0 / 720 +
                                                 r2 * (1.0 / 40320 + r2 * (-1.0 / 3628800 + r2 * (1.0 / 479001600))))));
-    // (s, c), (c, -s), (-s, -c) and (-c, s) in the four quarters.
+    // (s, c), (c, -s), (-s, -c) and (-c, s) in the four quadrants.
     auto const quarter = std::bit_cast<std::uint64_t>(shifted);
     auto const s = std::bit_cast<std::uint64_t>(sine);
     auto const c = std::bit_cast<std::uint64_t>(cosine);
@@ -75,7 +75,7 @@ constexpr double log(double x) {
     return e * ln2_high + (e * ln2_low + 2.0 * s * series);
 }
 
-/// e to the power x, with a relative error below 10^-12; 0 and infinity where double ends.
+/// e to the power x, with a relative error below 10^-12; 0 or infinity outside the range of double.
 constexpr double exp(double x) {
     if (!(x > -700.0)) {
         return x == x ? 0.0 : x;
@@ -107,8 +107,8 @@ constexpr double pow(double x, double y) {
     return exp(y * log(x));
 }
 
-/// Angle of the point (x, y) from +x, in [-pi, pi], as std::atan2, with a relative error below 10^-15 or so. NaN if one
-/// of both is.
+/// Angle of the point (x, y) from +x, in [-pi, pi], as std::atan2, with a relative error below 10^-15 or so. NaN if
+/// either argument is.
 inline double atan2(double y, double x) {
     double const along_x = std::abs(x);
     double const along_y = std::abs(y);
@@ -138,7 +138,7 @@ inline double asin(double x) {
     return atan2(x, std::sqrt((1.0 - x) * (1.0 + x)));
 }
 
-/// sqrt(x^2 + y^2), also where the squares are no longer float.
+/// sqrt(x^2 + y^2), also where the squares exceed the range of float.
 inline float hypot(float x, float y) {
     auto const wide_x = static_cast<double>(x);
     auto const wide_y = static_cast<double>(y);

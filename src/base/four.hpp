@@ -44,13 +44,13 @@ inline unsigned bits_of(FourInts mask) {
     return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-/// The mask back.
+/// The inverse of bits_of().
 inline FourInts mask_of(unsigned bits) {
     auto const all = static_cast<std::int32_t>(bits);
     return (FourInts{all, all, all, all} & kLaneBits) != 0;
 }
 
-/// Rows become columns.
+/// Transposes four rows into columns.
 struct FourRows {
     Four x;
     Four y;

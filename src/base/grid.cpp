@@ -25,7 +25,7 @@ GridCells::Span GridCells::cells(float low, float high, int count, bool periodic
 
 GridCells::GridCells(Box bounds, float smallest_cell_mm, std::size_t point_count, bool periodic)
     : origin_(bounds.min), periodic_(periodic) {
-    // Not many more cells than points, however small the cells asked for.
+    // Limits the number of cells to a few per point, however small the requested cells.
     float const most = std::max(1.0F, 2.0F * std::sqrt(static_cast<float>(point_count)));
     Vec2 const size = bounds.size();
     columns_ = cell_count(size.x, smallest_cell_mm, most);

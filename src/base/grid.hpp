@@ -1,5 +1,5 @@
 // Points sorted into the cells of a grid, to find neighbours in time proportional to their number: UniformGrid sorts
-// all of them at once, which makes the fastest searches, and GrowingGrid takes one after the other.
+// all of them at once, which makes the fastest searches, and GrowingGrid takes them one by one.
 #pragma once
 
 #include <algorithm>
@@ -29,12 +29,12 @@ public:
     template <class Found>
     bool any_near(Vec2 centre, float radius_mm, Found const& is_found) const;
 
-    /// The same with is_found(first, last) for cells that follow each other in a row, both included.
+    /// The same with is_found(first, last) for runs of adjacent cells of a row, both ends included.
     template <class Found>
     bool any_run_near(Vec2 centre, float radius_mm, Found const& is_found) const;
 
-    /// Calls visit(cell) in growing rings of cells around a point in the box, until done(gap_mm): no point nearer than
-    /// `gap_mm` is left. Not for periodic ones.
+    /// Calls visit(cell) in growing rings of cells around a point in the box, until done(gap_mm), where all points
+    /// nearer than `gap_mm` have been visited. Not for periodic grids.
     template <class Visit, class Done>
     void search_outwards(Vec2 centre, Visit const& visit, Done const& done) const;
 
@@ -57,7 +57,7 @@ private:
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
 
-    /// Of cells that may lie beyond the bounds on either side.
+    /// A range of columns or rows that may extend beyond the bounds on either side.
     static int remainder(int cell, int count) {
         int const rest = cell % count;
         return rest < 0 ? rest + count : rest;
@@ -77,7 +77,7 @@ private:
 
 class UniformGrid {
 public:
-    /// Sorts the points (mm). `cell_mm` is about the radius of the queries to come; `periodic` wraps at `bounds`, else
+    /// Sorts the points (mm). `cell_mm`: about the radius of the coming queries; `periodic` wraps at `bounds`, else
     /// points outside of them count as in the outermost cell.
     void build(std::span<Vec2 const> points, Box bounds, float cell_mm, bool periodic);
 
@@ -113,7 +113,7 @@ private:
     }
 
     GridCells cells_;
-    std::vector<std::uint32_t> start_;  // of each cell in items_, one more at the end
+    std::vector<std::uint32_t> start_;  // of each cell in items_, and the end
     std::vector<Item> items_;           // by cell
     std::vector<std::uint32_t> cell_;   // of each point
 };
@@ -128,7 +128,7 @@ public:
 
     void clear() { heads_.assign(cells_.size(), kEnd); }
 
-    /// Adds the point under a number below the point count that is not in the grid yet.
+    /// Adds a point under an unused number below the point count.
     void insert(std::uint32_t index, Vec2 point) {
         std::uint32_t& head = heads_[cells_.cell_of(point)];
         points_[index] = point;
@@ -136,7 +136,7 @@ public:
         head = index;
     }
 
-    /// True when match(index, point) holds for some point; asks for all those within the radius, and some more.
+    /// True if match(index, point) holds for any point; tests all points within the radius, and some others.
     template <class Match>
     bool any_near(Vec2 centre, float radius_mm, Match const& match) const {
         return cells_.any_near(centre, radius_mm, [&](std::size_t cell) {
@@ -183,7 +183,7 @@ bool GridCells::any_run_near(Vec2 centre, float radius_mm, Found const& is_found
         if (is_found(index(first, row), index(std::min(last, columns_ - 1), row))) {
             return true;
         }
-        // The rest of a run that goes on at the other end of a periodic row.
+        // The rest of a run that continues at the other end of a periodic row.
         if (last >= columns_ && is_found(index(0, row), index(last - columns_, row))) {
             return true;
         }

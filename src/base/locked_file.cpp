@@ -12,9 +12,9 @@ namespace pogosim {
 
 namespace {
 
-constexpr int kMostAttempts = 100;  // other runs may replace or remove the file between two looks
+constexpr int kMostAttempts = 100;  // other runs may replace or remove the file in between
 constexpr int kMostLinks = 40;
-constexpr mode_t kNewFile = 0666;  // less the umask
+constexpr mode_t kNewFile = 0666;  // reduced by the umask
 
 }  // namespace
 
@@ -43,7 +43,7 @@ std::filesystem::path real_path(std::filesystem::path const& path) {
 bool try_lock(int descriptor, int kind) {
     while (flock(descriptor, kind | LOCK_NB) != 0) {
         if (errno != EINTR) {
-            return errno != EWOULDBLOCK;  // else: no locks on this file system
+            return errno != EWOULDBLOCK;  // otherwise: no locks on this file system
         }
     }
     return true;

@@ -29,9 +29,9 @@ public:
 /// Dangling links are also followed.
 std::filesystem::path real_path(std::filesystem::path const& path);
 
-/// An open file that no other run can open this way until it is closed. The contents are left untouched: the lock comes
-/// first, truncation later. On file systems without locks, there is none. It belongs to the process that opened it: a
-/// forked child only closes its copy.
+/// An open file that no other run can open this way until it is closed. The contents are left untouched, since a file
+/// is locked before it is truncated. On file systems without locks, there is none. It belongs to the process that
+/// opened it: a forked child only closes its copy.
 class LockedFile {
 public:
     LockedFile() = default;  // no file

@@ -28,7 +28,7 @@ constexpr auto kMinimalPattern = "%v";
 constexpr auto kRobotLogger = "robot";
 constexpr std::chrono::seconds kFlushPeriod{2};
 
-/// Standard output below `warn`, standard error from there on.
+/// Writes levels below `warn` to standard output, the others to standard error.
 class ConsoleSink final : public spdlog::sinks::sink {
 public:
     /// Errors of a broken console cannot be reported anywhere.
@@ -71,7 +71,7 @@ private:
     }
 };
 
-/// Passes lines on to whoever wants them.
+/// Passes lines on to the receiver in LogOptions.
 class LineSink final : public spdlog::sinks::sink {
 public:
     explicit LineSink(std::function<void(LogLine const&)> take) : take_(std::move(take)) {}
@@ -129,8 +129,8 @@ LockedFile lock_file(std::filesystem::path const& path) {
     return lock;
 }
 
-/// A reader of a named pipe, who must be there: opening the pipe would wait for one, and end of file comes to the
-/// reader when the last writer has gone.
+/// Opens a named pipe, which must have a reader already: otherwise, opening it would block. The reader gets end of file
+/// when the last writer has closed it.
 class PipeReader {
 public:
     explicit PipeReader(std::filesystem::path const& path) {
@@ -172,7 +172,7 @@ struct Log::Loggers {
     std::shared_ptr<spdlog::logger> simulator;
     std::shared_ptr<spdlog::logger> robots;
     LockedFile lock{};            // of the console file
-    std::string first_failure{};  // to write the console file; empty: none
+    std::string first_failure{};  // first failure to write the console file; empty: none
     std::chrono::steady_clock::time_point next_flush = std::chrono::steady_clock::now() + kFlushPeriod;
 };
 

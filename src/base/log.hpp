@@ -1,5 +1,5 @@
-// The console log. Two loggers share the sinks: `log()` speaks for the simulator, `robot_log()` for user programs'
-// printf lines. Debug and information go to the standard output, warnings and errors to the standard error.
+// The console log. Two loggers share the sinks: `log()` has the simulator's messages, `robot_log()` the printf lines of
+// user programs. Debug and information go to the standard output, warnings and errors to the standard error.
 //
 // A run may have a log of its own, see LogScope; all others share that of the process.
 #pragma once
@@ -24,7 +24,7 @@ struct LogOptions {
     bool show_robot_lines = true;  // printf lines of robots on the console (the file always has them)
     bool minimal = false;          // console lines without date and level
     std::string file{};            // path of the console file; empty: none
-    // Gets the lines instead of the console; empty: nobody does.
+    // Gets the lines instead of the console; empty: the console gets them.
     std::function<void(LogLine const& line)> on_line{};
 };
 
@@ -43,7 +43,7 @@ private:
     std::unique_ptr<Loggers> loggers_;
 };
 
-/// As long as this lives, what follows is about this log in this thread; null: that of the process.
+/// While this exists, the calling thread uses this log; null: that of the process.
 class LogScope {
 public:
     explicit LogScope(Log* log);
@@ -55,14 +55,14 @@ private:
     Log* before_;
 };
 
-/// Gives the process another log. Throws like Log's constructor.
+/// Replaces the log of the process. Throws like Log's constructor.
 void start_logging(LogOptions const& options);
 
 /// Usable before start_logging: messages from level info on then go to the console.
 spdlog::logger& log();
 spdlog::logger& robot_log();
 
-/// Writes out what is buffered.
+/// Flushes buffered output.
 void flush_logs();
 
 /// Stops all logging.

@@ -8,7 +8,7 @@
 
 namespace pogosim {
 
-/// There is not enough memory: for what, and how much of it. The program ends with exit code 2.
+/// Not enough memory; the message names the purpose and the size. The program ends with exit code 2.
 class OutOfMemory : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -1,5 +1,5 @@
-// Random streams. Every robot, and every stage that draws, owns a stream seeded by (run seed, stream id), so that one
-// more robot or one more draw changes nobody else's numbers.
+// Random streams. Every robot, and every stage that draws, owns a stream seeded by (run seed, stream id), so that an
+// additional robot or draw does not change the numbers of any other.
 //
 // Generator: PCG-XSH-RR 64/32, M. E. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good
 // Algorithms for Random Number Generation", Harvey Mudd College HMC-CS-2014-0905, 2014. Seeds are spread with the

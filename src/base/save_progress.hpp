@@ -1,4 +1,4 @@
-// How far the data file has got on its way to the disk, for whoever waits for it.
+// Progress of writing the data file, for the watchdog of a run that is ending.
 #pragma once
 
 #include <atomic>
@@ -7,8 +7,8 @@
 namespace pogosim {
 
 struct SaveProgress {
-    std::atomic<std::uint64_t> bytes = 0;   // not compressed, of all rows of the file that is being completed
-    std::atomic<std::uint64_t> writes = 0;  // each piece that the system has taken
+    std::atomic<std::uint64_t> bytes = 0;   // uncompressed, of all rows of the file that is being completed
+    std::atomic<std::uint64_t> writes = 0;  // number of successful write calls
 };
 
 inline SaveProgress& save_progress() {

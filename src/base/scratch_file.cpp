@@ -12,7 +12,7 @@ namespace pogosim {
 
 namespace {
 
-// Plain memory for signal handlers: the heap may be destroyed. Files beyond are removed by their objects alone.
+// Static memory for signal handlers, since the heap may be corrupted. Further files are removed by their objects only.
 constexpr int kSlots = 64;
 struct Slot {
     std::atomic<bool> taken = false;

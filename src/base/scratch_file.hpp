@@ -11,15 +11,15 @@ namespace pogosim {
 /// Removed with this object, and by remove_scratch_files(), if this process made it.
 class ScratchFile {
 public:
-    /// None.
+    /// No file.
     ScratchFile() = default;
-    /// Registers a file that is there.
+    /// Registers an existing file.
     explicit ScratchFile(std::filesystem::path path);
     ~ScratchFile() { remove(); }
     ScratchFile(ScratchFile const&) = delete;
     ScratchFile& operator=(ScratchFile const&) = delete;
 
-    /// The file has become a user's file, or is gone.
+    /// Gives up the file, which has become a user's file or is gone.
     void release() noexcept;
 
     void remove() noexcept;
@@ -30,7 +30,7 @@ private:
     int slot_ = -1;
 };
 
-/// Removes those of this process. May be called in a signal handler.
+/// Removes all scratch files of this process. May be called in a signal handler.
 void remove_scratch_files() noexcept;
 
 }  // namespace pogosim

@@ -47,7 +47,7 @@ CodePoint first_code_point(std::string_view text) {
     if (byte(1) < rule->second_min || byte(1) > rule->second_max) {
         return {};
     }
-    // The lead byte has as many ones in front as there are bytes, and a zero; each further one adds six bits.
+    // The lead byte starts with as many ones as there are bytes, and a zero; each further byte adds six bits.
     char32_t value = byte(0) & (0x7FU >> rule->length);
     for (std::size_t i = 1; i < rule->length; ++i) {
         if (byte(i) < 0x80 || byte(i) > 0xBF) {

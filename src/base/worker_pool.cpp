@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPartBits = 21;
 constexpr std::uint64_t kPartMask = (std::uint64_t{1} << kPartBits) - 1;
-// Looks at what others do before a thread goes to sleep: the phases of a step follow each other within microseconds.
+// Number of checks before a thread goes to sleep: the phases of a step follow each other within microseconds.
 constexpr int kPatience = 4000;
 constexpr std::uint32_t kRangesPerWorker = 4;
 
@@ -27,7 +27,7 @@ std::uint64_t round_of(std::uint64_t ticket) {
     return ticket >> 2 * kPartBits;
 }
 
-/// Returns whether it became true before long.
+/// Returns whether the condition became true within kSpins checks.
 template <class Condition>
 bool becomes_true(Condition const& condition) {
     for (int i = 0; i < kPatience; ++i) {
@@ -51,7 +51,7 @@ WorkerPool::WorkerPool(std::uint32_t size) {
         try {
             threads_.push_back(start_background_thread("working on a step", [this, worker] { serve(worker); }));
         } catch (std::system_error const&) {
-            return;  // fewer also do
+            return;  // fewer workers are enough
         }
     }
 }
@@ -61,7 +61,7 @@ WorkerPool::~WorkerPool() {
     wake_workers();
     for (std::thread& thread : threads_) {
         if (has_background_thread_crashed()) {
-            thread.detach();  // it may be the one, and never end
+            thread.detach();  // it may be the one that crashed and never ends
         } else {
             thread.join();
         }
@@ -89,7 +89,7 @@ void WorkerPool::share(std::uint32_t parts, void const* work, Call call) {
     }
 }
 
-/// Returns whether there was one.
+/// Returns whether a part was left.
 bool WorkerPool::take_part(std::uint32_t worker) {
     std::uint64_t ticket = ticket_;
     do {
@@ -109,7 +109,7 @@ bool WorkerPool::take_part(std::uint32_t worker) {
         }
     }
     if (++done_ == parts && worker != 0) {
-        { std::lock_guard const lock(mutex_); }  // the caller sleeps, or has not looked yet
+        { std::lock_guard const lock(mutex_); }  // waits until the caller sleeps or has not checked yet
         has_ended_.notify_one();
     }
     return true;

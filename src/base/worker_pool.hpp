@@ -12,7 +12,7 @@
 
 namespace pogosim {
 
-/// A worker has crashed, see background_thread.hpp: its work will never be done.
+/// A worker has crashed, see background_thread.hpp; its work will never be finished.
 struct WorkerCrashed : std::exception {
     char const* what() const noexcept override { return "a worker thread has crashed"; }
 };
@@ -21,13 +21,14 @@ struct WorkerCrashed : std::exception {
 struct WorkRange {
     std::uint32_t first;
     std::uint32_t last;
-    std::uint32_t part;    // which range it is: 0, 1, ...
-    std::uint32_t worker;  // who has it, for memory of its own
+    std::uint32_t part;    // number of the range: 0, 1, ...
+    std::uint32_t worker;  // number of the worker, to index scratch memory
 };
 
 class WorkerPool {
 public:
-    /// `size`: threads that work, > 0; the one that calls run() is one of them. Fewer if the system has no more.
+    /// `size`: number of working threads, > 0, including the one that calls run(). There are fewer if the system cannot
+    /// create so many.
     explicit WorkerPool(std::uint32_t size = 1);
     ~WorkerPool();
 
@@ -36,10 +37,10 @@ public:
 
     std::uint32_t size() const { return static_cast<std::uint32_t>(threads_.size()) + 1; }
 
-    /// Calls work(part, worker) once for each part from 0 to `parts` - 1, and returns when all calls have. `worker`,
-    /// below size(): who makes the call, for memory of its own. Who does what and when is chance: results must not
-    /// depend on it. When calls throw, all others are made nevertheless, and the exception of the lowest part is
-    /// rethrown. Throws WorkerCrashed. `parts`: up to 2^20.
+    /// Calls work(part, worker) once for each part from 0 to `parts` - 1, and returns when all calls have returned.
+    /// `worker`, below size(), is the number of the thread that makes the call, to index scratch memory. The assignment
+    /// of parts to workers is arbitrary: results must not depend on it. If calls throw, all others are made
+    /// nevertheless, and the exception of the lowest part is rethrown. Throws WorkerCrashed. `parts`: up to 2^20.
     template <class Work>
     void run(std::uint32_t parts, Work const& work) {
         if (size() == 1 || parts == 1) {
@@ -66,7 +67,7 @@ public:
         });
     }
 
-    /// The largest of what of(WorkRange) returns for the ranges of run_ranges().
+    /// The maximum of of(WorkRange) over the ranges of run_ranges().
     template <class Of>
     float max_of_ranges(std::uint32_t count, std::uint32_t least, Of const& of) {
         largest_.resize(range_count(count, least));
@@ -87,23 +88,23 @@ private:
     void wake_workers();
 
     std::vector<std::thread> threads_;
-    std::vector<float> largest_;  // of each range
+    std::vector<float> largest_;  // for each range
 
-    // What is to be done: number of the round, its parts, and the next of them to be taken, in one word, so that nobody
-    // takes a part of another round than the one that is looked at.
+    // The work to do: number of the round, number of its parts, and the next part, in one word, so that no worker takes
+    // a part of a later round by mistake.
     std::atomic<std::uint64_t> ticket_ = 0;
-    std::atomic<std::uint32_t> done_ = 0;  // parts of the round
+    std::atomic<std::uint32_t> done_ = 0;  // number of finished parts of the round
     void const* work_ = nullptr;
     Call call_ = nullptr;
 
-    // Workers sleep until it changes. No condition variable: these fail when a waiting thread crashes.
+    // Workers sleep until this changes. Not a condition variable, which fails if a waiting thread crashes.
     std::atomic<std::uint32_t> call_number_ = 0;
     std::atomic<bool> is_closed_ = false;
 
-    std::mutex mutex_;  // of what follows
+    std::mutex mutex_;  // protects what follows
     std::condition_variable has_ended_;
     std::exception_ptr exception_;
-    std::uint32_t thrown_by_ = 0;  // the part, if there is an exception
+    std::uint32_t thrown_by_ = 0;  // the part that threw, if there is an exception
 };
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-// What holds for everything on the air, checked in Debug builds only.
+// Invariants of the transmissions of a step, checked in Debug builds only.
 #pragma once
 
 #include "world/world.hpp"
@@ -8,8 +8,8 @@ namespace pogosim {
 #ifdef NDEBUG
 inline void assert_air(World const& /*world*/) {}
 #else
-/// Senders exist, emitters, chances and ranges are possible, and payloads are where their messages say. Every robot has
-/// a mailbox.
+/// Senders exist; emitters, probabilities and ranges are valid; payloads lie where their transmissions say. Every robot
+/// has a mailbox.
 void assert_air(World const& world);
 #endif
 

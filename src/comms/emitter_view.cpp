@@ -16,7 +16,7 @@ constexpr Vec2 in_frame_of(Vec2 v, Vec2 axis) {
     return {dot(axis, v), cross(axis, v)};
 }
 
-/// Grows with the angle of the direction from -180 to 180 degrees as -2 to 2, without trigonometry.
+/// Monotonic in the angle of the direction: -2 to 2 for -180 to 180 degrees, without trigonometry.
 float diamond_angle(Vec2 direction) {
     float const side = direction.y / (std::abs(direction.x) + std::abs(direction.y));
     if (direction.x >= 0.0F) {
@@ -59,11 +59,11 @@ std::span<EmitterView::Candidate const> EmitterView::look(unsigned emitters, flo
     for (Candidate& candidate : candidates) {
         FourVectors const seen = seen_from_emitters(candidate, rim_mm);
         Four const distance_mm2 = squared_length(seen);
-        float const reach_mm = range_mm + candidate.radius_mm;
-        FourInts const is_in_view = ((seen.x >= 0.0F) | also_behind) & (distance_mm2 <= all_four(reach_mm * reach_mm));
+        float const limit_mm = range_mm + candidate.radius_mm;
+        FourInts const is_in_view = ((seen.x >= 0.0F) | also_behind) & (distance_mm2 <= all_four(limit_mm * limit_mm));
         candidate.emitters = bits_of(is_in_view) & emitters;
-        // A disk of radius r at distance d hides the directions at angles a from its centre with sin a <= r / d, which
-        // rounding changes a little. Shadows of nearly 180 degrees are left to the full calculation.
+        // A disk of radius r at distance d hides the directions at angles a from its centre with sin a <= r / d, up to
+        // rounding errors. Shadows of nearly 180 degrees are left to the full calculation.
         Four const radius_mm2 = all_four(candidate.radius_mm * candidate.radius_mm);
         Four const shadow_mm2 = radius_mm2 > 0.9F * distance_mm2 ? all_four(std::numeric_limits<float>::max())
                                                                  : 1.01F * radius_mm2 + 1e-4F * distance_mm2;
@@ -77,8 +77,8 @@ std::span<EmitterView::Candidate const> EmitterView::look(unsigned emitters, flo
     return candidates;
 }
 
-/// Emitters before which a robot may hide another one: nobody is hidden whose centre lies outside of the shadow of each
-/// other one.
+/// Emitters for which one robot may hide another: a robot is not hidden if its centre lies outside the shadows of all
+/// others.
 unsigned EmitterView::emitters_with_shadows() const {
     FourInts has_shadows{};
     for (std::size_t i = 1; i < views_.size() && bits_of(has_shadows) != kAllFaces; ++i) {
@@ -103,14 +103,14 @@ void EmitterView::look_ahead(unsigned emitter) {
         Views const& view = views_[c];
         Vec2 const seen{view.x[emitter], view.y[emitter]};
         Sight const sight{.distance_mm2 = view.distance_mm2[emitter], .candidate = c, .seen_mm = seen};
-        // Behind those that are as near: few of them, so inserting is fastest.
+        // Insertion sort, which is fastest for so few. Equal distances keep their order.
         auto place = sights_.end();
         while (place != sights_.begin() && sight.distance_mm2 < std::prev(place)->distance_mm2) {
             --place;
         }
         sights_.insert(place, sight);
     }
-    // From near to far: what is not wholly in the shadow of visible robots is visible and casts a shadow.
+    // From near to far: a robot that is not completely in the shadow of visible robots is visible and casts a shadow.
     shadows_.clear();
     for (Sight const& sight : sights_) {
         float const radius_mm = candidates_[sight.candidate].radius_mm;
@@ -132,7 +132,7 @@ bool EmitterView::is_covered(Interval const& sight) const {
 }
 
 void EmitterView::cover(Interval const& sight) {
-    // Joins the new shadow with all those it touches; the rest stays.
+    // Merges the new shadow with all shadows that it touches.
     Interval joined = sight;
     std::erase_if(shadows_, [&](Interval const& s) {
         bool const touches = s.low <= joined.high && joined.low <= s.high;

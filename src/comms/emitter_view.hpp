@@ -1,4 +1,4 @@
-// What a robot's four emitters see of the robots around it, and what its faces see of an emitter.
+// The line of sight from a robot's four emitters to the robots around it, and from an emitter to a robot's faces.
 //
 //                front (0)
 //               .---^---.
@@ -26,7 +26,7 @@ namespace pogosim {
 
 class EmitterView {
 public:
-    /// A robot that may be in reach, in the sender's own frame (x along its heading).
+    /// A robot that may be in range, in the sender's own frame (x along its heading).
     struct Candidate {
         Vec2 offset_mm;
         float radius_mm = 0.0F;
@@ -35,37 +35,37 @@ public:
     };
 
     void clear() { count_ = 0; }
-    /// Has room for so many more.
+    /// Makes room for `count` more candidates.
     void expect(std::size_t count) {
         if (candidates_.size() < count_ + count) {
             candidates_.resize(2 * (count_ + count));
         }
     }
-    /// Adds a candidate if it is one: without a branch, which nobody could predict.
+    /// Adds a candidate if `is_candidate`: branch-free, since the branch could not be predicted.
     void add_if(bool is_candidate, std::uint32_t robot, Vec2 offset_mm, float radius_mm) {
         candidates_[count_] = {offset_mm, radius_mm, robot, 0};
         count_ += is_candidate ? 1 : 0;
     }
 
-    /// Of the robots added, finds those that the given emitters (bit d: emitter d), `rim_mm` from the centre, see
-    /// within `range_mm`. With `ignore_occlusions` emitters radiate all around, through everything.
+    /// Finds the added robots that the given emitters (bit d: emitter d), `rim_mm` from the centre, see within
+    /// `range_mm`. With `ignore_occlusions`, emitters radiate in all directions, through everything.
     std::span<Candidate const> look(unsigned emitters, float rim_mm, float range_mm, bool ignore_occlusions);
 
 private:
-    /// A candidate in view of an emitter, unless others hide it.
+    /// A candidate in view of an emitter, before occlusion by others.
     struct Sight {
         float distance_mm2;
         std::uint32_t candidate;
         Vec2 seen_mm;  // x along the emitter's outward normal
     };
 
-    /// What the four emitters see of a candidate.
+    /// A candidate as the four emitters see it.
     struct Views {
         FourInts is_in_view;
         Four x;  // of its centre, along the emitter's outward normal
         Four y;
         Four distance_mm2;
-        Four shadow_mm2;  // square of the half width of its shadow at the candidate, rather too wide
+        Four shadow_mm2;  // square of the half width of its shadow at the candidate, rounded up
     };
 
     /// Edges of a shadow, see diamond_angle().
@@ -83,15 +83,15 @@ private:
     std::size_t count_ = 0;
     std::vector<Views> views_;       // of the candidates
     std::vector<Sight> sights_;      // of one emitter, from near to far
-    std::vector<Interval> shadows_;  // disjoint, in no order
+    std::vector<Interval> shadows_;  // disjoint, unsorted
 };
 
 /// Vector from the nearest of the emitters that see a candidate to its centre, in the sender's frame.
 Vec2 from_nearest_emitter_mm(EmitterView::Candidate const& candidate, float rim_mm);
 
 /// Faces of a robot that see a point at `emitter_mm` (relative to the robot's centre, in its own frame) within
-/// `range_mm`, when they are `rim_mm` from the centre: bit d for face d. At least one: the face turned most towards the
-/// point.
+/// `range_mm`, when they are `rim_mm` from the centre: bit d for face d. Never none: if no face
+/// sees the point, the face that points most towards it.
 std::uint8_t faces_that_see(Vec2 emitter_mm, float rim_mm, float range_mm);
 
 }  // namespace pogosim

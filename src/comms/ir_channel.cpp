@@ -9,15 +9,15 @@ namespace pogosim {
 
 namespace {
 
-constexpr std::size_t kReceiversAtOnce = 128;  // their mailboxes fill a part of the cache
-// Of a part that one worker takes.
+constexpr std::size_t kReceiversAtOnce = 128;  // their mailboxes fit in the cache
+// Smallest sizes of a part that one worker takes.
 constexpr std::uint32_t kLeastTransmissions = 64;
 constexpr std::uint32_t kLeastReceivers = 256;
-constexpr std::size_t kAhead = 8;  // so many arrivals earlier, a mailbox is brought into the cache
+constexpr std::size_t kAhead = 8;  // a mailbox is prefetched this many arrivals ahead
 
-/// Nobody wants to know: costs nothing.
+/// Observes nothing, at no cost.
 struct NoObserver {
-    void reached_nobody(std::uint32_t /*transmission*/) const {}
+    void reached_none(std::uint32_t /*transmission*/) const {}
     void reached(std::uint32_t /*transmission*/, std::size_t /*receivers*/, float /*probability*/) const {}
     void lost(World const& /*world*/, Visibility const& /*visibility*/, Transmission const& /*transmission*/,
               Receiver const& /*receiver*/) const {}
@@ -29,7 +29,7 @@ class LogObserver {
 public:
     explicit LogObserver(std::vector<Delivery>& deliveries) : deliveries_(deliveries) {}
 
-    void reached_nobody(std::uint32_t transmission) { deliveries_.push_back({.transmission = transmission}); }
+    void reached_none(std::uint32_t transmission) { deliveries_.push_back({.transmission = transmission}); }
 
     void reached(std::uint32_t transmission, std::size_t receivers, float probability) {
         common_ = {.transmission = transmission,
@@ -62,10 +62,10 @@ private:
     }
 
     std::vector<Delivery>& deliveries_;
-    Delivery common_;  // to all receivers of a transmission
+    Delivery common_;  // what all receivers of a transmission have in common
 };
 
-/// That each of `receivers` robots receives it. `tables`: by category.
+/// The probability that each of `receivers` robots receives the transmission. `tables`: by category.
 float probability_of(World const& world, Transmission const& transmission, std::size_t receivers,
                      std::vector<ReceptionTable>& tables) {
     std::uint32_t const category = world.robots.category[transmission.robot];
@@ -88,15 +88,15 @@ void split_by_sender(std::span<Transmission const> transmissions, std::span<std:
 
 void IrChannel::deliver(World& world, DeliveryLog* log, WorkerPool* workers) {
     if (log == nullptr) {
-        // Robots draw from their streams in the order of their transmissions, so each needs one worker for all of them.
+        // A robot draws from its stream in the order of its transmissions, so one worker makes all draws of a robot.
         bool const is_shared = workers != nullptr && workers->size() > 1 &&
                                world.air.transmissions.size() >= 2 * kLeastTransmissions &&
                                std::ranges::is_sorted(world.air.transmissions, {}, &Transmission::robot);
         if (is_shared) {
             deliver_shared(world, *workers);
         } else {
-            NoObserver nobody;
-            deliver_all(world, nobody);
+            NoObserver none;
+            deliver_all(world, none);
         }
         world.air.clear();
         return;
@@ -119,7 +119,7 @@ void IrChannel::deliver_all(World& world, Observer& observer) {
     reception_.resize(world.categories.size());
     std::size_t const count = world.air.transmissions.size();
     for (std::size_t next = 0; next < count;) {
-        // Who is in reach of some transmissions; their mailboxes come into the cache in the meantime.
+        // Finds the receivers of some transmissions, while their mailboxes are prefetched.
         std::size_t const begin = next;
         found_.clear();
         reached_.clear();
@@ -141,8 +141,8 @@ void IrChannel::deliver_all(World& world, Observer& observer) {
     }
 }
 
-/// First all are sent, by parts of the senders; then all arrive, by blocks of the receivers, whose mailboxes have one
-/// worker each.
+/// First all messages are sent, the senders divided into parts; then all arrive, the receivers divided into blocks, so
+/// that each mailbox has one worker.
 void IrChannel::deliver_shared(World& world, WorkerPool& workers) {
     assert_air(world);
     visibility_.update(world);
@@ -204,7 +204,7 @@ void IrChannel::send(World& world, Part& part, Desk& desk) const {
     }
 }
 
-/// Appends to the part who receives the transmission: see deliver_one().
+/// Appends the receivers of the transmission to the part: see deliver_one().
 void IrChannel::send_one(World& world, std::uint32_t index, Part& part, Desk& desk) const {
     Transmission const& transmission = world.air.transmissions[index];
     std::vector<Receiver>& found = desk.found;
@@ -239,7 +239,7 @@ void IrChannel::deliver_one(World& world, std::uint32_t index, std::span<Receive
                             Observer& observer) {
     Transmission const& transmission = world.air.transmissions[index];
     if (receivers.empty()) {
-        observer.reached_nobody(index);
+        observer.reached_none(index);
         return;
     }
     float const probability = probability_of(world, transmission, receivers.size(), reception_);

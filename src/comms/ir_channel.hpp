@@ -1,4 +1,4 @@
-// The air between the robots: takes what was sent in a step to the mailboxes of those who receive it.
+// The infrared channel: delivers the transmissions of a step to the mailboxes of their receivers.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,21 @@
 
 namespace pogosim {
 
-/// Splits transmissions that are sorted by sender into as many parts as `ends` has places, of about the same size, some of
-/// them empty. Part i ends before transmission ends[i]. All transmissions of a robot are in the same part, since they draw
-/// from the robot's stream in their order.
+/// Splits transmissions that are sorted by sender into as many parts as `ends` has places, of about the same size, some
+/// of them empty. Part i ends before transmission ends[i]. All transmissions of a robot are in the same part, since
+/// they draw from the robot's stream in their order.
 void split_by_sender(std::span<Transmission const> transmissions, std::span<std::uint32_t> ends);
 
 class IrChannel {
 public:
-    /// Delivers every transmission on the air, in the order in which they were made, and clears the air. Each robot in
-    /// reach gets the message with the sender's reception probability, drawn from the sender's stream: one copy for
-    /// each of its faces that sees the emitter. `log`, if there is one, gets what became of each, in place of what it
-    /// had. `workers`, if there are several, share the work of many transmissions, unless there is a log; what becomes
-    /// of the transmissions does not depend on that.
+    /// Delivers all transmissions of world.air, in the order in which they were made, and clears it. Each robot in
+    /// range gets the message with the sender's reception probability, drawn from the sender's stream: one copy for
+    /// each of its faces that sees the emitter. `log`, if not null, is replaced by the outcome of each transmission.
+    /// `workers`, if there are several and no log, share the work of many transmissions; the outcome does not depend on
+    /// them.
     void deliver(World& world, DeliveryLog* log = nullptr, WorkerPool* workers = nullptr);
 
-    /// (Message, receiver) pairs in reach, and those of them that were received, since the start.
+    /// Number of (message, robot in range) pairs since the start, and how many of them were received.
     std::uint64_t attempts() const { return attempts_; }
     std::uint64_t receptions() const { return receptions_; }
 
@@ -45,14 +45,14 @@ private:
         std::uint8_t faces;
     };
 
-    /// Receivers that the visibility should keep.
+    /// Receivers for the visibility to cache.
     struct Kept {
         std::uint32_t transmission;
         std::uint32_t first;  // in Part::kept_receivers
         std::uint32_t count;
     };
 
-    /// Transmissions of some robots that follow each other, which one worker sends.
+    /// A range of consecutive transmissions that one worker sends.
     struct Part {
         std::uint32_t first = 0;
         std::uint32_t last = 0;
@@ -63,7 +63,7 @@ private:
         std::uint64_t receptions = 0;
     };
 
-    /// Memory of a worker.
+    /// Scratch memory of a worker.
     struct Desk {
         Visibility::Search search;
         std::vector<ReceptionTable> reception;  // by category
@@ -81,7 +81,7 @@ private:
 
     Visibility visibility_;
     std::vector<ReceptionTable> reception_;  // by category
-    std::vector<Receiver> found_;            // of some transmissions, one after the other
+    std::vector<Receiver> found_;            // receivers of some transmissions, concatenated
     std::vector<std::size_t> reached_;       // ends of their receivers in found_
     std::uint64_t attempts_ = 0;
     std::uint64_t receptions_ = 0;

@@ -5,7 +5,7 @@
 
 namespace pogosim {
 
-void NeighbourCells::start(World const& world, float reach_mm) {
+void NeighbourCells::start(World const& world, float cell_mm) {
     disks_.clear();
     poses_.clear();
     slots_.clear();
@@ -16,7 +16,7 @@ void NeighbourCells::start(World const& world, float reach_mm) {
             poses_.push_back({world.bodies.position_mm[body], world.bodies.heading_dir[body]});
         }
     }
-    cells_ = GridCells(world.arena.bounds, std::max(reach_mm, 1.0F), disks_.size(), world.periodic);
+    cells_ = GridCells(world.arena.bounds, std::max(cell_mm, 1.0F), disks_.size(), world.periodic);
     for (Pose const& pose : poses_) {
         slots_.push_back({.cell = static_cast<std::uint32_t>(cells_.cell_of(pose.position_mm)), .place = 0});
     }

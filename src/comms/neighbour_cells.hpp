@@ -1,5 +1,5 @@
-// The robots with four emitters, sorted by place into the cells of a grid, and when something last changed in each
-// cell: robots in whose reach nothing has changed reach the same robots as before.
+// The robots with four emitters, sorted by position into the cells of a grid, and when something last changed in each
+// cell: if nothing has changed within a robot's range, it reaches the same robots as before.
 #pragma once
 
 #include <cstddef>
@@ -14,27 +14,27 @@ namespace pogosim {
 
 class NeighbourCells {
 public:
-    /// Takes the robots of a run, for queries of about `reach_mm`.
-    void start(World const& world, float reach_mm);
+    /// Takes the robots of a run. `cell_mm`: about the radius of the queries.
+    void start(World const& world, float cell_mm);
 
-    /// Sorts them by the places where they are now. A cell has changed when a robot in it has moved or turned, or has
-    /// come or left. What else changes before the next update counts as having changed in this one.
+    /// Sorts the robots by their present positions. A cell has changed if a robot in it has moved, turned, entered or
+    /// left. Changes noted before the next update count as changes of this one.
     void update(World const& world);
 
-    /// Something about this robot has changed that its neighbours depend on.
+    /// Notes a change of this robot on which its neighbours depend.
     void note_change(std::uint32_t robot);
-    /// Something has changed that any robot may depend on.
+    /// Notes a change on which any robot may depend.
     void note_change_everywhere();
 
-    /// Number of updates in which anything has changed: tells two states apart.
+    /// Number of updates in which anything has changed: identifies a state.
     std::uint32_t changes() const { return changes_; }
-    /// The same as it was before the last update.
+    /// changes() before the last update.
     std::uint32_t changes_before() const { return changes_before_; }
 
     /// Whether nothing has changed since changes() had this value.
     bool is_unchanged(std::uint32_t since) const { return changes_ <= since; }
 
-    /// Whether nothing has changed since then in the cells that for_each_run_near() would visit.
+    /// The same for the cells that for_each_run_near() would visit.
     bool is_unchanged_near(std::uint32_t since, Vec2 centre, float radius_mm) const {
         return changes_ <= since ||
                (changed_everywhere_ <= since &&
@@ -47,8 +47,8 @@ public:
         std::uint32_t robot;
     };
 
-    /// Calls visit(neighbours) with spans that together hold all robots with their centre within the radius, and some
-    /// others. Always in the same order.
+    /// Calls visit(neighbours) with spans that together hold all robots whose centres are within the radius, and some
+    /// others, always in the same order.
     template <class Visit>
     void for_each_run_near(Vec2 centre, float radius_mm, Visit const& visit) const {
         cells_.any_run_near(centre, radius_mm, [&](std::size_t first, std::size_t last) {
@@ -62,7 +62,7 @@ public:
     Vec2 position_mm(std::size_t disk) const { return poses_[disk].position_mm; }
 
 private:
-    /// What stays as it is during a run.
+    /// Constants of a run.
     struct Disk {
         std::uint32_t robot;
         std::uint32_t body;
@@ -76,7 +76,7 @@ private:
         friend bool operator==(Pose const&, Pose const&) = default;
     };
 
-    /// Where a disk is found again.
+    /// Where a disk is in the grid.
     struct Slot {
         std::uint32_t cell;
         std::uint32_t place;  // in sorted_
@@ -89,7 +89,7 @@ private:
     std::vector<Disk> disks_;  // in the order of the robots
     std::vector<Pose> poses_;  // at the last update
     std::vector<Slot> slots_;
-    std::vector<std::uint32_t> start_;    // of each cell in sorted_, one more at the end
+    std::vector<std::uint32_t> start_;    // of each cell in sorted_, and the end
     std::vector<Neighbour> sorted_;       // by cell, then in the order of the robots
     std::vector<std::uint32_t> changed_;  // by cell: changes() at its last change
     std::uint32_t changed_everywhere_ = 0;

@@ -10,7 +10,7 @@ namespace pogosim {
 
 namespace {
 
-constexpr float kPieceMm = 50.0F;  // long edges are cut to about this
+constexpr float kPieceMm = 50.0F;  // longer edges are cut into pieces of about this length
 
 }  // namespace
 
@@ -87,10 +87,10 @@ bool OutlineIndex::update(World const& world) {
 
 void OutlineIndex::find_near(World const& world, Vec2 centre, float radius_mm, std::vector<Piece>& found) const {
     found.clear();
-    float const reach_mm = radius_mm + longest_half_mm_;
-    grid_.for_each_near(centre, reach_mm, [&](std::uint32_t i, Vec2 middle) {
+    float const search_mm = radius_mm + longest_half_mm_;
+    grid_.for_each_near(centre, search_mm, [&](std::uint32_t i, Vec2 middle) {
         Vec2 const offset = minimum_image(world, centre, middle);
-        if (squared_length(offset) <= reach_mm * reach_mm) {
+        if (squared_length(offset) <= search_mm * search_mm) {
             Piece const& piece = pieces_[i];
             found.push_back({offset + (piece.from - middle), offset + (piece.to - middle), piece.outline});
         }

@@ -13,29 +13,29 @@ namespace pogosim {
 
 class OutlineIndex {
 public:
-    /// Takes the outlines as they are now. Call once per step before the queries. Returns whether any has changed.
+    /// Takes the present outlines. Call once per step before the queries. Returns whether any outline has changed.
     bool update(World const& world);
 
     bool empty() const { return pieces_.empty(); }
 
-    /// Smallest box around an outline.
+    /// Bounding box of an outline.
     Box const& box(std::uint32_t outline) const { return boxes_[outline]; }
 
-    /// A piece of an outline, seen from the centre of a query.
+    /// A piece of an outline, relative to the centre of a query.
     struct Piece {
         Vec2 from;
         Vec2 to;
         std::uint32_t outline;  // index into World::outlines
     };
 
-    /// Pieces within `radius_mm` of the centre, and some others, in place of what `found` held.
+    /// Replaces `found` by the pieces within `radius_mm` of the centre, and some others.
     void find_near(World const& world, Vec2 centre, float radius_mm, std::vector<Piece>& found) const;
 
 private:
     bool have_moved(World const& world);
     void add(Polygon const& polygon, std::uint32_t outline);
 
-    std::size_t standing_ = 0;      // pieces of outlines that never move, which come first
+    std::size_t standing_ = 0;      // number of pieces of fixed outlines, which come first
     std::vector<Piece> pieces_;     // in world coordinates
     std::vector<Vec2> middles_;     // of the pieces
     std::vector<Box> boxes_;        // of the outlines

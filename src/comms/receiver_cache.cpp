@@ -6,7 +6,8 @@ namespace pogosim {
 
 namespace {
 
-// Where all hear all, lists take the square of the number of robots: what is beyond this is found anew each time.
+// If all robots hear each other, the lists grow with the square of their number: beyond this size, receivers are not
+// cached.
 constexpr std::size_t kMostPerRobot = 16;
 constexpr std::size_t kMostBesides = std::size_t{1} << 20U;
 
@@ -30,7 +31,7 @@ bool ReceiverCache::make_room(List& list, std::size_t count) {
         if (in_use_ > most / 2) {
             return false;
         }
-        // Most of it is given up: all begin anew.
+        // Most of the pool is abandoned: start anew.
         for (std::vector<List>& lists : lists_) {
             std::ranges::fill(lists, List{});
         }

@@ -25,7 +25,7 @@ double reception_probability(ReceptionSpec const& spec, double message_bytes, do
                                            exact::pow(c, spec.delta));
             break;
     }
-    // Fitted parameters may leave the range, or the real numbers.
+    // With fitted parameters, the law may give values outside [0, 1], or no number.
     return probability > 0.0 ? std::min(probability, 1.0) : 0.0;
 }
 

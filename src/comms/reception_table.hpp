@@ -1,5 +1,5 @@
-// Reception probabilities that were asked for lately: the law's powers and exponentials cost more than all else that a
-// message in a quiet swarm does, and a category sends few kinds of messages to few sizes of clusters.
+// Cache of reception probabilities: in a quiet swarm, the powers and exponentials of the law cost more than everything
+// else in the delivery of a message, and a category sends few kinds of messages to few sizes of clusters.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace pogosim {
 
 class ReceptionTable {
 public:
-    /// See reception_probability(), whose values these are.
+    /// The same values as reception_probability().
     float probability(ReceptionSpec const& spec, std::uint16_t message_bytes, float send_probability,
                       std::uint32_t cluster_size) {
         Row& row = rows_[(cluster_size + 31U * message_bytes) % rows_.size()];

@@ -23,7 +23,7 @@ constexpr Vec2 in_frame_of(Vec2 v, Vec2 axis) {
     return {dot(axis, v), cross(axis, v)};
 }
 
-/// Index of the robot's outline. They are in the order of the robots.
+/// Index of the robot's outline. Outlines are in the order of the robots.
 std::uint32_t outline_of(World const& world, std::uint32_t robot) {
     auto const found = std::ranges::lower_bound(world.outlines, robot, {}, &Outline::robot);
     return static_cast<std::uint32_t>(found - world.outlines.begin());
@@ -117,7 +117,7 @@ bool Visibility::find(World const& world, std::uint32_t robot, std::uint8_t emit
     }
     std::size_t const first = receivers.size();
     find_anew(world, robot, emitters, range_mm, search, receivers);
-    // Worth keeping where nothing moves.
+    // Worth caching only if nothing has moved.
     if (!is_unchanged(world, cells_.changes_before(), sender, range_mm)) {
         return false;
     }
@@ -131,7 +131,7 @@ bool Visibility::is_unchanged(World const& world, std::uint32_t since, Sender co
     if (sender.body == kNone) {
         return cells_.is_unchanged(since);
     }
-    return cells_.is_unchanged_near(since, world.bodies.position_mm[sender.body], farthest_mm(sender, range_mm));
+    return cells_.is_unchanged_near(since, world.bodies.position_mm[sender.body], search_radius_mm(sender, range_mm));
 }
 
 void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
@@ -159,14 +159,14 @@ void Visibility::add_robots_in_view(World const& world, std::uint32_t robot, std
     Sender const& sender = senders_[robot];
     Vec2 const centre = world.bodies.position_mm[sender.body];
     Vec2 const axis = world.bodies.heading_dir[sender.body];
-    float const reach_mm = sender.rim_mm + range_mm;
+    float const rim_range_mm = sender.rim_mm + range_mm;
     view.clear();
     cells_.for_each_run_near(
-        centre, farthest_mm(sender, range_mm), [&](std::span<NeighbourCells::Neighbour const> neighbours) {
+        centre, search_radius_mm(sender, range_mm), [&](std::span<NeighbourCells::Neighbour const> neighbours) {
             view.expect(neighbours.size());
             for (NeighbourCells::Neighbour const& other : neighbours) {
                 Vec2 const offset = minimum_image(world, centre, other.position_mm);
-                float const limit_mm = reach_mm + other.radius_mm;
+                float const limit_mm = rim_range_mm + other.radius_mm;
                 bool const is_near = squared_length(offset) <= limit_mm * limit_mm;
                 view.add_if(is_near & (other.robot != robot), other.robot, in_frame_of(offset, axis), other.radius_mm);
             }
@@ -257,14 +257,14 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
     Vec2 const half = 0.5F * box.size();
     for (std::size_t k = 0; k < cells_.size(); ++k) {
         std::uint32_t const robot = cells_.robot(k);
-        // A robot hears an outline no further than it reaches it itself.
-        float const reach_mm = std::min(range_mm, world.spec_of(robot).ir.range_mm);
-        float const margin_mm = reach_mm + largest_radius_mm_;
+        // A robot hears an outline no further than its own range.
+        float const both_range_mm = std::min(range_mm, world.spec_of(robot).ir.range_mm);
+        float const margin_mm = both_range_mm + largest_radius_mm_;
         Vec2 const offset = minimum_image(world, middle, cells_.position_mm(k));
         if (std::abs(offset.x) > half.x + margin_mm || std::abs(offset.y) > half.y + margin_mm) {
             continue;
         }
-        if (std::uint8_t const faces = faces_near(world, robot, outline, reach_mm, pieces); faces != 0) {
+        if (std::uint8_t const faces = faces_near(world, robot, outline, both_range_mm, pieces); faces != 0) {
             receivers.push_back({.robot = robot, .faces = faces, .emitters = 1, .is_along_outline = true});
         }
     }

@@ -1,8 +1,7 @@
-// Who sees whom over infrared.
-// Robots see each other with their emitters and faces, see emitter_view.hpp.
+// Which robots a transmission reaches. Robots see each other with their emitters and faces, see emitter_view.hpp.
 //
-// Walls and membranes send and receive along their whole outline instead: there are no half planes and no shadows
-// between an outline and a robot, only the distance from the outline to the robot's emitters.
+// Walls and membranes send and receive along their whole outline instead: only the distance from the outline to the
+// robot's emitters counts; there are no half planes and no shadows.
 #pragma once
 
 #include <cstddef>
@@ -21,27 +20,28 @@ namespace pogosim {
 
 class Visibility {
 public:
-    /// Memory for one who searches.
+    /// Scratch memory of one search.
     struct Search {
         EmitterView view;
         std::vector<OutlineIndex::Piece> pieces;
         std::vector<std::uint8_t> outline_emitters;  // by outline: bit d: emitter d reaches it
     };
 
-    /// Takes the robots and outlines as they are now. Call before the queries, with the same world each time.
+    /// Takes the present robots and outlines. Call before the queries, with the same world each time.
     void update(World const& world);
 
-    /// Appends the robots that the given emitters of `robot` (bit d: emitter d) reach at a range of `range_mm`, each
-    /// once, through the nearest emitter that sees it, in the order of their indices. An outline has one emitter,
-    /// number 0. Robots that are switched off cover others, but receive nothing.
+    /// Appends the robots that the given emitters of `robot` (bit d: emitter d) reach at a range of `range_mm`: each
+    /// once, through the nearest emitter that sees it, in the order of their indices. An outline has a single emitter,
+    /// number 0. Robots that are switched off hide others, but receive nothing.
     void find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                         std::vector<Receiver>& receivers);
 
-    /// The same; several may search at once. Returns whether keep() should be told what was appended.
+    /// The same, without changing the cache, so that several threads may search at once. Returns whether the result
+    /// should be passed to keep().
     bool find(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search,
               std::vector<Receiver>& receivers) const;
 
-    /// Keeps the receivers for as long as nothing moves in reach.
+    /// Caches the receivers for as long as nothing within range moves.
     void keep(std::uint32_t robot, std::uint8_t emitters, float range_mm, std::span<Receiver const> receivers) {
         cache_.store(robot, emitters, range_mm, cells_.changes(), receivers);
     }
@@ -58,13 +58,13 @@ public:
                                    float radius_mm);
 
 private:
-    /// What stays as it is during a run, by robot.
+    /// Constants of a robot during a run.
     struct Sender {
         std::uint32_t body;  // kNone: along an outline
-        float rim_mm;        // from the centre to the emitters
+        float rim_mm;        // distance of the emitters from the centre
     };
 
-    /// What the constants depend on, to notice another world.
+    /// What the constants depend on, to detect another world.
     struct Structure {
         std::size_t robots = 0;
         std::size_t bodies = 0;
@@ -88,8 +88,8 @@ private:
                          std::vector<OutlineIndex::Piece>& pieces, std::vector<Receiver>& receivers) const;
     std::uint8_t faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm,
                             std::vector<OutlineIndex::Piece>& pieces) const;
-    /// Radius around a sender's centre within which all have their centres that it may reach.
-    float farthest_mm(Sender const& sender, float range_mm) const {
+    /// Radius around a sender's centre that contains the centres of all robots that it may reach.
+    float search_radius_mm(Sender const& sender, float range_mm) const {
         return sender.rim_mm + range_mm + largest_radius_mm_;
     }
 

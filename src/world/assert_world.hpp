@@ -1,4 +1,4 @@
-// What holds in every world, checked in Debug builds only.
+// Invariants of every world, checked in Debug builds only.
 #pragma once
 
 #include "world/world.hpp"
@@ -8,7 +8,7 @@ namespace pogosim {
 #ifdef NDEBUG
 inline void assert_structure(World const& /*world*/) {}
 #else
-/// Arrays of the same things have the same sizes, and indices refer to what exists. Does not look at poses.
+/// Arrays of the same things have the same sizes, and indices are valid. Poses are not checked.
 void assert_structure(World const& world);
 #endif
 

@@ -1,5 +1,5 @@
 // User columns of the data file: what data_add_column_* declares and data_set_value_* fills. Kept apart from the file
-// format, so that the room that calls user code and the room that writes files share nothing but this.
+// format, so that this is all that the room that calls user code and the room that writes files have in common.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,14 @@ struct ColumnSpec {
 /// One value; monostate is null. Integers of all widths travel as int64, float16 and float32 as double.
 using CellValue = std::variant<std::monostate, std::int64_t, double, bool, std::string>;
 
-/// User part of the rows of one save, which user code fills before anything is written.
+/// User columns of the rows of one save. User code fills them before anything is written.
 struct DataTable {
     std::vector<std::uint32_t> object;  // by row: index into World::objects
     std::vector<CellValue> cells;       // of a row in the order of the columns, row after row
 
     std::span<CellValue const> cells_of(std::size_t row) const { return cells_of(row, row + 1); }
 
-    /// Of the rows from `first` to `last` - 1.
+    /// The part with the rows from `first` to `last` - 1.
     std::span<CellValue const> cells_of(std::size_t first, std::size_t last) const {
         std::size_t const columns = object.empty() ? 0 : cells.size() / object.size();
         return std::span(cells).subspan(first * columns, (last - first) * columns);
@@ -40,7 +40,7 @@ struct DataTable {
     }
 };
 
-/// User part of the row that is being filled, in the order of the columns.
+/// User columns of the row that is being filled, in their order.
 struct DataRow {
     std::span<CellValue> values{};
     bool exported = true;  // false: the user program disabled the export of this row

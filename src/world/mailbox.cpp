@@ -17,7 +17,7 @@ void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader c
                            std::span<std::byte const> payload) {
     std::size_t const needed = kHeaderBytes + payload.size();
     if (tail + needed > capacity) {
-        // There is room once the messages already read are gone.
+        // Overwrites the messages that have been read, which makes room.
         std::memmove(block, block + head, tail - head);
         tail -= head;
         head = 0;
@@ -55,7 +55,7 @@ Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_b
 }
 
 void Mailboxes::append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
-    // Once a message lies far, the next ones do too, so that all near ones are older.
+    // Once a message is in the far block, so are all later ones: messages in the near block are older.
     bool const all_near = queue.waiting == queue.near.count;
     if (all_near && queue.near.has_room(kHeaderBytes + payload.size(), kNearBytes)) {
         queue.near.push(queue.near_block.data(), kNearBytes, header, payload);

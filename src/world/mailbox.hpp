@@ -48,8 +48,8 @@ struct TransmissionQueue {
     }
 };
 
-/// Every robot's FIFO of received messages. Messages are stored one after the other in the robot's near block, a few
-/// cache lines that begin with its counters; the rest goes to its far block, which has room for a queue of messages of
+/// Every robot's FIFO of received messages. Messages are stored contiguously in the robot's near block, a few cache
+/// lines that begin with its counters; further ones go to its far block, which has room for a full queue of messages of
 /// maximum length and takes no memory before it is used.
 class Mailboxes {
 public:
@@ -63,20 +63,20 @@ public:
     /// Appends a message, or counts it as dropped and returns false when the queue is full.
     bool push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
 
-    /// Appends a copy for each of the faces (bit d: face d), lowest first, which its header then names. Returns how
-    /// many found room; the others count as dropped.
+    /// Appends a copy for each of the faces (bit d: face d), lowest first, with the face in its header. Returns the
+    /// number of copies that found room; the others count as dropped.
     unsigned push_copies(std::size_t robot, FrameHeader header, std::span<std::byte const> payload, unsigned faces);
 
-    /// Has the robot's counters and the start of its near block brought into the cache: a push will follow soon.
+    /// Prefetches the robot's counters and the start of its near block for a coming push.
     void expect_push(std::size_t robot) const { __builtin_prefetch(&queues_[robot], 1); }
 
     bool empty(std::size_t robot) const { return queues_[robot].waiting == 0; }
     int size(std::size_t robot) const { return static_cast<int>(queues_[robot].waiting); }
 
-    /// Takes the oldest message out; `payload` gets what fits of its payload_length bytes. False when there is none.
+    /// Removes the oldest message; `payload` gets as many of its payload_length bytes as fit. False if there is none.
     bool pop(std::size_t robot, FrameHeader& header, std::span<std::byte> payload);
 
-    /// Headers and payloads of the waiting messages: the oldest ones, then the others.
+    /// Headers and payloads of the waiting messages, oldest first, in two blocks.
     std::array<std::span<std::byte const>, 2> waiting(std::size_t robot) const;
 
     void clear(std::size_t robot);
@@ -101,7 +101,7 @@ private:
     static constexpr std::size_t kCacheLine = 64;
     static constexpr std::size_t kNearBytes = 4 * kCacheLine - sizeof(Fifo) - 2 * sizeof(std::uint32_t);
 
-    /// All that most messages touch: a short one lies in the same cache line as the counters.
+    /// The data that most messages touch: a short message lies in the same cache line as the counters.
     struct alignas(kCacheLine) Queue {
         std::uint32_t waiting = 0;  // messages, near and far ones
         std::uint32_t max_count = 0;
@@ -109,7 +109,7 @@ private:
         std::array<std::byte, kNearBytes> near_block;
     };
 
-    /// The newer ones of many or long messages.
+    /// The newer messages, if there are many or long ones.
     struct FarQueue {
         Fifo fifo;
         std::size_t block = 0;     // offset in far_blocks_

@@ -71,7 +71,7 @@ struct IrSpec {
                    : range_mm;
     }
 
-    /// Reach at an emitter power of 0 to 3; at 0 nothing is sent.
+    /// Range at an emitter power of 0 to 3; at 0 nothing is sent.
     float range_at_mm(std::uint8_t power) const {
         if (power == 0) {
             return 0.0F;
@@ -107,13 +107,13 @@ struct RobotSpec {
     bool rotate_leds_45_deg = true;         // drawing only
 };
 
-/// A soft body: bodies along the outline of the shape, joined in a closed row by springs.
+/// A soft body: bodies along the outline of the shape, joined into a ring by springs.
 struct MembraneSpec {
     int body_count = 100;
     bool segments = false;                // rectangles joined by hinges; else disks
     float radius_mm = 10.0F;              // of a disk
     std::optional<float> thickness_mm{};  // of the segments; absent: radius_mm
-    int cross_span = 3;                   // > 1: weaker springs from each body to the one this many places on
+    int cross_span = 3;                   // > 1: weaker springs from each body to the one this many places further on
     float stiffness_hz = 30.0F;           // of the springs; their damping ratio is the body's linear damping
     bool in_data_file = false;            // a row for each body, with its subpart_id
 };
@@ -147,7 +147,7 @@ struct SpotSpec {
 
 /// A lighthouse with a rotating beam: `rotating_ray_of_light`. Its light replaces all other light.
 struct RotatingRaySpec {
-    Shape shape;                       // what it can light
+    Shape shape;                       // the area that it can light
     Vec2 centre_mm;                    // where it stands; global and arena: from the centre of the arena's bounding box
     int value = 10;                    // of the beam, sensor counts
     double half_width_rad = 0.1;       // above 0 to pi

@@ -7,7 +7,8 @@ namespace pogosim {
 
 std::int16_t LightMap::at(Vec2 point_mm) const {
     Vec2 const offset = point_mm - origin_mm;
-    // First clamped: integers from floats that are too large for them differ between processors.
+    // Clamped first: converting a float that is too large to an integer gives different results on different
+    // processors.
     auto const cell = [](float place, int count) {
         return static_cast<int>(std::clamp(place, 0.0F, static_cast<float>(count - 1)));
     };
@@ -46,7 +47,7 @@ Vec2 centre_mm(World const& world, Object const& object) {
     if (object.body == kNone) {
         return object.fixed_mm;
     }
-    // The first one plus the mean offset from it, so that a single body's place is exact.
+    // The position of the first body plus the mean offset from it, so that the result is exact for a single body.
     Vec2 const first = world.bodies.position_mm[object.body];
     Vec2 sum;
     for (std::uint32_t k = 1; k < object.body_count; ++k) {
@@ -64,7 +65,7 @@ Pose pose_of(World const& world, Object const& object) {
 Vec2 minimum_image_across(World const& world, Vec2 a, Vec2 b) {
     Vec2 d = b - a;
     Vec2 const size = world.arena.bounds.size();
-    // Most points are nearer than half the size: nothing is to be rounded.
+    // Most points are nearer than half the size, so no rounding is necessary.
     if (std::abs(d.x) > 0.49F * size.x) {
         d.x -= size.x * std::round(d.x / size.x);
     }

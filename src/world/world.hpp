@@ -1,9 +1,9 @@
 // The state of everything, as plain data in structures of arrays. Each stage of a step reads the world and writes only
 // its own part:
 //
-//   sim       writes  step; before the first one all that the configuration says, time_step_s last
-//   light     writes  light.level: first of all cells, then of those under moving lamps, and of all again when a lamp
-//                     that stands still goes on or off
+//   sim       writes  step; before the first step, all that the configuration determines, time_step_s last
+//   light     writes  light.level: of all cells at first and whenever a static lamp goes on or off, otherwise of the
+//                     cells under moving lamps
 //   robot     writes  robots.led, robots.command, air; takes messages out of mailboxes; draws from robots.stream
 //   comms     writes  mailboxes; clears air; draws from robots.stream
 //   physics   writes  position_mm, heading_rad, heading_dir, velocity_mm_s, angular_velocity_rad_s, start_mm and
@@ -13,18 +13,18 @@
 // Callbacks of the whole run, which run before the robots, also write poses, switched_off (by way of
 // Controllers) and the settings of lamps (pogosim/world.h).
 //
-// No stage keeps its own version of this. What others write between two steps is true from then on:
+// No stage keeps a version of its own. What is written between two steps takes effect:
 //
-//   a pose                   bodies go on from there, fixed ones too; write it with set_pose(), free of walls
-//   a velocity               bodies go on with it, unless their motors ask for another one; fixed ones keep 0
+//   a pose                   bodies, also fixed ones, continue from there; to be written with set_pose(), outside walls
+//   a velocity               bodies continue with it, unless their motors command another one; fixed ones keep 0
 //   robots.led               is shown and recorded until the program sets it again
-//   robots.command[i]        is the velocity of this body in the next step if it is pending, unless its motors ask for
-//                            another one
-//   light.level[i]           is sensed and shown until a lamp writes this cell, see above
+//   robots.command[i]        is the velocity of this body in the next step if it is pending, unless its motors
+//                            command another one
+//   light.level[i]           is sensed and shown until a lamp writes this cell
 //   a message in a mailbox   is received
-//   lamps[i].setting         is seen in the light of the next step
+//   lamps[i].setting         determines the light of the next step
 //
-// A pose or velocity that is not finite is taken back. All else stays as it is when the run starts.
+// A pose or velocity that is not finite is reverted. Everything else is constant during a run.
 #pragma once
 
 #include <array>
@@ -52,14 +52,14 @@ struct Rgb {
 inline constexpr int kLedCount = 5;  // 0 head, 1 front, 2 right, 3 back, 4 left
 using Leds = std::array<Rgb, kLedCount>;
 
-/// Stands for an index that does not exist.
+/// In place of an index: none.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Rigid bodies. Shape: one entry per body.
 struct Bodies {
     std::vector<Vec2> position_mm;
     std::vector<float> heading_rad;  // not wrapped
-    std::vector<Vec2> heading_dir;   // unit vector along the heading, which decides
+    std::vector<Vec2> heading_dir;   // unit vector along the heading; takes precedence over heading_rad
     std::vector<Vec2> velocity_mm_s;
     std::vector<float> angular_velocity_rad_s;  // clockwise on the screen
     std::vector<Vec2> start_mm;    // position and heading at the start of the last step, or where they have
@@ -75,7 +75,7 @@ struct Bodies {
 struct Joint {
     std::uint32_t a = 0;  // indices into World::bodies
     std::uint32_t b = 0;
-    Vec2 anchor_a_mm;  // where it is fixed, in each body's own frame
+    Vec2 anchor_a_mm;  // point of attachment, in each body's own frame
     Vec2 anchor_b_mm;
     float length_mm = 0.0F;      // of the spring at rest; 0: a hinge
     float stiffness_hz = 0.0F;   // of the spring, with the masses at its ends
@@ -83,13 +83,13 @@ struct Joint {
     float max_stretch = 0.0F;    // a spring is never longer than 1 + this times its length; 0: no limit
 };
 
-/// Bodies in a closed row, clockwise on the screen, that keep the area they enclose.
+/// A ring of bodies, clockwise on the screen, that preserves the area it encloses.
 struct Membrane {
     std::uint32_t body = 0;  // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;
 };
 
-/// The velocity a robot's motors ask of its body.
+/// The velocity that a robot's motors command.
 struct VelocityCommand {
     Vec2 velocity_mm_s;
     float angular_velocity_rad_s = 0.0F;
@@ -108,19 +108,19 @@ struct Robots {
     std::size_t size() const { return id.size(); }
 };
 
-/// What a program or a host has made of a lamp.
+/// Changes that a program or a host has made to a lamp.
 struct LampSetting {
     bool is_on = true;
-    float intensity = 1.0F;  // its levels are those of the configuration times this
-    Vec2 moved_mm;           // from where the configuration has it
+    float intensity = 1.0F;  // factor of the levels in the configuration
+    Vec2 moved_mm;           // displacement from its place in the configuration
 
     friend bool operator==(LampSetting const&, LampSetting const&) = default;
 };
 
-/// A lamp among the things of the world; how it shines is in the room `light`.
+/// A lamp; its light is computed in the room `light`.
 struct PlacedLamp {
     std::string category;
-    Vec2 start_mm;  // where the configuration has it, or the centre of its orbit
+    Vec2 start_mm;  // its place in the configuration, or the centre of its orbit
     LampSetting setting;
 
     Vec2 place_mm() const { return start_mm + setting.moved_mm; }
@@ -138,13 +138,13 @@ struct Object {
     std::uint32_t robot = kNone;   // index into World::robots
     std::uint32_t body = kNone;    // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;  // more than one: a membrane, in this order
-    Vec2 fixed_mm{};  // where it stands when it has no body; along the arena's walls: the centre of its box
+    Vec2 fixed_mm{};               // its place if it has no body; for arena walls: the centre of their bounding box
 };
 
 /// Where an object with Emitters::outline sends and receives.
 struct Outline {
     std::uint32_t robot = 0;        // index into World::robots
-    std::vector<Polygon> polygons;  // mm, of one that stands still; empty: through the bodies of a membrane
+    std::vector<Polygon> polygons;  // mm, of a fixed object; empty: the outline runs through the bodies of a membrane
     std::uint32_t body = kNone;     // the membrane, as in Object
     std::uint32_t body_count = 0;
 };
@@ -162,7 +162,7 @@ struct LightMap {
     std::int16_t at(Vec2 point_mm) const;
 };
 
-/// A time that should be a whole number of steps or periods, counted in them, may differ from it in the last bits.
+/// Tolerance, in steps or periods, of a time that should be a whole number of them.
 inline constexpr double kWholeTolerance = 1e-6;
 
 struct World {
@@ -197,24 +197,23 @@ struct World {
     RobotSpec const& spec_of(std::size_t robot) const { return *categories[robots.category[robot]].spec.robot; }
 };
 
-/// What pogobot_helper_getid() and message headers say: robots have ids of 16 bits, so those of robots further apart
-/// than 65536 repeat.
+/// The id in pogobot_helper_getid() and in message headers. Robots have ids of 16 bits, so they repeat after 65536.
 inline constexpr std::uint32_t kIdsOnAir = 65536;
 constexpr std::uint16_t id_on_air(std::uint32_t id) {
     return static_cast<std::uint16_t>(id);
 }
 
-/// Puts a body elsewhere, at rest.
+/// Moves a body to another pose, at rest.
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad);
 
-/// Puts an object that has a body elsewhere, at rest, whether it is fixed or not: a rigid body with its centre at
-/// `centre_mm` and with this heading, a membrane as it is with its middle there.
+/// Moves an object that has a body to another pose, at rest, even if it is fixed: a rigid body to this centre and
+/// heading, a membrane without a change of shape to this middle.
 void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad);
 
 /// Whether a robot is switched on.
 bool is_alive(World const& world, std::uint32_t robot);
 
-/// Middle of an object: of its bodies, or where it stands when it has none. Not wrapped.
+/// Middle of an object: of its bodies, or its fixed place if it has none. Not wrapped.
 Vec2 centre_mm(World const& world, Object const& object);
 
 struct Pose {
@@ -222,8 +221,8 @@ struct Pose {
     float heading_rad;  // [-pi, pi)
 };
 
-/// Where an object stands for users: its middle, inside the arena also when the world is periodic, and its heading, 0
-/// if it is not one rigid body.
+/// The pose that users see: the object's middle, wrapped into the arena if the world is periodic, and its heading, 0 if
+/// it is not one rigid body.
 Pose pose_of(World const& world, Object const& object);
 
 /// Vector from `a` to `b` in a periodic world: the shortest one across the seams.
@@ -234,10 +233,10 @@ inline Vec2 minimum_image(World const& world, Vec2 a, Vec2 b) {
     return world.periodic ? minimum_image_across(world, a, b) : b - a;
 }
 
-/// What has to be added to a point of a periodic world to bring it into the arena's bounding box; 0 inside.
+/// The offset that moves a point of a periodic world into the arena's bounding box; 0 inside.
 Vec2 offset_into_bounds(World const& world, Vec2 point_mm);
 
-/// The same point inside the arena's bounding box when the world is periodic; else the point itself.
+/// The point wrapped into the arena's bounding box if the world is periodic; otherwise the point itself.
 Vec2 wrapped(World const& world, Vec2 point_mm);
 
 }  // namespace pogosim
