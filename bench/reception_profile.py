@@ -60,7 +60,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Count:
-    """Messages of the focal robot: those sent to somebody (one per neighbour), and those of them received."""
+    """Messages of the focal robot: how many were sent to a neighbour (one for each neighbour), and how many of these were received."""
 
     sent: int
     received: int

@@ -94,7 +94,7 @@ void warm_up(Simulation& simulation) {
     }
 }
 
-/// The smallest swarm has all code and libraries loaded, which then counts for nobody's memory.
+/// The memory of the smallest swarm includes all code and libraries; it is subtracted from the memory of the others.
 void load_code(Options const& options) {
     Simulation simulation(linked_program(pogosim_this_program, "bench"),
                           scenario_of(kHasMembranes ? kRobotsPerMembrane : 1, options.overrides), {});

@@ -1,4 +1,4 @@
-// Whom a robot has met: the last 128 different robots, and when it first met them.
+// The robots that a robot has met: the last 128 different ones, and the time of the first encounter.
 #ifndef COVERAGE_ENCOUNTERS_H
 #define COVERAGE_ENCOUNTERS_H
 

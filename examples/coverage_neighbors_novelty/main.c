@@ -7,7 +7,7 @@
 // Shows: a random walk that adapts to the neighbours, a table of neighbours with ages, a text as a parameter, a program
 // in several files.
 //
-// A robot runs and tumbles, and knows only who is near. Two feelings rise in it and fade away again:
+// A robot runs and tumbles, and knows only which robots are near. Two feelings rise in it and fade away again:
 //
 //     isolation  while it hears one robot or none,
 //     boredom    while it has known nearly all of those it hears for a while.
@@ -20,7 +20,7 @@
 //
 //     ./examples/coverage_neighbors_novelty/coverage_neighbors_novelty -c conf/coverage_neighbors_novelty.yaml
 //
-// neighbors.h: who is near; encounters.h: whom it has met before; run_law.h: durations of runs.
+// neighbors.h: robots nearby; encounters.h: robots met before; run_law.h: durations of runs.
 #include "pogobase.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-// Who is near: the robots heard during the last moments.
+// The robots nearby: those heard during the last moments.
 #ifndef COVERAGE_NEIGHBORS_H
 #define COVERAGE_NEIGHBORS_H
 

@@ -21,7 +21,7 @@ BRIGHTEST = 30000.0  # sensor counts, below the lamp
 class LightSeeker(gymnasium.Env[Array, Array]):
     """One robot starts anywhere in the arena; the brighter it is where it is, the better.
 
-    - Observation, shape (7,), each from -1 to 1: see `OBSERVATIONS`. Nobody else is heard.
+    - Observation, shape (7,), each from -1 to 1: see `OBSERVATIONS`. The robot hears no others.
     - Action, shape (2,), each from -1 to 1: the power of the left and of the right motor.
     - Reward of each step of 0.2 s: the light at the robot, 0 to 1.
 

@@ -24,7 +24,7 @@ DECLARE_USERDATA(USERDATA);
 REGISTER_USERDATA(USERDATA);
 
 // Parameters, the same for all robots. The simulator overrides them from the configuration file.
-bool is_commanded = false;  // somebody else writes the actions
+bool is_commanded = false;  // a host writes the actions
 // For each motor a bias and the weights of the observation; the action is their sum.
 float policy[ACTION_COUNT * (1 + OBSERVATION_COUNT)] = {0.5f, 0, 0, 1,  0, 0, 0, 0,   // left
                                                         0.5f, 0, 0, -1, 0, 0, 0, 0};  // right

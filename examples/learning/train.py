@@ -179,8 +179,8 @@ def learn(trainer: Trainer, generations: int, seed: int = 1, candidates: int = 1
     Args:
         trainer: Environments.
         generations: How often candidates are judged.
-        seed: Of the search.
-        candidates: In each generation.
+        seed: Seed of the search.
+        candidates: Number of candidates in each generation.
         episodes: By whose mean return each is judged, the same for all of a generation.
     """
     size = SHAPE[0] * SHAPE[1]

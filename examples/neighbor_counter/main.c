@@ -1,4 +1,4 @@
-// Neighbour counter: who is around me, and on which side?
+// Neighbour counter: which robots are around me, and on which side?
 //
 // Shows: heartbeats, a table of neighbours that forgets those it no longer hears, the faces at which messages arrive,
 // all five LEDs. It is the first layer of most swarm algorithms.

@@ -5,16 +5,16 @@
 // only.
 //
 // Each robot has a sum s, at first its id, and a weight w, at first 1. In each round it splits both into equal parts,
-// one for itself and one for each of its d neighbours, who add it to their own. The sum of all s stays the same, and so
-// does that of all w, while differences even out: s / w becomes the mean of all ids everywhere.
+// one for itself and one for each of its d neighbours, which add it to their own. The sum of all s stays the same, and
+// so does that of all w, while differences even out: s / w becomes the mean of all ids everywhere.
 //
 // That only holds if each share arrives exactly once at exactly d robots. Two precautions see to that:
 // - A message states the total of all shares that its sender has ever given to each neighbour, and the receiver takes
 //   what it has not had yet. So a lost message does no harm, the next one makes up for it, and a copy adds nothing
 //   (the running sums of C. N. Hadjicostis, N. H. Vaidya, A. D. Dominguez-Garcia, "Robust distributed average consensus
 //   via exchange of running sums", IEEE Trans. Automatic Control 61, 2016).
-// - A message lists whom its sender hears, and which of them get shares: those that list the sender in turn, since one
-//   robot may hear another that does not hear it.
+// - A message lists the robots that its sender hears, and which of them get shares: those that list the sender in turn,
+//   since one robot may hear another that does not hear it.
 // When neighbours part, each takes back what it gave since it last heard the other. That is right up to the last share
 // or so: with `moving_robots: true` all find the same value, but only roughly the mean.
 //
@@ -30,7 +30,7 @@ typedef struct __attribute__((__packed__)) {
     float given_s, given_w;  // totals of all shares given to each listener
     uint8_t nb_listeners;
     uint8_t nb_heard;
-    uint16_t heard[MAX_NEIGHBORS];  // `nb_heard` neighbours, of whom the first `nb_listeners` get shares
+    uint16_t heard[MAX_NEIGHBORS];  // `nb_heard` neighbours; the first `nb_listeners` of them get shares
 } message_content_t;
 
 typedef struct {
@@ -139,7 +139,7 @@ static uint16_t message_size(message_content_t const* message) {
     return (uint16_t)(sizeof(*message) - unused * sizeof(message->heard[0]));
 }
 
-// Appends the neighbours who get shares, or the others.
+// Appends the neighbours that get shares, or the others.
 static void list_neighbors(message_content_t* message, bool listeners) {
     for (uint8_t i = 0; i < mydata->nb_neighbors; i++) {
         if (is_listener(&mydata->neighbors[i]) == listeners) {

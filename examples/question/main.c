@@ -50,7 +50,7 @@ static bool hear(talk_t* talk) {
     return true;
 }
 
-/// Waits until somebody answers. False: nobody has within the limit.
+/// Waits for an answer. False: none came within the limit.
 static bool wait_for_answer(void) {
     time_reference_t waiting;
     talk_t talk;
@@ -64,7 +64,7 @@ static bool wait_for_answer(void) {
     return false;
 }
 
-/// Lets time pass, without an ear for anybody.
+/// Lets time pass without listening.
 static void rest_ms(int32_t duration_ms) {
     time_reference_t rest;
     pogobot_timer_init(&rest, duration_ms * 1000);

@@ -1,4 +1,4 @@
-// Supervisor: foraging, with somebody who runs the experiment.
+// Supervisor: foraging, with a part of the program that runs the experiment.
 //
 // Shows: callback_global_step with the functions of pogosim/world.h: true poses, objects that are moved, lamps that are
 // switched and dimmed, a robot that breaks down and is repaired, other robots' variables, columns of the data file that

@@ -16,7 +16,7 @@ NOT_SHOWN = {
     "sdk/hw/common.h",
     "sdk/pogosim_sdk_program.h",
 }
-# Of the package: modules that are commands, or other names of them.
+# Modules of the package that are commands, or other names of commands.
 NOT_FOR_SCRIPTS = {"__init__", "__main__", "command"}
 ROOMS_SETTINGS = [
     "INPUT = src",

@@ -28,8 +28,8 @@ bool holds(GElf_Shdr const& header, uint64_t address) {
            address - header.sh_addr < header.sh_size;
 }
 
-// Sections that the loader fills or reads before the program starts, and nobody writes afterwards. Sanitizers leave
-// a pointer of theirs in .preinit_array, with debug information.
+// Sections that the loader fills or reads before the program starts, and that are never written afterwards. Sanitizers
+// leave a pointer of theirs in .preinit_array, with debug information.
 bool is_for_the_loader(GElf_Shdr const& header, std::string const& name) {
     return header.sh_type == SHT_PREINIT_ARRAY || header.sh_type == SHT_INIT_ARRAY ||
            header.sh_type == SHT_FINI_ARRAY || name.starts_with(".data.rel.ro");

@@ -1,4 +1,4 @@
-// What the channel says about each message: who was in reach, through which faces, and what became of it.
+// What the channel says about each message: which robots were in range, through which faces, and the outcome.
 #include "comms/delivery_log.hpp"
 
 #include <gtest/gtest.h>

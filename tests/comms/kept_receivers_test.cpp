@@ -36,7 +36,7 @@ std::vector<Reached> reached(Visibility& visibility, World const& world, std::ui
     return result;
 }
 
-/// A long run's answers, and those of somebody who comes in now.
+/// The answers of the cache of a long run, and those of a new one.
 void expect_same_answers(Visibility& known, World const& world, RandomStream& random) {
     Visibility fresh;
     fresh.update(world);

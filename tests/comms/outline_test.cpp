@@ -1,4 +1,4 @@
-// Infrared along the outlines of walls and membranes: who is within which distance of them.
+// Infrared along the outlines of walls and membranes: the robots within a distance of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

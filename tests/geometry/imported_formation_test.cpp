@@ -113,7 +113,7 @@ TEST_F(ImportedFormation, PositionOutsideTheArenaNamesItsLine) {
     EXPECT_TRUE(
         error_of("x,y\n10,20\n# comment\n-5,20\n", 2).starts_with("poses.csv:4: the position (-5, 20) mm is outside"));
     EXPECT_TRUE(error_of("10,20\n500,250\n", 2).starts_with("poses.csv:2: the position (500, 250) mm is outside"));
-    EXPECT_EQ(error_of("10,20\n-5,20\n", 1), "");  // a row that nobody needs
+    EXPECT_EQ(error_of("10,20\n-5,20\n", 1), "");  // an unused row
 }
 
 TEST_F(ImportedFormation, PositionsOutsideAreCounted) {

@@ -222,7 +222,7 @@ TEST_P(Collisions, ObliqueOneChangesVelocitiesAlongTheLineOfCentresOnly) {
     EXPECT_NEAR(world.bodies.angular_velocity_rad_s[1], 0.0F, 1e-4F);
 }
 
-/// Of both bodies, with their masses and moments of inertia: momentum, and angular momentum about the middle.
+/// Momentum of both bodies, and angular momentum about the middle, with their masses and moments of inertia.
 struct Momenta {
     Vec2 linear;
     float angular = 0.0F;

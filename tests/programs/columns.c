@@ -68,7 +68,7 @@ static void export_data(void) {
     if (hide_odd_robots && pogobot_helper_getid() % 2 == 1) {
         disable_data_export();
     }
-    // Robot 4 changes its mind; nobody ever enables the export of robot 6 after robot 5.
+    // Robot 4 changes its mind; the export of robot 6 is never enabled after robot 5.
     if (hide_odd_robots && pogobot_helper_getid() == 4) {
         disable_data_export();
         enable_data_export();

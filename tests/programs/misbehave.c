@@ -121,7 +121,7 @@ static void overflow_the_stack(void) {
 }
 
 static void write_beyond_userdata(void) {
-    // The end of everybody's user data is somewhere behind that of the last robot.
+    // The end of all user data is somewhere behind that of the last robot.
     uint8_t volatile* bytes = mydata->bytes;
     for (size_t i = 0; i < 1000000; i++) {
         bytes[i] = 1;

@@ -1,4 +1,4 @@
-// A C++ program whose robot 1 throws an exception that nobody catches, in its tenth tick.
+// A C++ program whose robot 1 throws an exception that is not caught, in its tenth tick.
 #include <stdexcept>
 #include <string>
 

@@ -1,4 +1,4 @@
-"""What a batch writes: rows, columns, metadata, and the same bytes whoever did the runs."""
+"""What a batch writes: rows, columns, metadata, and the same bytes whichever worker did the runs."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ linux_only = pytest.mark.skipif(sys.platform != "linux", reason="needs /proc and
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """The results of a batch that nobody disturbed."""
+    """The results of an undisturbed batch."""
     folder = tmp_path_factory.mktemp("undisturbed")
     write(folder, LONG)
     assert batch(folder, *RUNS).code == 0

@@ -166,7 +166,7 @@ def test_the_correlation_of_a_wave_of_directions_is_the_cosine_of_the_distance()
     angle = 2.0 * np.pi * x / 1000.0
     own = vector_correlation(run, 3.0 * np.stack([np.cos(angle), np.sin(angle)], axis=1)[None], 200.0, 20.0)
     assert own.mean_square == pytest.approx(9.0)
-    # Bins of two distances each: 0 (nobody) and 10, 20 and 30, ...
+    # Bins of two distances each: 0 (none) and 10, 20 and 30, ...
     ten, twenty, thirty = np.cos(2.0 * np.pi * np.array([10.0, 20.0, 30.0]) / 1000.0)
     np.testing.assert_allclose(own.mean[:2], [ten, (twenty + thirty) / 2.0])
     np.testing.assert_allclose(own.at_times[0], own.mean)

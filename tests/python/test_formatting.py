@@ -15,7 +15,7 @@ LAID_OUT = f"""// front (0)   {SENTENCE.strip()}
 char const* text =
     "{SENTENCE}";
 """
-OF_OTHERS = ROOT / "tests" / "programs" / "sdk"  # programs as somebody else wrote them
+OF_OTHERS = ROOT / "tests" / "programs" / "sdk"  # programs written by others
 FOLDERS = ["bench", "docs", "examples", "include", "src", "template_prj", "tests", "tools"]
 
 

@@ -27,7 +27,7 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 @pytest.fixture(scope="module")
 def free(shipped: Run) -> pd.DataFrame:
-    """Rows of robots that touch nobody and have been in their phase for a row or more."""
+    """Rows of robots that touch no other and have been in their phase for a row or more."""
     rows = shipped.frame()
     led = rows.pivot(index="time", columns="robot_id", values="led_rgb").to_numpy()
     settled = np.concatenate([np.full((1, led.shape[1]), False), led[1:] == led[:-1]])
@@ -35,7 +35,7 @@ def free(shipped: Run) -> pd.DataFrame:
 
 
 def touches(rows: pd.DataFrame) -> npt.NDArray[np.bool_]:
-    """Whether anybody is within 15 mm of a robot, so near that it may have touched it since the row before."""
+    """Whether another robot is within 15 mm, so near that it may have touched this one since the row before."""
     x = rows.pivot(index="time", columns="robot_id", values="x").to_numpy(dtype=float)
     y = rows.pivot(index="time", columns="robot_id", values="y").to_numpy(dtype=float)
     dx, dy = x[:, :, None] - x[:, None, :], y[:, :, None] - y[:, None, :]

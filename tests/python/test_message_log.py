@@ -1,4 +1,4 @@
-"""The message log says of each message who was in reach, and what became of it."""
+"""The message log has, for each message, the robots in range and the outcome."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pogosim.communication.reception_law import DynamicLaw
 from pogosim.utils import load_dataframe, read_table
 from running import ROOT, Run, compile_program, example, run, start, write_scene
 
-# Everybody sends for a second, counts what it sends, and what comes to it copy by copy.
+# All send for a second, counts what it sends, and what comes to it copy by copy.
 COUNTS = """
 #include "pogobase.h"
 typedef struct { uint32_t sent; uint32_t got; } USERDATA;

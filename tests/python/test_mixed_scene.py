@@ -67,7 +67,7 @@ OBJECTS: dict[str, dict[str, Any]] = {
     "rotating": {"type": "rotating_ray_of_light", "geometry": "global", "x": 1000, "y": 1000, "value": 400},
     "alternating": {"type": "alternating_rays_of_light", "geometry": "global", "value": 300},
 }
-# Of them robots 0 to 5 start in the membrane and 6 to 9 in the rectangular one.
+# Robots 0 to 5 of them start in the membrane and 6 to 9 in the rectangular one.
 IN_MEMBRANE, IN_RECTMEMBRANE = range(6), range(6, 10)
 
 
@@ -182,7 +182,7 @@ def test_everything_takes_part(mixed: Run) -> None:
     end = frame[frame["time"] == frame["time"].max()]
     talkers = end[end["heard"].notna()].groupby("robot_category")["heard"].sum()
     assert (talkers > 0).all(), talkers
-    # The sky alone gives 20; lamps pass over nearly everybody in five minutes.
+    # The sky alone gives 20; lamps pass over nearly all robots in five minutes.
     assert (end[end["robot_category"] == "robots"]["brightest"] > 500).mean() > 0.8
     movable = {name for name, entry in OBJECTS.items() if "light" not in entry["type"]} - {"walls", "strip"}
     for category in movable:

@@ -1,4 +1,4 @@
-"""The example neighbor_counter, against who is in reach by geometry."""
+"""The example neighbor_counter, against the robots in range by geometry."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def write_jittered_grid(path: Path) -> None:
 
 
 def faces_that_hear(frame: pd.DataFrame, listener: int, speaker: int) -> set[int]:
-    """Faces of a listener that receive what a speaker says, if nobody stands between them."""
+    """Faces of a listener that receive what a speaker says, if no robot stands between them."""
     place = frame["x"].to_numpy() + 1j * frame["y"].to_numpy()
     axis = np.exp(1j * frame["angle"].to_numpy())
     emitters = place[speaker] + RADIUS * NORMALS * axis[speaker]

@@ -1,4 +1,4 @@
-"""Programs that were written for the robots' SDK by somebody who had not seen our header run as they are.
+"""Programs written for the robots' SDK, without knowledge of our header, run as they are.
 
 Each robot of theirs checks about once a second that its variables are as it has left them, and prints "SELF ok" or
 what is wrong with them.

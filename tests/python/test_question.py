@@ -25,7 +25,7 @@ def test_robots_that_somebody_hears_get_answers_after_a_moment(tmp_path: Path) -
     near = even[[hears_somebody(robot) for robot in even.index]]
     assert len(near) >= 5
     assert (near.answered > 0.4 * near.asked).all()
-    # Who answers takes 80 ms, and looks at its clock every 20 ms; a message takes a step.
+    # A robot that answers takes 80 ms, and looks at its clock every 20 ms; a message takes a step.
     assert near.waited_ms.between(80, 500).all()
     assert near.waited_ms.median() < 125
     lonely = even[even.answered == 0]

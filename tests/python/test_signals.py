@@ -167,7 +167,7 @@ def test_crashed_run_that_hangs_after_its_data_are_saved_says_that_they_are(buil
 
 
 def with_usual_signals(folder: Path, simulated: Path | None = None) -> Path:
-    """Return a program for a run whose signals are not ignored, though whoever runs the tests may have some ignored."""
+    """Return a program for a run whose signals are not ignored, though the process that runs the tests may ignore some."""
     program = folder / "program"
     program.write_text(f'#!/bin/sh\nexec env --default-signal "{simulated or example("helloworld")}" "$@"\n')
     program.chmod(0o755)
@@ -176,7 +176,7 @@ def with_usual_signals(folder: Path, simulated: Path | None = None) -> Path:
 
 @pytest.mark.parametrize("name", END_SIGNALS)
 def test_signal_before_the_run_ends_it_with_130_and_keeps_the_older_data(tmp_path: Path, name: str) -> None:
-    os.mkfifo(tmp_path / "scene.yaml")  # nobody writes to it, so loading takes for ever
+    os.mkfifo(tmp_path / "scene.yaml")  # nothing writes to it, so loading takes for ever
     (tmp_path / "data.feather").write_text("older")
     command = [str(with_usual_signals(tmp_path)), "-c", "scene.yaml", "-g"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)

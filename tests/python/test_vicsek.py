@@ -83,7 +83,7 @@ def test_without_a_lamp_the_gyroscope_keeps_the_heading(tmp_path: Path) -> None:
         "objects.sun.value": 1000,
         "initial_formation": "chessboard",
         "arena_surface": 3.6e7,
-        "chessboard_distance_between_neighbors": 500.0,  # nobody meets anybody
+        "chessboard_distance_between_neighbors": 500.0,  # no robots meet
         "objects.robots.communication_radius": 0.0,
         "simulation_time": 10.0,
         "parameters.noise_eta": 3.0,

@@ -137,7 +137,7 @@ def test_a_disk_in_a_hole_covers_what_reaches_out_of_it() -> None:
     middle = np.array([[500.0, 500.0]])
     assert covered(middle, RING, 90.0) == pytest.approx(0.0, abs=1e-9)
     assert covered(middle, RING, 200.0) == pytest.approx(np.pi * 200.0**2 - 200.0**2)
-    # Of a circle around a square of half its width, four segments reach out.
+    # Four segments of a circle around a square of half its width reach out.
     segments = 4 * (120.0**2 * np.arccos(100.0 / 120.0) - 100.0 * np.sqrt(120.0**2 - 100.0**2))
     assert covered(middle, RING, 120.0) == pytest.approx(segments)
 

@@ -44,7 +44,7 @@ def test_one_opinion_wins_and_stays(swarm: pd.DataFrame) -> None:
 
 def test_extinct_opinions_do_not_come_back(swarm: pd.DataFrame) -> None:
     counts = nb_with_opinion(swarm)
-    # When they have been extinct for longer than max_age, nobody has heard of them any more.
+    # When they have been extinct for longer than max_age, no robot has heard of them any more.
     extinct = (counts.rolling(10).max() == 0).to_numpy()
     assert (counts.to_numpy()[1:][extinct[:-1]] == 0).all()
 

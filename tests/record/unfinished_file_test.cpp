@@ -308,7 +308,7 @@ TEST_F(CompletedDataFile, EndsWhereItsRowsDoUnderAllNamesOfTheFile) {
 }
 
 TEST_F(CompletedDataFile, KeepsTheOwnerAndTheGroupOfTheFile) {
-    bool const is_root = geteuid() == 0;  // nobody else can give files away
+    bool const is_root = geteuid() == 0;  // only root can give files away
     for (auto const& [owner, group] : {std::pair<uid_t, gid_t>{12345, 0}, {0, 12345}}) {
         std::ofstream(path("a.feather")) << "older data";
         if (is_root) {

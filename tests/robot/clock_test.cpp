@@ -199,7 +199,7 @@ TEST(Clock, DriftTakesHalfOfATickAtMost) {
     Simulation simulation(testing::test_program(), testing::square_scene({testing::robots(30, spec)}, 2000.0), {});
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(testing::run_for(simulation, 2.0));
-    // Ticks of 16 ms: whoever is in a hurry takes 8.
+    // Ticks of 16 ms, of which a drifting clock takes off 8 at most.
     EXPECT_EQ(std::ranges::min(fastest_us), 8000);
     EXPECT_GT(std::ranges::count(fastest_us, 8000), 5);
     EXPECT_GT(std::ranges::max(fastest_us), 16000);

@@ -39,7 +39,7 @@ public:
     Swarm() : guard_(nullptr, 10.0), thread_(guard_) { context.outbox = nullptr; }
 
     Outcome run(std::uint32_t threads) {
-        // The program and the simulator are in one file here: nobody but the test knows that robots share nothing.
+        // The program and the simulator are in one file here: only the test knows that robots share nothing.
         WorkerPool workers(threads);
         std::optional<SharedSteps> shared;
         EXPECT_FALSE(call_user_code([this] { controllers_.start(); }));

@@ -44,7 +44,7 @@ TEST(UserWatch, GivesBackTheSignalsOfTheProcess) {
     }
 }
 
-/// Nobody may be there to take it.
+/// The signal would find no handler.
 TEST(UserWatch, SendsNoSignalForARequestThatComesAfterTheRun) {
     std::signal(SIGALRM, [](int) { std::abort(); });
     UserGuard guard(nullptr, 0.0);

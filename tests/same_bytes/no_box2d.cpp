@@ -1,4 +1,4 @@
-// Box2D is not ours, and nobody promises its bytes.
+// Box2D is not ours, and its bytes are not guaranteed.
 #include <stdexcept>
 
 #include "physics/physics_engine.hpp"

@@ -123,7 +123,7 @@ World membranes() {
     return world;
 }
 
-/// Motors as programs drive them, with noise: everybody wanders, and every third one goes to the middle.
+/// Motors as programs drive them, with noise: all robots wander, and every third one goes to the middle.
 void drive(World& world) {
     Vec2 const middle_mm = world.arena.bounds.centre();
     for (std::uint32_t i = 0; i < world.robots.size(); ++i) {

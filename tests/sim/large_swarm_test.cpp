@@ -103,7 +103,7 @@ TEST(LargeSwarm, SeventyThousandRobotsDriveTalkAndAreRecorded) {
     ASSERT_FALSE(simulation.start());
     ASSERT_FALSE(run_for(simulation, 0.1));
 
-    // All of the crowd has moved, and nobody else.
+    // All robots of the crowd have moved, and no others.
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         EXPECT_EQ(world.bodies.position_mm[i] != before[i], i < kCrowd) << i;
     }

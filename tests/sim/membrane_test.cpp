@@ -1,4 +1,4 @@
-// Membranes hold: they keep their area, let nobody through, stay at rest when nobody pushes.
+// Membranes hold: they keep their area, let no body through, and stay at rest when nothing pushes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ Polygon line_of(World const& world, Membrane const& membrane) {
     return {first, first + membrane.body_count};
 }
 
-/// Watches a simulation: who is inside of which membrane, areas, finite numbers.
+/// Watches a simulation: the bodies inside each membrane, areas, finite numbers.
 class Watch {
 public:
     explicit Watch(Scenario scenario) : simulation_(testing::test_program(), std::move(scenario), {}) {
@@ -135,7 +135,7 @@ private:
     }
 
     void look() {
-        EXPECT_EQ(regions(), first_regions_) << "somebody got through before " << world().time_s() << " s";
+        EXPECT_EQ(regions(), first_regions_) << "a body got through before " << world().time_s() << " s";
         for (std::size_t i = 0; i < first_areas_.size(); ++i) {
             double const part = signed_area(line_of(world(), world().membranes[i])) / first_areas_[i];
             smallest_ = std::min(smallest_, part);

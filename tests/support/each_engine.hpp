@@ -11,7 +11,7 @@
 
 namespace pogosim::testing {
 
-/// Of the test that runs.
+/// The engine of the running test.
 inline std::string engine_name = "box2d";
 
 /// For all tests.

@@ -1,4 +1,4 @@
-// One robot that meets nobody.
+// One robot, alone in the world.
 #pragma once
 
 #include <gtest/gtest.h>

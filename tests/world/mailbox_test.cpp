@@ -27,7 +27,7 @@ bool push(Mailboxes& boxes, std::size_t robot, std::vector<std::byte> const& pay
     return boxes.push(robot, header, payload);
 }
 
-/// Of messages that lie one after the other, in two parts.
+/// The payloads of messages in two contiguous parts.
 std::vector<std::vector<std::byte>> payloads_of(std::array<std::span<std::byte const>, 2> const& messages) {
     std::vector<std::vector<std::byte>> payloads;
     for (std::span<std::byte const> part : messages) {
