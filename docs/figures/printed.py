@@ -21,7 +21,7 @@ class Printed:
 
     Attributes:
         page: In docs/.
-        name: Of the quote.
+        name: Name of the quote.
         commands: The pages' shell blocks whose text matches this are run.
         lines: Lines that match this are quoted, from where they begin to match.
     """

@@ -3,7 +3,7 @@
 //     d theta / dt = w + K * mean over all phases heard in a tick of sin(theta_j - theta)
 //
 // The frequencies w are the quantiles (i + 1/2) / N of a Lorentzian distribution around 0 of half-width gamma, for the
-// robots i = 0 to N - 1. With a range beyond the arena, everybody hears everybody, as in the theory; with a short one,
+// robots i = 0 to N - 1. With a range beyond the arena, all robots hear each other, as in the theory; with a short one,
 // robots that drive about hear ever new ones.
 #include <math.h>
 

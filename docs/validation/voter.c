@@ -46,7 +46,7 @@ static bool all_agree(void) {
     return true;
 }
 
-// Of any robot but this one.
+// The state of a random other robot.
 static uint8_t opinion_of_another(void) {
     uint16_t const other = (uint16_t)(pogobot_helper_getid() + 1 + rand() % (nb_robots - 1));
     return mydata->opinions[other % nb_robots];

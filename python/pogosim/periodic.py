@@ -42,7 +42,7 @@ def steps_of(offset_mm: Floats, duration_s: Floats, size_mm: Floats | None, top_
         offset_mm: From each row to the next one of the same robot, shape (..., 2).
         duration_s: Between them, shape (...).
         size_mm: Width and height of a periodic arena. None: it has walls.
-        top_speed_mm_s: Of the robots. None: unknown, so that of their longest step counts.
+        top_speed_mm_s: Top speed mm of the robots. None: unknown, so that of their longest step counts.
 
     Returns:
         Shape (..., 2), mm.

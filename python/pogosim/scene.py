@@ -22,7 +22,7 @@ SPOTS = ("static_light", "orbiting_static_light", "orbiting_light")
 
 TALKERS = ("pogobot", "pogobject", "active_object")  # bodies with a program
 
-# Of a pogobot without `radius`, and without `communication_radius`.
+# Defaults of a pogobot: `radius` and `communication_radius`.
 POGOBOT_RADIUS_MM = 26.5
 COMMUNICATION_RADIUS_MM = 80.0
 

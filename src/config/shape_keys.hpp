@@ -11,7 +11,7 @@ namespace pogosim {
 
 /// Sizes and coordinates. What is below 1 mm is probably in metres.
 inline constexpr Range kLength = above(0).up_to(kMaxLength).usually_from(1);
-/// Of bodies: smaller ones have masses that a float cannot divide by.
+/// Smallest size of a body: a float cannot divide by the mass of a smaller one.
 inline constexpr Range kBodyLength = between(1e-3, kMaxLength).usually_from(1);
 inline constexpr Range kLengthOrZero = between(0, kMaxLength).usually_from(1);
 inline constexpr Range kCoordinate = between(-kMaxLength, kMaxLength).usually_from(1);
@@ -20,9 +20,9 @@ inline constexpr Range kCoordinate = between(-kMaxLength, kMaxLength).usually_fr
 std::span<Key<Shape> const> solid_geometry_keys();
 /// The same for robots, which are disks unless it says otherwise.
 std::span<Key<Shape> const> robot_geometry_keys();
-/// Of walls: those, or arena.
+/// Geometries of walls: those of bodies, or arena.
 std::span<Key<Shape> const> outline_geometry_keys();
-/// Of lamps: those, arena, or global.
+/// Geometries of lamps: those of bodies, arena, or global.
 std::span<Key<Shape> const> any_geometry_keys();
 
 /// The sizes of all shapes.

@@ -1,4 +1,4 @@
-// What a configuration says as it was written, for whoever has to name it again: messages and the record of the run.
+// A configuration as it was written, to be quoted in messages and in the metadata of the run.
 // Others see a Scenario.
 #pragma once
 
@@ -12,7 +12,7 @@ struct ConfigSource {
     Node values;  // of each key that means something, defaults included
 };
 
-/// Of a scenario that was put together in code: an empty map.
+/// Source of a scenario that was built in code: an empty map.
 ConfigSource const& source_of(Scenario const& scenario);
 
 /// The entry of `objects` as it is written; nullptr when the scenario was not read from a file.

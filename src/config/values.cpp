@@ -104,7 +104,7 @@ std::string expected_number(Limits const& limits) {
     return with_unit("a number" + limits.range.text(), limits.unit);
 }
 
-/// The range is checked after rounding to the type, so that what passes is in the range for everyone who uses it.
+/// The range is checked after rounding to the type, so that the value in use is in the range.
 template <class Real>
 void read_real(Place const& place, Limits const& limits, Real& value) {
     std::optional<double> const number = number_of(place.node);

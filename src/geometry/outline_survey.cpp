@@ -60,7 +60,7 @@ bool touch(Edge const& a, Edge const& b) {
            (b_left == 0 && is_between_ends(a, b.left)) || (b_right == 0 && is_between_ends(a, b.right));
 }
 
-/// Of two neighbours: do they leave their corner in the same direction?
+/// Whether two neighbours leave their common corner in the same direction.
 bool folds_back(Edge const& a, Edge const& b) {
     return (a.left == b.left && side_of(a, b.right) == 0) || (a.right == b.right && side_of(a, b.left) == 0);
 }

@@ -120,7 +120,7 @@ WallIndex::Cells WallIndex::cells_of(Box const& box) const {
 
 template <class Visit>
 void WallIndex::for_each_cell(WallEdge const& edge, Visit const& visit) const {
-    // Of each row, the columns between which the edge crosses it; a little more against rounding.
+    // In each row, the columns that the edge crosses, with a margin for rounding.
     float const margin = 0.01F * cell_mm_;
     Cells const cells = cells_of(box_around(edge.from, edge.to, margin));
     Vec2 const way = edge.to - edge.from;

@@ -63,7 +63,7 @@ pogosim_run::~pogosim_run() {
     try {
         end();
     } catch (std::exception const&) {
-        // Whoever wants to know calls end().
+        // The outcome is reported by end().
     }
 }
 

@@ -50,7 +50,7 @@ constexpr std::uint32_t kLeastBodies = 1024;
 constexpr float kCalmMmS = 1.0F;
 constexpr double kCalmAfterS = 0.5;
 
-/// Of the bodies that are not part of a membrane; of all bodies if there are no others.
+/// The smallest radius of the bodies that are not part of a membrane; of all bodies if there are no others.
 float smallest_radius_mm(World const& world) {
     float smallest_mm = std::numeric_limits<float>::max();
     for (Object const& object : world.objects) {

@@ -7,11 +7,11 @@
 
 int robot_main(void);
 
-// Of a program without REGISTER_USERDATA.
+// Defined here for programs without REGISTER_USERDATA.
 __attribute__((weak)) size_t UserdataSize = 0;
 __attribute__((weak)) void (*UserdataConstruct)(void*) = NULL;
 
-// Of a program written for the robots' SDK, see pogobot.h.
+// Defined here for all programs but those written for the robots' SDK, see pogobot.h.
 extern char const pogosim_is_for_sdk __attribute__((weak));
 
 struct pogosim_program const pogosim_this_program = {

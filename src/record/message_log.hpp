@@ -1,5 +1,5 @@
 // The message log: a table like the data file, with one row per transmission and robot in its reach, and one for each
-// transmission that reaches nobody.
+// transmission that reaches no robot.
 #pragma once
 
 #include <cstddef>
@@ -54,7 +54,7 @@ struct MessageRow {
     std::span<std::byte const> payload{};
     std::int32_t message_bytes = 0;              // header and payload as the law of reception counts them
     float send_probability = 0.0F;               // of the sender, per tick
-    std::optional<LoggedReception> reception{};  // null: nobody was in reach
+    std::optional<LoggedReception> reception{};  // null: no robot was in range
 };
 
 /// Columns: docs/message_log.md. Files, failures and bytes: as those of DataFile.

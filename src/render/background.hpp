@@ -36,7 +36,7 @@ private:
     Coverage floor_;
     Coverage scratch_;
 
-    // Of the light: cells of the map whose centre is in the arena.
+    // Cells of the light map whose centres are in the arena.
     std::vector<bool> inside_;
     std::vector<float> opacity_;  // of cells
 };

@@ -23,7 +23,7 @@ void draw_bodies(Scene const& scene, bool lateral_leds);
 /// Lamps as small suns, the outline of what they light, and beams.
 void draw_lamps(Scene const& scene, Coverage& scratch);
 
-/// Who hears whom. The half next to a sender has the colour of its emitter; a two-way link is a whole line, a one-way
+/// Links between robots in range. The half next to a sender has the colour of its emitter; a two-way link is a whole line, a one-way
 /// link fades from the middle on and ends in an arrow head at the listener.
 void draw_links(Scene const& scene);
 

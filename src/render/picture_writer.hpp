@@ -80,7 +80,7 @@ private:
     std::int64_t next_number_ = 0;
     std::vector<Canvas> canvases_;  // by thread
 
-    // Of all threads, under the mutex.
+    // State of all threads, protected by the mutex.
     std::mutex mutex_;
     std::condition_variable film_turn_has_come_;
     std::int64_t film_turn_ = 0;  // the number of the next snapshot for the film

@@ -32,7 +32,7 @@ AddressSpace::AddressSpace(ProgramImage const& image)
         program_.end = std::max(program_.end, reinterpret_cast<std::uint64_t>(piece.data() + piece.size()));
     }
     // The heap of a process without random addresses (-no-pie) begins behind its executable. It may be in pieces, some
-    // of which somebody has given other properties (madvise).
+    // part of which has been given other properties (madvise).
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
         Range range;

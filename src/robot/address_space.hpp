@@ -1,4 +1,4 @@
-// What a word of memory says beyond the place where the system has put things in this run.
+// Words of memory without what depends on the addresses of this run.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace pogosim {
 
 class AddressSpace {
 public:
-    /// As it is now.
+    /// Takes the present address space.
     explicit AddressSpace(ProgramImage const& image);
 
-    /// The same in every run: of an address in the program its offset there, of another one a constant, and what is no
-    /// address as it is. Numbers that look like an address count as one.
+    /// The word in a form that is the same in every run: the offset of an address in the program, a constant for any other
+    /// address, and a number as it is. Numbers that look like addresses count as addresses.
     std::uint64_t without_place(std::uint64_t word) const;
 
 private:

@@ -21,7 +21,7 @@ struct Search {
     int frames = 0;
 };
 
-// Of the search in this thread.
+// State of the search in this thread.
 constinit thread_local bool is_searching = false;
 thread_local sigjmp_buf way_back;
 

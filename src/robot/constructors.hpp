@@ -24,7 +24,7 @@ struct Constructors {
 /// That of a program in memory; null: it has no static objects to construct.
 std::shared_ptr<Constructors const> constructors_of(pogosim_program const& program);
 
-/// Of a program that may leave memory: whoever has asked for its constructors keeps them.
+/// Copies the list of constructors, so that it outlives a program that is unloaded.
 void forget_constructors_of(pogosim_program const& program);
 
 /// Makes the variables in these pieces of memory what they were before, and constructs the objects in them.

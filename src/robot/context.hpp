@@ -64,7 +64,7 @@ struct RunServices {
     std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once
     std::vector<WarningKind> warned;                // of warn_once
     WorldAccess access{};
-    PrintedLines* printed_lines = nullptr;  // gets the lines of robots; null: nobody wants them
+    PrintedLines* printed_lines = nullptr;  // gets the lines of robots; null: they are not kept
 
     /// Logs a warning that names the running robot, its tick and the time, the first time in the run that this format (a
     /// literal) is used.

@@ -370,7 +370,7 @@ void Controllers::start() {
         construct_user_data(i);
     }
     if (count == 0) {
-        // Nobody to run main(): only what the global callbacks need.
+        // No robot runs main(): only what the global callbacks need.
         run_main(kNone);
     }
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -411,7 +411,7 @@ void Controllers::run_sdk_main(std::uint32_t robot) {
     command_motors(robot);
 }
 
-/// Of callbacks that are called once, before the first step.
+/// Calls a callback that runs once, before the first step.
 void Controllers::warn_of_late_callbacks() {
     auto const warn_if = [this](bool is_late, char const* name) {
         if (is_late) {
@@ -521,7 +521,7 @@ void Controllers::tick(std::uint32_t robot) {
     command_motors(robot);
 }
 
-/// Of the clock, since a time of it.
+/// Adds the drift of the robot's clock for the time since `since_us`.
 void Controllers::drift(Controller& self, std::int64_t since_us) {
     std::int64_t const slept_us = self.clock_us - since_us;
     self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);  // must not turn the clock back

@@ -43,7 +43,7 @@ inline ElfFile elf_file(std::span<char const> bytes) {
             .segments = elf_array<Elf64_Phdr>(bytes, header->e_phoff, header->e_phnum)};
 }
 
-/// Of a section that is a table of them.
+/// The entries of a section that is a table of T.
 inline std::span<Elf64_Sym const> elf_symbols(ElfFile const& file, Elf64_Shdr const& table) {
     return elf_array<Elf64_Sym>(file.bytes, table.sh_offset, table.sh_size / sizeof(Elf64_Sym));
 }

@@ -38,7 +38,7 @@ using boost::context::detail::make_fcontext;
 using boost::context::detail::transfer_t;
 
 constexpr std::size_t kGuardBytes = std::size_t{1} << 20U;  // large local arrays must not reach beyond it
-constexpr std::size_t kJumpedBytes = 65536;  // of frames between whoever has resumed a fiber and where a jump ends
+constexpr std::size_t kJumpedBytes = 65536;  // of frames between the resuming context and the target of a jump
 constexpr double kBytesPerKib = 1024.0;
 
 /// Memory with forbidden pages before it, in which an overflow ends.
@@ -123,21 +123,21 @@ private:
 
     Stack stack_;
     fcontext_t inside_ = nullptr;   // where its code goes on
-    fcontext_t outside_ = nullptr;  // where whoever has resumed it goes on
+    fcontext_t outside_ = nullptr;  // context that resumed it
     void (*body_)(void*) = nullptr;
     void* argument_ = nullptr;
     void (*visitor_)(void*) = nullptr;
     void* argument_of_visitor_ = nullptr;
     bool has_returned_ = true;
     std::exception_ptr thrown_;
-    HandledExceptions handled_{};  // while it is left: its own; else those of whoever has resumed it
+    HandledExceptions handled_{};  // while suspended, its own; otherwise, those of the context that resumed it
 
     // For sanitizers.
     void* fake_stack_ = nullptr;
     void* outside_fake_stack_ = nullptr;
     void const* outside_stack_ = nullptr;
     std::size_t outside_stack_bytes_ = 0;
-    std::byte const* outside_frame_ = nullptr;  // the last one of whoever has resumed it
+    std::byte const* outside_frame_ = nullptr;  // the last frame of the context that resumed it
     void* tsan_fiber_ = nullptr;
     void* tsan_outside_ = nullptr;
 };

@@ -47,7 +47,7 @@ bool run_on(Fiber& fiber, void (*body)(void*), void* argument);
 /// Goes on where the code on the fiber has left it; returns as run_on() does.
 bool resume(Fiber& fiber);
 
-/// Back to whoever called run_on() or resume(). Returns when the fiber is resumed, perhaps in another thread.
+/// Switches back to the caller of run_on() or resume(). Returns when the fiber is resumed, perhaps in another thread.
 void leave_fiber();
 
 /// Calls body(argument) on the stack of a fiber that was left, beyond the code that has left it.

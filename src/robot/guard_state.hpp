@@ -29,7 +29,7 @@ struct EndRequest {
 };
 enum class RequestState { none, being_made, made };
 
-/// Of processor time.
+/// Watches over the processor time of a call of user code.
 struct ProcessorWatch {
     double timeout_s = 0.0;  // of one call of user code; 0: none
     double period_s = 0.0;
@@ -65,7 +65,7 @@ struct RunGuard {
     RunGuard(void const* code, double timeout_s);
 
     pthread_t thread{};  // that works for the run: the only one that may jump
-    // Of more threads that run user code at the same time, see HelperGuard.
+    // Further threads that run user code at the same time, see HelperGuard.
     RunGuard* helped = nullptr;                // the guard of their run; null: this is one
     std::atomic<RunGuard*> helpers = nullptr;  // the first of them
     std::atomic<RunGuard*> next_helper = nullptr;
@@ -119,7 +119,7 @@ struct RunGuard {
 /// The run for which this thread works; null: none.
 extern constinit thread_local RunGuard* active_guard;
 
-/// The run that an executable is for: signals from outside, and crashes of threads that nobody knows, are for it. Null
+/// The run that an executable is for: signals from outside, and crashes of unknown threads, are for it. Null
 /// before and after it, and in other processes.
 extern constinit std::atomic<RunGuard*> process_run;
 

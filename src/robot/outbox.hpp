@@ -1,5 +1,5 @@
 // What the robots of a part of the swarm send and say while other threads run other parts. The parts are joined in the
-// order of the robots, so that nobody can tell how many there were.
+// order of the robots, so that results do not depend on the number of workers.
 #pragma once
 
 #include <cstdint>

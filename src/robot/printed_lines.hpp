@@ -1,4 +1,4 @@
-// The last lines that each robot has printed, for whoever wants to show them.
+// The last lines that each robot has printed, for display.
 #pragma once
 
 #include <cstddef>

@@ -144,7 +144,7 @@ void RobotMemory::load_all(std::uint32_t copy) {
     }
 }
 
-/// Of what is not in the program.
+/// The stored content of a block that is not in the program at present. `copy`: kNone for that of the outside.
 std::byte const* RobotMemory::content(std::uint32_t copy, std::size_t block) const {
     if (copy == kNone) {
         return other_.data() + block * kBlockBytes;

@@ -47,7 +47,7 @@ public:
 
     /// Bytes of one copy.
     std::size_t bytes() const { return first_.size(); }
-    /// Of these, those that are copied.
+    /// Number of blocks that are copied.
     std::size_t copied_bytes() const { return different_.size() * kBlockBytes; }
 
 private:

@@ -14,7 +14,8 @@ using namespace std::string_view_literals;
 
 namespace {
 
-// Of the C and C++ libraries: what gives the same whoever calls it, in whatever order, and is safe on several threads.
+// Functions of the C and C++ libraries whose results do not depend on the caller or the order of calls, and that are
+// safe on several threads.
 // Among those that are not here: strtok(), which remembers a text; fopen() and fprintf(), whose output would be in
 // another order.
 constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
@@ -101,7 +102,7 @@ constexpr std::array kHarmlessBeginnings{"__cxa_"sv,
                                          "_ZNSt13runtime_error"sv,
                                          "_ZNSt16invalid_argument"sv};
 
-// Of every program; nobody changes them after its start.
+// Variables of every program that do not change after its start.
 constexpr std::array kOwnVariables{"REGISTER_USERDATA_once"sv, "UserdataConstruct"sv, "UserdataSize"sv,
                                    "_ZStL8__ioinit"sv, "__dso_handle"sv};
 

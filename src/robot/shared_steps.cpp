@@ -102,7 +102,7 @@ std::optional<UserFailure> SharedSteps::look_at_variables() {
     if (changed.empty()) {
         return std::nullopt;
     }
-    context.is_system = true;  // nobody knows which robot it was
+    context.is_system = true;  // it is unknown which robot it was
     return UserFailure{
         fmt::format("a robot has changed the variable that is set from the parameter '{}', which all robots "
                     "share, while others ran on other threads: give each robot its own in USERDATA, or "

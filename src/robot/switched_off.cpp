@@ -39,7 +39,7 @@ void Controllers::wake(SwitchedOff const& self) {
     world_.robots.led[self.robot] = self.leds;
 }
 
-/// Never due: that takes no branch in run_robots(). Of one that rests already, nothing is kept.
+/// Never due: that takes no branch in run_robots(). A robot that rests already is left as it is.
 void Controllers::rest(SwitchedOff& self) {
     std::int64_t const clock_us = std::exchange(controllers_[self.robot].clock_us, kNever);
     Leds const leds = std::exchange(world_.robots.led[self.robot], {});

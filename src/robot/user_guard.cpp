@@ -119,8 +119,7 @@ void CaughtSignals::need_no_more() {
     }
 }
 
-/// Its own thread waits for all that run user code, some of which may wait for a lock that is held for ever now: that
-/// must have an end, too.
+/// Limits how long the thread of the run waits for its workers, some of which may now wait for ever for a lock.
 void let_run_expect_rescue(RunGuard const& helper) {
     RunGuard& run = *helper.helped;
     set_reason(run, helper.what.c_str());

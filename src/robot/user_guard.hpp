@@ -93,9 +93,9 @@ private:
     bool is_entered_ = false;
 };
 
-/// As long as this lives, the thread works for a run: crashes in it, and what is below, are that run's, and signal
-/// handlers are installed, which are given back at the end. One in another for the same thread is allowed; a run has
-/// one thread at a time.
+/// While this exists, the calling thread works for a run: its crashes, and the functions below, belong to that run.
+/// Installs signal handlers, and restores the previous ones at the end. May be nested in a thread; a run has one thread at
+/// a time.
 class GuardedThread {
 public:
     explicit GuardedThread(UserGuard& guard);

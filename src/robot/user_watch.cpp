@@ -44,7 +44,7 @@ double thread_processor_time_s() {
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-/// The run whose timer has sent this signal to this thread; null: it is somebody else's.
+/// The run whose timer has sent this signal to this thread; null: it is not from one of them.
 RunGuard* run_of(siginfo_t const& info) {
     RunGuard* const guard = active_guard;
     bool const is_timers = info.si_code != SI_TIMER || info.si_value.sival_ptr == guard;  // or sent by hurry()
@@ -283,7 +283,7 @@ void stop_watch(RunGuard& guard) {
 
 void hurry_user_code(RunGuard& guard, char const* request_name) {
     if (guard.left_by_force || !guard.is_watching) {
-        return;  // the timer watches over the data file, or the run is over: nobody would stop it
+        return;  // the timer watches over the data file, or the run is over: nothing would stop it
     }
     double const now_s = monotonic_s();
     double const entered_s = guard.entered_s.load(std::memory_order_relaxed);

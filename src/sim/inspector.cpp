@@ -21,7 +21,7 @@ Object const& object_of(World const& world, std::uint32_t robot) {
     return *std::ranges::find(world.objects, robot, &Object::robot);
 }
 
-/// Of the middle of a membrane, or of its only body.
+/// Velocity of the object's middle.
 void add_motion(World const& world, Object const& object, Inspection& inspection) {
     auto const [position_mm, heading_rad] = pose_of(world, object);
     inspection.has_body = true;

@@ -57,7 +57,7 @@ void on_interrupt(int signal, siginfo_t* /*info*/, void* /*context*/) {
 /// Ignores a signal in this program, but not in its child programs.
 void on_ignored_signal(int /*signal*/, siginfo_t* /*info*/, void* /*context*/) {}
 
-/// Whoever started the program may have it ignore some (nohup, a shell without job control).
+/// The parent process may have set some signals to be ignored (nohup, a shell without job control).
 bool may_be_ignored(int signal) {
     return signal != SIGINT && signal != SIGTERM && signal != SIGXCPU;
 }

@@ -9,7 +9,7 @@ namespace pogosim {
 
 class Multiples {
 public:
-    /// `first`: 0 or 1, the first multiple that counts. Of a period that is not positive, only the multiple 0 exists.
+    /// `first`: 0 or 1, the first multiple that counts. If the period is not positive, only the multiple 0 exists.
     Multiples(double period_s, std::int64_t first) : period_s_(period_s), next_(first) {}
 
     /// How many multiples have been reached since the last call. `time_s` must not decrease.

@@ -16,7 +16,7 @@ public:
     double speed_up() const { return speed_up_; }
     void set_speed_up(double speed_up);
 
-    /// Forgets how late the run is: after a pause, or a step that somebody has waited for.
+    /// Forgets how late the run is: after a pause, or a step during which the run was stopped.
     void start_anew();
 
     /// When the step of `step_s` that begins at `time_s` may be made: when the time of its end has come. A run that is

@@ -101,7 +101,7 @@ void RecordedRows::add(std::uint32_t robot, ObjectRow const& row, std::span<Cell
 
 void RecordedRows::end() {
     if (moments_.size() >= kMostMoments) {
-        // Nobody takes them: the display hangs. Every second one is enough for a plot.
+        // They are not taken, because the display hangs. Every second one is enough for a plot.
         for (std::size_t i = 1; 2 * i < moments_.size(); ++i) {
             moments_[i] = std::move(moments_[2 * i]);
         }

@@ -50,7 +50,7 @@ private:
     std::vector<std::string> columns_;
     std::vector<Row> last_;  // by robot
     RecordedValues present_;
-    std::vector<RecordedValues> moments_;  // those that nobody has taken
+    std::vector<RecordedValues> moments_;  // those that have not been taken
 };
 
 }  // namespace pogosim

@@ -34,7 +34,7 @@ public:
     /// For a program that failed before open(): empty files. Does nothing when they are open.
     void open_without_rows();
 
-    /// What the messages of the next step fill; null: nobody wants to know.
+    /// What the messages of the next step fill; null: there is no message log.
     DeliveryLog* deliveries() { return messages_ ? &messages_->deliveries() : nullptr; }
 
     /// Writes what became of the last step's messages, and the current rows if a multiple of the save period has been
@@ -48,7 +48,7 @@ public:
     /// Saves rows now. Throws OutputError.
     void save_now();
 
-    /// From now on, `rows` gets what is recorded of robots; null: nobody does. `rows` outlives this.
+    /// From now on, `rows` gets what is recorded of robots; null: none. `rows` outlives this.
     void show(RecordedRows* rows);
 
     /// From open() on, `columns` gets what robots give at each save. `columns` outlives this.
@@ -99,8 +99,8 @@ private:
     std::unique_ptr<MessageRecorder> messages_;  // null: there is no message log
     bool is_opened_ = false;                     // by open(): rows come into it
     bool is_complete_ = false;
-    RecordedRows* shown_ = nullptr;       // null: nobody looks
-    SavedColumns* kept_ = nullptr;        // null: nobody wants them
+    RecordedRows* shown_ = nullptr;       // null: no window
+    SavedColumns* kept_ = nullptr;        // null: not kept
     DataTable table_;                     // of the present save
     std::vector<ObjectRow> built_in_;     // of its rows
     std::vector<CellValue> empty_cells_;  // user columns of subparts

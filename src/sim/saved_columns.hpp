@@ -29,7 +29,7 @@ public:
     /// Before the first save: the columns of the program, with no values.
     void open(std::span<ColumnSpec const> columns, std::size_t robot_count);
 
-    /// Rows of a save replace those of the one before.
+    /// The rows of each save replace the previous ones.
     void save(World const& world, DataTable const& rows);
 
     std::span<SavedColumn const> columns() const { return columns_; }

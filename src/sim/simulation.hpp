@@ -94,7 +94,7 @@ public:
     /// After conclude(): other runs may write the files of this one.
     void release_files() { recorder_.release(); }
 
-    /// The simulated time is over, or somebody has asked the run to end.
+    /// The simulated time is over, or the run was asked to end.
     bool is_over() const;
 
     std::uint32_t seed() const { return seed_; }
@@ -161,7 +161,7 @@ public:
     /// What bodies did in the last step. From the first call on, the arrays stay in place and are always those of now.
     ObservedMotions const& observed_motions() const;
 
-    /// The fence around this run's user code, for whoever owns the process.
+    /// The crash handler of this run's user code, for the owner of the process.
     UserGuard& guard() { return guard_; }
 
     World const& world() const { return world_; }

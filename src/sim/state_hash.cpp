@@ -130,7 +130,7 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
         add_robot(hash, all[robot], world.mailboxes, robot);
     }
-    // Nothing is added where nobody has changed what these say.
+    // Nothing is added if none of these has changed.
     for (Controllers::SwitchedOff const& off : controllers.switched_off()) {
         hash.add(off.robot);
         hash.add(off.clock_us);

@@ -110,7 +110,7 @@ private:
         return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     }
 
-    /// Of two triangles that share an edge, one alone has the pixels on it.
+    /// Pixels on an edge shared by two triangles belong to one of them only.
     static bool is_top_left(ImVec2 const& from, ImVec2 const& to) {
         return (to.y == from.y && to.x > from.x) || to.y < from.y;
     }

@@ -126,7 +126,7 @@ def test_messages_that_reach_nobody_are_counted_with_a_warning(
     folder = analyzed(tmp_path, to_nobody("a", 7))
     assert pd.read_csv(folder / "messages.csv")["nobody_in_reach"].tolist() == [7]
     assert {path.name for path in folder.iterdir()} == {"messages.csv"}
-    assert "no message reached anybody" in capsys.readouterr().err
+    assert "no message reached a robot" in capsys.readouterr().err
 
 
 def test_messages_to_walls_have_no_distance_but_a_cluster_size(
@@ -169,7 +169,7 @@ def test_unknown_category_and_empty_log_are_one_message(tmp_path: Path, capsys: 
     log = log_of(("a", 2, 0.8, 10, 3))
     path = write_rows(tmp_path / "m.feather", log, metadata_of())
     assert analyze("messages", ["-i", str(path), "--category", "c"], PROG) == 2
-    assert "nobody of the category 'c' sends; senders: a\n" in capsys.readouterr().err
+    assert "no robot of the category 'c' sends; senders: a\n" in capsys.readouterr().err
     write_rows(path, log.iloc[:0], metadata_of())
     assert analyze("messages", ["-i", str(path)], PROG) == 2
     assert "has no message: no robot sent one\n" in capsys.readouterr().err

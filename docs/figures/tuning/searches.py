@@ -50,7 +50,7 @@ class Found:
     """A search that is done.
 
     Attributes:
-        folder: Of its results.
+        folder: Folder of its results.
         summary: Its summary.json.
         history: Its opt_history.feather.
     """
@@ -74,7 +74,7 @@ def search(
         program: Compiled for Pogosim.
         configuration: Names of files in it count from the project's folder.
         folder: For its results; must not be there yet.
-        options: Of the command line.
+        options: Options of the command line.
         changes: Values of dotted keys that differ from the file.
 
     Raises:

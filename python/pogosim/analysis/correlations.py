@@ -46,7 +46,7 @@ def pair_correlation(run: Trajectories, greatest_mm: float = 200.0, width_mm: fl
     Args:
         run: Its arena must be known.
         greatest_mm: Largest distance.
-        width_mm: Of a bin.
+        width_mm: Width of a bin.
 
     Returns:
         See `PairCorrelation`.
@@ -107,13 +107,13 @@ def vector_correlation(
 
     The mean is over all pairs of different robots at a distance r at the same time. For unit vectors C(r) is the mean
     cosine of the angle between them. Source: Cavagna, Cimarelli, Giardina, Parisi, Santagati, Stefanini, Viale,
-    "Scale-free correlations in starling flocks", PNAS 107, 2010, who subtract the mean of all robots first.
+    "Scale-free correlations in starling flocks", PNAS 107, 2010, where the mean of all robots is subtracted the mean of all robots first.
 
     Args:
         run: Positions of the robots.
         vector: Shape (T, N, 2); NaN: the robot is left out.
         greatest_mm: Largest distance.
-        width_mm: Of a bin.
+        width_mm: Width of a bin.
         fluctuations: Subtract the mean vector of each time first. Otherwise C(r) of a swarm in which all go the same
             way is 1 at all distances.
 
@@ -142,7 +142,7 @@ def correlation_length(distance_mm: Floats, correlation: Floats) -> float:
     """Return the integral of the positive part of a correlation over the distance, by trapezoids.
 
     It begins with C(0) = 1, and goes over distances without pairs in a straight line. exp(-r / l) has l, apart from
-    what is beyond the largest distance. Of few pairs it is too long: noise has a positive part.
+    what is beyond the largest distance. With few pairs it is too long, since noise has a positive part.
 
     Args:
         distance_mm: Shape (B,).

@@ -71,7 +71,7 @@ def covered_area(cells: Cells, position_mm: Floats, arena: Arena, reach_mm: floa
     intersections of each disk with the cell of its own robot, which do not overlap; see `disk_and_edges`.
 
     Args:
-        cells: Of `voronoi_cells`, shape (n,).
+        cells: Cells of `voronoi_cells`, shape (n,).
         position_mm: The same positions, shape (n, 2).
         arena: The same arena.
         reach_mm: Radius of the disks.
@@ -115,7 +115,7 @@ def disk_and_edges(start: Floats, end: Floats, radius: float) -> Floats:
     Args:
         start: First corners of the edges, shape (n, 2).
         end: Second corners, shape (n, 2).
-        radius: Of the disk.
+        radius: Radius of the disk.
 
     Returns:
         Shape (n,), positive for edges that turn from x to y around the origin.

@@ -17,7 +17,7 @@ from scipy import ndimage
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.walls import has_walls
 
-# Of a bin, the share of floor below which it is not drawn: its density is that of hardly any positions.
+# Bins with a smaller share of floor are not drawn: their density would rest on hardly any positions.
 MIN_FLOOR_SHARE = 0.05
 KERNEL_GRID = 200  # bins along the longer side
 

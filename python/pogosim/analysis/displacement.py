@@ -17,7 +17,7 @@ from pogosim.analysis.trajectories import Trajectories, trajectories_of, unwrapp
 # Numbers that are transformed at once: 100 MB of spectra.
 MAX_CELLS = 4_000_000
 
-# Of as many times as this for each one in the file, too many are missing to compare positions at equal lags.
+# If the file lacks more than this many times for each one that it has, positions at equal lags cannot be compared.
 MOST_GAPS = 100
 
 

@@ -65,7 +65,7 @@ def listed_distance(run: Trajectories, listed: ListedNeighbours) -> Floats:
 
     Args:
         run: The same run.
-        listed: Of `listed_neighbours`.
+        listed: Listed of `listed_neighbours`.
 
     Returns:
         Shape (T, N), mm; NaN where a robot lists none that has a position.

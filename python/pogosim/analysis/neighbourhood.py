@@ -1,4 +1,4 @@
-"""Who is near whom: pairs of neighbours, degrees, nearest neighbours and clusters.
+"""Neighbourhoods: pairs of neighbours, degrees, nearest neighbours and clusters.
 
 Two robots are neighbours if their centres are not farther apart than the reach, `run.reach_mm` unless another one is
 given. Distances are those of the shortest image in periodic arenas. Walls do not separate robots.
@@ -191,7 +191,7 @@ def cluster_sizes(cluster: Integers) -> Integers:
     """Return the number of robots in each cluster at each time.
 
     Args:
-        cluster: Of `clusters`, shape (T, N).
+        cluster: Cluster of `clusters`, shape (T, N).
 
     Returns:
         Shape (T, C), C clusters at most; decreasing, 0 where there are fewer. The largest cluster is column 0.
@@ -209,7 +209,7 @@ def fano_factor(degree: Floats) -> Floats:
     variance is that of these robots, with n in its denominator. U. Fano, Phys. Rev. 72, 26 (1947).
 
     Args:
-        degree: Of `degrees`, shape (T, N).
+        degree: Degree of `degrees`, shape (T, N).
 
     Returns:
         Shape (T,); NaN where no robot has a neighbour.

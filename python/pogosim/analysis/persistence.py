@@ -108,7 +108,7 @@ def persistence_length(run: Trajectories, persistence_time_s: float) -> float:
 
     Args:
         run: One run.
-        persistence_time_s: Of `persistence_time`.
+        persistence_time_s: Persistence time of `persistence_time`.
 
     Returns:
         l_p in mm; NaN if nothing is known of either.

@@ -22,7 +22,7 @@ def attempts(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the rows in which a robot was in reach: those that the law of reception decided about.
 
     Args:
-        rows: Of a message log.
+        rows: Rows of a message log.
 
     Raises:
         AnalysisError: It is none.
@@ -86,7 +86,7 @@ def outcomes(rows: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
     """Count what became of the messages of groups of senders.
 
     Args:
-        rows: Of a message log.
+        rows: Rows of a message log.
         by: Columns that tell groups apart; those that tell runs apart among them.
 
     Returns:

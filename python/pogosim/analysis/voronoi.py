@@ -59,7 +59,7 @@ def voronoi_areas(cells: Cells, position_mm: Floats, arena: Arena) -> Floats:
     """Return the areas of Voronoi cells; robots at one place share theirs. Sum: the area of the arena.
 
     Args:
-        cells: Of `voronoi_cells`, shape (n,).
+        cells: Cells of `voronoi_cells`, shape (n,).
         position_mm: The same positions, shape (n, 2).
         arena: The same arena.
 

@@ -31,7 +31,7 @@ def processors() -> int:
 
 @dataclass(frozen=True)
 class Workers:
-    """Who does runs, as options say it.
+    """The backend that does runs, as chosen by options.
 
     Args:
         backend: "multiprocessing", "sequential" or "dask" ("ray" means dask).

@@ -136,7 +136,7 @@ class Configuration:
         """Return where an entry stands: "conf/a.yaml:12: objects.robots.nb"; of all, the name of the file.
 
         Args:
-            path: Of the entry.
+            path: Path of the entry.
             key: A key in it, whose line is given; empty: the line of the entry.
         """
         line = self.line_at([*path, key] if key else path)

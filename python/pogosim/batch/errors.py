@@ -50,7 +50,7 @@ def is_text(text: str) -> bool:
 
 
 def tell(text: str) -> None:
-    """Print a line; a batch goes on when nobody reads it."""
+    """Print a line; a batch goes on even if the reader has gone."""
     with contextlib.suppress(OSError):
         say(text)
 

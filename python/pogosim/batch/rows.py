@@ -73,13 +73,13 @@ class Runs:
         program: Program compiled for Pogosim.
         temp_base: Folder for files of single runs.
         output_dir: Folder of the results; with the others, it tells apart what shares a folder for temporary files.
-        workers: Who does the runs.
+        workers: The workers that do the runs.
         retries: How many times a failed run is repeated.
         keep_temp: Keep the files of single runs.
 
     Attributes:
         simulator_s: Wall-clock time, in s, that simulators have taken, added up.
-        digests: Of the configuration with the files that it names, and of the program.
+        digests: Digests of the configuration with the files that it names, and of the program.
     """
 
     def __init__(

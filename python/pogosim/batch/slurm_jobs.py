@@ -18,7 +18,7 @@ from pogosim.batch.run import tail
 
 COMMANDS = ("sbatch", "squeue", "scancel")
 ENDED = re.compile("BOOT_FAIL|CANCELLED|COMPLETED|DEADLINE|FAILED|NODE_FAIL|OUT_OF_MEMORY|PREEMPTED|REVOKED|TIMEOUT")
-# Reasons for which a job waits until somebody changes it, or the site's limits.
+# Reasons for which a job waits until it, or the site's limits, are changed.
 BLOCKING_REASONS = re.compile(
     r"(Partition(Config|NodeLimit|TimeLimit)|BadConstraints|DependencyNeverSatisfied|MaxMemPerLimit"
     r"|Invalid(Account|QOS)|(Account|QOS)NotAllowed|(Assoc|QOS)(Max|Min)\w+PerJob\w*)$"

@@ -45,7 +45,7 @@ class Settings:
         free: Keys to fit.
         start: Values of all keys at the start, which those that are not fitted keep.
         bias: Range of the bias at the start.
-        seed: Of the first simulated run.
+        seed: Seed of the first simulated run.
         runs: Simulated runs whose statistics are averaged.
     """
 
@@ -61,14 +61,14 @@ class Fit:
     """What was found.
 
     Attributes:
-        values: Of all keys, and tracker_noise_mm and tracker_noise_rad.
+        values: Values of all keys, and tracker_noise_mm and tracker_noise_rad.
         bias: Range of the bias, motor power units.
         bias_by_robot: Bias of each robot that is seen in its median turn rate. Shape (robots,); empty: not looked for.
         bias_error: Standard error of one of them.
         sensitivity: Change of the statistics, in their standard errors, per scale of each of `names`, at the result.
         names: Parameters that were looked at: fitted ones, and those with no effect of their own.
         unfitted: Those with no effect of their own.
-        statistics: Of the simulated runs: logarithms; NaN where they were not compared. Shape (statistics,).
+        statistics: Statistics of the simulated runs: logarithms; NaN where they were not compared. Shape (statistics,).
         error: Standard errors of the difference. Shape (statistics,).
         tracks: Simulated, with the noise of the tracker.
     """

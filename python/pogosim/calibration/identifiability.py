@@ -27,7 +27,7 @@ class Verdict:
     """What tracks tell of a parameter.
 
     Attributes:
-        name: Of the parameter.
+        name: Name of the parameter.
         effect: Change of the statistics in their standard errors, if the parameter changes by its scale.
         own_share: Part of the effect that no combination of the others has, 0 to 1.
         error: Standard error in scales of the parameter: relative, if it is logarithmic.
@@ -62,7 +62,7 @@ def verdicts(sensitivity: Floats, names: Sequence[str]) -> dict[str, Verdict]:
     Args:
         sensitivity: Change of the statistics, each in its standard errors, per scale of each parameter. Shape
             (statistics, parameters).
-        names: Of the parameters.
+        names: Names of the parameters.
     """
     found = {}
     for column, name in enumerate(names):

@@ -22,7 +22,7 @@ class Parameter:
     Attributes:
         key: Its name.
         unit: What it is in.
-        default: Of the simulator.
+        default: Default of the simulator.
         least: Smallest value of a fit; a fitted value near it is none.
         most: Largest value of a fit.
         start: Where a fit starts if the configuration says 0.

@@ -66,7 +66,7 @@ def read_track_table(path: Path, category: str, warn: Warn) -> TrackTable:
 
     Args:
         path: CSV file, or data file of a run.
-        category: Of a run, the category of objects to take.
+        category: Category of a run, the category of objects to take.
         warn: Called with each thing that is doubtful.
 
     Raises:

@@ -57,7 +57,7 @@ class Brush:
         """Prepare.
 
         Args:
-            canvas: Of Agg, which has been drawn.
+            canvas: Canvas of Agg, which has been drawn.
             floor: What drawing can be confined to, in pixels.
         """
         self.renderer: Any = canvas.get_renderer()
@@ -95,7 +95,7 @@ class Brush:
         Args:
             path: In pixels.
             line: Colour and opacity of its line. None: it has none.
-            width_pt: Of the line, in points.
+            width_pt: Width of the line, in points.
             fill: Colour and opacity of what it encloses. None: nothing is filled.
             cap: Ends of lines: butt or round.
             on_floor: Whether to leave out what is not above the floor.
@@ -118,7 +118,7 @@ class Brush:
 
         Args:
             rings: Disks on top of each other.
-            radius: Of a disk of share 1, in pixels.
+            radius: Radius of a disk of share 1, in pixels.
             column: Eighths of a pixel from the left.
             row: Eighths of a pixel from the top.
         """
@@ -196,7 +196,7 @@ class Disks:
         """Put a layer above those that there are.
 
         Args:
-            radius: Of a ring of share 1.
+            radius: Radius of a ring of share 1.
             colours: Shape (n, 3) or (3,), 0 to 1.
             rings: What each disk consists of.
         """

@@ -80,7 +80,7 @@ def encode(frames: Iterable[bytes], size: tuple[int, int], fps: float, film: Pat
 
 
 def taken(frames: Iterable[bytes], process: subprocess.Popen[bytes]) -> Iterator[bytes]:
-    """Yield frames as long as somebody takes them."""
+    """Yield frames as long as they are taken."""
     for frame in frames:
         if process.poll() is not None:
             return

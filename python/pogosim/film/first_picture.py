@@ -53,7 +53,7 @@ def first_picture(head: dict[str, Any], poses: npt.NDArray[np.float64], colours:
     Args:
         head: What the page knows of the run, see replay_data().
         poses: x, y (mm) and angle (rad) of each object, shape (n, 3). NaN: there is none yet.
-        colours: Of each object.
+        colours: Colours of each object.
     """
     (left, top), (right, bottom) = head["low"], head["high"]
     floor = "".join(path_of(polygon) for polygon in head["polygons"])

@@ -52,7 +52,7 @@ def make_film(path: Path, options: argparse.Namespace, prog: str) -> None:
 
     Args:
         path: The film or page, as real_output() returns it.
-        options: Of the command.
+        options: Options of the command.
         prog: Name of the command.
 
     Raises:

@@ -63,7 +63,7 @@ class Moving:
         self.extent_mm = layers.extent_of(swarm)
         self.box = box_of(swarm)
 
-        # Of each row: its colour and category.
+        # Colour and category of each row.
         rows = self.bodies.rows
         self.colours = rows[RGB].to_numpy(dtype=float)
         names, self.kind = np.unique(rows["robot_category"].to_numpy(dtype=str), return_inverse=True)
@@ -97,7 +97,7 @@ class Moving:
         """Draw over the background, from below to above.
 
         Args:
-            brush: Of the picture.
+            brush: Brush of the picture.
             axes: That show the arena.
             time_s: In s.
             dots: Draws membranes, if there are any.

@@ -62,7 +62,7 @@ def encode_column(values: pd.Series[Any], name: str) -> tuple[Codes, dict[str, A
 
     Args:
         values: Shape (rows,).
-        name: Of the column.
+        name: Name of the column.
 
     Returns:
         Codes, shape (rows,), and what they mean: "values" (exact numbers) or "low" and "high" (quantised ones), with

@@ -43,7 +43,7 @@ def write_replay(
         recording: The run.
         path: As real_output() returns it.
         span_s: First and last time, s.
-        options: Of the command: color_by, links, speed, tail.
+        options: Options of the command: color_by, links, speed, tail.
 
     Returns:
         What is said of the page, and warnings.

@@ -34,7 +34,7 @@ class Evaluation:
         number: From 1 on, in the order in which candidates were asked for.
         generation: From 1 on.
         point: Where in the unit cube.
-        values: Of the variables in use, by name.
+        values: Values of the variables in use, by name.
         fitness: None: it has failed.
         features: By name.
         problem: Why it has failed, or empty.

@@ -88,7 +88,7 @@ class Objective:
         """Return what the functions say of rows, as of `pogosim.utils.load_dataframe` for a batch.
 
         Args:
-            rows: Of all runs of a candidate.
+            rows: Rows of all runs of a candidate.
             with_features: Also compute the features.
         """
         name = "the objective"

@@ -182,8 +182,8 @@ class Outcome:
     """What fresh runs say; None: there are none that could be judged.
 
     Attributes:
-        best: Of the best candidate.
-        initial: Of the initial values, with the same seeds.
+        best: Best of the best candidate.
+        initial: Initial of the initial values, with the same seeds.
         gain: The best less the initial ones, seed by seed, on those seeds that both have.
     """
 

@@ -52,9 +52,9 @@ def draw_archive(
 
     Args:
         path: The picture.
-        fitness: Of each cell, NaN where it is empty, of shape (cells,) or (cells, cells).
+        fitness: Fitness of each cell, NaN where it is empty, of shape (cells,) or (cells, cells).
         ranges: Least and greatest value of each feature.
-        names: Of the features.
+        names: Names of the features.
     """
     figure, ((axes,),) = new_figure(width=6.0, height=5.0 if fitness.ndim == 2 else 3.5)
     (left, right), *others = ranges

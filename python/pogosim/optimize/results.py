@@ -45,8 +45,8 @@ class FreshRuns:
     """What a candidate does in runs that the search has not seen, or how much better it is than another there.
 
     Attributes:
-        seeds: Of the runs that could be judged.
-        fitness: Of each, alone; or the difference.
+        seeds: Seeds of the runs that could be judged.
+        fitness: Fitness of each, alone; or the difference.
         mean: Their mean.
         low: Lower end of the 95 % confidence interval of the mean, NaN for fewer than two runs.
         high: Upper end.
@@ -181,8 +181,8 @@ def configuration_text(space: Space, values: Values, folder: Path, notes: Sequen
 
     Args:
         space: What was searched.
-        values: Of the variables in use.
-        folder: Of the configuration that was searched: files beside it are found from elsewhere, too.
+        values: Values of the variables in use.
+        folder: Folder of the configuration that was searched: files beside it are found from elsewhere, too.
         notes: Comments at its beginning.
     """
     entries = space.configuration(values, is_flat=True)

@@ -149,7 +149,7 @@ KEYS: dict[tuple[str, ...], tuple[str, Callable[[Any], Any]]] = {
 CHECKS = dict(KEYS.values())
 # Options by the name that they have on the command line.
 KEYS.update({(name,): (name, check) for name, check in CHECKS.items() if (name,) not in KEYS})
-# Of the optimiser that others' tools use; they mean nothing to ours.
+# Settings of the optimiser in other tools, without a meaning in ours.
 UNUSED = (("qd", "parallel"), ("qd", "sel_pb"), ("qd", "init_pb"), ("qd", "algo_kwargs"))
 
 

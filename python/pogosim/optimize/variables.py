@@ -153,7 +153,7 @@ class Space:
         """Return the configuration that values make.
 
         Args:
-            values: Of the variables in use.
+            values: Values of the variables in use.
             is_flat: Merge the chosen alternatives into their maps, as the simulator reads them. Otherwise, they remain
                 alternatives, each the only one of its map, so that columns can have their names.
         """

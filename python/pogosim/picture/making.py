@@ -53,7 +53,7 @@ def make_picture(path: Path, options: argparse.Namespace, prog: str) -> None:
 
     Args:
         path: The picture, as real_output() returns it.
-        options: Of the command.
+        options: Options of the command.
         prog: Name of the command.
 
     Raises:

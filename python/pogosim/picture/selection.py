@@ -56,7 +56,7 @@ def one_run(
         rows: All rows of the file, in its order.
         metadata: Those of the file.
         run: Number in the column run; None: the lowest.
-        combination: Of a batch, from 0 on; None: the first.
+        combination: Combination of a batch, from 0 on; None: the first.
 
     Returns:
         The rows; the outlines of the arena, none if the file does not say; and what else is in the file, if nothing

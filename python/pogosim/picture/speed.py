@@ -1,4 +1,4 @@
-"""Speeds of objects, as one more column of a data file: to see in pictures and replays who is slow or stuck."""
+"""Speeds of objects, as one more column of a data file: so that pictures and replays show which robots are slow or stuck."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def object_steps(
     Args:
         rows: With columns OBJECT, time, x and y.
         period_mm: Width and height of a periodic arena, across whose borders the shorter way counts. None: walls.
-        top_speed_mm_s: Of the objects. None: unknown.
+        top_speed_mm_s: Top speed mm of the objects. None: unknown.
 
     Returns:
         The rows by object and time, n of them; their steps, shape (n, 2), mm, and the time since the record before,
@@ -40,7 +40,7 @@ def with_speed(rows: pd.DataFrame, period_mm: Floats | None, top_speed_mm_s: flo
     Args:
         rows: With columns OBJECT, time, x and y; a column `speed` of the file's own stays as it is.
         period_mm: Width and height of a periodic arena, across whose borders the shorter way counts. None: walls.
-        top_speed_mm_s: Of the objects. None: unknown.
+        top_speed_mm_s: Top speed mm of the objects. None: unknown.
 
     Returns:
         The rows; NaN in the first record of each object.

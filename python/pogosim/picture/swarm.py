@@ -149,7 +149,7 @@ def read_recording(
         path: Feather file, of a run or of a batch of runs.
         run: Number in its column run. None: the first.
         color_by: Column whose values colour the objects, or "speed" (mm/s). None: by their LEDs.
-        combination: Of the options of a batch, from 0 on. None: the first.
+        combination: Combination of the options of a batch, from 0 on. None: the first.
 
     Raises:
         PictureError: The file has no poses, no such run, or no such column.

@@ -48,7 +48,7 @@ def read_log(options: argparse.Namespace, prog: str) -> tuple[pd.DataFrame, list
         there = ", ".join(sorted(rows[SENDER].astype(str).unique())) or "none"
         rows = rows[rows[SENDER] == options.category]
         if rows.empty:
-            raise AnalysisError(f"in {name}, nobody of the category '{options.category}' sends; senders: {there}")
+            raise AnalysisError(f"in {name}, no robot of the category '{options.category}' sends; senders: {there}")
     if rows.empty:
         raise AnalysisError(f"{name} has no message: no robot sent one")
     combination = [name for name in label_columns(rows, metadata) if name != "run" and rows[name].nunique() > 1]
@@ -91,7 +91,7 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     folder = output_folder(options)
     write_table(outcomes(rows, [*runs, *by]), folder / "messages.csv", options.input)
     if tried.empty:
-        warn(prog, "no message reached anybody, so there is no rate of reception")
+        warn(prog, "no message reached a robot, so there is no rate of reception")
         return
     near = tried[tried["distance"].notna()]
     if len(near) < len(tried):

@@ -46,7 +46,7 @@ def segments_until(
 
     Args:
         run: One run.
-        displacement: Of its `steps`, shape (T, N, 2).
+        displacement: Displacement of its `steps`, shape (T, N, 2).
         index: The last time.
         length: Number of save times to go back.
 

@@ -35,7 +35,7 @@ class CurrentRun:
 
     Attributes:
         run: None: it is closed, or its last reset failed.
-        lock: Of the thread that steps, resets, changes or closes it.
+        lock: Lock of the thread that steps, resets, changes or closes it.
         should_pause: Steps end between two of them.
         process: The one that has made it.
     """

@@ -238,7 +238,7 @@ class Simulation:
         Other threads that look at the simulation meanwhile see the end of the run before.
 
         Args:
-            seed: Of the new run; None: that of this one.
+            seed: Seed of the new run; None: that of this one.
         """
         check_process(self._current.process)
         seed = checked_seed(seed)
@@ -480,7 +480,7 @@ class Simulation:
         """Set a column that the program has declared: its value in all rows from now on.
 
         Args:
-            name: Of the column, as in `data_add_column_double`.
+            name: Name of the column, as in `data_add_column_double`.
             value: A number that the type of the column has.
             obj: An object or its index, for its rows only; None: for all objects. Values that the program's
                 callback_export_data sets stand.

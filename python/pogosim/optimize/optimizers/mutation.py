@@ -16,7 +16,7 @@ def mutated(points: Floats, probability: float, eta: float, random: np.random.Ge
     """Return mutated copies of points of the unit cube.
 
     Args:
-        points: Of shape (points, variables), from 0 to 1.
+        points: Points, shape (points, variables), from 0 to 1.
         probability: That a coordinate changes. At least one coordinate of each point does.
         eta: Crowding degree, 0 or more: the higher, the smaller the changes.
         random: Where chance comes from.

@@ -44,7 +44,7 @@ def feature_ranges(features: Floats, settings: Settings) -> list[tuple[float, fl
     """Return the range of each feature: that of the settings; 0 to 1 if all features are; else what was seen.
 
     Args:
-        features: Of the first candidates, of shape (candidates, features).
+        features: Features of the first candidates, of shape (candidates, features).
         settings: See `qd_ranges`, `qd_shape`.
 
     Raises:
