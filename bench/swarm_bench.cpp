@@ -105,7 +105,7 @@ Result run_once(int robots, Options const& options) {
     double const bytes_before = resident_bytes();
     Simulation simulation(linked_program(pogosim_this_program, "bench"), scenario_of(robots, options.overrides),
                           {.measure_stages = true, .shares_nothing = kSharesNothing});
-    GuardedThread const thread(simulation.guard());  // as of a whole run, not of each step
+    CrashHandlerScope const thread(simulation.crash_handler());  // as of a whole run, not of each step
     warm_up(simulation);
     StageClock const warm = simulation.stages();
     Result result;

@@ -8,7 +8,7 @@
 #include "base/escaped.hpp"
 #include "base/nearest_name.hpp"
 #include "pogosim/version.h"
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
 
 namespace pogosim {
 

@@ -25,11 +25,11 @@
 #include "base/memory.hpp"
 #include "config/scenario.hpp"
 #include "pogosim/program.h"
+#include "robot/crash_handler.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/forked_child.hpp"
-#include "robot/last_words.hpp"
 #include "robot/process.hpp"
 #include "robot/program_image.hpp"
-#include "robot/user_guard.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/kept_files.hpp"
 #include "sim/simulation.hpp"
@@ -52,7 +52,7 @@ struct Ended {
 /// destructors could crash, or never return.
 struct DestroyIfIntact {
     void operator()(Simulation* simulation) const {
-        if (!simulation->guard().was_left_by_force()) {
+        if (!simulation->crash_handler().was_left_by_force()) {
             std::default_delete<Simulation>()(simulation);
         }
     }
@@ -157,11 +157,11 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                         .restarted = restarted,
                         .restart_problem = [&] { return restart_problem(options, folder); },
                         .earlier_files = [&] { return names_of_earlier_files(options, folder); }}));
-    ProcessRun const scope(simulation->guard());
+    ProcessRun const scope(simulation->crash_handler());
     auto const begin = std::chrono::steady_clock::now();
     ExitCode const code = simulation->run();
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - begin;
-    return {code, simulation->restart(), simulation->guard().was_left_by_force(),
+    return {code, simulation->restart(), simulation->crash_handler().was_left_by_force(),
             options.quiet ? "" : simulation->summary(wall.count())};
 }
 

@@ -53,8 +53,8 @@ Node read_yaml_file(std::string const& path);
 void apply_override(Node& root, std::string const& assignment);
 
 /// The tree a single run sees: `default_option` in place of batch options and optimisation domains (null where there is
-/// none), hierarchical alternatives replaced by their `default`. See docs/configuration.md, "How a file is read". Throws
-/// ConfigError where a map of options has another key.
+/// none), hierarchical alternatives replaced by their `default`. See docs/configuration.md, "How a file is read".
+/// Throws ConfigError where a map of options has another key.
 Node resolve_options(Node const& node);
 
 /// YAML text of the tree; reading it again gives the same tree.

@@ -36,8 +36,8 @@ public:
     void refuse(std::string const& name, std::string const& expected) override;
     void check_range(std::string const& name, double value, double min, double max) override;
 
-    /// The values that the program has not read: "walk.sped (conf/a.yaml:14; did you mean 'walk.speed'?), ...". Empty when
-    /// there are none. Each value of a map counts; a list counts as read if any item was.
+    /// The values that the program has not read: "walk.sped (conf/a.yaml:14; did you mean 'walk.speed'?), ...". Empty
+    /// when there are none. Each value of a map counts; a list counts as read if any item was.
     std::string unread() const;
 
 private:

@@ -89,14 +89,15 @@ using PoseReader = std::function<std::vector<ImportedPose>(std::filesystem::path
 /// Names of all formations, in the table's order.
 std::span<std::string const> formation_names();
 
-/// One pose for each object of the given radii (mm, finite, >= 0), in the same order. Placement radius of object i:
-/// r_i = 1.01 max(radius, min_space). Every object but the imported ones stands inside the domain, at least r_i from
-/// its walls and from every obstacle, and at least r_i + r_j from object j; imported ones stand where the file says,
-/// which must be inside. Obstacles that are not in the domain change nothing. `read_feather` reads the file of `imported` when its name ends in ".feather". Headings: pi/2 for
-/// aligned_*, the file's for imported, otherwise uniform in (-pi, pi]. Throws FormationError when they do not fit,
-/// after a bounded search ("initial_formation: 'disk' has places for 31 of 40 objects (largest radius 26.5 mm) in this
-/// arena. ..."); when a value of the spec makes no sense; or when the name is unknown. Throws ConfigError when the
-/// imported file is unreadable or too short. The same arguments give the same poses.
+/// One pose for each object of the given radii (mm, finite, >= 0), in the same order. Placement radius of object i: r_i
+/// = 1.01 max(radius, min_space). Every object but the imported ones stands inside the domain, at least r_i from its
+/// walls and from every obstacle, and at least r_i + r_j from object j; imported ones stand where the file says, which
+/// must be inside. Obstacles that are not in the domain change nothing. `read_feather` reads the file of `imported`
+/// when its name ends in ".feather". Headings: pi/2 for aligned_*, the file's for imported, otherwise uniform in (-pi,
+/// pi]. Throws FormationError when they do not fit, after a bounded search ("initial_formation: 'disk' has places for
+/// 31 of 40 objects (largest radius 26.5 mm) in this arena. ..."); when a value of the spec makes no sense; or when the
+/// name is unknown. Throws ConfigError when the imported file is unreadable or too short. The same arguments give the
+/// same poses.
 std::vector<Placement> place(FormationSpec const& spec, std::span<float const> radii_mm, FormationGround const& ground,
                              RandomStream& random, PoseReader const& read_feather = {});
 

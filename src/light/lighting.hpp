@@ -18,8 +18,8 @@ LightMap make_light_map(Arena const& arena, bool periodic, int columns, int rows
 /// All lamps of a run. A step costs what changes: the cells that moving lamps light before and after it.
 class Lighting {
 public:
-    /// Only the arena and the cells of the map are read from the world. Lamp i has the setting world.lamps[i], or the usual
-    /// one where there is none.
+    /// Only the arena and the cells of the map are read from the world. Lamp i has the setting world.lamps[i], or the
+    /// usual one where there is none.
     Lighting(std::vector<LampSpec> const& lamps, World const& world);
 
     /// Writes world.light for the present time and the settings of the lamps.

@@ -24,8 +24,8 @@ inline Vec2 cell_centre_mm(LightMap const& map, std::uint32_t cell) {
 /// The point, or that of its images across the borders of a periodic map that is nearest to the centre.
 Vec2 nearest_image(LightMap const& map, Vec2 centre_mm, Vec2 point_mm);
 
-/// Calls visit(cell, its centre) for the cells whose centre lies in the shape at `centre_mm`. Arena counts as everywhere,
-/// as in contains(). In a periodic map, the image of each cell counts that is nearest to `centre_mm`.
+/// Calls visit(cell, its centre) for the cells whose centre lies in the shape at `centre_mm`. Arena counts as
+/// everywhere, as in contains(). In a periodic map, the image of each cell counts that is nearest to `centre_mm`.
 template <class Visit>
 void for_each_cell_in(Shape const& shape, Vec2 centre_mm, LightMap const& map, Visit const& visit);
 

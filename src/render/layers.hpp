@@ -23,8 +23,8 @@ void draw_bodies(Scene const& scene, bool lateral_leds);
 /// Lamps as small suns, the outline of what they light, and beams.
 void draw_lamps(Scene const& scene, Coverage& scratch);
 
-/// Links between robots in range. The half next to a sender has the colour of its emitter; a two-way link is a whole line, a one-way
-/// link fades from the middle on and ends in an arrow head at the listener.
+/// Links between robots in range. The half next to a sender has the colour of its emitter; a two-way link is a whole
+/// line, a one-way link fades from the middle on and ends in an arrow head at the listener.
 void draw_links(Scene const& scene);
 
 /// A ring around a robot; a line along the outline of a wall or membrane.

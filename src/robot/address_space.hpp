@@ -12,8 +12,8 @@ public:
     /// Takes the present address space.
     explicit AddressSpace(ProgramImage const& image);
 
-    /// The word in a form that is the same in every run: the offset of an address in the program, a constant for any other
-    /// address, and a number as it is. Numbers that look like addresses count as addresses.
+    /// The word in a form that is the same in every run: the offset of an address in the program, a constant for any
+    /// other address, and a number as it is. Numbers that look like addresses count as addresses.
     std::uint64_t without_place(std::uint64_t word) const;
 
 private:

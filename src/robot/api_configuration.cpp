@@ -7,9 +7,9 @@
 #include <string>
 
 #include "robot/context.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/program_image.hpp"
 #include "robot/require_robot.hpp"
-#include "robot/user_guard.hpp"
 
 using pogosim::BoundVariable;
 using pogosim::context;

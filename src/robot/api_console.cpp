@@ -9,9 +9,9 @@
 
 #include "base/log.hpp"
 #include "robot/context.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/require_robot.hpp"
-#include "robot/user_guard.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

@@ -9,9 +9,9 @@
 
 #include "base/error.hpp"
 #include "robot/context.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/slip.hpp"
-#include "robot/user_guard.hpp"
 
 using pogosim::CellValue;
 using pogosim::ColumnType;

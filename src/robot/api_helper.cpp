@@ -7,10 +7,10 @@
 
 #include "pogosim/program.h"
 #include "robot/context.hpp"
+#include "robot/crash_handler.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/forked_child.hpp"
-#include "robot/last_words.hpp"
 #include "robot/require_robot.hpp"
-#include "robot/user_guard.hpp"
 
 using pogosim::context;
 using pogosim::require_robot;

@@ -7,10 +7,10 @@
 
 #include "base/log.hpp"
 #include "robot/context.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/slip.hpp"
-#include "robot/user_guard.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

@@ -12,10 +12,10 @@
 #include "base/error.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
-#include "robot/user_guard.hpp"
 #include "world/observed_motion.hpp"
 
 using pogosim::ConfigError;

@@ -24,8 +24,8 @@
 #include "base/background_thread.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
-#include "robot/guard_state.hpp"
-#include "robot/last_words.hpp"
+#include "robot/crash_handler_state.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/source_place.hpp"
 #include "robot/stack_of_thread.hpp"
 
@@ -93,9 +93,9 @@ public:
 
     bool is_of_this_process() const { return process_ == getpid(); }
 
-    void begin(RunGuard& guard) {
+    void begin(CrashHandlerState& handler) {
         std::lock_guard const lock(mutex_);
-        watched_.push_back({.guard = &guard});
+        watched_.push_back({.handler = &handler});
         if (!has_thread_) {
             has_thread_ = true;
             try {
@@ -107,14 +107,14 @@ public:
         }
     }
 
-    void end(RunGuard& guard) {
+    void end(CrashHandlerState& handler) {
         std::lock_guard const lock(mutex_);
-        std::erase_if(watched_, [&](Watched const& watched) { return watched.guard == &guard; });
+        std::erase_if(watched_, [&](Watched const& watched) { return watched.handler == &handler; });
     }
 
 private:
     struct Watched {
-        RunGuard* guard = nullptr;
+        CrashHandlerState* handler = nullptr;
         unsigned long calls = 0;  // of user code, at the last look
         int blocked_looks = 0;    // in the present one
     };
@@ -138,31 +138,31 @@ private:
     }
 
     static void look(Watched& watched) {
-        RunGuard const& guard = *watched.guard;
-        unsigned long const calls = guard.calls.load(std::memory_order_acquire);
-        if (!guard.inside || calls != watched.calls) {
+        CrashHandlerState const& handler = *watched.handler;
+        unsigned long const calls = handler.calls.load(std::memory_order_acquire);
+        if (!handler.inside || calls != watched.calls) {
             watched.calls = calls;
             watched.blocked_looks = 0;
             return;
         }
-        RunGuard& run = guard.helped != nullptr ? *guard.helped : *watched.guard;
-        if (run.is_told_of_blocked || !is_sleeping(guard.thread_id)) {
+        CrashHandlerState& run = handler.helped != nullptr ? *handler.helped : *watched.handler;
+        if (run.is_told_of_blocked || !is_sleeping(handler.thread_id)) {
             return;
         }
-        std::optional<SystemCall> const call = system_call_of(guard.thread_id);
+        std::optional<SystemCall> const call = system_call_of(handler.thread_id);
         if (!call || writes(*call) || ++watched.blocked_looks < kBlockedLooks) {
             return;
         }
         run.is_told_of_blocked = true;
-        tell(guard, *call, calls);
+        tell(handler, *call, calls);
     }
 
     /// The thread may go on meanwhile, but not end its run.
-    static void tell(RunGuard const& guard, SystemCall const& call, unsigned long calls) {
+    static void tell(CrashHandlerState const& handler, SystemCall const& call, unsigned long calls) {
         void const* const place =
-            place_in_stack({call.stack_pointer, call.program_counter, guard.thread_id}, guard.program_base);
-        RunningRobot const robot{.its_context = *guard.context, .ticks = *guard.ticks};
-        if (!guard.inside || guard.calls.load(std::memory_order_acquire) != calls ||
+            place_in_stack({call.stack_pointer, call.program_counter, handler.thread_id}, handler.program_base);
+        RunningRobot const robot{.its_context = *handler.context, .ticks = *handler.ticks};
+        if (!handler.inside || handler.calls.load(std::memory_order_acquire) != calls ||
             robot.its_context.world == nullptr) {
             return;
         }
@@ -189,11 +189,11 @@ std::atomic<BlockedWatch*> watch_of_process = nullptr;
 
 }  // namespace
 
-void watch_over_blocked(RunGuard& guard) {
+void watch_over_blocked(CrashHandlerState& handler) {
     static std::mutex making;
-    guard.thread_id = static_cast<pid_t>(syscall(SYS_gettid));
-    guard.context = &context;
-    guard.ticks = &pogobot_ticks;
+    handler.thread_id = static_cast<pid_t>(syscall(SYS_gettid));
+    handler.context = &context;
+    handler.ticks = &pogobot_ticks;
     BlockedWatch* watch = watch_of_process;
     if (watch == nullptr || !watch->is_of_this_process()) {
         std::lock_guard const lock(making);
@@ -203,13 +203,13 @@ void watch_over_blocked(RunGuard& guard) {
             watch_of_process = watch;
         }
     }
-    watch->begin(guard);
+    watch->begin(handler);
 }
 
-void end_watch_over_blocked(RunGuard& guard) {
+void end_watch_over_blocked(CrashHandlerState& handler) {
     BlockedWatch* const watch = watch_of_process;
     if (watch != nullptr && watch->is_of_this_process()) {
-        watch->end(guard);
+        watch->end(handler);
     }
 }
 
@@ -219,8 +219,8 @@ void end_watch_over_blocked(RunGuard& guard) {
 
 namespace pogosim {
 
-void watch_over_blocked(RunGuard& /*guard*/) {}
-void end_watch_over_blocked(RunGuard& /*guard*/) {}
+void watch_over_blocked(CrashHandlerState& /*handler*/) {}
+void end_watch_over_blocked(CrashHandlerState& /*handler*/) {}
 
 }  // namespace pogosim
 

@@ -66,8 +66,8 @@ struct RunServices {
     WorldAccess access{};
     PrintedLines* printed_lines = nullptr;  // gets the lines of robots; null: they are not kept
 
-    /// Logs a warning that names the running robot, its tick and the time, the first time in the run that this format (a
-    /// literal) is used.
+    /// Logs a warning that names the running robot, its tick and the time, the first time in the run that this format
+    /// (a literal) is used.
     template <class... Args>
     void warn_once(fmt::format_string<Args...> format, Args&&... args) {
         fmt::string_view const text = format;

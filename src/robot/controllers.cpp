@@ -16,12 +16,12 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "robot/assert_controllers.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
 #include "robot/shared_variables_check.hpp"
-#include "robot/user_guard.hpp"
 #include "robot/velocity_command.hpp"
 
 extern "C" {
@@ -164,7 +164,7 @@ void Controllers::allocate_user_data() {
         if (stride > std::numeric_limits<std::ptrdiff_t>::max() / blocks) {
             throw std::bad_alloc();
         }
-        user_data_ = FencedMemory(stride * blocks);
+        user_data_ = GuardedMemory(stride * blocks);
     });
     for (std::size_t i = 0; i < controllers_.size(); ++i) {
         controllers_[i].user_data = user_data_.data() + i * stride;

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "robot/context.hpp"
-#include "robot/fenced_memory.hpp"
 #include "robot/fibers.hpp"
+#include "robot/guarded_memory.hpp"
 #include "robot/program_image.hpp"
 #include "robot/robot_memory.hpp"
 #include "robot/shared_state.hpp"
@@ -217,7 +217,7 @@ private:
     std::vector<Controller> controllers_;
     Controller system_;                      // of the global step
     std::vector<SwitchedOff> switched_off_;  // by robot, ascending
-    FencedMemory user_data_;
+    GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step
     int most_loop_hz_ = 255;    // with which robots skip no ticks

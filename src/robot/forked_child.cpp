@@ -9,8 +9,8 @@
 
 #include "base/log.hpp"
 #include "robot/caught_signals.hpp"
-#include "robot/guard_state.hpp"
-#include "robot/last_words.hpp"
+#include "robot/crash_handler_state.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/process.hpp"
 
 namespace pogosim {
@@ -21,13 +21,13 @@ std::atomic<bool> forked = false;
 
 /// Otherwise the child would inherit the parent's unwritten output and also write it.
 void before_fork() {
-    if (process_is_ours() || active_guard != nullptr) {
+    if (process_is_ours() || active_handler != nullptr) {
         std::fflush(nullptr);
     }
 }
 
 void in_child() {
-    if (!process_is_ours() && active_guard == nullptr) {
+    if (!process_is_ours() && active_handler == nullptr) {
         return;  // a child of the host's own
     }
     forked = true;

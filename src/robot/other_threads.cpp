@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include "robot/crash_handler.hpp"
 #include "robot/crash_name.hpp"
-#include "robot/user_guard.hpp"
 
 namespace pogosim {
 

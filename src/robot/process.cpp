@@ -4,9 +4,9 @@
 
 #include <atomic>
 
+#include "robot/crash_handler_state.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/forked_child.hpp"
-#include "robot/guard_state.hpp"
-#include "robot/last_words.hpp"
 #include "robot/other_threads.hpp"
 
 namespace pogosim {

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "robot/context.hpp"
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
 
 namespace pogosim {
 

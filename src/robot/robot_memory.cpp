@@ -252,7 +252,7 @@ void RobotMemory::make_room(std::uint32_t capacity) {
         if (bytes > std::numeric_limits<std::ptrdiff_t>::max() / std::max(1U, robots_)) {
             throw std::bad_alloc();
         }
-        FencedMemory larger(bytes * robots_);
+        GuardedMemory larger(bytes * robots_);
         for (std::uint32_t robot = 0; robot < robots_ && used_bytes > 0; ++robot) {
             std::memcpy(larger.data() + robot * bytes, slot(robot, 0), used_bytes);
         }

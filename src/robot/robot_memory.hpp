@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "robot/fenced_memory.hpp"
+#include "robot/guarded_memory.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -27,8 +27,8 @@ public:
     /// Puts a copy into the program: that of a robot, or kNone. What is in the program belongs to the copy before.
     void load(std::uint32_t copy);
 
-    /// What a copy, that of a robot, has in a place of the program; bytes outside of its variables are as the program has
-    /// them. Nothing is loaded for it.
+    /// What a copy, that of a robot, has in a place of the program; bytes outside of its variables are as the program
+    /// has them. Nothing is loaded for it.
     void read(std::uint32_t copy, std::byte const* place, std::span<std::byte> to) const;
 
     /// What the program has in this place now is in every copy from now on. Bytes outside of its variables are ignored.
@@ -93,7 +93,7 @@ private:
     std::vector<std::byte> before_;         // a common change: what was in the program
     std::vector<std::uint32_t> different_;  // blocks, by slot
     std::uint32_t capacity_ = 0;            // slots of each robot
-    FencedMemory copies_;                   // slots of all, robot by robot
+    GuardedMemory copies_;                  // slots of all, robot by robot
     std::uint32_t loaded_ = kNone;          // the copy that is in the program
     std::uint64_t loads_ = 0;
 };

@@ -14,10 +14,10 @@ constexpr std::uint32_t kLeastRobots = 64;  // of a part that one worker takes
 
 }  // namespace
 
-SharedSteps::SharedSteps(Controllers& controllers, UserGuard& guard, std::uint32_t workers)
+SharedSteps::SharedSteps(Controllers& controllers, CrashHandler& handler, std::uint32_t workers)
     : controllers_(controllers), variables_(controllers.configured_variables()) {
     for (std::uint32_t worker = 1; worker < workers; ++worker) {
-        guards_.push_back(std::make_unique<HelperGuard>(guard));
+        handlers_.push_back(std::make_unique<WorkerCrashHandler>(handler));
     }
 }
 
@@ -66,7 +66,7 @@ void SharedSteps::run_part(WorkRange range) {
         return;  // the run ends before these robots
     }
     if (range.worker > 0) {
-        guards_[range.worker - 1]->enter();
+        handlers_[range.worker - 1]->enter();
     }
     context.outbox = &part.outbox;
     Controllers::set_callbacks_of_thread(callbacks_);
@@ -91,7 +91,7 @@ std::optional<UserFailure> SharedSteps::join(Part& part) {
         return std::nullopt;
     }
     set_running_robot(part.failed);
-    if (std::ranges::any_of(guards_, [](auto const& guard) { return guard->was_left_by_force(); })) {
+    if (std::ranges::any_of(handlers_, [](auto const& handler) { return handler->was_left_by_force(); })) {
         begin_rescue_of_run(*part.failure);
     }
     return part.failure;

@@ -10,16 +10,16 @@
 
 #include "base/worker_pool.hpp"
 #include "robot/controllers.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/outbox.hpp"
 #include "robot/shared_state.hpp"
-#include "robot/user_guard.hpp"
 
 namespace pogosim {
 
 class SharedSteps {
 public:
     /// For robots about which why_one_after_the_other() finds nothing. `workers` have ended when this is destroyed.
-    SharedSteps(Controllers& controllers, UserGuard& guard, std::uint32_t workers);
+    SharedSteps(Controllers& controllers, CrashHandler& handler, std::uint32_t workers);
 
     /// As Controllers::run_step() inside call_user_code(): the same robots send, say and fail, however many workers
     /// there are. When several robots fail, it is the failure of the first one.
@@ -41,7 +41,8 @@ private:
 
     Controllers& controllers_;
     ConfiguredVariables variables_;
-    std::vector<std::unique_ptr<HelperGuard>> guards_;  // of each worker but the first, whose guard is that of the run
+    std::vector<std::unique_ptr<WorkerCrashHandler>>
+        handlers_;  // of each worker but the first, whose handler is that of the run
     std::vector<Part> parts_;
     Controllers::Callbacks callbacks_;             // before the robots' steps
     bool is_over_ = false;                         // they may share memory now

@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "robot/controllers.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/forked_child.hpp"
 #include "robot/sensing.hpp"
-#include "robot/user_guard.hpp"
 
 namespace pogosim {
 

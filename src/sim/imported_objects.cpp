@@ -16,8 +16,8 @@ namespace pogosim {
 
 namespace {
 
-// Less is what a run may leave: physics lets bodies overlap a little for a moment. For small ones, a share of half their
-// thickness.
+// Less is what a run may leave: physics lets bodies overlap a little for a moment. For small ones, a share of half
+// their thickness.
 constexpr float kToleratedMm = 1.0F;
 constexpr float kToleratedShare = 0.1F;
 

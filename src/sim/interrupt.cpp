@@ -8,8 +8,8 @@
 #include <csignal>
 
 #include "robot/caught_signals.hpp"
-#include "robot/last_words.hpp"
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
+#include "robot/crash_message.hpp"
 
 namespace pogosim {
 
@@ -40,8 +40,8 @@ char const* name_of(int signal) {
 
 /// Nothing is lost where no robot runs.
 [[noreturn]] void end_outside_of_the_run(int signal) {
-    prepare_last_words_of_interrupt(name_of(signal));
-    end_with_last_words(static_cast<int>(ExitCode::interrupted));
+    prepare_interrupt_message(name_of(signal));
+    end_with_crash_message(static_cast<int>(ExitCode::interrupted));
 }
 
 void on_interrupt(int signal, siginfo_t* /*info*/, void* /*context*/) {
@@ -49,8 +49,8 @@ void on_interrupt(int signal, siginfo_t* /*info*/, void* /*context*/) {
         end_outside_of_the_run(signal);
     }
     if (note_interrupt(signal, name_of(signal)) > 2 && !inside_user_code()) {
-        prepare_plain_last_words("interrupted three times; exiting immediately");
-        end_with_last_words(static_cast<int>(ExitCode::interrupted));
+        prepare_plain_message("interrupted three times; exiting immediately");
+        end_with_crash_message(static_cast<int>(ExitCode::interrupted));
     }
 }
 

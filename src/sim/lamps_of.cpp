@@ -102,8 +102,8 @@ void warn_of_copies(Scenario const& scenario, ObjectConfig const& object) {
     }
 }
 
-/// The light of a plane rises across all of a periodic arena and has to fall back somewhere: half the arena away from the
-/// lamp. That is at the border when the lamp is in the middle.
+/// The light of a plane rises across all of a periodic arena and has to fall back somewhere: half the arena away from
+/// the lamp. That is at the border when the lamp is in the middle.
 void warn_of_jump(Scenario const& scenario, ObjectConfig const& object, SpotSpec const& spot, World const& world) {
     bool const has_jump =
         world.periodic && spot.mode == LightMode::plane && is_everywhere(spot.shape) && spot.value != spot.edge_value;

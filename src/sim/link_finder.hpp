@@ -14,8 +14,8 @@ namespace pogosim {
 class LinkFinder {
 public:
     /// One link for each pair of robots of which at least one reaches the other with any of its emitters, whatever it
-    /// sends: the robots that would receive a message if none were lost. Sorted by `from`, then `to`; `from` is the smaller index
-    /// when both reach each other, and else the one that is heard. `range_mm`: by robot, 0: mute.
+    /// sends: the robots that would receive a message if none were lost. Sorted by `from`, then `to`; `from` is the
+    /// smaller index when both reach each other, and else the one that is heard. `range_mm`: by robot, 0: mute.
     std::vector<Link> find(World const& world, std::span<float const> range_mm);
 
 private:

@@ -9,8 +9,8 @@
 #include "base/table_format.hpp"
 #include "config/places.hpp"
 #include "physics/physics_engine.hpp"
-#include "robot/last_words.hpp"
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
+#include "robot/crash_message.hpp"
 #include "sim/run_metadata.hpp"
 
 namespace pogosim {

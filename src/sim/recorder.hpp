@@ -12,7 +12,7 @@
 #include "config/scenario.hpp"
 #include "record/data_file.hpp"
 #include "robot/controllers.hpp"
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
 #include "sim/message_recorder.hpp"
 #include "sim/multiples.hpp"
 #include "sim/recorded_rows.hpp"

@@ -83,7 +83,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       seed_(seed_of(scenario_)),
       world_(build_world(scenario_, seed_)),
       parameters_(scenario_),
-      guard_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
+      crash_handler_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       controllers_(std::move(program), world_, services_, seed_,
                    static_cast<std::size_t>(scenario_.robot_stack_kib) * 1024),
@@ -185,7 +185,7 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     std::optional<UserFailure> const& failure = outcome.failure;
     if (failure) {
         // The message last, since it says what has become of the data file. When completing that crashes, because
-        // memory is destroyed, the last words of the first crash are said.
+        // memory is corrupted, the message of the first crash is printed.
         try {
             if (!failure->refused) {
                 recorder_.open_without_rows();  // the file of an earlier run must not be mistaken for this one's
@@ -277,7 +277,7 @@ void Simulation::open_window() {
         }
         setup.restart_problem = options_.restart_problem;
         setup.earlier_files = options_.earlier_files;
-        setup.hurry = [this](char const* what) { guard_.hurry(what); };
+        setup.hurry = [this](char const* what) { crash_handler_.hurry(what); };
         setup.scenery = snapshots().scenery();
         window_ = std::make_unique<WindowDriver>(*this, setup);
     } catch (std::runtime_error const& error) {
@@ -348,7 +348,7 @@ void Simulation::share_steps() {
         return;
     }
     log().info("threads: {}; robots take their steps on all of them", workers_.size());
-    shared_steps_.emplace(controllers_, guard_, workers_.size());
+    shared_steps_.emplace(controllers_, crash_handler_, workers_.size());
 }
 
 std::optional<UserFailure> Simulation::run_robots() {

@@ -17,9 +17,9 @@
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
 #include "robot/controllers.hpp"
+#include "robot/crash_handler.hpp"
 #include "robot/program_image.hpp"
 #include "robot/shared_steps.hpp"
-#include "robot/user_guard.hpp"
 #include "sim/inspector.hpp"
 #include "sim/observed_motions.hpp"
 #include "sim/pictures.hpp"
@@ -162,7 +162,7 @@ public:
     ObservedMotions const& observed_motions() const;
 
     /// The crash handler of this run's user code, for the owner of the process.
-    UserGuard& guard() { return guard_; }
+    CrashHandler& crash_handler() { return crash_handler_; }
 
     World const& world() const { return world_; }
     /// To be written between two steps; see world.hpp for what that does. The data file does not say so.
@@ -177,10 +177,10 @@ private:
     struct Thread {
         explicit Thread(Simulation& simulation)
             : logging(simulation.options_.log.get()),
-              guarded(simulation.guard_),
+              handled(simulation.crash_handler_),
               controllers(simulation.controllers_) {}
         LogScope logging;
-        GuardedThread guarded;
+        CrashHandlerScope handled;
         Controllers::Thread controllers;
     };
 
@@ -201,7 +201,7 @@ private:
     std::uint32_t seed_;
     World world_;
     UserParameters parameters_;
-    UserGuard guard_;
+    CrashHandler crash_handler_;
     RunServices services_;
     Controllers controllers_;
     Lighting lighting_;

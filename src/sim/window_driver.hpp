@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
 #include "sim/pacer.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "sim/window_module.hpp"

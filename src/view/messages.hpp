@@ -102,8 +102,8 @@ struct WindowSetup {
     // Why the run cannot be started again, such as a configuration that is wrong by now; empty if it can. Called in the
     // window's thread.
     std::function<std::string()> restart_problem;
-    // What a restart would overwrite, and the name under which it can be kept: "run.feather -> run.1.feather". Called in
-    // the window's thread.
+    // What a restart would overwrite, and the name under which it can be kept: "run.feather -> run.1.feather". Called
+    // in the window's thread.
     std::function<std::vector<std::string>()> earlier_files;
 };
 

@@ -10,7 +10,8 @@ namespace {
 /// Digits that the difference of two coordinates loses: a few roundings of each, as of an engine's sub-steps.
 constexpr float kRounding = 5e-7F;
 
-/// A change of a coordinate by the time that it took. The engine's own number where it says the same: it has more digits.
+/// A change of a coordinate by the time that it took. The engine's own number where it says the same: it has more
+/// digits.
 float rate(float change, float duration_s, float largest, float of_engine) {
     bool const is_as_asked = std::abs(change - duration_s * of_engine) <= kRounding * largest;
     return is_as_asked ? of_engine : change / duration_s;

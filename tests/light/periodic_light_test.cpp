@@ -1,4 +1,5 @@
-// Lamps across the borders of a periodic arena: whatever they are, a lamp that is moved, and its light with it, is the same.
+// Lamps across the borders of a periodic arena: whatever they are, a lamp that is moved, and its light with it, is the
+// same.
 #include <gtest/gtest.h>
 
 #include <cmath>

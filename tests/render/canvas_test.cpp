@@ -89,7 +89,8 @@ TEST(Line, WithButtCapsHasTheAreaOfARectangle) {
             Vec2 const to = from + 37.0F * direction(angle);
             Mark const mark = mark_of([&](Canvas& canvas) { canvas.line(from, to, width, Cap::butt, kWhite); });
             EXPECT_NEAR(mark.area / (37.0 * width), 1.0, 0.01) << width << " at " << angle;
-            double const tolerance = width < 1.0F ? 0.25 : 0.12;  // the place of a thin line inside a pixel is not visible
+            double const tolerance =
+                width < 1.0F ? 0.25 : 0.12;  // the place of a thin line inside a pixel is not visible
             EXPECT_NEAR(mark.x, 0.5F * (from.x + to.x), tolerance);
             EXPECT_NEAR(mark.y, 0.5F * (from.y + to.y), tolerance);
         }

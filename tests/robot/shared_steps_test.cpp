@@ -36,7 +36,7 @@ struct Outcome {
 /// A swarm with its programs, and nothing else of a simulation.
 class Swarm {
 public:
-    Swarm() : guard_(nullptr, 10.0), thread_(guard_) { context.outbox = nullptr; }
+    Swarm() : handler_(nullptr, 10.0), thread_(handler_) { context.outbox = nullptr; }
 
     Outcome run(std::uint32_t threads) {
         // The program and the simulator are in one file here: only the test knows that robots share nothing.
@@ -44,7 +44,7 @@ public:
         std::optional<SharedSteps> shared;
         EXPECT_FALSE(call_user_code([this] { controllers_.start(); }));
         if (threads > 1) {
-            shared.emplace(controllers_, guard_, workers.size());
+            shared.emplace(controllers_, handler_, workers.size());
         }
         for (world_.step = 0; world_.step < kSteps; ++world_.step) {
             auto const failure =
@@ -88,8 +88,8 @@ private:
     World world_ = build_world(scenario_, 1);
     PrintedLines lines_{kRobots};
     RunServices services_{.parameters = nullptr, .seed = 1, .data = {}, .warned = {}, .printed_lines = &lines_};
-    UserGuard guard_;
-    GuardedThread thread_;
+    CrashHandler handler_;
+    CrashHandlerScope thread_;
     Controllers controllers_{testing::test_program(), world_, services_, 1, 1 << 20};
     Outcome outcome_;
 };

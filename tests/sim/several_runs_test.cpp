@@ -7,7 +7,7 @@
 #include <string>
 
 #include "robot/caught_signals.hpp"
-#include "robot/last_words.hpp"
+#include "robot/crash_message.hpp"
 #include "sim/interrupt.hpp"
 #include "support/scenes.hpp"
 #include "support/test_program.hpp"
@@ -27,7 +27,7 @@ Scenario short_scene(std::string const& data_file = "") {
 ExitCode run_once(Scenario const& scenario, void (*step)()) {
     use_program([] {}, step);
     Simulation simulation(test_program(), scenario, RunOptions{});
-    ProcessRun const for_signals(simulation.guard());
+    ProcessRun const for_signals(simulation.crash_handler());
     return simulation.run();
 }
 
@@ -62,8 +62,8 @@ TEST(SeveralRuns, LastWordsOfOneWithoutDataNameNoEarlierFile) {
     std::string const path = ::testing::TempDir() + "earlier_run.feather";
     EXPECT_EQ(run_once(short_scene(path), [] {}), ExitCode::done);
     auto const die = [] {
-        prepare_last_words("all is lost", /*in_other_thread=*/false);
-        end_with_last_words(3);
+        prepare_crash_message("all is lost", /*in_other_thread=*/false);
+        end_with_crash_message(3);
     };
     EXPECT_EXIT(run_once(short_scene(), die), ::testing::ExitedWithCode(3), "all is lost\\. If the program");
     std::filesystem::remove(path);

@@ -21,8 +21,8 @@ struct OddMember {
 
 /// In source order. Debug information does not tell which structures are sent, so these are taken for messages:
 /// structures whose name contains "message", "msg", "packet" or "payload", and those of which a function that takes a
-/// message_t* has a variable or a pointer, unless USERDATA contains them (clang does not tell the type of `mydata`: there,
-/// only names count).
+/// message_t* has a variable or a pointer, unless USERDATA contains them (clang does not tell the type of `mydata`:
+/// there, only names count).
 std::vector<OddMember> odd_members_of_messages(ProgramFile const& program);
 
 }  // namespace shared_state

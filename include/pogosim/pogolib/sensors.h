@@ -18,10 +18,10 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number);
 
 /// Acceleration (m/s2: [0] to the right, [1] forward, [2] up) and angular velocity (rad/s; [2] counter-clockwise seen
 /// from above), three floats each, not NULL. Clamped to +-156.9 m/s2 and +-34.9 rad/s like the real chip. The simulator
-/// has neither gravity nor tilt: acc[2], gyro[0] and gyro[1] are 0. Both are what the body did in the last step, whatever
-/// its motors ask of it. The acceleration is the change of velocity between the last two ticks (0 at the first), divided
-/// by the robot's time between them. With a `time_step` of 10 ms (the default), ticks of 16 ms are 10 or 20 ms apart, so
-/// in a steady turn it alternates around its mean; with a `time_step` of 8 or 16 ms it does not.
+/// has neither gravity nor tilt: acc[2], gyro[0] and gyro[1] are 0. Both are what the body did in the last step,
+/// whatever its motors ask of it. The acceleration is the change of velocity between the last two ticks (0 at the
+/// first), divided by the robot's time between them. With a `time_step` of 10 ms (the default), ticks of 16 ms are 10
+/// or 20 ms apart, so in a steady turn it alternates around its mean; with a `time_step` of 8 or 16 ms it does not.
 /// @range acc: m/s2, +-156.9; gyro: rad/s, +-34.9
 void pogobot_imu_read(float* acc, float* gyro);
 

@@ -1,9 +1,9 @@
-// What robots run while they are filmed for `pogosim calibrate`: straight on, to the left, to the right, a rest, again and
-// again. The same file compiles for real robots (`make bin`) and for the simulator, which runs it as well.
+// What robots run while they are filmed for `pogosim calibrate`: straight on, to the left, to the right, a rest, again
+// and again. The same file compiles for real robots (`make bin`) and for the simulator, which runs it as well.
 //
-// Each phase shows something of its own: straight on, the speed and the bias; the turns, the turning speed; the rest, the
-// noise of the camera. The turn to the left takes longer than the one to the right, so that robots do not keep their
-// heading, and so that a mirrored film can be told.
+// Each phase shows something of its own: straight on, the speed and the bias; the turns, the turning speed; the rest,
+// the noise of the camera. The turn to the left takes longer than the one to the right, so that robots do not keep
+// their heading, and so that a mirrored film can be told.
 #include "pogobase.h"
 
 typedef struct {

@@ -1,4 +1,4 @@
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
 
 #include <dlfcn.h>
 #include <unistd.h>
@@ -11,18 +11,18 @@
 #include "robot/backtrace.hpp"
 #include "robot/blocked_watch.hpp"
 #include "robot/caught_signals.hpp"
+#include "robot/crash_handler_state.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/crash_name.hpp"
 #include "robot/fibers.hpp"
 #include "robot/forked_child.hpp"
-#include "robot/guard_state.hpp"
-#include "robot/last_words.hpp"
 #include "robot/other_threads.hpp"
 #include "robot/process.hpp"
 
 namespace pogosim {
 
-constinit thread_local RunGuard* active_guard = nullptr;
-constinit std::atomic<RunGuard*> process_run = nullptr;
+constinit thread_local CrashHandlerState* active_handler = nullptr;
+constinit std::atomic<CrashHandlerState*> process_run = nullptr;
 
 namespace {
 
@@ -55,7 +55,7 @@ CaughtSignals caught_signals;
 }
 
 /// The run ends as soon as the simulator's thread is back in control.
-[[noreturn]] void end_run_from_background_thread(RunGuard& run, char const* crash) {
+[[noreturn]] void end_run_from_background_thread(CrashHandlerState& run, char const* crash) {
     note_crash_of_background_thread();
     SignalText<512> what;
     what << "the simulator crashed while it was " << background_activity() << " (" << crash << ")" << kOwnMemoryAdvice;
@@ -65,15 +65,15 @@ CaughtSignals caught_signals;
 
 void on_crash(int signal, siginfo_t* info, void* signal_context) {
     go_on_after_crash_of_backtrace();
-    RunGuard* const guard = active_guard;
+    CrashHandlerState* const handler = active_handler;
     bool const is_others = is_other_thread_of_run();
-    if (guard == nullptr && !is_others && !process_is_ours()) {
+    if (handler == nullptr && !is_others && !process_is_ours()) {
         pass_on(signal, info, signal_context);
         return;
     }
     CrashText const what = crash_name(signal, *info, signal_context);
-    if (guard != nullptr && guard->helped != nullptr && !guard->inside) {
-        end_run_from_background_thread(*guard->helped, what.c_str());
+    if (handler != nullptr && handler->helped != nullptr && !handler->inside) {
+        end_run_from_background_thread(*handler->helped, what.c_str());
     }
     if (is_others) {
         if (background_activity() != nullptr) {
@@ -81,22 +81,22 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
         }
         end_run_from_thread(what.c_str(), ExitCode::user_program, signal_context);
     }
-    if (guard == nullptr) {
-        prepare_last_words(what.c_str(), !on_main_thread());
-        end_with_last_words(static_cast<int>(ExitCode::user_program));
+    if (handler == nullptr) {
+        prepare_crash_message(what.c_str(), !on_main_thread());
+        end_with_crash_message(static_cast<int>(ExitCode::user_program));
     }
-    if (guard->crashed.exchange(true)) {
-        give_up_rescue(*guard);
+    if (handler->crashed.exchange(true)) {
+        give_up_rescue(*handler);
     }
-    begin_rescue(*guard, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
-    if (guard->inside) {
-        note_place(*guard, signal_context);
-        jump_out(*guard, ExitCode::user_program);
+    begin_rescue(*handler, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    if (handler->inside) {
+        note_place(*handler, signal_context);
+        jump_out(*handler, ExitCode::user_program);
     }
-    if (guard->rescuable.exchange(false)) {
-        siglongjmp(guard->rescue_point, 1);
+    if (handler->rescuable.exchange(false)) {
+        siglongjmp(handler->rescue_point, 1);
     }
-    give_up_rescue(*guard);
+    give_up_rescue(*handler);
 }
 
 void CaughtSignals::need() {
@@ -120,24 +120,24 @@ void CaughtSignals::need_no_more() {
 }
 
 /// Limits how long the thread of the run waits for its workers, some of which may now wait for ever for a lock.
-void let_run_expect_rescue(RunGuard const& helper) {
-    RunGuard& run = *helper.helped;
+void let_run_expect_rescue(CrashHandlerState const& helper) {
+    CrashHandlerState& run = *helper.helped;
     set_reason(run, helper.what.c_str());
     run.code = helper.code;
-    run.last_words = helper.last_words;
+    run.crash_message = helper.crash_message;
     run.expects_rescue = true;
     watch_rescue(run, run.busy.timeout_s);
 }
 
-UserFailure requested_failure(RunGuard& guard, EndRequest const& request) {
-    if (!guard.left_by_force) {
-        begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
+UserFailure requested_failure(CrashHandlerState& handler, EndRequest const& request) {
+    if (!handler.left_by_force) {
+        begin_rescue(handler, request.what.c_str(), request.code, request.in_other_thread);
     }
     UserFailure failure{.what = request.what.c_str(),
                         .code = request.code,
                         .in_other_thread = request.in_other_thread,
                         .place = request.place};
-    drop_end_request(guard);
+    drop_end_request(handler);
     return failure;
 }
 
@@ -147,8 +147,8 @@ std::string text_of(std::exception const& error) {
                                                                   : std::string("C++ exception: ") + error.what();
 }
 
-UserFailure exception_failure(RunGuard& guard, std::string const& what) {
-    guard.inside = false;
+UserFailure exception_failure(CrashHandlerState& handler, std::string const& what) {
+    handler.inside = false;
     set_floating_point_mode(kStandardMode);
     if (is_forked_child()) {
         end_forked_child(static_cast<int>(ExitCode::user_program));
@@ -162,59 +162,60 @@ void catch_crashes_of_process() {
     caught_signals.need();
 }
 
-RunGuard::RunGuard(void const* code, double timeout_s)
+CrashHandlerState::CrashHandlerState(void const* code, double timeout_s)
     : program_base(object_of(code)),
       busy{.timeout_s = timeout_s},
       processor_timer(TimerClock::processor, SIGPROF, this),
       wall_timer(TimerClock::wall, SIGALRM, this) {}
 
-void UserGuard::Destroy::operator()(RunGuard* state) const {
+void CrashHandler::Destroy::operator()(CrashHandlerState* state) const {
     std::destroy_at(state);
 }
 
-UserGuard::UserGuard(void const* code, double timeout_s)
-    : memory_(sizeof(RunGuard)), state_(new (memory_.data()) RunGuard(code, timeout_s)) {
-    static_assert(alignof(RunGuard) <= 64, "what FencedMemory gives");
+CrashHandler::CrashHandler(void const* code, double timeout_s)
+    : memory_(sizeof(CrashHandlerState)), state_(new (memory_.data()) CrashHandlerState(code, timeout_s)) {
+    static_assert(alignof(CrashHandlerState) <= 64, "what GuardedMemory gives");
 }
 
-UserGuard::~UserGuard() = default;
+CrashHandler::~CrashHandler() = default;
 
-bool UserGuard::was_left_by_force() const {
+bool CrashHandler::was_left_by_force() const {
     return state_->left_by_force;
 }
 
-GuardedThread::GuardedThread(UserGuard& guard) : guard_(*guard.state_), before_(active_guard) {
-    if (guard_.depth++ == 0) {
+CrashHandlerScope::CrashHandlerScope(CrashHandler& handler) : handler_(*handler.state_), before_(active_handler) {
+    if (handler_.depth++ == 0) {
         caught_signals.need();
         watch_for_forks();
         stack_.emplace();
-        guard_.thread = pthread_self();
-        guard_.inside = false;
-        start_watch(guard_);
-        watch_over_blocked(guard_);
+        handler_.thread = pthread_self();
+        handler_.inside = false;
+        start_watch(handler_);
+        watch_over_blocked(handler_);
     }
-    active_guard = &guard_;
+    active_handler = &handler_;
 }
 
-GuardedThread::~GuardedThread() {
-    if (--guard_.depth == 0) {
-        end_watch_over_blocked(guard_);
-        stop_watch(guard_);
+CrashHandlerScope::~CrashHandlerScope() {
+    if (--handler_.depth == 0) {
+        end_watch_over_blocked(handler_);
+        stop_watch(handler_);
         caught_signals.need_no_more();
     }
-    active_guard = before_;
+    active_handler = before_;
 }
 
-HelperGuard::HelperGuard(UserGuard& run) : run_(*run.state_), guard_(run_.program_base, run_.busy.timeout_s) {
-    RunGuard& self = *guard_.state_;
+WorkerCrashHandler::WorkerCrashHandler(CrashHandler& run)
+    : run_(*run.state_), handler_(run_.program_base, run_.busy.timeout_s) {
+    CrashHandlerState& self = *handler_.state_;
     self.helped = &run_;
     self.next_helper = run_.helpers.load();
     run_.helpers = &self;
 }
 
-HelperGuard::~HelperGuard() {
-    RunGuard& self = *guard_.state_;
-    std::atomic<RunGuard*>* link = &run_.helpers;
+WorkerCrashHandler::~WorkerCrashHandler() {
+    CrashHandlerState& self = *handler_.state_;
+    std::atomic<CrashHandlerState*>* link = &run_.helpers;
     while (*link != &self) {
         link = &link->load()->next_helper;
     }
@@ -226,15 +227,15 @@ HelperGuard::~HelperGuard() {
     }
 }
 
-void HelperGuard::enter() {
+void WorkerCrashHandler::enter() {
     if (is_entered_) {
         return;
     }
     is_entered_ = true;
     static thread_local SignalStackScope const stack;  // as long as the thread
-    RunGuard& self = *guard_.state_;
+    CrashHandlerState& self = *handler_.state_;
     self.thread = pthread_self();
-    active_guard = &self;
+    active_handler = &self;
     caught_signals.need();
     start_watch(self);
     watch_over_blocked(self);
@@ -246,13 +247,13 @@ void HelperGuard::enter() {
 }
 
 void begin_rescue_of_run(UserFailure const& failure) {
-    begin_rescue(*active_guard, failure.what.c_str(), failure.code, failure.in_other_thread);
+    begin_rescue(*active_handler, failure.what.c_str(), failure.code, failure.in_other_thread);
 }
 
-ProcessRun::ProcessRun(UserGuard& guard) {
+ProcessRun::ProcessRun(CrashHandler& handler) {
     enter_stage(RunStage::running);
-    guard.state_->thread = pthread_self();
-    process_run = guard.state_.get();
+    handler.state_->thread = pthread_self();
+    process_run = handler.state_.get();
 }
 
 ProcessRun::~ProcessRun() {
@@ -267,60 +268,60 @@ double monotonic_s() {
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) / kNsPerS;
 }
 
-void set_reason(RunGuard& guard, char const* text) {
-    guard.what = {};
-    guard.what << text;
+void set_reason(CrashHandlerState& handler, char const* text) {
+    handler.what = {};
+    handler.what << text;
 }
 
-void begin_rescue(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread) {
-    set_reason(guard, what);
-    guard.code = code;
-    guard.in_other_thread = in_other_thread;
-    guard.left_by_force = true;
-    if (guard.helped == nullptr) {
-        watch_rescue(guard);
+void begin_rescue(CrashHandlerState& handler, char const* what, ExitCode code, bool in_other_thread) {
+    set_reason(handler, what);
+    handler.code = code;
+    handler.in_other_thread = in_other_thread;
+    handler.left_by_force = true;
+    if (handler.helped == nullptr) {
+        watch_rescue(handler);
     }
-    prepare_last_words(what, in_other_thread);
-    if (guard.helped != nullptr) {
-        let_run_expect_rescue(guard);
+    prepare_crash_message(what, in_other_thread);
+    if (handler.helped != nullptr) {
+        let_run_expect_rescue(handler);
     }
 }
 
-void give_up_rescue(RunGuard& guard) {
-    bool const looked = guard.has_last_look;  // looking at destroyed memory again may lead here again
-    guard.has_last_look = true;
-    if (guard.data_file.state == DataFileState::complete && !looked) {
-        prepare_last_words(guard.what.c_str(), guard.in_other_thread);
+void give_up_rescue(CrashHandlerState& handler) {
+    bool const looked = handler.has_last_look;  // looking at destroyed memory again may lead here again
+    handler.has_last_look = true;
+    if (handler.data_file.state == DataFileState::complete && !looked) {
+        prepare_crash_message(handler.what.c_str(), handler.in_other_thread);
     }
-    end_with_last_words(static_cast<int>(guard.code));
+    end_with_crash_message(static_cast<int>(handler.code));
 }
 
-void jump_out(RunGuard& guard, ExitCode code) {
-    guard.code = code;
-    guard.inside = false;
-    siglongjmp(guard.return_point, 1);
+void jump_out(CrashHandlerState& handler, ExitCode code) {
+    handler.code = code;
+    handler.inside = false;
+    siglongjmp(handler.return_point, 1);
 }
 
-void note_place(RunGuard& guard, void const* signal_context, int callees) {
-    guard.place = place_in_program(guard.program_base, signal_context, callees);
+void note_place(CrashHandlerState& handler, void const* signal_context, int callees) {
+    handler.place = place_in_program(handler.program_base, signal_context, callees);
 }
 
-bool is_in_user_program(RunGuard const& guard, void const* signal_context) {
+bool is_in_user_program(CrashHandlerState const& handler, void const* signal_context) {
     void* const counter = program_counter(signal_context);
     Dl_info here;
-    bool const known = counter != nullptr && guard.program_base != nullptr && dladdr(counter, &here) != 0;
-    return !known || here.dli_fbase == guard.program_base;
+    bool const known = counter != nullptr && handler.program_base != nullptr && dladdr(counter, &here) != 0;
+    return !known || here.dli_fbase == handler.program_base;
 }
 
 std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
-    RunGuard& guard = *active_guard;
-    if (EndRequest const* const request = end_request(guard)) {
-        return requested_failure(guard, *request);
+    CrashHandlerState& handler = *active_handler;
+    if (EndRequest const* const request = end_request(handler)) {
+        return requested_failure(handler, *request);
     }
-    if (sigsetjmp(guard.return_point, 0) != 0) {
+    if (sigsetjmp(handler.return_point, 0) != 0) {
         forget_running_fiber();
         set_floating_point_mode(kStandardMode);
-        RunGuard& run = *active_guard;
+        CrashHandlerState& run = *active_handler;
         EndRequest const* const request = end_request(run);
         return request != nullptr ? requested_failure(run, *request)
                                   : UserFailure{.what = run.what.c_str(),
@@ -329,38 +330,39 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body) {
                                                 .too_long = run.too_long,
                                                 .place = run.place};
     }
-    guard.entered_s.store(monotonic_s(), std::memory_order_relaxed);
-    guard.inside = true;
-    guard.refused = false;
-    guard.too_long = false;
+    handler.entered_s.store(monotonic_s(), std::memory_order_relaxed);
+    handler.inside = true;
+    handler.refused = false;
+    handler.too_long = false;
     restart_watch();
     try {
         body();
     } catch (std::exception const& error) {
-        return exception_failure(guard, text_of(error));
+        return exception_failure(handler, text_of(error));
     } catch (...) {
-        return exception_failure(guard, "C++ exception");
+        return exception_failure(handler, "C++ exception");
     }
-    guard.inside = false;
+    handler.inside = false;
     if (is_forked_child()) {
         end_forked_child(0);
     }
-    if (EndRequest const* const request = end_request(guard)) {
-        return requested_failure(guard, *request);
+    if (EndRequest const* const request = end_request(handler)) {
+        return requested_failure(handler, *request);
     }
     return std::nullopt;
 }
 
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body) {
-    RunGuard& guard = *active_guard;
-    if (sigsetjmp(guard.rescue_point, 0) != 0) {
+    CrashHandlerState& handler = *active_handler;
+    if (sigsetjmp(handler.rescue_point, 0) != 0) {
         forget_running_fiber();
-        return UserFailure{std::string("the simulator crashed (") + active_guard->what.c_str() + ")" + kOwnMemoryAdvice,
-                           ExitCode::user_program};
+        return UserFailure{
+            std::string("the simulator crashed (") + active_handler->what.c_str() + ")" + kOwnMemoryAdvice,
+            ExitCode::user_program};
     }
-    guard.rescuable = true;
+    handler.rescuable = true;
     body();
-    guard.rescuable = false;
+    handler.rescuable = false;
     return std::nullopt;
 }
 
@@ -368,16 +370,16 @@ void restart_watch() {
     if (is_forked_child()) {
         end_forked_child(0);  // the next robot is the parent's
     }
-    std::atomic<unsigned long>& calls = active_guard->calls;
+    std::atomic<unsigned long>& calls = active_handler->calls;
     calls.store(calls.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
 bool inside_user_code() {
-    return active_guard != nullptr && active_guard->inside;
+    return active_handler != nullptr && active_handler->inside;
 }
 
 bool interrupted() {
-    return active_guard != nullptr && active_guard->interrupts > 0;
+    return active_handler != nullptr && active_handler->interrupts > 0;
 }
 
 void leave_user_code(char const* what, ExitCode code, int callees) {
@@ -389,20 +391,20 @@ void leave_user_code(char const* what, ExitCode code, int callees) {
         std::fprintf(stderr, "pogosim: %s\n", what);
         std::abort();
     }
-    set_reason(*active_guard, what);
-    note_place(*active_guard, nullptr, callees);
-    jump_out(*active_guard, code);
+    set_reason(*active_handler, what);
+    note_place(*active_handler, nullptr, callees);
+    jump_out(*active_handler, code);
 }
 
 void refuse_user_code(char const* what) {
-    if (active_guard != nullptr) {
-        active_guard->refused = true;
+    if (active_handler != nullptr) {
+        active_handler->refused = true;
     }
     leave_user_code(what, ExitCode::usage);
 }
 
 bool is_other_thread_of_run() {
-    return active_guard == nullptr && process_run != nullptr && !on_main_thread();
+    return active_handler == nullptr && process_run != nullptr && !on_main_thread();
 }
 
 void end_run_from_thread(char const* what, ExitCode code, void const* signal_context, int callees) {
@@ -413,7 +415,7 @@ void end_run_from_thread(char const* what, ExitCode code, void const* signal_con
 
 void check_end_of_thread() {
     constexpr auto kWhat = "called pthread_exit(), which ends the only thread that can run the simulator";
-    bool const is_simulators = active_guard != nullptr || (process_is_ours() && on_main_thread());
+    bool const is_simulators = active_handler != nullptr || (process_is_ours() && on_main_thread());
     if (!is_simulators || is_forked_child()) {
         return;
     }
@@ -421,8 +423,8 @@ void check_end_of_thread() {
         leave_user_code(kWhat, ExitCode::user_program);
     }
     std::fflush(nullptr);
-    prepare_last_words(kWhat, /*in_other_thread=*/false);
-    end_with_last_words(static_cast<int>(ExitCode::user_program));
+    prepare_crash_message(kWhat, /*in_other_thread=*/false);
+    end_with_crash_message(static_cast<int>(ExitCode::user_program));
 }
 
 void called_without_robot(char const* function) {
@@ -434,12 +436,12 @@ void called_without_robot(char const* function) {
     }
     what << "while no robot was running; call it in main(), user_init(), user_step() or a callback";
     std::fflush(nullptr);
-    prepare_last_words(what.c_str(), !on_main_thread());
-    end_with_last_words(static_cast<int>(ExitCode::user_program));
+    prepare_crash_message(what.c_str(), !on_main_thread());
+    end_with_crash_message(static_cast<int>(ExitCode::user_program));
 }
 
 int note_interrupt(int signal, char const* name) {
-    RunGuard* const run = process_run;
+    CrashHandlerState* const run = process_run;
     if (run == nullptr) {
         return 0;
     }

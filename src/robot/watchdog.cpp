@@ -10,9 +10,9 @@
 #include "base/save_progress.hpp"
 #include "robot/caught_signals.hpp"
 #include "robot/context.hpp"
-#include "robot/guard_state.hpp"
-#include "robot/last_words.hpp"
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
+#include "robot/crash_handler_state.hpp"
+#include "robot/crash_message.hpp"
 
 namespace pogosim {
 
@@ -45,27 +45,27 @@ double thread_processor_time_s() {
 }
 
 /// The run whose timer has sent this signal to this thread; null: it is not from one of them.
-RunGuard* run_of(siginfo_t const& info) {
-    RunGuard* const guard = active_guard;
-    bool const is_timers = info.si_code != SI_TIMER || info.si_value.sival_ptr == guard;  // or sent by hurry()
-    return guard != nullptr && is_timers ? guard : nullptr;
+CrashHandlerState* run_of(siginfo_t const& info) {
+    CrashHandlerState* const handler = active_handler;
+    bool const is_timers = info.si_code != SI_TIMER || info.si_value.sival_ptr == handler;  // or sent by hurry()
+    return handler != nullptr && is_timers ? handler : nullptr;
 }
 
 void on_watch(int signal, siginfo_t* info, void* signal_context) {
-    RunGuard* const run = run_of(*info);
+    CrashHandlerState* const run = run_of(*info);
     if (run == nullptr) {
         pass_on(signal, info, signal_context);
         return;
     }
-    RunGuard& guard = *run;
-    ProcessorWatch& busy = guard.busy;
+    CrashHandlerState& handler = *run;
+    ProcessorWatch& busy = handler.busy;
     double const now_s = thread_processor_time_s();
-    if (!guard.inside || guard.calls != busy.calls_seen) {
-        busy.calls_seen = guard.calls;
+    if (!handler.inside || handler.calls != busy.calls_seen) {
+        busy.calls_seen = handler.calls;
         busy.seen_at_s = now_s;
         if (busy.retrying) {
             busy.retrying = false;
-            guard.processor_timer.arm(busy.period_s);
+            handler.processor_timer.arm(busy.period_s);
         }
         return;
     }
@@ -73,10 +73,10 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
     if (too_long_s < 0.0) {
         return;
     }
-    if (!is_in_user_program(guard, signal_context) && too_long_s < kLongestRetryS) {
+    if (!is_in_user_program(handler, signal_context) && too_long_s < kLongestRetryS) {
         if (!busy.retrying) {
             busy.retrying = true;
-            guard.processor_timer.arm(kRetryPeriodS);
+            handler.processor_timer.arm(kRetryPeriodS);
         }
         return;
     }
@@ -84,22 +84,22 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
     what << "did not return within ";
     what.number(busy.timeout_s, 6, /*kept=*/false) << " s of processor time (user_code_timeout)";
     what << (is_at_robots_start() ? kMoveTheLoop : kLetTimePass);
-    guard.too_long = true;
-    begin_rescue(guard, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
-    note_place(guard, signal_context);
-    jump_out(guard, ExitCode::user_program);
+    handler.too_long = true;
+    begin_rescue(handler, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    note_place(handler, signal_context);
+    jump_out(handler, ExitCode::user_program);
 }
 
 /// From another thread.
-void hurry_thread(RunGuard& guard, char const* request_name) {
-    if (guard.is_watching) {
-        guard.hurry_request = request_name;
-        pthread_kill(guard.thread, SIGALRM);
+void hurry_thread(CrashHandlerState& handler, char const* request_name) {
+    if (handler.is_watching) {
+        handler.hurry_request = request_name;
+        pthread_kill(handler.thread, SIGALRM);
     }
 }
 
-bool has_busy_helper(RunGuard const& guard) {
-    RunGuard const* helper = guard.helpers;
+bool has_busy_helper(CrashHandlerState const& handler) {
+    CrashHandlerState const* helper = handler.helpers;
     while (helper != nullptr && !helper->inside) {
         helper = helper->next_helper;
     }
@@ -107,17 +107,17 @@ bool has_busy_helper(RunGuard const& guard) {
 }
 
 /// Tells the waiting user what is going on, once.
-void tell_what_is_waited_for(RunGuard& guard) {
-    WallClockWatch& waiting = guard.waiting;
-    ProcessorWatch const& busy = guard.busy;
-    bool const is_others_to_tell = !guard.inside && (guard.helped != nullptr || has_busy_helper(guard));
+void tell_what_is_waited_for(CrashHandlerState& handler) {
+    WallClockWatch& waiting = handler.waiting;
+    ProcessorWatch const& busy = handler.busy;
+    bool const is_others_to_tell = !handler.inside && (handler.helped != nullptr || has_busy_helper(handler));
     if (waiting.told || is_others_to_tell) {
         return;
     }
     waiting.told = true;
     SignalText<1024> text;
     text << "pogosim: " << waiting.request_name << ": stopping ";
-    if (guard.inside) {
+    if (handler.inside) {
         text << "as soon as " << running_place().c_str()
              << ", returns. Send a second signal to stop now; otherwise it is aborted ";
         if (busy.timeout_s > 0.0) {
@@ -132,30 +132,30 @@ void tell_what_is_waited_for(RunGuard& guard) {
 }
 
 /// Aborts user code as requested, where it is safe.
-void look_after_request(RunGuard& guard, void const* signal_context, double now_s) {
-    EndRequest const& request = guard.request;
+void look_after_request(CrashHandlerState& handler, void const* signal_context, double now_s) {
+    EndRequest const& request = handler.request;
     double const asked_since_s = now_s - request.made_s;
-    if (!guard.inside) {
+    if (!handler.inside) {
         // call_user_code() sees the request, unless the simulator waits for a lock that is gone.
         if (asked_since_s > kPatienceS) {
-            begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
-            give_up_rescue(guard);
+            begin_rescue(handler, request.what.c_str(), request.code, request.in_other_thread);
+            give_up_rescue(handler);
         }
         return;
     }
-    if (is_in_user_program(guard, signal_context) || asked_since_s > kLongestRetryS) {
-        begin_rescue(guard, request.what.c_str(), request.code, request.in_other_thread);
+    if (is_in_user_program(handler, signal_context) || asked_since_s > kLongestRetryS) {
+        begin_rescue(handler, request.what.c_str(), request.code, request.in_other_thread);
         if (!request.in_other_thread) {
-            note_place(guard, signal_context);
-            guard.request.place = guard.place;
+            note_place(handler, signal_context);
+            handler.request.place = handler.place;
         }
-        jump_out(guard, request.code);
+        jump_out(handler, request.code);
     }
 }
 
 /// A large file, or a slow disk, takes its time.
-void look_after_rescue(RunGuard& guard, double now_s) {
-    RescueWatch& rescue = guard.rescue;
+void look_after_rescue(CrashHandlerState& handler, double now_s) {
+    RescueWatch& rescue = handler.rescue;
     SaveProgress const& progress = save_progress();
     std::uint64_t const writes = progress.writes;
     if (writes != rescue.writes_seen) {
@@ -164,48 +164,48 @@ void look_after_rescue(RunGuard& guard, double now_s) {
     }
     double const limit_s = kPatienceS + rescue.grace_s + static_cast<double>(progress.bytes) / kSlowestDiskBytesPerS;
     if (now_s - rescue.last_write_s > limit_s) {
-        give_up_rescue(guard);
+        give_up_rescue(handler);
     }
 }
 
 void on_look(int signal, siginfo_t* info, void* signal_context) {
-    RunGuard* const run = run_of(*info);
+    CrashHandlerState* const run = run_of(*info);
     if (run == nullptr) {
         pass_on(signal, info, signal_context);
         return;
     }
-    RunGuard& guard = *run;
+    CrashHandlerState& handler = *run;
     double const now_s = monotonic_s();
-    if (guard.left_by_force) {
-        look_after_rescue(guard, now_s);
+    if (handler.left_by_force) {
+        look_after_rescue(handler, now_s);
         return;
     }
-    if (end_request(guard) != nullptr) {
-        look_after_request(guard, signal_context, now_s);
+    if (end_request(handler) != nullptr) {
+        look_after_request(handler, signal_context, now_s);
         return;
     }
-    if (char const* const name = guard.hurry_request.exchange(nullptr)) {
-        hurry_user_code(guard, name);
+    if (char const* const name = handler.hurry_request.exchange(nullptr)) {
+        hurry_user_code(handler, name);
         return;
     }
-    WallClockWatch& waiting = guard.waiting;
-    if (guard.expects_rescue) {
-        look_after_rescue(guard, now_s);
+    WallClockWatch& waiting = handler.waiting;
+    if (handler.expects_rescue) {
+        look_after_rescue(handler, now_s);
         if (*waiting.request_name == '\0') {
             return;
         }
     }
-    ProcessorWatch const& busy = guard.busy;
-    if (guard.calls != waiting.calls_seen) {
-        waiting.calls_seen = guard.calls;
+    ProcessorWatch const& busy = handler.busy;
+    if (handler.calls != waiting.calls_seen) {
+        waiting.calls_seen = handler.calls;
         waiting.call_began_s = now_s;
         return;
     }
-    if (now_s - waiting.call_began_s > (guard.inside ? kPromptReturnS : kPromptEndS)) {
-        tell_what_is_waited_for(guard);
+    if (now_s - waiting.call_began_s > (handler.inside ? kPromptReturnS : kPromptEndS)) {
+        tell_what_is_waited_for(handler);
     }
     double const limit_s = busy.timeout_s > 0.0 ? busy.timeout_s : kPatienceS;
-    if (guard.inside && now_s - waiting.call_began_s > limit_s) {
+    if (handler.inside && now_s - waiting.call_began_s > limit_s) {
         SignalText<512> what;
         what << "it had not returned ";
         what.number(limit_s, 6, /*kept=*/false);
@@ -215,34 +215,34 @@ void on_look(int signal, siginfo_t* info, void* signal_context) {
             what << " s after " << waiting.request_name << " requested a stop";
         }
         what << (is_at_robots_start() ? kMoveTheLoop : "");
-        request_end(guard, what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
+        request_end(handler, what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
     }
 }
 
 }  // namespace
 
-void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread, void const* place) {
+void request_end(CrashHandlerState& handler, char const* what, ExitCode code, bool in_other_thread, void const* place) {
     RequestState expected = RequestState::none;
-    if (guard.left_by_force || !guard.request_state.compare_exchange_strong(expected, RequestState::being_made)) {
+    if (handler.left_by_force || !handler.request_state.compare_exchange_strong(expected, RequestState::being_made)) {
         return;
     }
-    EndRequest& request = guard.request;
+    EndRequest& request = handler.request;
     request.what = {};
     request.what << what;
     request.code = code;
     request.in_other_thread = in_other_thread;
     request.place = place;
     request.made_s = monotonic_s();
-    guard.request_state = RequestState::made;
-    guard.wall_timer.arm(kRetryPeriodS);
+    handler.request_state = RequestState::made;
+    handler.wall_timer.arm(kRetryPeriodS);
 }
 
-void drop_end_request(RunGuard& guard) {
-    guard.request_state = RequestState::none;
+void drop_end_request(CrashHandlerState& handler) {
+    handler.request_state = RequestState::none;
 }
 
-EndRequest const* end_request(RunGuard const& guard) {
-    return guard.request_state.load(std::memory_order_acquire) == RequestState::made ? &guard.request : nullptr;
+EndRequest const* end_request(CrashHandlerState const& handler) {
+    return handler.request_state.load(std::memory_order_acquire) == RequestState::made ? &handler.request : nullptr;
 }
 
 void catch_watch_signals() {
@@ -255,63 +255,63 @@ void give_back_watch_signals() {
     give_back_signal(SIGPROF);
 }
 
-void start_watch(RunGuard& guard) {
-    guard.is_watching = true;
-    guard.wall_timer.prepare();
-    if (guard.left_by_force) {
-        watch_rescue(guard);
+void start_watch(CrashHandlerState& handler) {
+    handler.is_watching = true;
+    handler.wall_timer.prepare();
+    if (handler.left_by_force) {
+        watch_rescue(handler);
     }
-    if (double const timeout_s = guard.busy.timeout_s; timeout_s > 0.0) {
-        guard.busy.calls_seen = 0;
-        guard.busy.retrying = false;
-        guard.busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
-        guard.processor_timer.arm(guard.busy.period_s);
+    if (double const timeout_s = handler.busy.timeout_s; timeout_s > 0.0) {
+        handler.busy.calls_seen = 0;
+        handler.busy.retrying = false;
+        handler.busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
+        handler.processor_timer.arm(handler.busy.period_s);
     }
 }
 
-void watch_rescue(RunGuard& guard, double grace_s) {
-    guard.rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s(), .grace_s = grace_s};
+void watch_rescue(CrashHandlerState& handler, double grace_s) {
+    handler.rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s(), .grace_s = grace_s};
     catch_signal(SIGALRM, SA_RESTART, on_look);  // the program may have taken it
-    guard.wall_timer.arm(kRescueLookPeriodS);
+    handler.wall_timer.arm(kRescueLookPeriodS);
 }
 
-void stop_watch(RunGuard& guard) {
-    guard.is_watching = false;
-    guard.processor_timer.remove();
-    guard.wall_timer.remove();
+void stop_watch(CrashHandlerState& handler) {
+    handler.is_watching = false;
+    handler.processor_timer.remove();
+    handler.wall_timer.remove();
 }
 
-void hurry_user_code(RunGuard& guard, char const* request_name) {
-    if (guard.left_by_force || !guard.is_watching) {
+void hurry_user_code(CrashHandlerState& handler, char const* request_name) {
+    if (handler.left_by_force || !handler.is_watching) {
         return;  // the timer watches over the data file, or the run is over: nothing would stop it
     }
     double const now_s = monotonic_s();
-    double const entered_s = guard.entered_s.load(std::memory_order_relaxed);
-    bool const has_limit = guard.busy.timeout_s > 0.0;
-    guard.waiting = {.request_name = request_name,
-                     .calls_seen = guard.calls,
-                     .call_began_s = guard.inside && has_limit ? entered_s : now_s};
-    if (guard.inside && now_s - entered_s > kPromptReturnS) {
-        tell_what_is_waited_for(guard);
+    double const entered_s = handler.entered_s.load(std::memory_order_relaxed);
+    bool const has_limit = handler.busy.timeout_s > 0.0;
+    handler.waiting = {.request_name = request_name,
+                       .calls_seen = handler.calls,
+                       .call_began_s = handler.inside && has_limit ? entered_s : now_s};
+    if (handler.inside && now_s - entered_s > kPromptReturnS) {
+        tell_what_is_waited_for(handler);
     }
-    guard.wall_timer.arm(kLookPeriodS);
-    for (RunGuard* helper = guard.helpers; helper != nullptr; helper = helper->next_helper) {
+    handler.wall_timer.arm(kLookPeriodS);
+    for (CrashHandlerState* helper = handler.helpers; helper != nullptr; helper = helper->next_helper) {
         hurry_thread(*helper, request_name);
     }
 }
 
-void UserGuard::hurry(char const* request_name) {
+void CrashHandler::hurry(char const* request_name) {
     hurry_thread(*state_, request_name);
 }
 
-void abandon_user_code(RunGuard& guard) {
-    for (RunGuard* helper = guard.helpers; helper != nullptr; helper = helper->next_helper) {
+void abandon_user_code(CrashHandlerState& handler) {
+    for (CrashHandlerState* helper = handler.helpers; helper != nullptr; helper = helper->next_helper) {
         abandon_user_code(*helper);
     }
-    if (guard.inside) {
+    if (handler.inside) {
         SignalText<512> what;
         what << "interrupted again before it returned" << (is_at_robots_start() ? kMoveTheLoop : "");
-        request_end(guard, what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
+        request_end(handler, what.c_str(), ExitCode::interrupted, /*in_other_thread=*/false);
     }
 }
 

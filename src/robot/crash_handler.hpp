@@ -1,14 +1,14 @@
-// A fence around user code. Whatever happens inside (a crash, abort(), a step that never returns, an error in an
+// The crash handler. Whatever happens in user code (a crash, abort(), a step that never returns, an error in an
 // interface function), control returns here, so that the run can end with a message and a complete data file.
 //
 //   call_user_code(f) ──► sigsetjmp ──► f() ──► user's program
 //          ▲                                        │ SIGSEGV, SIGFPE, SIGABRT, too long, leave_user_code()
 //          └──────────────── siglongjmp ◄───────────┘
 //
-// A jump skips the destructors of every frame in between, so the code between the fence and the user's functions owns
-// nothing that needs one.
+// A jump skips the destructors of every frame in between, so the code between call_user_code() and the user's
+// functions owns nothing that needs one.
 //
-// Crashes elsewhere end the program with a message (last_words.hpp): in constructors before main(), in atexit()
+// Crashes elsewhere end the program with a message (crash_message.hpp): in constructors before main(), in atexit()
 // handlers and destructors after the run. One in a thread that the program started ends the run as one in user code.
 #pragma once
 
@@ -22,7 +22,7 @@
 
 #include "base/floating_point.hpp"
 #include "base/memory.hpp"
-#include "robot/fenced_memory.hpp"
+#include "robot/guarded_memory.hpp"
 #include "robot/other_threads.hpp"
 
 namespace pogosim {
@@ -40,17 +40,17 @@ struct UserFailure {
     void const* place = nullptr;   // in the program's code, that was executed last; null: unknown
 };
 
-struct RunGuard;
+struct CrashHandlerState;
 
-/// The fence of one run.
-class UserGuard {
+/// The crash handler of one run.
+class CrashHandler {
 public:
     /// `code`: any place in the code of the program. `timeout_s`: processor time that one call of user code may take;
     /// 0: no limit.
-    UserGuard(void const* code, double timeout_s);
-    ~UserGuard();
-    UserGuard(UserGuard const&) = delete;
-    UserGuard& operator=(UserGuard const&) = delete;
+    CrashHandler(void const* code, double timeout_s);
+    ~CrashHandler();
+    CrashHandler(CrashHandler const&) = delete;
+    CrashHandler& operator=(CrashHandler const&) = delete;
 
     /// True if user code was aborted: no destructor or atexit() handler may rely on its memory and locks.
     bool was_left_by_force() const;
@@ -60,67 +60,68 @@ public:
     void hurry(char const* request_name);
 
 private:
-    friend class GuardedThread;
-    friend class HelperGuard;
+    friend class CrashHandlerScope;
+    friend class WorkerCrashHandler;
     friend class ProcessRun;
     struct Destroy {
-        void operator()(RunGuard* state) const;
+        void operator()(CrashHandlerState* state) const;
     };
 
-    FencedMemory memory_;  // of the state: a program that writes over the heap does not reach it
-    std::unique_ptr<RunGuard, Destroy> state_;
+    GuardedMemory memory_;  // of the state: a program that writes over the heap does not reach it
+    std::unique_ptr<CrashHandlerState, Destroy> state_;
 };
 
-/// The fence of a worker that runs user code for a run, beside the thread of the run: crashes and endless loops in that
+/// The crash handler of a worker that runs user code beside the thread of the run: crashes and endless loops in that
 /// code end the call in this thread, and what asks the run to end asks this thread, too.
-class HelperGuard {
+class WorkerCrashHandler {
 public:
-    explicit HelperGuard(UserGuard& run);
+    explicit WorkerCrashHandler(CrashHandler& run);
     /// Its thread has ended, or does nothing any more.
-    ~HelperGuard();
-    HelperGuard(HelperGuard const&) = delete;
-    HelperGuard& operator=(HelperGuard const&) = delete;
+    ~WorkerCrashHandler();
+    WorkerCrashHandler(WorkerCrashHandler const&) = delete;
+    WorkerCrashHandler& operator=(WorkerCrashHandler const&) = delete;
 
     /// The calling thread, always the same background thread, may use call_user_code() from now on.
     void enter();
 
     /// True if user code was aborted here, see begin_rescue_of_run().
-    bool was_left_by_force() const { return guard_.was_left_by_force(); }
+    bool was_left_by_force() const { return handler_.was_left_by_force(); }
 
 private:
-    RunGuard& run_;
-    UserGuard guard_;
+    CrashHandlerState& run_;
+    CrashHandler handler_;
     bool is_entered_ = false;
 };
 
 /// While this exists, the calling thread works for a run: its crashes, and the functions below, belong to that run.
-/// Installs signal handlers, and restores the previous ones at the end. May be nested in a thread; a run has one thread at
-/// a time.
-class GuardedThread {
+/// Installs signal handlers, and restores the previous ones at the end. May be nested in a thread; a run has one thread
+/// at a time.
+class CrashHandlerScope {
 public:
-    explicit GuardedThread(UserGuard& guard);
-    ~GuardedThread();
-    GuardedThread(GuardedThread const&) = delete;
-    GuardedThread& operator=(GuardedThread const&) = delete;
+    explicit CrashHandlerScope(CrashHandler& handler);
+    ~CrashHandlerScope();
+    CrashHandlerScope(CrashHandlerScope const&) = delete;
+    CrashHandlerScope& operator=(CrashHandlerScope const&) = delete;
 
 private:
-    RunGuard& guard_;
-    RunGuard* before_;
+    CrashHandlerState& handler_;
+    CrashHandlerState* before_;
     std::optional<SignalStackScope> stack_{};
     StandardFloatingPoint mode_{};
 };
 
-/// As long as this lives, signals that ask this process to end are for that run, and so are crashes in threads that the
-/// program has started: an executable is for one run at a time. Made in the thread that works for the run.
+/// While this exists, signals that ask this process to end belong to that run, and so do crashes in threads that the
+/// program has started: an executable has one run at a time. Created in the thread that works for the run.
 class ProcessRun {
 public:
-    explicit ProcessRun(UserGuard& guard);
+    explicit ProcessRun(CrashHandler& handler);
     ~ProcessRun();
     ProcessRun(ProcessRun const&) = delete;
     ProcessRun& operator=(ProcessRun const&) = delete;
 };
 
-// The following are about the run for which this thread works; call_user_code() and call_simulator_code() need one.
+// The following functions concern the run for which this thread works; call_user_code() and call_simulator_code() need
+// one.
 
 /// Runs `body`, which calls user code. Returns nothing if it returned normally. Not reentrant.
 std::optional<UserFailure> call_user_code(std::function<void()> const& body);
@@ -129,10 +130,10 @@ std::optional<UserFailure> call_user_code(std::function<void()> const& body);
 /// returned as a failure, once: the caller then saves as much as possible and ends the program.
 std::optional<UserFailure> call_simulator_code(std::function<void()> const& body);
 
-/// User code has failed in a helper's thread and was aborted there: this thread, that of the run, saves what there is.
+/// User code has failed in a worker's thread and was aborted there: this thread, that of the run, saves the data.
 void begin_rescue_of_run(UserFailure const& failure);
 
-/// A new call of user code begins: the watch starts again from zero.
+/// A new call of user code begins: the watchdog starts again from zero.
 void restart_watch();
 
 /// True while user code runs inside call_user_code, for the thread that runs it.
@@ -165,9 +166,9 @@ bool is_other_thread_of_run();
 /// be spared: user code is left with a failure, and elsewhere the program ends with a message, with exit code 3.
 void check_end_of_thread();
 
-/// A signal asks the process's run to end: the first one hurries user code, see UserGuard::hurry(); a second one aborts
-/// it. Returns how many have come; 0 if there is no such run, or the signal was passed on to its thread. For handlers
-/// of signals that may come on any thread.
+/// A signal asks the process's run to end: the first one hurries user code, see CrashHandler::hurry(); a second one
+/// aborts it. Returns how many have come; 0 if there is no such run, or the signal was passed on to its thread. For
+/// handlers of signals that may come on any thread.
 int note_interrupt(int signal, char const* name);
 
 /// Seconds of the monotonic clock. Also for signal handlers.

@@ -1,4 +1,4 @@
-#include "robot/fenced_memory.hpp"
+#include "robot/guarded_memory.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@ std::size_t round_up(std::size_t bytes, std::size_t unit) {
 
 }  // namespace
 
-FencedMemory::FencedMemory(std::size_t bytes) {
+GuardedMemory::GuardedMemory(std::size_t bytes) {
     auto const page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     std::size_t const usable = round_up(bytes, page);
     mapped_bytes_ = usable + 2 * page;
@@ -35,18 +35,18 @@ FencedMemory::FencedMemory(std::size_t bytes) {
     data_ = first + (usable - round_up(bytes, kAlignment));
 }
 
-FencedMemory::~FencedMemory() {
+GuardedMemory::~GuardedMemory() {
     if (mapping_ != nullptr) {
         munmap(mapping_, mapped_bytes_);
     }
 }
 
-FencedMemory::FencedMemory(FencedMemory&& other) noexcept
+GuardedMemory::GuardedMemory(GuardedMemory&& other) noexcept
     : mapping_(std::exchange(other.mapping_, nullptr)),
       mapped_bytes_(std::exchange(other.mapped_bytes_, 0)),
       data_(std::exchange(other.data_, nullptr)) {}
 
-FencedMemory& FencedMemory::operator=(FencedMemory&& other) noexcept {
+GuardedMemory& GuardedMemory::operator=(GuardedMemory&& other) noexcept {
     std::swap(mapping_, other.mapping_);
     std::swap(mapped_bytes_, other.mapped_bytes_);
     std::swap(data_, other.data_);

@@ -26,10 +26,10 @@ void note_data_file(std::string const& path, DataFileState state);
 
 struct DataFileNote;
 
-/// The run is over; its data file is still named in last words.
+/// The run is over; crash messages still name its data file.
 void keep_data_file_note(DataFileNote const& note);
 
-using LastWords = SignalText<4096>;
+using CrashMessage = SignalText<4096>;
 using PlaceText = SignalText<512>;
 
 /// "user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s": which user code runs. For signal handlers.
@@ -37,15 +37,15 @@ PlaceText running_place();
 
 /// Composes the message. It starts with what is certain and adds details one by one: any access to memory that user
 /// code may have corrupted can be the last. For signal handlers.
-void prepare_last_words(char const* what, bool in_other_thread);
+void prepare_crash_message(char const* what, bool in_other_thread);
 
 /// The same for a program that ends although nothing has failed.
-void prepare_plain_last_words(char const* what);
+void prepare_plain_message(char const* what);
 
 /// The same for a program that a signal ends outside of the run.
-void prepare_last_words_of_interrupt(char const* signal_name);
+void prepare_interrupt_message(char const* signal_name);
 
 /// Prints the message and ends the program. For signal handlers.
-[[noreturn]] void end_with_last_words(int code);
+[[noreturn]] void end_with_crash_message(int code);
 
 }  // namespace pogosim

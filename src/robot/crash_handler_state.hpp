@@ -1,5 +1,5 @@
-// State of the fence around the user code of one run, shared by the fence (user_guard.cpp), its watch (user_watch.cpp)
-// and the last words (last_words.cpp). Not included anywhere else.
+// State of the crash handler of one run, shared by the handler (crash_handler.cpp), its watchdog (watchdog.cpp) and the
+// crash message (crash_message.cpp). Not included anywhere else.
 #pragma once
 
 #include <pthread.h>
@@ -12,10 +12,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "robot/last_words.hpp"
+#include "robot/crash_handler.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/signal_text.hpp"
 #include "robot/thread_timer.hpp"
-#include "robot/user_guard.hpp"
 
 namespace pogosim {
 
@@ -53,7 +53,7 @@ struct RescueWatch {
     double grace_s = 0.0;
 };
 
-/// Where the data file stands, for last words. Plain memory: the heap may be destroyed.
+/// State of the data file, for the crash message. Static memory, since the heap may be corrupted.
 struct DataFileNote {
     std::atomic<DataFileState> state = DataFileState::none;
     std::array<char, 1024> path{};
@@ -61,15 +61,15 @@ struct DataFileNote {
 
 struct Context;
 
-struct RunGuard {
-    RunGuard(void const* code, double timeout_s);
+struct CrashHandlerState {
+    CrashHandlerState(void const* code, double timeout_s);
 
     pthread_t thread{};  // that works for the run: the only one that may jump
-    // Further threads that run user code at the same time, see HelperGuard.
-    RunGuard* helped = nullptr;                // the guard of their run; null: this is one
-    std::atomic<RunGuard*> helpers = nullptr;  // the first of them
-    std::atomic<RunGuard*> next_helper = nullptr;
-    int depth = 0;  // of GuardedThread
+    // Further threads that run user code at the same time, see WorkerCrashHandler.
+    CrashHandlerState* helped = nullptr;                // the handler of their run; null: this is one
+    std::atomic<CrashHandlerState*> helpers = nullptr;  // the first of them
+    std::atomic<CrashHandlerState*> next_helper = nullptr;
+    int depth = 0;  // of CrashHandlerScope
     void const* program_base = nullptr;
     sigjmp_buf return_point{};
     std::atomic<bool> inside = false;
@@ -110,67 +110,68 @@ struct RunGuard {
     std::uint32_t const* ticks = nullptr;
     bool is_told_of_blocked = false;
 
-    // Last words.
+    // The crash message.
     DataFileNote data_file;
-    LastWords last_words;
+    CrashMessage crash_message;
     bool has_last_look = false;  // at destroyed memory, in give_up_rescue()
 };
 
 /// The run for which this thread works; null: none.
-extern constinit thread_local RunGuard* active_guard;
+extern constinit thread_local CrashHandlerState* active_handler;
 
 /// The run that an executable is for: signals from outside, and crashes of unknown threads, are for it. Null
 /// before and after it, and in other processes.
-extern constinit std::atomic<RunGuard*> process_run;
+extern constinit std::atomic<CrashHandlerState*> process_run;
 
-void set_reason(RunGuard& guard, char const* text);
+void set_reason(CrashHandlerState& handler, char const* text);
 
 /// User code is left in the middle, or the simulator has crashed. What follows, until the data file is complete, may
-/// crash or hang for ever: then the program ends with its last words, which are composed here. For signal handlers.
-void begin_rescue(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread);
+/// crash or hang for ever: then the program ends with its crash message, which is composed here. For signal handlers.
+void begin_rescue(CrashHandlerState& handler, char const* what, ExitCode code, bool in_other_thread);
 
 /// The rescue has failed: memory is destroyed, or a lock held, beyond what the run needs to end well.
-[[noreturn]] void give_up_rescue(RunGuard& guard);
+[[noreturn]] void give_up_rescue(CrashHandlerState& handler);
 
-[[noreturn]] void jump_out(RunGuard& guard, ExitCode code);
+[[noreturn]] void jump_out(CrashHandlerState& handler, ExitCode code);
 
 /// Where user code is, for the message; see place_in_program(). To be called when all else is prepared for the end.
-void note_place(RunGuard& guard, void const* signal_context = nullptr, int callees = 0);
+void note_place(CrashHandlerState& handler, void const* signal_context = nullptr, int callees = 0);
 
 /// False inside a library function such as malloc(), which may hold a lock that would never be released.
-bool is_in_user_program(RunGuard const& guard, void const* signal_context);
+bool is_in_user_program(CrashHandlerState const& handler, void const* signal_context);
 
 /// Requests the end of the run from anywhere: another thread, or a signal handler. User code is aborted as soon as it
 /// holds no lock, as far as that can be determined; the simulator's own code runs to its end. Only the first request
 /// counts. `place`: see UserFailure.
-void request_end(RunGuard& guard, char const* what, ExitCode code, bool in_other_thread, void const* place = nullptr);
+void request_end(CrashHandlerState& handler, char const* what, ExitCode code, bool in_other_thread,
+                 void const* place = nullptr);
 
 /// Null while there is none.
-EndRequest const* end_request(RunGuard const& guard);
+EndRequest const* end_request(CrashHandlerState const& handler);
 
 /// It has been met: what remains is to save the data.
-void drop_end_request(RunGuard& guard);
+void drop_end_request(CrashHandlerState& handler);
 
 /// In an executable, crashes are reported from the start to the end of the process.
 void catch_crashes_of_process();
 
 /// A signal asks the run to end: if user code does not return soon, prints what the run is waiting for, and aborts it
 /// after `user_code_timeout` of wall-clock time. For signal handlers.
-void hurry_user_code(RunGuard& guard, char const* request_name);
+void hurry_user_code(CrashHandlerState& handler, char const* request_name);
 
 /// A second one: aborts user code. Returns at once; does nothing outside user code. For signal handlers.
-void abandon_user_code(RunGuard& guard);
+void abandon_user_code(CrashHandlerState& handler);
 
 /// Handlers of the signals of the watch, until they are given back.
 void catch_watch_signals();
 void give_back_watch_signals();
 
 /// Watches over the thread that calls this.
-void start_watch(RunGuard& guard);
+void start_watch(CrashHandlerState& handler);
 
 /// From now on the only thing that is watched is that the data file gets on. `grace_s`: for what comes before.
-void watch_rescue(RunGuard& guard, double grace_s = 0.0);
+void watch_rescue(CrashHandlerState& handler, double grace_s = 0.0);
 
-void stop_watch(RunGuard& guard);
+void stop_watch(CrashHandlerState& handler);
 
 }  // namespace pogosim

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "robot/user_guard.hpp"
+#include "robot/crash_handler.hpp"
 
 namespace pogosim {
 namespace {
@@ -25,15 +25,15 @@ Handler handler_of(int signal) {
 
 void other_handler(int /*signal*/) {}
 
-TEST(UserWatch, GivesBackTheSignalsOfTheProcess) {
+TEST(Watchdog, GivesBackTheSignalsOfTheProcess) {
     constexpr std::array kSignals{SIGSEGV, SIGFPE, SIGABRT, SIGPROF, SIGALRM};
     for (int const signal : kSignals) {
         std::signal(signal, other_handler);
     }
-    UserGuard guard(nullptr, 3.0);
+    CrashHandler handler(nullptr, 3.0);
     {
-        GuardedThread const thread(guard);
-        GuardedThread const again(guard);
+        CrashHandlerScope const thread(handler);
+        CrashHandlerScope const again(handler);
         for (int const signal : kSignals) {
             EXPECT_NE(handler_of(signal), other_handler);
         }
@@ -45,18 +45,18 @@ TEST(UserWatch, GivesBackTheSignalsOfTheProcess) {
 }
 
 /// The signal would find no handler.
-TEST(UserWatch, SendsNoSignalForARequestThatComesAfterTheRun) {
+TEST(Watchdog, SendsNoSignalForARequestThatComesAfterTheRun) {
     std::signal(SIGALRM, [](int) { std::abort(); });
-    UserGuard guard(nullptr, 0.0);
-    { GuardedThread const thread(guard); }
-    guard.hurry("the test");
-    std::thread([&] { guard.hurry("the test"); }).join();
+    CrashHandler handler(nullptr, 0.0);
+    { CrashHandlerScope const thread(handler); }
+    handler.hurry("the test");
+    std::thread([&] { handler.hurry("the test"); }).join();
     std::signal(SIGALRM, SIG_DFL);
 }
 
-TEST(UserWatch, EndsWhatDoesNotReturnAndNothingElse) {
-    UserGuard guard(nullptr, 0.05);
-    GuardedThread const thread(guard);
+TEST(Watchdog, EndsWhatDoesNotReturnAndNothingElse) {
+    CrashHandler handler(nullptr, 0.05);
+    CrashHandlerScope const thread(handler);
     EXPECT_FALSE(call_user_code([] {}));
     auto const failure = call_user_code([] {
         for (std::atomic<bool> ever = true; ever;) {
@@ -64,22 +64,22 @@ TEST(UserWatch, EndsWhatDoesNotReturnAndNothingElse) {
     });
     ASSERT_TRUE(failure);
     EXPECT_TRUE(failure->too_long);
-    EXPECT_TRUE(guard.was_left_by_force());
+    EXPECT_TRUE(handler.was_left_by_force());
 }
 
 /// Each run has a thread, and each thread a run: a failure is that of the run in which it happens.
-TEST(UserWatch, FailuresInTwoThreadsAreThoseOfTheirRuns) {
+TEST(Watchdog, FailuresInTwoThreadsAreThoseOfTheirRuns) {
     auto const spin = [](std::optional<UserFailure>& failure) {
-        UserGuard guard(nullptr, 0.1);
-        GuardedThread const thread(guard);
+        CrashHandler handler(nullptr, 0.1);
+        CrashHandlerScope const thread(handler);
         failure = call_user_code([] {
             for (std::atomic<bool> ever = true; ever;) {
             }
         });
     };
     auto const crash = [](std::optional<UserFailure>& failure) {
-        UserGuard guard(nullptr, 10.0);
-        GuardedThread const thread(guard);
+        CrashHandler handler(nullptr, 10.0);
+        CrashHandlerScope const thread(handler);
         failure = call_user_code([] { std::raise(SIGSEGV); });
     };
     std::optional<UserFailure> slow;

@@ -1,4 +1,4 @@
-#include "robot/last_words.hpp"
+#include "robot/crash_message.hpp"
 
 #include <unistd.h>
 
@@ -9,24 +9,24 @@
 #include "base/escaped.hpp"
 #include "base/scratch_file.hpp"
 #include "robot/context.hpp"
-#include "robot/guard_state.hpp"
+#include "robot/crash_handler_state.hpp"
 
 namespace pogosim {
 
 namespace {
 
-using Words = LastWords;
+using Words = CrashMessage;
 
 std::atomic<RunStage> stage = RunStage::hosted;
 DataFileNote kept_data_file;  // of the run that is over
 Words words_outside_runs;
 
-Words& last_words() {
-    return active_guard != nullptr ? active_guard->last_words : words_outside_runs;
+Words& crash_message() {
+    return active_handler != nullptr ? active_handler->crash_message : words_outside_runs;
 }
 
 DataFileNote const& data_file_note() {
-    RunGuard const* run = active_guard != nullptr ? active_guard : process_run.load();
+    CrashHandlerState const* run = active_handler != nullptr ? active_handler : process_run.load();
     if (run == nullptr) {
         return kept_data_file;
     }
@@ -103,19 +103,19 @@ SignalText<256> advice_to_repeat() {
 }
 
 void prepare_words_of_run(char const* what) {
-    last_words() = words_of_run("", what, "");
+    crash_message() = words_of_run("", what, "");
     if (context.world == nullptr) {
         return;
     }
     PlaceText where;
     where << " in " << name_of(context.phase);
     append_tick_and_time(where);
-    last_words() = words_of_run(where.c_str(), what, "");
+    crash_message() = words_of_run(where.c_str(), what, "");
     SignalText<256> const advice = advice_to_repeat();
-    last_words() = words_of_run(where.c_str(), what, advice.c_str());
+    crash_message() = words_of_run(where.c_str(), what, advice.c_str());
     PlaceText exact;
     exact << " in " << running_place().c_str();
-    last_words() = words_of_run(exact.c_str(), what, advice.c_str());
+    crash_message() = words_of_run(exact.c_str(), what, advice.c_str());
 }
 
 }  // namespace
@@ -129,8 +129,8 @@ RunStage run_stage() {
 }
 
 void note_data_file(std::string const& path, DataFileState state) {
-    if (active_guard != nullptr) {
-        DataFileNote& note = active_guard->data_file;
+    if (active_handler != nullptr) {
+        DataFileNote& note = active_handler->data_file;
         std::strncpy(note.path.data(), escaped(path).c_str(), note.path.size() - 1);
         note.state = state;
     }
@@ -152,22 +152,22 @@ PlaceText running_place() {
     return text;
 }
 
-void prepare_last_words(char const* what, bool in_other_thread) {
-    bool const is_in_run = active_guard != nullptr;
+void prepare_crash_message(char const* what, bool in_other_thread) {
+    bool const is_in_run = active_handler != nullptr;
     switch (is_in_run ? RunStage::running : stage.load()) {
         case RunStage::before_main:
-            last_words() = words_before_main(what, in_other_thread);
+            crash_message() = words_before_main(what, in_other_thread);
             break;
         case RunStage::hosted:
         case RunStage::preparing:
-            last_words() = words_of_preparation(what);
+            crash_message() = words_of_preparation(what);
             break;
         case RunStage::finished:
-            last_words() = words_after_run(what, in_other_thread);
+            crash_message() = words_after_run(what, in_other_thread);
             break;
         case RunStage::running:
             if (in_other_thread) {
-                last_words() = words_of_run(" in a thread that it started", what, "");
+                crash_message() = words_of_run(" in a thread that it started", what, "");
             } else {
                 prepare_words_of_run(what);
             }
@@ -175,34 +175,34 @@ void prepare_last_words(char const* what, bool in_other_thread) {
     }
 }
 
-void prepare_plain_last_words(char const* what) {
-    last_words() = {};
-    last_words() << "pogosim: " << what << ".";
-    append_data_file(last_words());
+void prepare_plain_message(char const* what) {
+    crash_message() = {};
+    crash_message() << "pogosim: " << what << ".";
+    append_data_file(crash_message());
 }
 
-void prepare_last_words_of_interrupt(char const* signal_name) {
-    last_words() = {};
-    last_words() << "pogosim: " << signal_name;
+void prepare_interrupt_message(char const* signal_name) {
+    crash_message() = {};
+    crash_message() << "pogosim: " << signal_name;
     switch (stage) {
         case RunStage::hosted:
         case RunStage::before_main:
-            last_words() << " before main(), where constructors of static objects run: this run has no data file.";
+            crash_message() << " before main(), where constructors of static objects run: this run has no data file.";
             break;
         case RunStage::preparing:
         case RunStage::running:
-            last_words() << " before the first robot ran: this run has no data file.";
+            crash_message() << " before the first robot ran: this run has no data file.";
             break;
         case RunStage::finished:
-            last_words() << " after the run, while destructors of static objects and exit handlers ran.";
-            append_data_file(last_words());
+            crash_message() << " after the run, while destructors of static objects and exit handlers ran.";
+            append_data_file(crash_message());
             break;
     }
 }
 
-void end_with_last_words(int code) {
-    last_words() << "\n";
-    last_words().write_to_stderr();
+void end_with_crash_message(int code) {
+    crash_message() << "\n";
+    crash_message().write_to_stderr();
     remove_scratch_files();
     _exit(code);
 }

@@ -6,19 +6,19 @@
 
 namespace pogosim {
 
-class FencedMemory {
+class GuardedMemory {
 public:
-    FencedMemory() = default;
+    GuardedMemory() = default;
 
     /// The end of the block lies right before the forbidden page, as far as its alignment of 64 bytes allows. Throws
     /// std::bad_alloc.
-    explicit FencedMemory(std::size_t bytes);
-    ~FencedMemory();
+    explicit GuardedMemory(std::size_t bytes);
+    ~GuardedMemory();
 
-    FencedMemory(FencedMemory const&) = delete;
-    FencedMemory& operator=(FencedMemory const&) = delete;
-    FencedMemory(FencedMemory&& other) noexcept;
-    FencedMemory& operator=(FencedMemory&& other) noexcept;
+    GuardedMemory(GuardedMemory const&) = delete;
+    GuardedMemory& operator=(GuardedMemory const&) = delete;
+    GuardedMemory(GuardedMemory&& other) noexcept;
+    GuardedMemory& operator=(GuardedMemory&& other) noexcept;
 
     std::byte* data() const { return data_; }
 
