@@ -60,7 +60,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Count:
-    """Messages of the focal robot: how many were sent to a neighbour (one for each neighbour), and how many of these were received."""
+    """Messages of the focal robot: how many were sent to its neighbours, one for each, and how many were received."""
 
     sent: int
     received: int

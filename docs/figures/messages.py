@@ -36,7 +36,8 @@ def caption(rows: pd.DataFrame) -> Quote:
         "*Dots: shares with their 95 % confidence intervals ([Wilson "
         "1927](https://doi.org/10.1080/01621459.1927.10502953)). Lines: the law, here the article's equation with "
         f"p = {', '.join(f'{value:g}' for value in p)} and m = {', '.join(map(str, m))}. It does not depend on the "
-        "distance: what is left of it is that distant robots have somewhat larger clusters around their senders.*"
+        "distance: the remaining dependence arises because distant robots have somewhat larger clusters around "
+        "their senders.*"
     )
 
 

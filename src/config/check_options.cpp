@@ -18,7 +18,7 @@ namespace {
 
 using Words = std::span<std::string_view const>;
 
-/// Who chooses the keys of a map.
+/// Where the keys of a map come from.
 enum class Names {
     top_level,   // the simulator, and batch tools add the names of alternatives
     ours,        // the simulator

@@ -7,8 +7,8 @@
 
 namespace pogosim {
 
-/// Throws ConfigError, naming the nearest word, where
-/// - a map of options (one with `default_option`, `batch_options`, ...) has another key, or their ranges and domains do;
+/// Throws ConfigError, which names the nearest word, if
+/// - a map of options (with `default_option`, `batch_options`, ...), or one of its ranges and domains, has another key;
 /// - a key is a slip of these words and so makes a map that is none. Names that users choose may be like them, those of
 ///   parameters, of categories and of alternatives, unless all of a map looks like options.
 void check_options(Node const& root);

@@ -40,7 +40,7 @@ public:
     /// Writes the footer; afterwards all rows are in the file. `sync`: waits until it is on the disk.
     arrow::Status finish(bool sync);
 
-    /// The same rows as those of this finished Feather file, in another format, and with a schema that may have other
+    /// The rows of this finished Feather file in another format, and with a schema that may have other
     /// metadata. The copy gets the name of this file, which has none afterwards, even on failure.
     arrow::Result<std::unique_ptr<CompleteFile>> copy_with(std::shared_ptr<arrow::Schema> const& schema,
                                                            TableFormat format, LockedFile const& unfinished, bool sync);

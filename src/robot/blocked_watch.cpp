@@ -81,7 +81,7 @@ std::optional<SystemCall> system_call_of(pid_t thread) {
                       .program_counter = std::strtoull(text.c_str() + before_counter + 1, nullptr, base)};
 }
 
-/// Whoever reads what robots print may be slow.
+/// Writing may block because the reader of the output is slow.
 bool writes(SystemCall const& call) {
     constexpr std::array<long, 5> writing{SYS_write, SYS_writev, SYS_pwrite64, SYS_fsync, SYS_fdatasync};
     return std::ranges::find(writing, call.number) != writing.end();

@@ -108,7 +108,7 @@ VariableTypePointer type_of(Dwarf_Die& entry, int depth) {
     return type && depth < kDeepest ? read_type(*type, depth + 1) : std::make_shared<VariableType const>();
 }
 
-/// Of a bit field, however its compiler says so.
+/// Sets the place of a bit field, in each of the ways in which compilers describe it.
 void place_bits(Dwarf_Die& entry, VariableType::Member& member) {
     member.bits = static_cast<unsigned>(number(entry, DW_AT_bit_size).value_or(0));
     std::size_t first_bit = 8 * member.offset;
@@ -214,7 +214,7 @@ VariableTypePointer read_type(Dwarf_Die& type, int depth) {
     return std::make_shared<VariableType const>(std::move(read));
 }
 
-/// Of a variable that has one for the whole run.
+/// The address of a variable, if it is the same for the whole run.
 std::optional<std::uintptr_t> address_of(Dwarf_Die& variable) {
     Dwarf_Attribute location;
     Dwarf_Op* operations = nullptr;

@@ -193,8 +193,8 @@ void warn_of_shared_variables(ProgramImage const& image, std::span<BoundVariable
     bool const one = count == 1;
     std::string const text = fmt::format(
         "all robots share the variable{} {}{}, of which each real robot has its own: put {} into USERDATA, read "
-        "parameters with init_from_configuration(), declare constants const and what is meant to be shared POGO_SHARED, "
-        "or set robot_memory: own",
+        "parameters with init_from_configuration(), declare constants const and what is meant to be shared "
+        "POGO_SHARED, or set robot_memory: own",
         one ? "" : "s", fmt::join(std::span(found.names).first(shown), ", "),
         shown < count ? fmt::format(" and {} more", count - shown) : "", one ? "it" : "them");
     log().log(found.is_certain ? spdlog::level::warn : spdlog::level::info, "{}", escaped(text));

@@ -14,7 +14,7 @@ namespace pogosim {
 namespace {
 
 // The unwinder of the compiler's library only knows the thread that calls it, so this is that of elfutils, which needs
-// no more than memory and registers. Of the latter, the kernel shows two; frames of library functions need no others.
+// no more than memory and registers. The kernel shows two registers; frames of library functions need no others.
 #if defined(__x86_64__)
 constexpr int kStackPointer = 7;  // its number in DWARF
 #elif defined(__aarch64__)

@@ -72,8 +72,8 @@ void warn_of_ambiguous_rows(Scenario const& scenario, World const& world) {
     }
     log().warn(
         "{}: within {} s, '{}' can cross half of the periodic arena ({} mm) at their {} mm/s (max_linear_speed): the "
-        "shortest way between two rows need not be theirs, and speeds and displacements from the data file may be wrong. "
-        "Use less than {} s",
+        "shortest way between two rows need not be theirs, and speeds and displacements from the data file may be "
+        "wrong. Use less than {} s",
         place_of(scenario, Setting::save_data_period), text(period_s), fastest->category, text(half_mm),
         text(speed(*fastest)), text(rounded_down(half_mm / speed(*fastest))));
 }

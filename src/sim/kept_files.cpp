@@ -34,7 +34,7 @@ std::optional<fs::path> first_taken(fs::path const& path, bool is_folder, Take c
                 return name;
             }
             if (!fs::exists(fs::symlink_status(name, error))) {
-                return std::nullopt;  // for another reason than that somebody was faster
+                return std::nullopt;  // for another reason than a faster run
             }
         }
     }
@@ -98,7 +98,7 @@ std::optional<fs::path> keep_frames(Frames const& frames) {
 
 std::optional<fs::path> keep_file(fs::path const& path) {
     try {
-        LockedFile const lock(path);  // nobody is writing it
+        LockedFile const lock(path);  // no other run is writing it
         return first_taken(path, /*is_folder=*/false, [&](fs::path const& name) {
             // A link never replaces a file that another process has made in the meantime. Some file systems have none.
             std::error_code error;

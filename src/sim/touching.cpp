@@ -28,7 +28,7 @@ Solid solid_of(World const& world, std::uint32_t body) {
     return {moved(outline(bodies.shape[body]), centre_mm, bodies.heading_rad[body])};
 }
 
-/// Of outlines that do not cross: one of their corners is as near to the other as they are.
+/// For outlines that do not cross: the smallest distance is between a corner of one and the other outline.
 float distance_between(Polygon const& a, Polygon const& b, Vec2 shift_of_b) {
     float nearest = std::numeric_limits<float>::max();
     for (Vec2 const corner : a) {

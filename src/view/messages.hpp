@@ -63,7 +63,7 @@ using Command = std::variant<Pause, StepOnce, SetSpeedUp, ClickRobot, DragObject
 
 /// What the window wants to show next.
 struct MomentRequest {
-    SnapshotParts parts;
+    SnapshotParts parts{};
     std::optional<std::uint32_t> robot{};  // to inspect
 };
 

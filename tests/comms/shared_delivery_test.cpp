@@ -99,6 +99,12 @@ Outcome delivered_by(std::uint32_t threads, Swarm const& swarm) {
     return outcome_of(world, channel);
 }
 
+Transmission transmission_of(std::uint32_t robot) {
+    Transmission transmission;
+    transmission.robot = robot;
+    return transmission;
+}
+
 TEST(SharedDelivery, EachRobotsTransmissionsAreInOnePart) {
     // Robots with many transmissions, with few, and one with nearly all of them.
     for (std::vector<std::uint32_t> const& counts :
@@ -106,7 +112,7 @@ TEST(SharedDelivery, EachRobotsTransmissionsAreInOnePart) {
           std::vector<std::uint32_t>{1, 200, 1}, std::vector<std::uint32_t>{50}}) {
         std::vector<Transmission> transmissions;
         for (std::uint32_t robot = 0; robot < counts.size(); ++robot) {
-            transmissions.insert(transmissions.end(), counts[robot], Transmission{.robot = robot});
+            transmissions.insert(transmissions.end(), counts[robot], transmission_of(robot));
         }
         for (std::size_t const parts : {1U, 2U, 3U, 8U}) {
             std::vector<std::uint32_t> ends(parts);
@@ -123,7 +129,7 @@ TEST(SharedDelivery, EachRobotsTransmissionsAreInOnePart) {
 TEST(SharedDelivery, PartsHaveAboutTheSameSize) {
     std::vector<Transmission> transmissions;
     for (std::uint32_t robot = 0; robot < 1000; ++robot) {
-        transmissions.insert(transmissions.end(), robot % 3, Transmission{.robot = robot});
+        transmissions.insert(transmissions.end(), robot % 3, transmission_of(robot));
     }
     std::array<std::uint32_t, 4> ends{};
     split_by_sender(transmissions, ends);

@@ -187,7 +187,7 @@ def test_robots_leave_a_periodic_arena_on_one_side_and_come_back_on_the_other(
         step = np.diff(path, axis=0)
         crossings += int((np.abs(step) > SIDE / 2).sum())
         on_the_ring = np.abs((step + SIDE / 2) % SIDE - SIDE / 2)
-        # 100 mm/s in 0.1 s. A robot that arrives on top of another one is pushed aside: bodies do not touch across the seam.
+        # 100 mm/s in 0.1 s. A robot that arrives on top of another is pushed aside: none touch across the seam.
         assert np.quantile(on_the_ring, 0.99) < 10.1
         assert on_the_ring.max() < 10.0 + 2 * RADIUS
     assert crossings > 20

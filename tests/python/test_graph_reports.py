@@ -197,7 +197,8 @@ def test_listed_neighbours_count_instead_of_the_nearest(form: str, tmp_path: Pat
     lists: list[object] = [[1, 2], [0], [], [2], [2], None]
     if form != "lists":
         around = "[{}]" if form == "brackets" else "{}"
-        lists = [None if own is None else around.format(",".join(map(str, own))) for own in lists]  # type: ignore[call-overload]
+        texts = [None if own is None else ",".join(map(str, own)) for own in lists]  # type: ignore[call-overload]
+        lists = [None if text is None else around.format(text) for text in texts]
     rows = rows_of(position, neighbors_list=lists)
     (run,) = trajectories_of(rows, metadata_of())
     found = listed_distance(run, listed_neighbours(run))

@@ -47,7 +47,7 @@ def test_sums_and_weights_are_conserved_at_all_times(grid: pd.DataFrame) -> None
 
 
 def neighbors_on_grid(frame: pd.DataFrame) -> npt.NDArray[np.bool_]:
-    """Pairs of robots in range of each other: on a grid of 105 mm the nearest robots, and not the next ones at 148 mm."""
+    """Robots in range of each other: on a grid of 105 mm the nearest robots, and not the next ones at 148 mm."""
     start = frame[frame["time"] == 0].sort_values("robot_id")
     place = start["x"].to_numpy() + 1j * start["y"].to_numpy()
     distance = np.abs(place[:, None] - place[None, :])

@@ -1,4 +1,4 @@
-"""The ending of a name says the format of a table, whoever writes it; all formats hold the same."""
+"""The ending of a name says the format of a table, whichever program writes it; all formats hold the same."""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Engine, ObservedVelocity, ::testing::Values("box2d", "disk"),
                          [](::testing::TestParamInfo<std::string> const& info) { return info.param; });
 
-/// Of a robot that does not bounce.
+/// A robot that does not bounce.
 ObjectConfig heading(float heading_rad, Vec2 position_mm) {
     ObjectConfig robot = robot_at(position_mm);
     robot.spec.body->restitution = 0.0F;

@@ -339,7 +339,7 @@ TEST_F(WindowDriver, WindowStaysOpenWhenTheSimulatedTimeIsOverAndTheFilesAreComp
                   exchange.send(DragObject{0, {500, 300}});
                   EXPECT_EQ(look(exchange)->snapshot.position_mm, moment->snapshot.position_mm);
                   EXPECT_FALSE(look(exchange)->status.touched);
-                  EXPECT_TRUE(look(exchange, {.robot = 0})->inspection);
+                  EXPECT_TRUE(look(exchange, {.parts = {}, .robot = 0})->inspection);
                   EXPECT_EQ(content_of(folder / "data.feather"), bytes);
                   exchange.send(Quit{});
                   wait_for("the closing", [&] { return exchange.is_closing(); });

@@ -63,5 +63,5 @@ class Arena:
         if not self.is_periodic:
             return position_mm
         offset = np.mod(position_mm - self.bounds_mm[0], self.size_mm)
-        # Of a tiny negative number, mod is the size itself.
+        # For a tiny negative number, mod gives the size itself.
         return np.asarray(self.bounds_mm[0] + np.where(offset < self.size_mm, offset, 0.0))

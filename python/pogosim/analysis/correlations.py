@@ -107,7 +107,7 @@ def vector_correlation(
 
     The mean is over all pairs of different robots at a distance r at the same time. For unit vectors C(r) is the mean
     cosine of the angle between them. Source: Cavagna, Cimarelli, Giardina, Parisi, Santagati, Stefanini, Viale,
-    "Scale-free correlations in starling flocks", PNAS 107, 2010, where the mean of all robots is subtracted the mean of all robots first.
+    "Scale-free correlations in starling flocks", PNAS 107, 2010, where the mean of all robots is subtracted first.
 
     Args:
         run: Positions of the robots.

@@ -111,7 +111,7 @@ def trajectories_of(
 
     Args:
         rows: As of `pogosim.utils.load_dataframe`; at least the columns time, x and y (s, mm).
-        metadata: Metadata of the file; `rows.attrs` if None. The size of robots, their reach, the arena and its borders are
+        metadata: Metadata of the file; `rows.attrs` if None. Size and range of robots, the arena and its borders are
             from there. Without them: 26.5 mm, 80 mm, no walls.
         category: Objects to take. None: `robots`, if there are any; otherwise all that run a program; or else all.
 

@@ -115,7 +115,7 @@ def check_options(entries: dict[str, Any]) -> None:
 
 
 def look_at(node: Any, path: Path, names: str) -> None:
-    """Look at a node and at all below it; `names` says who chooses its keys.
+    """Look at a node and at all below it; `names` says where its keys come from.
 
     "top level": the simulator, and tools. "": the simulator. "categories": the user, but not those below. "parameters":
     the user, and those below, too.
@@ -140,7 +140,7 @@ def look_at(node: Any, path: Path, names: str) -> None:
 
 
 def below(names: str) -> str:
-    """Return who chooses the keys of what is below."""
+    """Return where the keys below come from."""
     return names if names == "parameters" else ""
 
 

@@ -33,7 +33,7 @@ LEAST_MOTION_MM = 0.5
 LEAST_MOTION_ERRORS = 4.0  # of the tracker; robots that stand seem to cover three at times
 LINEAR, ANGULAR = "max_linear_speed", "max_angular_speed"
 
-# Constants of a Gaussian of standard deviation 1: quantiles of the length of a vector in the plane, and of the size of a number.
+# Quantiles for a standard deviation of 1: of the length of a Gaussian vector in the plane, and of a number's size.
 RAYLEIGH_QUANTILE = math.sqrt(-2.0 * math.log(1.0 - POSITION_JITTER))
 HALF_NORMAL_QUANTILE = 0.5244
 SECOND_DIFFERENCE = math.sqrt(6.0)

@@ -24,7 +24,7 @@ def picture_file(name: str, data: str) -> Path:
         raise OutputError(f"the picture {name} would take the place of the data file {data}; name another picture")
     path = real_output(name)
     if suffix not in PICTURES:
-        raise OutputError(f"{name} is no name of a picture; let it end in .{', .'.join(PICTURES)}")
+        raise OutputError(f"{name} is no name of a picture, which ends in .{', .'.join(PICTURES)}")
     return path
 
 

@@ -1,4 +1,4 @@
-"""Speeds of objects, as one more column of a data file: so that pictures and replays show which robots are slow or stuck."""
+"""Speeds of objects, as one more column of a data file, so that pictures and replays show which are slow or stuck."""
 
 from __future__ import annotations
 

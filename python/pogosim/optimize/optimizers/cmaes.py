@@ -16,7 +16,7 @@ from pogosim.optimize.optimizers.base import Answer, Floats, default_population,
 from pogosim.optimize.settings import Settings
 from pogosim.optimize.variables import Space
 
-# Smallest step of variables with few values, so that steps still reach the neighbouring value when the others have converged.
+# Smallest step of variables with few values: it reaches the neighbouring value even when the others have converged.
 LEAST_STEPS = 0.3
 PENALTY = 4.0  # at a distance of 1 from the cube, in units of the spread of fitness in a generation
 SMALLEST_STEP = 1e-4  # of the unit cube: the search has converged
