@@ -23,7 +23,8 @@ void sleep_until(std::int64_t clock_us) {
         note_call();
         return;
     }
-    self.clock_us = std::min(clock_us, kIdle - 1);  // long sleeps in a loop in a callback, which does not wait
+    // Long sleeps in a loop in a callback, which does not wait, end there; a robot that is switched off stays so.
+    self.clock_us = std::min(clock_us, std::max(self.clock_us, kIdle - 1));
     self.calls = 0;
     wait_for_step(Waiting::always);
 }

@@ -152,34 +152,35 @@ TEST(Restart, OfAFolderThatHasGoneIsStillOne) {
 }
 
 TEST(Restart, IsToldOnce) {
-    auto const first = taken("12");
+    auto const first = taken("12 1");
     ASSERT_TRUE(first);
     EXPECT_EQ(first->seed, 12U);
+    EXPECT_TRUE(first->overwrite);
     EXPECT_EQ(std::getenv(kToldVariable), nullptr);
     EXPECT_FALSE(take_restart());
 }
 
 TEST(Restart, WithoutASeedIsNone) {
-    for (char const* const text : {"", " ", "next", "x 1 2 3", "99999999999"}) {
+    for (char const* const text : {"", " ", "next", "12", "12 2", "x 1 2 3", "99999999999 0"}) {
         EXPECT_FALSE(taken(text)) << text;
     }
 }
 
 TEST(Restart, WithAWindowThatMakesNoSenseHasTheSeedAlone) {
     for (char const* const text : {
-             "3", "3 1 2", "3 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 0 1 0 0",  // one number is missing
-             "3 10 20 800 600 2 0 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",             // neither off nor on
-             "3 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 3 1 0 0 -1",             // no such layer
-             "3 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 -1 1 0 0 -1",            //
-             "3 10 20 wide 600 0 0 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",            //
-             "3 10 20 800 600 0 nan 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",           //
+             "3 0", "3 0 1 2", "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 0 1 0 0",  // one number is missing
+             "3 0 10 20 800 600 2 0 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",                 // neither off nor on
+             "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 3 1 0 0 -1",                 // no such layer
+             "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 -1 1 0 0 -1",                //
+             "3 0 10 20 wide 600 0 0 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",                //
+             "3 0 10 20 800 600 0 nan 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",               //
          }) {
         auto const restart = taken(text);
         ASSERT_TRUE(restart) << text;
         EXPECT_EQ(restart->seed, 3U) << text;
         EXPECT_FALSE(restart->window) << text;
     }
-    auto const whole = taken("3 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 2 1 0 0 -1");
+    auto const whole = taken("3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 2 1 0 0 -1");
     ASSERT_TRUE(whole && whole->window);
     EXPECT_EQ(whole->window->size, (PictureSize{800, 600}));
     EXPECT_FALSE(whole->window->camera);
