@@ -5,6 +5,13 @@
 #include <array>
 #include <cstddef>
 
+#ifdef __GLIBC__
+#if __GLIBC_PREREQ(2, 33)
+#include <malloc.h>
+#define POGOSIM_HAS_MALLINFO2
+#endif
+#endif
+
 namespace pogosim {
 
 namespace {
@@ -25,6 +32,15 @@ void fail_for_memory(std::string const& purpose, std::optional<double> bytes) {
     throw OutOfMemory(fmt::format(
         "not enough memory for {}{}; reduce it, or raise this run's memory limit (ulimit -v, or the batch system's)",
         purpose, bytes ? ", " + size_text(*bytes) : ""));
+}
+
+std::size_t allocated_bytes() {
+#ifdef POGOSIM_HAS_MALLINFO2
+    auto const info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+#else
+    return 0;
+#endif
 }
 
 }  // namespace pogosim

@@ -17,6 +17,9 @@ public:
 /// Throws OutOfMemory: "not enough memory for the light map: 10000 x 10000 cells of 2 bytes, 190.7 MiB; ...".
 [[noreturn]] void fail_for_memory(std::string const& purpose, std::optional<double> bytes);
 
+/// Bytes that this process has allocated and not freed, also on other threads; 0 if the C library does not say.
+std::size_t allocated_bytes();
+
 /// The message if it is unknown which allocation failed.
 inline constexpr auto kOutOfMemory =
     "not enough memory; free some, or raise this run's memory limit (ulimit -v, or the batch system's)";

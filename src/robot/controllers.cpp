@@ -17,6 +17,7 @@
 #include "base/memory.hpp"
 #include "robot/assert_controllers.hpp"
 #include "robot/crash_handler.hpp"
+#include "robot/crash_message.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
@@ -360,6 +361,15 @@ void Controllers::start() {
     main_arguments_.resize(image_.is_for_sdk ? std::max(1U, count) : 1U);
     warn_of_large_memory("USERDATA has", user_data_bytes());
     warn_of_large_memory("the program's variables have", own_memory_ ? own_memory_->bytes() : 0);
+    std::size_t const allocated_before = allocated_bytes();
+    start_programs();
+    // In a process of others, their threads allocate, too.
+    std::size_t const allocated_now = run_stage() == RunStage::hosted ? 0 : allocated_bytes();
+    warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), count);
+}
+
+void Controllers::start_programs() {
+    auto const count = static_cast<std::uint32_t>(controllers_.size());
     construct_static_objects();
     if (image_.is_for_sdk) {
         start_sdk_program();

@@ -181,6 +181,7 @@ private:
     void construct_user_data(std::uint32_t robot);
     void run_main(std::uint32_t robot);
     void run_init(std::uint32_t robot);
+    void start_programs();
     void start_sdk_program();
     void run_sdk_main(std::uint32_t robot);
     void warn_of_late_callbacks();

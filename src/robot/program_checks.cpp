@@ -57,6 +57,15 @@ void warn_of_large_memory(std::string_view what, std::size_t bytes) {
     }
 }
 
+void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots) {
+    if (robots > 0 && allocated_bytes / robots > kRobotMemoryBytes && __asan_init == nullptr) {
+        log().warn(
+            "each robot has allocated {} bytes in main() and user_init, on average: more than the {} bytes (128 KiB) of a "
+            "real robot's memory, which its variables and its stack need, too",
+            allocated_bytes / robots, kRobotMemoryBytes);
+    }
+}
+
 void warn_of_large_stack(std::size_t variables, std::size_t stack) {
     bool const is_told_of_variables = variables > kRobotMemoryBytes;
     if (variables + stack > kRobotMemoryBytes && !is_told_of_variables && __asan_init == nullptr) {

@@ -21,6 +21,9 @@ namespace pogosim {
 /// Variables too large for a real robot. `what`: "USERDATA has"; `bytes`: of one robot.
 void warn_of_large_memory(std::string_view what, std::size_t bytes);
 
+/// The same for what `robots` have allocated together in main() and user_init.
+void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots);
+
 /// The same of what a robot needs in all. `variables`: USERDATA, or its own copies of the program's variables; `stack`:
 /// how much of one was used, at most.
 void warn_of_large_stack(std::size_t variables, std::size_t stack);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -246,6 +247,34 @@ def test_stack_beyond_a_real_robots_memory_is_warned_of(tmp_path: Path, size: in
         )
         assert grown
         assert size < int(grown[1]) < size + 20_000
+
+
+HEAP = """#include "pogobase.h"
+#include <stdlib.h>
+typedef struct { uint8_t* numbers; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static void user_init(void) { mydata->numbers = (uint8_t*)malloc(BYTES); }
+static void user_step(void) { mydata->numbers[0] = 1; }
+int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks the GNU C library")
+@pytest.mark.parametrize(("size", "is_told"), [(1000, False), (120_000, False), (140_000, True)])
+@pytest.mark.parametrize("robots", [1, 20])
+def test_allocations_beyond_a_real_robots_memory_are_warned_of(
+    tmp_path: Path, size: int, is_told: bool, robots: int
+) -> None:
+    text = HEAP.replace("BYTES", str(size))
+    found = warnings(run(compile_text(tmp_path, text), tmp_path, {"objects.robots.nb": robots}))
+    assert len(found) == is_told
+    for warning in found:
+        allocated = re.match(
+            r"each robot has allocated (\d+) bytes in main\(\) and user_init, on average: more", warning
+        )
+        assert allocated
+        assert size < int(allocated[1]) < size + 10_000
 
 
 def test_user_data_of_the_only_robot_may_be_set_for_the_whole_run(program: Compile, tmp_path: Path) -> None:
