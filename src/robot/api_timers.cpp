@@ -58,17 +58,21 @@ void set_origin(time_reference_t* reference, std::int64_t origin_us) {
     reference->hardware_value_at_time_origin = static_cast<uint32_t>(origin_us);
 }
 
-/// Sleeps for `count` units of `unit_us` microseconds. Negative times take none. A thread or a process that the program
-/// has started sleeps in wall-clock time.
+/// Sleeps for `count` units of `unit_us` microseconds of the robot's time. Negative times take none.
 void sleep_for(char const* function, char const* argument, int count, std::int64_t unit_us) {
     if (count < 0) [[unlikely]] {
         note_slip({function, argument, "at least 0", "it takes no time"}, count);
     }
-    std::int64_t const time_us = std::max(0, count) * unit_us;
+    pogosim::sleep_until(context.controller->clock_us + std::max(0, count) * unit_us);
+}
+
+/// The same for functions of the C library, which take wall-clock time in a thread or a process that the program has
+/// started.
+void sleep_as_in_c(char const* function, char const* argument, int count, std::int64_t unit_us) {
     if (context.controller == nullptr || pogosim::is_forked_child()) {
-        std::this_thread::sleep_for(std::chrono::microseconds(time_us));
+        std::this_thread::sleep_for(std::chrono::microseconds(std::max(0, count) * unit_us));
     } else {
-        pogosim::sleep_until(context.controller->clock_us + time_us);
+        sleep_for(function, argument, count, unit_us);
     }
 }
 
@@ -128,11 +132,11 @@ void msleep(int milliseconds) {
 }
 
 void pogosim_usleep(int microseconds) {
-    sleep_for("usleep", "microseconds", microseconds, 1);
+    sleep_as_in_c("usleep", "microseconds", microseconds, 1);
 }
 
 void pogosim_sleep(int seconds) {
-    sleep_for("sleep", "seconds", seconds, kMicrosecondsPerSecond);
+    sleep_as_in_c("sleep", "seconds", seconds, kMicrosecondsPerSecond);
 }
 
 void pogosim_let_time_pass() {

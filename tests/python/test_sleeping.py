@@ -125,6 +125,25 @@ int main(void) { pogobot_init(); pogobot_start(user_init, NULL); return 0; }
     assert time.monotonic() - began > 0.2
 
 
+def test_child_of_a_program_sleeps_in_its_own_time(tmp_path: Path) -> None:
+    text = """#include "pogobase.h"
+#include <sys/wait.h>
+#include <unistd.h>
+void user_init(void) {
+    pid_t const child = fork();
+    if (child == 0) { sleep(0); usleep(200000); _exit(7); }
+    int status = 0;
+    waitpid(child, &status, 0);
+    printf("child %d\\n", WEXITSTATUS(status));
+}
+int main(void) { pogobot_init(); pogobot_start(user_init, NULL); return 0; }
+"""
+    began = time.monotonic()
+    result = run(compile_text(tmp_path, text), tmp_path / "run", {"objects.robots.nb": 1, "simulation_time": 0.1})
+    assert result.robot_lines == ["[ROBOT #0] [PRINTF] child 7"]
+    assert time.monotonic() - began > 0.2
+
+
 # Statements, and what they print: times in us by the robot's clock, which stands still in between.
 TIMERS = {
     "pogobot_timer_init(&t, 5000); show(left(&t))": 5000,
