@@ -139,9 +139,9 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
         check_own_columns(path, rows, own)
         missing = {name: scalar(found[number]) for name, found in added.items() if name not in rows.columns}
         parts.append(rows.assign(**missing))
+        combinations += combinations_of_file(rows, own, missing)
     if len({str(rows["time"].dtype) for rows in parts if list(rows.columns).count("time") == 1}) > 1:
         parts = [with_exact_times(rows) for rows in parts]
-        combinations += combinations_of_file(rows, own, missing)
     metadata: dict[str, Any] = in_common([metadata for _, _, metadata in files])
     metadata = {} if metadata is MISSING else metadata
     metadata.setdefault("configuration", {})

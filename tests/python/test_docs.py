@@ -81,7 +81,10 @@ def test_program_in_the_docs_compiles_and_runs(page: Path, code: str, tmp_path: 
     source.write_text(code)
     program = compile_program(tmp_path / "program", source)
     result = run(program, tmp_path / "run", {"simulation_time": 1.0})
-    assert (result.code, result.errors) == (0, ""), name_of(page)
+    said = [line for line in result.errors.splitlines() if "all robots share the variable" not in line]
+    assert (result.code, said) == (0, []), name_of(page)
+    shares = name_of(page) == "docs/first_program.md" and "mydata" not in code  # what the page mends afterwards
+    assert ("all robots share the variable 'change_at_ms'" in result.errors) == shares
     assert len(result.frame()) > 0
 
 

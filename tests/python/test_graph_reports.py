@@ -15,7 +15,6 @@ from in_process import pogosim
 from matplotlib.figure import Figure
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
 from pogosim.analysis.trajectories import trajectories_of
-from pogosim.reports import coverage, neighbors, network
 from pogosim.reports.command import main as analyze
 from swarms import Floats, brownian_walk, metadata_of, rows_of, write_rows
 
@@ -288,11 +287,11 @@ def test_coverage_takes_the_arena_of_a_configuration(tmp_path: Path, capsys: pyt
 
 
 def test_an_input_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for module, name in ((neighbors, "neighbors_time.csv"), (network, "network_graph.csv"),
-                         (coverage, "voronoi_metrics_per_arena.csv")):  # fmt: skip
+    for analysis, name in (("neighbors", "neighbors_time.csv"), ("network", "network_graph.csv"),
+                           ("coverage", "voronoi_metrics_per_arena.csv")):  # fmt: skip
         path = file_of(tmp_path).rename(tmp_path / name)
         before = path.read_bytes()
-        assert module.main(["-i", str(path), "-o", str(tmp_path)]) == 2
+        assert analyze([analysis, "-i", str(path), "-o", str(tmp_path)]) == 2
         assert "is an input" in capsys.readouterr().err
         assert path.read_bytes() == before
 

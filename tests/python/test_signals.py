@@ -34,7 +34,7 @@ PROGRAM = """
 typedef struct { int unused; } USERDATA;
 DECLARE_USERDATA(USERDATA);
 REGISTER_USERDATA(USERDATA);
-int* volatile nowhere;
+POGO_SHARED int* volatile nowhere;
 %s
 int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
 """
@@ -225,7 +225,7 @@ def test_signal_ends_a_run_with_130_and_complete_data(tmp_path: Path, name: str)
 )
 def test_program_that_handles_a_signal_itself_keeps_it(build: Build, tmp_path: Path, name: str, place: str) -> None:
     handling = f"""
-    static volatile sig_atomic_t caught;
+    POGO_SHARED static volatile sig_atomic_t caught;
     static void note(int _) {{ caught = _; }}
     {place} {{ signal({name}, note); return NULL; }}
     void user_init(void) {{ if ({int("constructor" not in place)}) set(); }}
