@@ -60,8 +60,8 @@ void warn_of_large_memory(std::string_view what, std::size_t bytes) {
 void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots) {
     if (robots > 0 && allocated_bytes / robots > kRobotMemoryBytes && __asan_init == nullptr) {
         log().warn(
-            "each robot has allocated {} bytes in main() and user_init, on average: more than the {} bytes (128 KiB) of a "
-            "real robot's memory, which its variables and its stack need, too",
+            "each robot has allocated {} bytes in main() and user_init, on average: more than the {} bytes (128 KiB) "
+            "of a real robot's memory, which its variables and its stack need, too",
             allocated_bytes / robots, kRobotMemoryBytes);
     }
 }

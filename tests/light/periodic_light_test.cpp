@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "lit_world.hpp"

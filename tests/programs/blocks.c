@@ -67,7 +67,7 @@ static void block(void) {
         compute();
     } else if (is("print")) {
         for (int i = 0; i < 3000; i++) {
-            printf("a line that goes to a reader who takes his time: %d\n", i);
+            printf("a line that goes to a reader who takes its time: %d\n", i);
         }
     }
 }

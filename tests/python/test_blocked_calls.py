@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from pogosim import Simulation
-from running import PROGRAMS, compile_program, write_scene
+from running import PROGRAMS, Run, compile_program, write_scene
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")
 
@@ -37,6 +37,12 @@ def start(program: Path, folder: Path, how: str, seconds: float = 3.0, **setting
     return subprocess.Popen(command, cwd=folder, stdin=pipe, stdout=pipe, stderr=pipe, text=True)
 
 
+def end(process: subprocess.Popen[str], text: str | None = None) -> Run:
+    """Return what a program said, without its summary."""
+    output, errors = process.communicate(text, timeout=LIMIT_S)
+    return Run(process.returncode, output, errors, Path())
+
+
 def line_of(comment: str) -> int:
     lines = (PROGRAMS / "blocks.c").read_text().splitlines()
     return next(number for number, line in enumerate(lines, 1) if line.endswith("// " + comment))
@@ -46,14 +52,14 @@ def test_call_that_blocks_is_told_with_its_line(blocks: Path, tmp_path: Path) ->
     calls = ["nanosleep", "many short ones", "select", "mutex", "pointer"]
     processes = {how: start(blocks, tmp_path / how.replace(" ", "_"), how) for how in calls}
     for how, process in processes.items():
-        output, errors = process.communicate(timeout=LIMIT_S)
-        assert process.returncode == 0, errors
-        warning = WARNING.match(errors)
-        assert warning, errors
+        done = end(process)
+        assert done.code == 0, done.errors
+        warning = WARNING.match(done.errors)
+        assert warning, done.errors
         assert int(warning[1]) == line_of("nanosleep" if how == "many short ones" else how)
-        assert errors.count("\n") == 1, "it is said once"
-        assert "interrupted" not in output, "the call takes its time"
-        assert "result 0" not in output
+        assert done.errors.count("\n") == 1, "it is said once"
+        assert "interrupted" not in done.output, "the call takes its time"
+        assert "result 0" not in done.output
 
 
 def test_it_is_told_while_the_call_blocks(blocks: Path, tmp_path: Path) -> None:
@@ -61,16 +67,16 @@ def test_it_is_told_while_the_call_blocks(blocks: Path, tmp_path: Path) -> None:
     assert process.stderr is not None
     line = process.stderr.readline()  # the call does not return before it gets a letter
     assert WARNING.match(line), line
-    output, errors = process.communicate("x", timeout=LIMIT_S)
-    assert (process.returncode, errors) == (0, "")
-    assert "result 1" in output
+    done = end(process, "x")
+    assert (done.code, done.errors) == (0, "")
+    assert "result 1" in done.output
 
 
 def test_short_calls_and_computing_are_not_told(blocks: Path, tmp_path: Path) -> None:
     calls = {"nanosleep": 1.0, "in many steps": 6.0, "compute": 4.0}
     for process in [start(blocks, tmp_path / str(s), how, s) for how, s in calls.items()]:
-        _, errors = process.communicate(timeout=LIMIT_S)
-        assert (process.returncode, errors) == (0, "")
+        done = end(process)
+        assert (done.code, done.errors) == (0, "")
 
 
 def test_time_in_which_the_process_is_stopped_does_not_count(blocks: Path, tmp_path: Path) -> None:
@@ -79,17 +85,17 @@ def test_time_in_which_the_process_is_stopped_does_not_count(blocks: Path, tmp_p
     process.send_signal(signal.SIGSTOP)
     time.sleep(4.0)
     process.send_signal(signal.SIGCONT)
-    output, errors = process.communicate(timeout=LIMIT_S)
-    assert (process.returncode, errors) == (0, "")
-    assert "interrupted" not in output
+    done = end(process)
+    assert (done.code, done.errors) == (0, "")
+    assert "interrupted" not in done.output
 
 
 def test_slow_reader_of_the_output_is_not_told(blocks: Path, tmp_path: Path) -> None:
     process = start(blocks, tmp_path, "print")
     time.sleep(5.0)
-    output, errors = process.communicate(timeout=LIMIT_S)
-    assert (process.returncode, errors) == (0, "")
-    assert output.count("takes his time") == 3000
+    done = end(process)
+    assert (done.code, done.errors) == (0, "")
+    assert done.output.count("takes its time") == 3000
 
 
 def test_workers_are_watched_too(blocks: Path, tmp_path: Path) -> None:

@@ -20,7 +20,8 @@ OTHERS = {"type": "pogobot", "nb": 2, "geometry": "disk", "radius": 26.5}
 
 def columns(program: Compile, folder: Path, *arguments: str, **settings: object) -> Run:
     result = run(program("columns.c"), folder, {"objects.robots.nb": NB, **settings}, arguments)
-    assert (result.code, result.errors) == (0, "")
+    said = [line for line in result.errors.splitlines() if "data_set_value_float16(): value is -1000000" not in line]
+    assert (result.code, said) == (0, [])
     return result
 
 

@@ -205,7 +205,10 @@ def test_hanabi_changes_as_often_as_chance_says(fireworks: pd.DataFrame) -> None
 
 
 def test_hanabi_without_a_flash_does_nothing(tmp_path: Path) -> None:
-    result = run_example("hanabi", tmp_path, {"simulation_time": 10.0})
+    result = run(example("hanabi"), tmp_path, {"simulation_time": 10.0})
+    assert result.code == 0
+    (warning,) = result.errors.splitlines()
+    assert "pogobot_photosensors_read(): there is no lamp in this world" in warning
     assert len(result.frame()) == 0
 
 

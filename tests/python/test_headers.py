@@ -211,7 +211,8 @@ def test_library_shows_users_the_interface_and_nothing_else() -> None:
     headers = "".join(path.read_text() for path in (ROOT / "include").rglob("*.h"))
     of_libc = {"fork", "pthread_create", "pthread_exit"}
     of_box2d = {"_Z15b2Alloc_Defaulti", "_ZN7b2TimerC1Ev", "_ZN7b2Timer5ResetEv", "_ZNK7b2Timer15GetMillisecondsEv"}
-    assert {name for name in names - of_libc - of_box2d if name not in headers} == set()
+    renamed = {"pogosim_hsv_to_rgb"}  # hsv_to_rgb of the interface, which the simulated one calls
+    assert {name for name in names - of_libc - of_box2d - renamed if name not in headers} == set()
     assert {"pogobot_ticks", "pogosim_printf", "mydata", "pogosim_run_program", "pogosim_run_open"} <= names
 
 

@@ -252,7 +252,7 @@ def test_wrong_use_of_columns_ends_with_2_and_names_the_column(
 def test_values_set_outside_of_the_callback_warn_once(program: Compile, tmp_path: Path) -> None:
     result = misbehave(program, tmp_path, "set_wrong_type")
     assert result.code == 0
-    assert result.errors.count("data_set_value_* has no effect outside callback_export_data") == 1
+    assert result.errors.count("data_set_value_double() has no effect outside of callback_export_data") == 1
 
 
 @pytest.mark.parametrize("value", ["many", 1.0e10, [1, 2]])

@@ -1,7 +1,7 @@
 /// @file
 /// Infrared messages. Four emitters and four receiving faces: front, right, back, left. docs/communication.md explains
-/// which robots hear each other, and how often. A message is delivered at the end of the simulation step in which it was
-/// sent.
+/// which robots hear each other, and how often. A message is delivered at the end of the simulation step in which it
+/// was sent.
 #ifndef POGOSIM_POGOLIB_INFRARED_H
 #define POGOSIM_POGOLIB_INFRARED_H
 
