@@ -16,7 +16,7 @@ from pogosim.analysis.motion import speed
 from pogosim.analysis.trajectories import trajectories_of, unwrapped
 from pogosim.film import command as film
 from pogosim.periodic import AmbiguousStepsWarning, minimum_image, rounded_down, steps_of
-from pogosim.picture.speed import with_speed
+from pogosim.picture.speed import OBJECT, with_speed
 from pogosim.reports import command as analyze
 from pogosim.swarm_picture import main as picture
 from running import example, run
@@ -137,7 +137,7 @@ def test_period_that_would_do_is_never_rounded_up() -> None:
 
 
 def test_speeds_in_pictures_come_with_the_same_warning() -> None:
-    rows = drivers(6.0).rename(columns={"robot_id": "object"})
+    rows = drivers(6.0).rename(columns={"robot_id": OBJECT})
     size = np.array([SIDE_MM, SIDE_MM])
     assert said(lambda: with_speed(rows, size, 100.0)) == [SAYS]
     assert said(lambda: with_speed(rows, None, 100.0)) == []

@@ -414,7 +414,7 @@ def test_restarted_window_has_the_selection_the_plot_and_the_speed(
         act(window, "the ring", lambda: window.click(*pixel_of(500, 695)), parts["robot"])
         window.move_mouse(*ASIDE)
         before = settled(window)
-        window.keys("r")
+        window.keys("r", "k")
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
         window.find_window()
         window.wait_for_picture(
