@@ -25,18 +25,8 @@ import pyarrow.compute as pc
 from pyarrow import ipc
 
 from pogosim.outputs import PathLike, leads_to, real_output
-from pogosim.tables import (
-    CSV,
-    EXPECTED,
-    FEATHER,
-    PARQUET,
-    format_in,
-    format_of,
-    is_our_metadata,
-    metadata_path,
-    table_writer,
-    write_metadata_beside,
-)
+from pogosim.table_formats import CSV, EXPECTED, FEATHER, PARQUET, format_in, format_of, is_our_metadata, metadata_path
+from pogosim.tables import table_writer, write_metadata_beside
 
 # An Arrow file begins with this; behind it stands a stream of record batches.
 MAGIC = b"ARROW1\0\0"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
+if TYPE_CHECKING:
+    import pandas as pd  # takes a while
 
 RUN = "run"  # the number of the run in a batch, or of the file among several
 NAMES = (RUN, "seed", "arena_file")  # kColumnsOfRuns in src/record/columns.cpp

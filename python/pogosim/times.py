@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
+
+if TYPE_CHECKING:
+    import pandas as pd  # takes a while
 
 
 def as_float64(times_s: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:

@@ -37,7 +37,7 @@ static void export_data(void) {
     data_set_value_int32(COLUMN, 100 * id + (int32_t)(pogobot_ticks % 7));
     if (id > 0) {  // else null
         data_set_value_string("word", id > 1 ? "a, \"b\"\nc" : "");
-        data_set_value_float16("half", 0.1);
+        data_set_value_float16("half", 0.1f);
         data_set_value_double("third", id > 1 ? (double)pogobot_ticks / 3.0 : NAN);
         data_set_value_bool("even", pogobot_ticks % 2 == 0);
     }

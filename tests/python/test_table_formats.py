@@ -11,7 +11,7 @@ import pytest
 from batches import batch, write_options
 from pogosim import recover, swarm_picture
 from pogosim.command.recover import main as recover_command
-from pogosim.tables import format_of
+from pogosim.table_formats import format_of
 from pogosim.utils import load_dataframe, read_table
 from running import PROGRAMS, Run, compile_program, example, run, start
 

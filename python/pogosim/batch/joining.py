@@ -10,7 +10,7 @@ from pogosim.batch.reports import Failure
 from pogosim.batch.results import Part, RunFile, check_output, write_results
 from pogosim.batch.run import Outcome
 from pogosim.batch.tasks import Combination
-from pogosim.tables import CSV, format_of, metadata_path
+from pogosim.table_formats import CSV, format_of, metadata_path
 
 log = logging.getLogger("pogobatch")
 

@@ -12,7 +12,7 @@ from typing import Any
 from pogosim.batch.errors import is_text
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.paths import get_by_dotted_path
-from pogosim.tables import EXPECTED, format_of
+from pogosim.table_formats import EXPECTED, format_of
 from pogosim.yaml_1_2 import dump_yaml
 
 FORMAT = "result_filename_format"

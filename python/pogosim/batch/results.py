@@ -21,7 +21,8 @@ from pogosim.batch.errors import BatchError, cannot, one_line
 from pogosim.outputs import OutputError, real_output
 from pogosim.recover import DAMAGED, RecoverError, check_metadata_beside, check_replaceable, reraise_system_error
 from pogosim.run_columns import RUN, tells_runs_apart
-from pogosim.tables import FEATHER, TableWriter, format_of, table_writer, write_metadata_beside
+from pogosim.table_formats import FEATHER, format_of
+from pogosim.tables import TableWriter, table_writer, write_metadata_beside
 from pogosim.times import as_float64
 from pogosim.yaml_1_2 import dump_yaml, parse_yaml
 

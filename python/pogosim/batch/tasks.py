@@ -12,7 +12,7 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import run_key, world_digest
 from pogosim.batch.run import Task
 from pogosim.batch.temporary import TemporaryFolder
-from pogosim.tables import FEATHER, format_of
+from pogosim.table_formats import FEATHER, format_of
 
 OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
 MESSAGE_LOG = "message_log"  # an output only of runs that ask for it

@@ -14,7 +14,7 @@ import pandas as pd
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.trackmate import MARK, encoding_of, spots
 from pogosim.run_columns import RUN, is_one_run
-from pogosim.tables import is_our_metadata, metadata_path
+from pogosim.table_formats import is_our_metadata, metadata_path
 from pogosim.utils import load_dataframe
 
 SYNONYMS = {
