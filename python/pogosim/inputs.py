@@ -8,14 +8,16 @@ from pathlib import Path
 
 
 def check_readable(names: Iterable[str]) -> None:
-    """Open files; those of a pattern, and folders, are looked at later.
+    """Open files; what is none (a folder, a pipe), and files of a pattern, are looked at later.
 
     Raises:
         OSError: One cannot be read.
     """
     for name in names:
         path = Path(name)
-        if path.is_dir() or (glob.has_magic(name) and not path.exists()):
+        if path.exists() and not path.is_file():
+            continue  # opening a pipe would wait for a writer
+        if glob.has_magic(name) and not path.exists():
             continue
         with path.open("rb"):
             pass

@@ -99,6 +99,8 @@ def load_file(path: Path, warns: bool = True) -> tuple[pd.DataFrame, dict[str, A
 
 def read_table(path: Path, warns: bool = True) -> pyarrow.Table:
     """Read a data file as load_dataframe does, keeping the types and metadata of the file."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise ValueError(f"{path} is not a file, but a pipe, a socket or a device; expected a data file")
     try:
         other = read_other(path)
     except (pyarrow.ArrowException, ValueError) as error:

@@ -204,6 +204,12 @@ def test_foreign_files_are_one_line(tmp_path: Path, content: bytes, capsys: pyte
     assert "no such file" in refusal(capsys)
 
 
+def test_pipe_is_not_waited_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(tmp_path / "data.feather")
+    assert film(tmp_path / "data.feather", "a.html") == 2
+    assert "is not a file, but a pipe" in refusal(capsys)
+
+
 def test_without_ffmpeg_it_says_how_to_install_it(
     data: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
