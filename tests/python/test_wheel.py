@@ -94,7 +94,7 @@ def needed(file: Path) -> dict[str, Path]:
 
 def test_it_loads_nothing_else_of_the_system(packages: Path, project: Path) -> None:
     binaries = [*packages.glob("pogosim/simulator/lib/*.so"), *packages.glob("pogosim/simulator/bin/*")]
-    assert len(binaries) == 3
+    assert len(binaries) == 4
     for file in [*binaries, *packages.glob("pogosim.libs/*"), project / "first"]:
         for name, path in needed(file).items():
             is_of_a_package = packages in path.resolve().parents or "site-packages" in str(path)
@@ -102,7 +102,8 @@ def test_it_loads_nothing_else_of_the_system(packages: Path, project: Path) -> N
 
 
 def test_arrow_and_sdl_are_those_of_their_packages(packages: Path) -> None:
-    library, module = sorted(packages.glob("pogosim/simulator/lib/*.so"))
+    library, parquet, module = sorted(packages.glob("pogosim/simulator/lib/*.so"))
+    assert ["_parquet" in file.name for file in (library, parquet, module)] == [False, True, False]
     (arrow,) = (path for name, path in needed(library).items() if name.startswith("libarrow.so"))
     (sdl,) = (path for name, path in needed(module).items() if name.startswith("libSDL2"))
     assert arrow.samefile(next((packages / "pyarrow").glob("libarrow.so.*")))
@@ -144,7 +145,7 @@ def test_arenas_frames_and_window_work(project: Path, tmp_path: Path) -> None:
         folder.mkdir()
         write_scene(folder, settings | {"GUI": True})
         ended = subprocess.run(
-            [project / "first", "-c", "scene.yaml", "-q", "-nr"],
+            [project / "first", "-c", "scene.yaml", "-q", "-nr", "--close-at-end"],
             cwd=folder,
             env=os.environ | {"SDL_VIDEODRIVER": "dummy"},
             capture_output=True,
