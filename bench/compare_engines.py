@@ -8,6 +8,7 @@ Prints a table in Markdown: means over the seeds, with the standard deviation be
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from pathlib import Path
@@ -75,6 +76,12 @@ def figures(engine: str, arena: str, seed: int, robots: int, time_step_s: float)
     return [contacts, float(np.sqrt(ways_mm2.mean())), float(from_middle_mm.mean()), float(-gaps_mm.min()), spent_s]
 
 
+def with_spread(mean: float, spread: float) -> str:
+    """Return a mean and its standard deviation, which has two digits: 1100.3 ± 4.2."""
+    decimals = max(0, 1 - math.floor(math.log10(spread))) if spread > 0 else 3
+    return f"{mean:.{decimals}f} ± {spread:.{decimals}f}"
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -94,9 +101,7 @@ def main() -> None:
             runs = [
                 figures(engine, arena, seed, options.robots, options.time_step) for seed in range(1, options.seeds + 1)
             ]
-            cells = [
-                f"{mean:.3g} ± {spread:.2g}" for mean, spread in zip(np.mean(runs, 0), np.std(runs, 0), strict=True)
-            ]
+            cells = map(with_spread, np.mean(runs, 0), np.std(runs, 0))
             print(f"| {arena} | {engine} | " + " | ".join(cells) + " |", flush=True)
 
 

@@ -123,10 +123,7 @@ def engine_table(title: str, arenas: Sequence[str], seeds: int, time_step_s: flo
             runs = np.array(
                 [compare_engines.figures(engine, arena, seed, ROBOTS, time_step_s) for seed in range(1, seeds + 1)]
             )
-            cells = [
-                f"{mean:.3g} ± {spread:.2g}"
-                for mean, spread in zip(runs.mean(0)[:columns], runs.std(0)[:columns], strict=True)
-            ]
+            cells = map(compare_engines.with_spread, runs.mean(0)[:columns], runs.std(0)[:columns])
             lines.append(f"| {arena}{title} | {engine} | {' | '.join(cells)} |")
     return Quote(tuple(lines))
 
