@@ -28,10 +28,21 @@ for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, sig
         signal.signal(number, signal.SIG_DFL)
 
 
-# Files that take longest, 150 to 40 s each: if one of them starts last, all processors but one wait for its end.
+# Files that take longest, 120 to 30 s each: if one of them starts last, all processors but one wait for its end.
 LONGEST = [
-    *("parameter_study", "docs", "validation", "analyze_locomotion", "graph_reports", "signals", "window_input"),
-    *("batch_runs", "batch_slurm", "mixed_scene", "window", "headers", "misbehaviour", "pictures", "vicsek", "film"),
+    *(
+        "docs",
+        "wheel",
+        "window_input",
+        "same_bytes",
+        "signals",
+        "window",
+        "optimize_resume",
+        "batch_slurm",
+        "batch_runs",
+    ),
+    *("graph_reports", "misbehaviour", "analyze_locomotion", "scripts", "real_robot", "validation", "threads"),
+    *("pictures", "names_in_tools", "headers", "site", "tuning_numbers", "parameter_study"),
 ]
 
 
