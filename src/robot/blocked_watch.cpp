@@ -10,7 +10,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -19,6 +18,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include "base/background_thread.hpp"
@@ -35,7 +35,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{250};
 constexpr int kBlockedLooks = 8;  // 2 s. Not by a clock: time in which this process is stopped does not count
-constexpr int kIdleLooks = 40;    // without any run, until this thread sleeps for good
+constexpr int kIdleLooks = 40;    // without any run, until this thread ends
 
 /// What a thread waits for in the kernel.
 struct SystemCall {
@@ -101,9 +101,8 @@ public:
             try {
                 start_background_thread("watching over blocked calls", [this] { serve(); }).detach();
             } catch (std::system_error const&) {  // then nothing is said
+                has_thread_ = false;
             }
-        } else if (is_idle_) {
-            has_run_.notify_one();
         }
     }
 
@@ -119,22 +118,18 @@ private:
         int blocked_looks = 0;    // in the present one
     };
 
-    [[noreturn]] void serve() {
+    void serve() {
         std::unique_lock lock(mutex_);
-        int looks_in_vain = 0;
-        for (;;) {
+        for (int looks_in_vain = 0; looks_in_vain <= kIdleLooks;) {
+            lock.unlock();
+            std::this_thread::sleep_for(kLookPeriod);
+            lock.lock();
             looks_in_vain = watched_.empty() ? looks_in_vain + 1 : 0;
-            if (looks_in_vain > kIdleLooks) {
-                is_idle_ = true;
-                has_run_.wait(lock, [this] { return !watched_.empty(); });
-                is_idle_ = false;
-            }
-            // Whatever wakes this thread in between is no matter.
-            has_run_.wait_for(lock, kLookPeriod, [] { return false; });
             for (Watched& watched : watched_) {
                 look(watched);
             }
         }
+        has_thread_ = false;
     }
 
     static void look(Watched& watched) {
@@ -178,13 +173,11 @@ private:
 
     pid_t process_;
     std::mutex mutex_;
-    std::condition_variable has_run_;
     std::vector<Watched> watched_;
     bool has_thread_ = false;
-    bool is_idle_ = false;
 };
 
-/// Never destroyed, since its thread does not end. A child of fork() has no such thread.
+/// Never destroyed, since its thread may outlive the last run. A child of fork() has no such thread.
 std::atomic<BlockedWatch*> watch_of_process = nullptr;
 
 }  // namespace

@@ -92,14 +92,15 @@ void prepare_main_thread_for_crashes() {
 
 }  // namespace pogosim
 
-// With clang's thread sanitizer in the library itself, its own pthread_create() must stay the one that is called.
+// With clang's sanitizers in the library itself, their own pthread_create() must stay the one that is called, or else they
+// do not know the threads (and take what only a thread's stack points to for lost).
 #if defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define POGOSIM_HAS_THREAD_SANITIZER
+#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
+#define POGOSIM_HAS_SANITIZER
 #endif
 #endif
 
-#if defined(__linux__) && !defined(POGOSIM_HAS_THREAD_SANITIZER)
+#if defined(__linux__) && !defined(POGOSIM_HAS_SANITIZER)
 
 extern "C" {
 

@@ -35,7 +35,9 @@ void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::span
     assert(count > 0 && head + kHeaderBytes <= tail);
     std::memcpy(&header, block + head, kHeaderBytes);
     std::size_t const size = std::min<std::size_t>(header.payload_length, payload.size());
-    std::memcpy(payload.data(), block + head + kHeaderBytes, size);
+    if (size > 0) {  // payload may be null
+        std::memcpy(payload.data(), block + head + kHeaderBytes, size);
+    }
     head += static_cast<std::uint32_t>(kHeaderBytes + header.payload_length);
     if (--count == 0) {
         head = tail = 0;
