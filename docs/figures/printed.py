@@ -33,7 +33,7 @@ class Printed:
 
 
 QUOTES = (
-    Printed("optimization.md", "first_search", r"conf/optim/simple\.yaml", r"\[INFO\] (Done|Best values).*"),
+    Printed("optimization.md", "first_search", r"conf/optim/simple\.yaml", r"\[INFO\] (Done|Gain|Best values).*"),
     Printed("debugging.md", "overrun", r"overrun", r"\S+:\d+:\d+: runtime error: .*"),
 )
 NAMES = tuple(f"{quote.page}: {quote.name}" for quote in QUOTES)
