@@ -37,11 +37,12 @@
     POGO_ASK_FOR_USERDATA(__COUNTER__)  \
     POGO_MAYBE_SEMICOLON
 /// Tells the simulator how large user data are; once per program. Without it, the linker reports
-/// `REGISTER_USERDATA_once` as undefined.
-#define REGISTER_USERDATA(T)                     \
-    POGO_SHARED char REGISTER_USERDATA_once = 0; \
-    POGO_SHARED size_t UserdataSize = sizeof(T); \
-    POGO_CONSTRUCT_USERDATA(T)                   \
+/// `REGISTER_USERDATA_once` as undefined. The constant tells readers of debug information the type.
+#define REGISTER_USERDATA(T)                                                \
+    POGO_SHARED char REGISTER_USERDATA_once = 0;                            \
+    POGO_SHARED size_t UserdataSize = sizeof(T);                            \
+    __attribute__((used)) static T const* const pogo_user_data_type = NULL; \
+    POGO_CONSTRUCT_USERDATA(T)                                              \
     POGO_MAYBE_SEMICOLON
 
 // In C++ the user data of each robot are constructed, as the global of a real robot is.

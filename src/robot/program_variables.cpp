@@ -250,7 +250,7 @@ public:
             look_into(entry, "");
         }
         tell_apart();
-        if (read_.user_data == nullptr && read_.own.empty()) {
+        if (read_.user_data == nullptr && (read_.own.empty() || image_.user_data_bytes > 0)) {
             read_.why_unknown = "compile the program with -g to see its variables";
         }
         return std::move(read_);
@@ -284,7 +284,7 @@ private:
 
     void add(Dwarf_Die& variable, std::string const& function) {
         std::string const name = name_of(variable);
-        if (name == "mydata" && function.empty() && image_.user_data_bytes > 0) {
+        if (name == "pogo_user_data_type" && image_.user_data_bytes > 0) {
             add_user_data(variable);
             return;
         }
@@ -297,8 +297,8 @@ private:
         found_.push_back({{name, *address, type_of(variable, 0)}, function, unit_});
     }
 
-    void add_user_data(Dwarf_Die& mydata) {
-        std::optional<Dwarf_Die> pointer = type_behind(mydata);
+    void add_user_data(Dwarf_Die& variable) {
+        std::optional<Dwarf_Die> pointer = type_behind(variable);
         VariableTypePointer const type = pointer ? type_of(*pointer, 0) : nullptr;
         if (type != nullptr && type->bytes == image_.user_data_bytes) {
             read_.user_data = type;

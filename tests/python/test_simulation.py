@@ -18,7 +18,7 @@ import numpy as np
 import pogosim
 import pytest
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, compile_program, example, run, write_scene
+from running import PROGRAMS, ROOT, compile_program, compiler, example, run, write_scene
 
 HANABI = ROOT / "examples" / "hanabi" / "hanabi.so"
 TUMBLE = ROOT / "examples" / "run_and_tumble" / "run_and_tumble.so"
@@ -358,6 +358,15 @@ def test_type_of_user_data_is_that_of_the_program_that_runs(program: Path, scene
         compile_program(copy, changed, flags=SHARED)
         simulation.reset()
         assert simulation.user_data.dtype["gain"] == np.int32
+
+
+@pytest.mark.parametrize(
+    "name", [name for names in (("gcc",), ("clang", "clang-14")) if (name := compiler(*names)) is not None]
+)
+def test_each_compiler_tells_the_type_of_user_data(name: str, scene: Path, tmp_path: Path) -> None:
+    built = compile_program(tmp_path / "built.so", PROGRAMS / "hosted.c", compiler=name, flags=SHARED)
+    with pogosim.Simulation(built, scene) as simulation:
+        assert simulation.user_data.dtype["gain"] == np.float32
 
 
 def test_program_without_debug_information_has_no_user_data_type(scene: Path, tmp_path: Path) -> None:

@@ -75,11 +75,11 @@ def numpy_type(entry: DIE) -> np.dtype[Any]:
     return np.dtype(f"V{size or 0}")
 
 
-def pointed_at_by_mydata(file: ELFFile) -> DIE | None:
-    """Return the type to which a program's `mydata` points; None if no unit of it says so."""
+def declared_user_data(file: ELFFile) -> DIE | None:
+    """Return the type that REGISTER_USERDATA of a program names; None if no unit of it says so."""
     for unit in file.get_dwarf_info().iter_CUs():
         for entry in unit.get_top_DIE().iter_children():
-            if entry.tag == "DW_TAG_variable" and attribute(entry, "name") == b"mydata":
+            if entry.tag == "DW_TAG_variable" and attribute(entry, "name") == b"pogo_user_data_type":
                 pointer = type_behind(entry)
                 if "DW_AT_type" in pointer.attributes:
                     return type_behind(pointer)
@@ -94,7 +94,7 @@ def type_in(program: Path, version: tuple[int, ...]) -> np.dtype[Any] | None:  #
     """
     with program.open("rb") as stream:
         file = ELFFile(stream)
-        entry = pointed_at_by_mydata(file) if file.has_dwarf_info() else None
+        entry = declared_user_data(file) if file.has_dwarf_info() else None
         return numpy_type(entry) if entry is not None else None
 
 
