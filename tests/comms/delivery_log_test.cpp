@@ -86,7 +86,7 @@ TEST(DeliveryLog, KeepsTransmissionsWithTheirPayloads) {
     EXPECT_TRUE(log.air.transmissions.empty());
 }
 
-TEST(DeliveryLog, MessageThatReachesNobodyHasOneEntry) {
+TEST(DeliveryLog, MessageThatReachesNoRobotHasOneEntry) {
     World world = square_world();
     add_robot(world, {100, 100}, 0.0F, link_with_rate(1.0));
     add_robot(world, {900, 900});

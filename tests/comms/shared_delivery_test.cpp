@@ -138,7 +138,7 @@ TEST(SharedDelivery, PartsHaveAboutTheSameSize) {
     }
 }
 
-TEST(SharedDelivery, GivesEverybodyTheSameMessagesWithAnyNumberOfWorkers) {
+TEST(SharedDelivery, GivesAllRobotsTheSameMessagesWithAnyNumberOfWorkers) {
     for (Swarm const& swarm : {Swarm{}, Swarm{.moves = true}, Swarm{.is_periodic = true, .moves = true},
                                Swarm{.moves = true, .has_outlines = true}, Swarm{.range_mm = 900.0F}}) {
         Outcome const expected = delivered_by(1, swarm);

@@ -93,7 +93,7 @@ TEST_P(Crowds, FastGasDoesNotOverlap) {
 }
 
 /// A before something fixed, and B behind A, both fast.
-TEST_P(Crowds, WhoFollowsSomebodyThatIsStoppedStopsBehindHim) {
+TEST_P(Crowds, BodyThatFollowsAStoppedOneStopsBehindIt) {
     for (float const gap_mm : {1.0F, 30.0F}) {
         for (float const speed_mm_s : {1000.0F, 6000.0F, 15000.0F}) {
             World world = square_world(4000.0F);

@@ -52,7 +52,7 @@ protected:
     std::optional<MembraneSides> sides_;
 };
 
-TEST_F(MembraneOfDisks, LeavesThoseAloneWhoStayOnTheirSide) {
+TEST_F(MembraneOfDisks, LeavesBodiesAloneThatStayOnTheirSide) {
     make(12, 10.0F);
     move(inside_, {550, 520});
     move(outside_, {620, 500});
@@ -81,7 +81,7 @@ TEST_F(MembraneOfDisks, PutsBackAtRestWhoeverJumpsOutOrIn) {
     EXPECT_EQ(place(outside_), (Vec2{690, 500}));
 }
 
-TEST_F(MembraneOfDisks, ComesBackWhenItMovedOverSomebodyAndOthersGoOn) {
+TEST_F(MembraneOfDisks, ComesBackWhenItMovedOverABodyAndOthersGoOn) {
     make(12, 10.0F);
     std::vector<Vec2> const before_mm = bodies().position_mm;
     for (std::uint32_t i = 0; i < membrane_.body_count; ++i) {
@@ -102,7 +102,7 @@ TEST_F(MembraneOfDisks, ComesBackWhenItMovedOverSomebodyAndOthersGoOn) {
     EXPECT_EQ(bodies().velocity_mm_s[outside_].y, 2.0F);
 }
 
-TEST_F(MembraneOfDisks, ThatComesBackOverSomebodyElsePutsHimBackToo) {
+TEST_F(MembraneOfDisks, ThatComesBackOverAnotherBodyPutsItBackToo) {
     make(12, 10.0F);
     // The membrane leaves one behind, and another one enters where it was.
     for (std::uint32_t i = 0; i < membrane_.body_count; ++i) {

@@ -75,7 +75,7 @@ TEST_P(NeighbourListOf, AreAllThatAreNearEachOnce) {
     }
 }
 
-TEST_P(NeighbourListOf, AreValidUntilSomebodyHasGoneHalfTheSkin) {
+TEST_P(NeighbourListOf, AreValidUntilABodyHasGoneHalfTheSkin) {
     WorkerPool workers;
     RandomStream random(8, 0);
     for (int scene = 0; scene < 30; ++scene) {

@@ -152,7 +152,7 @@ TEST_P(Obstacles, HoldCrowdsThatPressAgainstThem) {
     EXPECT_LT(deepest_mm, GetParam() == "disk" ? 0.5F : 3.0F);
 }
 
-TEST_P(Obstacles, PushAsideWhoIsWhereTheyArePut) {
+TEST_P(Obstacles, PushAsideWhatIsWhereTheyArePut) {
     World world = testing::square_world();
     std::uint32_t const robot = add_disk(world, {500, 300}, {});
     std::uint32_t const obstacle = add_obstacle(world, {500, 500}, 0.0F, bar(600, 20));

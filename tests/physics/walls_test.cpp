@@ -129,7 +129,7 @@ void steer(Scene& scene, Vec2 target_mm, RandomStream& random) {
     }
 }
 
-TEST_P(WallsAndSpeed, HoldEverybodyAtEverySpeedSizeAndStep) {
+TEST_P(WallsAndSpeed, HoldEachBodyAtEverySpeedSizeAndStep) {
     std::vector<std::pair<std::string, Arena>> arenas{{"comb", comb()}, {"saw", saw()}};
     for (char const* const name : {"disk", "square", "H", "star", "star8", "arena8", "annulus", "annulusBarred",
                                    "squarewithHole", "arrow", "triangle"}) {
@@ -215,7 +215,7 @@ TEST_P(WallsAndSpeed, PressedRobotStopsLittleMoreThanAMillimetreBefore) {
     EXPECT_NEAR(world.bodies.position_mm[0].x, 1000.0F - 26.5F - 0.65F, 0.651F);
 }
 
-TEST_P(WallsAndSpeed, KeepsEverybodyWithinItsBoundsAtEverySpeed) {
+TEST_P(WallsAndSpeed, KeepsEachBodyWithinItsBoundsAtEverySpeed) {
     RandomStream random(2, 0);
     for (float const speed_mm_s : {1e3F, 1e5F, 1e6F}) {
         World world = square_world(1128.3792F);

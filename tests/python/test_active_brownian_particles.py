@@ -148,7 +148,7 @@ def test_stuck_detection_brings_particles_away_from_the_wall(dish: pd.DataFrame,
     assert at_the_wall(dish) < 0.6 * at_the_wall(never)
 
 
-def test_nobody_stays_stuck(dish: pd.DataFrame) -> None:
+def test_no_robot_stays_stuck(dish: pd.DataFrame) -> None:
     x, y = by_robot(dish, "x"), by_robot(dish, "y")
     # Within 5 s (31 rows) each robot gets somewhere; free ones swim 250 mm.
     window = 31

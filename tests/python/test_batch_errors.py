@@ -175,7 +175,7 @@ def test_bar_with_the_time_left_is_shown_on_a_terminal_only(tmp_path: Path) -> N
     assert b"<" in shown
 
 
-def test_output_that_nobody_reads_does_not_end_a_batch(tmp_path: Path) -> None:
+def test_output_that_is_not_read_does_not_end_a_batch(tmp_path: Path) -> None:
     write_options(tmp_path)
     command = " ".join([*COMMAND, "-c many.yaml -S", str(example("helloworld")), "-t tmp -o results"])
     result = ended(["bash", "-c", f"{command} | true; exit ${{PIPESTATUS[0]}}"], tmp_path)

@@ -63,7 +63,7 @@ def test_nothing_but_the_results_is_left(done: Path) -> None:
 
 
 @pytest.mark.parametrize("backend", [["-j", "1"], ["-j", "5"], ["--backend", "sequential"]])
-def test_bytes_do_not_depend_on_who_does_the_runs(backend: list[str], done: Path, tmp_path: Path) -> None:
+def test_bytes_do_not_depend_on_which_worker_does_the_runs(backend: list[str], done: Path, tmp_path: Path) -> None:
     write_options(tmp_path)
     result = batch(tmp_path, "-r", "3", *backend)
     assert (result.code, result.errors) == (0, "")

@@ -83,7 +83,7 @@ def settings_of(site: dict[str, Any] | None = None, cores: int = 1, **request: A
     return job_settings(SlurmJobs(**request), site or {}, cores, Path("/logs"))
 
 
-def test_job_has_one_hour_and_two_gigabytes_per_core_if_nobody_says_otherwise() -> None:
+def test_job_has_one_hour_and_two_gigabytes_per_core_by_default() -> None:
     settings = settings_of(cores=3)
     assert (settings["cores"], settings["processes"], settings["nanny"]) == (3, 1, False)
     assert (settings["walltime"], settings["job_mem"], settings["memory"]) == ("01:00:00", "6G", 6 * 1024**3)

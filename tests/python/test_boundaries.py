@@ -44,7 +44,7 @@ def distance_to_walls(points: npt.NDArray[np.float64], polygon: npt.NDArray[np.f
 
 
 @pytest.mark.parametrize("arena", ["square", "disk", "star", "annulus", "squarewithHole", "H", "arena8"])
-def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena: str) -> None:
+def test_no_robot_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena: str) -> None:
     result = walk(tmp_path, arena_file=f"arenas/{arena}.csv", arena_surface=5.0e5)
     points = result.frame()[["x", "y"]].to_numpy(dtype=np.float64)
     outer, *holes = polygons(result)
@@ -57,7 +57,7 @@ def test_nobody_leaves_a_solid_arena_nor_enters_its_holes(tmp_path: Path, arena:
 
 
 @pytest.mark.parametrize(("radius", "speed"), [(1.0, 3e3), (1.0, 1e4), (26.5, 1e6)])
-def test_nobody_leaves_however_small_and_fast(tmp_path: Path, radius: float, speed: float) -> None:
+def test_no_robot_leaves_however_small_and_fast(tmp_path: Path, radius: float, speed: float) -> None:
     # Robots among light bodies, heads and bars, and a membrane with small dots unless they are too fast for it.
     solid = {"geometry": "disk", "radius": 10.0}
     soft = {

@@ -101,7 +101,7 @@ def test_options_change_what_they_say(data: Path) -> None:
     assert "v2_ref = 2.5 mm2/s2" in details
 
 
-def test_the_reach_decides_who_is_a_neighbour(data: Path) -> None:
+def test_the_reach_decides_which_robots_are_neighbours(data: Path) -> None:
     near, far = (pd.read_csv(analyze(data, "--rc", rc) / "largest_cluster.csv") for rc in ("1", "2000"))
     assert near["clusters"].tolist() == [40, 40, 40]
     assert far["largest_cluster"].tolist() == [1, 1, 1]

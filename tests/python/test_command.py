@@ -83,7 +83,7 @@ def test_unknown_command_is_one_line_with_the_nearest_name(name: str, said: str,
     assert refusal(command(tmp_path, name)) == f"pogosim: {said}"
 
 
-def test_output_that_nobody_reads_ends_it_quietly(tmp_path: Path) -> None:
+def test_output_that_is_not_read_ends_it_quietly(tmp_path: Path) -> None:
     commands = f"{sys.executable} -m pogosim doctor | head -1 >/dev/null; echo ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", commands], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert (done.stdout, done.stderr) == ("141\n", "")

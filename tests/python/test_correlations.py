@@ -219,6 +219,6 @@ def test_few_robots_have_no_exponent() -> None:
     assert np.isnan(own.exponent)
 
 
-def test_the_mean_square_speed_leaves_out_who_has_none() -> None:
+def test_the_mean_square_speed_leaves_out_robots_without_speed() -> None:
     velocity = np.array([[[3.0, 4.0], [np.nan, np.nan]], [[0.0, 1.0], [1.0, 0.0]], [[np.nan] * 2] * 2])
     np.testing.assert_array_equal(mean_square_speed(velocity), [25.0, 1.0, np.nan])

@@ -25,6 +25,15 @@ BANS = [
         "name the thing instead of 'those'",
     ),
 ]
+# British spelling; names (in backticks, quotes, links; options, classes, attributes) are as they are.
+AMERICAN = re.compile(
+    r"(?<![\w./-])(?<!## )(?:colors?|colored|centered|behaviors?|neighbors?|neighborhoods?"
+    r"|grays?|(?:milli|kilo)?meters?|modeling|labeled|traveled|canceled|optimizers?"
+    r"|(?:normal|random|initial|serial|visual|minim|maxim|recogn|summar|synchron|organ)iz(?:e|es|ed|ing|ation))"
+    r"\b(?![\w./(=:]|-by)",
+    re.IGNORECASE,
+)
+NAMES = re.compile(r"`[^`]*`|\"[^\"]*\"|\]\([^)]*\)")
 # In code, persons are not what comments are about; in pages, they may be.
 PERSONS = (re.compile(r"\b(?:who|whom|he|she|him|his|her)\b", re.IGNORECASE), "'that' or 'which' for things")
 PEOPLE = re.compile(
@@ -126,6 +135,8 @@ def found_in(file: Path) -> list[str]:
             for match in ban.finditer(without_people):
                 at = line + without_people.count("\n", 0, match.start())
                 found.append(f"{file.relative_to(ROOT)}:{at}: {match[0].strip()!r}: {remedy}")
+        for match in AMERICAN.finditer(NAMES.sub('""', passage)):
+            found.append(f"{file.relative_to(ROOT)}:{line}: {match[0]!r}: British spelling")
     return found
 
 
@@ -162,6 +173,8 @@ def test_english_of_the_first_pages_and_of_the_tests_is_plain() -> None:
         ("a.py", '"""Whoever calls."""\n'),
         ("a.py", "x = 1  # he is first\n"),
         ("a.md", "The seeds and those of that run.\n"),
+        ("a.md", "Both optimizers find it.\n"),
+        ("a.cpp", "// The color of a lamp.\n"),
     ],
 )
 def test_what_is_banned_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, text: str) -> None:
@@ -175,6 +188,7 @@ def test_what_is_banned_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     [
         ("a.cpp", '// A list of bodies, for each of them.\nchar const* a = "http://x";  // of the bodies\n'),
         ("a.py", "x = 'nobody'  # a name, not a sentence\n"),
+        ("a.py", "x = 1  # `color`, --color-by, ax.color and optimizer: are names\n"),
         ("a.md", "Users who know C.\n```c\n// nobody\n```\nOf course `nobody` may.\n"),
     ],
 )

@@ -129,7 +129,7 @@ def test_film_that_cannot_be_written_is_refused(tmp_path: Path, name: str, reaso
         ({"GUI_speed_up": 1e-300}, "expected at least 0.0003, or 0 for real time"),
     ],
 )
-def test_film_that_no_encoder_takes_or_nobody_watches_is_refused(
+def test_film_that_no_encoder_takes_or_that_has_no_pictures_is_refused(
     tmp_path: Path, settings: dict[str, object], reason: str
 ) -> None:
     assert reason in refused(tmp_path, "a.mp4", settings)

@@ -1,4 +1,4 @@
-"""The commands `pogosim analyze` neighbors, network and coverage, as a user runs them."""
+"""`pogosim analyze neighbors`, `network` and `coverage`, as a user runs them."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ def test_senders_of_one_category_are_taken_alone(tmp_path: Path) -> None:
     assert pd.read_csv(folder / "messages.csv")["sender_category"].tolist() == ["b"]
 
 
-def test_messages_that_reach_nobody_are_counted_with_a_warning(
+def test_messages_that_reach_no_robot_are_counted_with_a_warning(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = analyzed(tmp_path, to_nobody("a", 7))

@@ -37,7 +37,7 @@ def test_search_finds_the_best_values_and_says_so(tmp_path: Path) -> None:
     assert entries["best_values"]["parameters.c"] == "green"
     assert (entries["best_fitness"], entries["evaluations"]) == (table["fitness"].max(), 60)
     lines = [line.partition("] ")[2] for line in result.errors.splitlines()]
-    assert lines[0] == "[INFO] Starting optimization: CMAES | dim=3 | max_evals=60 (normalized space)"
+    assert lines[0] == "[INFO] Starting the search: CMAES | dim=3 | max_evals=60 (normalised space)"
     first = table["fitness"][:8]
     numbers = "/".join(f"{value:.6g}" for value in (first.max(), first.mean(), first.min()))
     assert f"[INFO] gen 001: pop=8  f[best/mean/min]=[{numbers}]  best_so_far={first.max():.6g}" in lines

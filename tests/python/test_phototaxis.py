@@ -44,7 +44,7 @@ def test_phototaxis_starts_with_a_tumble(rows: pd.DataFrame) -> None:
     assert (rows[rows["time"] == 0]["led_rgb"] == RED).all()
 
 
-def test_phototaxis_flash_stops_everybody_for_its_second(rows: pd.DataFrame) -> None:
+def test_phototaxis_flash_stops_all_robots_for_its_second(rows: pd.DataFrame) -> None:
     during, before = (rows[np.isclose(rows["time"], t)] for t in (1.5, 0.5))
     assert (during["led_rgb"] == BLUE).all()
     # No light before the flash, but for the lamps without one.

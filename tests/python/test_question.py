@@ -7,7 +7,7 @@ from pathlib import Path
 from running import run_shipped
 
 
-def test_robots_that_somebody_hears_get_answers_after_a_moment(tmp_path: Path) -> None:
+def test_robots_that_are_heard_get_answers_after_a_moment(tmp_path: Path) -> None:
     result = run_shipped("question", tmp_path)
     rows = result.frame()
     last = rows[rows.time == rows.time.max()].set_index("robot_id")

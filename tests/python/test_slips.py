@@ -182,7 +182,7 @@ def test_program_without_a_slip_is_not_nagged(program: Compile, tmp_path: Path, 
     )
 
 
-def test_messages_that_nobody_reads_are_counted(program: Compile, tmp_path: Path) -> None:
+def test_messages_that_are_not_read_are_counted(program: Compile, tmp_path: Path) -> None:
     (warning,) = warnings(slip(program, tmp_path, "deaf", CROWD))
     count, _, rest = warning.partition(" ")
     assert int(count) > 1000
@@ -194,7 +194,7 @@ def test_messages_that_a_limit_of_0_keeps_from_being_read_are_warned_of_once(pro
     assert warning.startswith("no robot of category 'robots' read a message: ")
 
 
-def test_full_queues_are_counted_by_category_of_those_who_read(program: Compile, tmp_path: Path) -> None:
+def test_full_queues_are_counted_by_category_of_the_receivers(program: Compile, tmp_path: Path) -> None:
     second = {"type": "pogobot", "nb": 2, "geometry": "disk", "radius": 26.5}
     settings = {**CROWD, "arena_surface": 3.0e5, "objects.strangers": second}
     idle, lost = warnings(slip(program, tmp_path, "slow", settings))
@@ -346,14 +346,12 @@ UNREAD: Settings = {
 }
 
 
-def test_parameters_that_nobody_reads_are_listed_with_their_lines(program: Compile, tmp_path: Path) -> None:
+def test_unused_parameters_are_listed_with_their_lines(program: Compile, tmp_path: Path) -> None:
     result = slip(program, tmp_path, "nothing", UNREAD)
     assert warnings(result) == [unread(tmp_path)]
 
 
-def test_parameters_that_nobody_reads_are_an_error_with_strict_after_the_whole_run(
-    program: Compile, tmp_path: Path
-) -> None:
+def test_unused_parameters_are_an_error_with_strict_after_the_whole_run(program: Compile, tmp_path: Path) -> None:
     settings = UNREAD
     result = slip(program, tmp_path, "nothing", settings, "--strict")
     assert result.code == 2

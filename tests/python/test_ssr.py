@@ -100,7 +100,7 @@ def strip(tmp_path_factory: pytest.TempPathFactory) -> Strip:
     return position, run_on_graph(tmp_path_factory.mktemp("strip"), position, PATIENT)
 
 
-def test_ssr_hears_just_those_who_are_in_reach(strip: Strip) -> None:
+def test_ssr_hears_just_the_robots_in_reach(strip: Strip) -> None:
     position, frame = strip
     adjacency = links(position)
     assert 2 <= adjacency.sum(axis=1).min() < adjacency.sum(axis=1).max() <= 5

@@ -77,7 +77,7 @@ TEST_F(MessageLogFile, CellsComeBackAsTheyWereGiven) {
     EXPECT_EQ(data.table->schema()->metadata()->Get("configuration").ValueOrDie(), "a: 1");
 }
 
-TEST_F(MessageLogFile, MessageToNobodyHasNullsForTheReceiver) {
+TEST_F(MessageLogFile, MessageToNoRobotHasNullsForTheReceiver) {
     MessageLog log({.path = path("m.feather")});
     log.append(row_to_nobody(1));
     log.append(row_to_a_wall(2));

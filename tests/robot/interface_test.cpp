@@ -139,7 +139,7 @@ TEST(RandomNumbers, SeedsAfterTheFirstDifferBetweenRobotsToo) {
     }
 }
 
-TEST(RandomNumbers, SeedThatOneRobotTakesChangesNobodyElses) {
+TEST(RandomNumbers, SeedThatOneRobotTakesChangesThatOfNoOther) {
     auto const few = seeds_of_three_robots(0);
     auto const many = seeds_of_three_robots(5);
     EXPECT_EQ(few[0], many[0]);

@@ -171,7 +171,7 @@ TEST(Membrane, KeepsItsAreaForAMinuteOfBeingPushedFromInside) {
     }
 }
 
-TEST(Membrane, LetsNobodyInAndKeepsItsAreaForAMinuteOfBeingPushedFromOutside) {
+TEST(Membrane, LetsNoBodyInAndKeepsItsAreaForAMinuteOfBeingPushedFromOutside) {
     for (bool const segments : {false, true}) {
         push_everywhere();
         Watch watch(scene({membrane(segments)}, robots_around({500, 500}, 24, 260.0F)));

@@ -149,7 +149,7 @@ TEST(Placement, FormationAroundACentreStandsAroundThatOfItsArea) {
     EXPECT_LT(length((1.0F / 7.0F) * sum - Vec2{700, 300}), 20.0F);
 }
 
-TEST(Placement, LampThatReachesBeyondTheWallsHoldsNobodyThere) {
+TEST(Placement, LampThatReachesBeyondTheWallsHoldsNoRobotThere) {
     Built const built = build("  light: {type: static_light, geometry: disk, radius: 400, x: 950, y: 500}\n", kSquare,
                               "initial_formation_root_object: light\n" + kScene);
     EXPECT_NE(built.error.find("'light' reaches beyond the arena"), std::string::npos) << built.error;

@@ -188,13 +188,13 @@ def check_clusters(found: Installation) -> Finding:  # noqa: ARG001
 
 
 def check_searches(found: Installation) -> Finding:  # noqa: ARG001
-    """Look whether all optimizers of pogoptim can work."""
+    """Look whether all optimisers of pogoptim can work."""
     needs = {"ribs": "mapelites, cma_me, cma_mae", "optuna": "tpe"}
     lacking = [name for name in needs if importlib.util.find_spec(name) is None]
     if not lacking:
-        return Finding("Searches", True, "all optimizers of pogoptim work")
+        return Finding("Searches", True, "all optimisers of pogoptim work")
     without = ", ".join(needs[name] for name in lacking)
-    return Finding("Searches", False, f"without the optimizers {without}", installing("optimize"))
+    return Finding("Searches", False, f"without the optimisers {without}", installing("optimize"))
 
 
 def check_robots(found: Installation) -> Finding:  # noqa: ARG001

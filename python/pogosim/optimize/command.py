@@ -49,8 +49,8 @@ def parser(prog: str) -> Parser:
     add("--optimizer", metavar="NAME", help=f"{', '.join(OPTIMIZERS)} ({usual.optimizer})")
     add("--max-evals", type=int, metavar="N", help=f"how many candidates are evaluated ({usual.max_evals})")
     add("--sigma0", type=float, metavar="S", help=f"first step size of CMA-ES, ranges being 1 ({usual.sigma0})")
-    add("--popsize", type=int, metavar="N", help="candidates per generation (as usual for the optimizer)")
-    add("--seed", type=int, help=f"seed of the optimizer ({usual.seed})")
+    add("--popsize", type=int, metavar="N", help="candidates per generation (as usual for the optimiser)")
+    add("--seed", type=int, help=f"seed of the optimiser ({usual.seed})")
     add(
         "--seeds",
         metavar="common|fresh",
@@ -80,7 +80,7 @@ def parser(prog: str) -> Parser:
 
 def add_quality_diversity_options(options: argparse.ArgumentParser, usual: Settings) -> None:
     """Add the options of MAP-Elites, CMA-ME and CMA-MAE."""
-    group = options.add_argument_group("quality-diversity", f"For the optimizers {', '.join(WITH_FEATURES)}.")
+    group = options.add_argument_group("quality-diversity", f"For the optimisers {', '.join(WITH_FEATURES)}.")
     add = group.add_argument
     cells = ",".join(map(str, usual.qd_shape))
     add("--qd-shape", metavar="N,N", help=f"cells of the archive along each feature ({cells})")

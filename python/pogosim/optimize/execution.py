@@ -105,7 +105,7 @@ def optimize(arguments: argparse.Namespace, configuration: Configuration, settin
         if journal.known:
             log.info("Resuming: %d evaluations are done already", len(journal.known))
         log.info(
-            "Starting optimization: %s | dim=%d | max_evals=%d (normalized space)",
+            "Starting the search: %s | dim=%d | max_evals=%d (normalised space)",
             settings.optimizer.upper(),
             len(space.variables),
             settings.max_evals,
