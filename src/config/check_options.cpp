@@ -18,7 +18,7 @@ namespace {
 
 using Words = std::span<std::string_view const>;
 
-/// Where the keys of a map come from.
+/// The origin of a map's keys.
 enum class Names {
     top_level,   // the simulator, and batch tools add the names of alternatives
     ours,        // the simulator
@@ -105,7 +105,7 @@ private:
         }
     }
 
-    /// The items stand where the list of them does.
+    /// Items have the path of their list.
     void look_at_each(Node const& list, std::string const& path, Names names) const {
         for (std::size_t i = 0; i < list.items.size(); ++i) {
             look_at(list.items[i], child(path, std::to_string(i)), names);
@@ -128,7 +128,7 @@ private:
         }
     }
 
-    /// Whether a key that is like a word of options may be a name that the user has chosen.
+    /// Whether a key that resembles a word of options may be a name that the user has chosen.
     bool may_be_a_name(Node::Entry const& entry, std::string_view word, Node const& map, Names names) const {
         bool const is_map = entry.value.kind == Node::Kind::map;
         switch (names) {
@@ -144,7 +144,7 @@ private:
         return false;
     }
 
-    /// Nothing but slips, and one of them with what goes with its word.
+    /// Whether all keys are misspelt words of options, and one of them has a value that fits its word.
     static bool is_meant_as_options(Node const& map) {
         auto const is_slip = [](Node::Entry const& entry) { return !misspelt_option(entry.key).empty(); };
         auto const fits = [](Node::Entry const& entry) {

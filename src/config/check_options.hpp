@@ -1,4 +1,4 @@
-// Slips in the keys of options, which would leave out a part of a study without a word.
+// Finds misspelt keys of options, which would silently leave out a part of a study.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace pogosim {
 
 /// Throws ConfigError, which names the nearest word, if
 /// - a map of options (with `default_option`, `batch_options`, ...), or one of its ranges and domains, has another key;
-/// - a key is a slip of these words and so makes a map that is none. Names that users choose may be like them, those of
-///   parameters, of categories and of alternatives, unless all of a map looks like options.
+/// - a key is one of these words misspelt, so that its map does not count as options. Names that users choose (of
+///   parameters, categories and alternatives) may resemble these words, unless the whole map looks like options.
 void check_options(Node const& root);
 
 /// Throws ConfigError for the first key of a map of options at `path` that is none of its words.

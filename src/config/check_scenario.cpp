@@ -49,6 +49,14 @@ void check_counts(Scenario const& scenario) {
                                                          number_text(scenario.simulation_time_s / kMaxCount)));
         }
     }
+    double const save_period_s = periods[1].period_s;
+    if (save_period_s > scenario.simulation_time_s && scenario.simulation_time_s > 0.0) {
+        log().warn(
+            "{}: save_data_period: {} s is longer than simulation_time ({} s): the data file has only the rows "
+            "of t = 0 (0 asks for that without this warning)",
+            place_of(scenario, "save_data_period").node.where(), number_text(save_period_s),
+            number_text(scenario.simulation_time_s));
+    }
 }
 
 void check_object_count(Scenario const& scenario) {
@@ -107,7 +115,7 @@ std::vector<std::string> categories_with_rows(Scenario const& scenario) {
     return names;
 }
 
-/// The allow-list of categories has to leave one; what else it names is a slip.
+/// The allow-list of categories has to leave at least one; unknown names in it are typing mistakes.
 void check_recorded_categories(Scenario const& scenario) {
     std::vector<std::string> const known = categories_with_rows(scenario);
     auto const is_known = [&known](std::string const& name) { return std::ranges::find(known, name) != known.end(); };

@@ -24,8 +24,8 @@ void set(Node& map, std::string_view key, Node value) {
 }  // namespace
 
 ConfigurationText configuration_text(Scenario const& scenario, RunValues const& run) {
-    // Nothing from the command line but the seed: with or without window or progress bar, and with any number of
-    // threads, the bytes are the same.
+    // Only the seed is taken from the command line: the bytes are the same with or without window or progress bar, and
+    // with any number of threads.
     Node written = source_of(scenario).tree;
     Node resolved = source_of(scenario).values;
     for (Node* const configuration : {&written, &resolved}) {

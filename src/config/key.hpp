@@ -62,7 +62,7 @@ struct NumberOr {
     std::string_view word;
 };
 
-/// A key that a function of its own reads (a map of further keys, say), or that only the tools read.
+/// A key that a separate function reads (such as a map of further keys), or that only the tools read.
 struct Elsewhere {
     std::string_view expected;  // "a map of categories"
 };
@@ -87,8 +87,8 @@ struct Key {
 
     bool has_effect(T const& values) const { return is_used == nullptr || is_used(values); }
 
-    /// The same key, which means something only where this is true of the struct. Elsewhere any value of its type is
-    /// accepted, and ignored.
+    /// The same key, with an effect only where the condition holds for the struct. Elsewhere any value of its type is
+    /// accepted and ignored.
     Key only_if(bool (*condition)(T const&)) const {
         Key key = *this;
         key.is_used = condition;

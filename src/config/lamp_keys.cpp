@@ -61,7 +61,7 @@ std::span<Key<SpotSpec> const> spot_keys() {
     return keys;
 }
 
-/// A configuration with keys of a gradient or a plane means one, but light_mode does not say so.
+/// Warns of keys of a gradient or a plane if light_mode does not ask for one.
 void warn_without_mode(MapReader const& reader) {
     std::vector<std::string_view> given;
     for (std::string_view const key : {"edge_value", "gradient_radius", "plane_angle", "plane_half_span"}) {

@@ -20,7 +20,7 @@ inline constexpr Range kAngularSpeed = between(-1e4, 1e4).usually_up_to(50);
 /// `x` and `y` of a lighthouse.
 std::span<Key<Vec2> const> lighthouse_centre_keys();
 
-/// How a spot shines, its photo start, and its `x` and `y`. Its shape has been read before.
+/// The light of a spot, its photo start, and its `x` and `y`. Its shape has been read before.
 void read_spot(MapReader& reader, SpotSpec& spot);
 
 /// False for light that is the same wherever the lamp stands, or that one coordinate alone may place: a plane.

@@ -47,7 +47,7 @@ std::string path_inside(Node const& value) {
     return is_chain ? "." + value.entries.front().key + path_inside(value.entries.front().value) : "";
 }
 
-/// For a key at the top level whose place is one level further in.
+/// A hint for a key at the top level that belongs one level further in.
 std::string inner_place(Node const& root, std::string const& key, Node const& value) {
     for (char const* const outer : {"objects", "parameters"}) {
         Node const* const map = root.find(outer);
@@ -113,6 +113,9 @@ std::optional<std::size_t> MapReader::pick(Place const& place, std::vector<std::
     if (node.kind == Node::Kind::null && default_name.empty()) {
         return std::nullopt;  // a required key: refused as missing later
     }
+    if (node.blank) {
+        return std::nullopt;  // finish() warns
+    }
     bool const is_null = node.kind == Node::Kind::null || (node.kind == Node::Kind::scalar && typed == "null");
     bool const only_warns = is_null || (rule.warns_only && node.kind == Node::Kind::scalar);
     std::string const complaint = fmt::format("expected {}, found {}", names_text(names), found_text(node));
@@ -168,12 +171,25 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     log().warn("{}: unknown key '{}' is ignored{}", value.where(), path, hint);
 }
 
+void MapReader::report_blank(KeyDescription const& key, Node const& value) const {
+    bool const is_empty = value.scalar.empty();
+    std::string const problem = fmt::format("{}: {}: expected {}, found {}", value.where(), shown(path_of(key.name)),
+                                            key.expected, is_empty ? "nothing" : value.scalar);
+    if (strict_ && is_empty) {
+        throw ConfigError(problem + "; write null for the default (--strict)");
+    }
+    log().warn("{}; the default is used, {}", problem, key.default_text);
+}
+
 void MapReader::finish(std::vector<std::string> const& ignored) const {
     refuse_missing_keys();
     for (auto const& [key, value] : map_.entries) {
-        bool const is_known = std::ranges::find(known_, key, &KeyDescription::name) != known_.end() ||
-                              key == kBatchChoices || std::ranges::find(ignored, key) != ignored.end();
-        if (!is_known) {
+        auto const known = std::ranges::find(known_, key, &KeyDescription::name);
+        if (known != known_.end()) {
+            if (value.blank && !known->default_text.empty()) {
+                report_blank(*known, value);
+            }
+        } else if (key != kBatchChoices && std::ranges::find(ignored, key) == ignored.end()) {
             report_unknown(key, value);
         }
     }

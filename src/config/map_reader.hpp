@@ -23,24 +23,24 @@ public:
     /// anything else that is not a map.
     MapReader(Node const& map, std::string path, bool strict);
 
-    /// Fills `into` from the keys of the table. A key that is absent or null leaves its member as it is, and
-    /// so does one out of its range that means nothing in the mode that was chosen.
+    /// Fills `into` from the keys of the table. A key that is absent or null leaves its member as it is; so does a
+    /// value out of range whose key has no effect in the chosen mode.
     template <class T>
     void read(std::span<Key<T> const> keys, T& into);
 
-    /// The same for a table that means nothing here: only the types of the values have to be right.
+    /// Reads a table whose keys have no effect here: only the types of their values have to be right.
     template <class T>
     void read_unused(std::span<Key<T> const> keys, T& into);
 
     /// The value under a key, or nullptr when it is absent or null.
     Node const* find(std::string_view key) const;
 
-    /// One of two keys that must be given together, without the other.
+    /// The one of two keys, to be given together, that stands alone.
     struct LoneKey {
         std::string_view given;
         std::string_view missing;
     };
-    /// Nothing when both are given, or neither.
+    /// Returns nothing when both are given, or neither.
     std::optional<LoneKey> lone_key(std::string_view one, std::string_view other) const;
 
     /// The key path of a key of this map.
@@ -84,6 +84,7 @@ private:
     void refuse_both_names(std::string_view name, std::string_view other_name) const;
     void refuse_missing_keys() const;
     void report_unknown(std::string const& key, Node const& value) const;
+    void report_blank(KeyDescription const& key, Node const& value) const;
 
     Node const& map_;
     std::string path_;

@@ -19,7 +19,7 @@ struct ObjectType {
 
 std::span<ObjectType const> solid_types();
 std::span<ObjectType const> lamp_types();
-/// Those and these.
+/// The types of both files.
 std::span<ObjectType const> object_types();
 
 /// One entry of `objects`, read and checked, into a new `object`. Returns the values of the keys that mean something.

@@ -28,7 +28,7 @@ inline constexpr std::array kValueOptions{kDefaultOption, kBatchOptions, kBatchR
 inline constexpr std::array<std::string_view, 5> kRangeKeys{"start", "stop", "step", "inclusive", "type"};
 inline constexpr std::array<std::string_view, 6> kDomainKeys{"type", "min", "max", "init", "log", "choices"};
 
-/// Entries of the top level that are no part of the world: nothing in them is an option.
+/// Top-level entries that do not describe the world: nothing in them is an option.
 inline constexpr std::array<std::string_view, 4> kWithoutOptions{"result_filename_format", "result_new_columns",
                                                                  "optimization", kBatchChoices};
 
@@ -39,10 +39,10 @@ inline bool is_option_key(std::string_view key) {
 /// Whether a map stands for a value to choose.
 bool offers_options(Node const& map);
 
-/// Whether the key is the word but for one or two letters.
+/// Whether the key differs from the word in one or two letters.
 bool is_slip_of(std::string_view word, std::string_view key);
 
-/// The word of options that the key is a slip of; empty when it is one of them, or like none.
+/// The word of options that the key misspells; empty when it is one of them, or resembles none.
 std::string_view misspelt_option(std::string_view key);
 
 }  // namespace pogosim

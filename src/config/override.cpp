@@ -75,6 +75,10 @@ void apply_override(Node& root, std::string const& assignment) {
         throw ConfigError(fmt::format("{} '{}': expected key.path=value", kSource, assignment));
     }
     Node value = parse_yaml(assignment.substr(equals + 1), fmt::format("{} '{}'", kSource, assignment));
+    if (value.blank) {
+        throw ConfigError(fmt::format("{} '{}': nothing stands behind '='; for the default, write {}=null", kSource,
+                                      assignment, assignment.substr(0, equals)));
+    }
     forget_lines(value);
     make_path(root, assignment.substr(0, equals), assignment) = std::move(value);
     if (size_of(root).depth > kMaxDepth) {

@@ -127,7 +127,7 @@ Polygon read_area(MapReader const& object, Node const& node) {
     return area;
 }
 
-/// Two ways to say where objects start exclude each other.
+/// Throws for two keys that place objects in different ways.
 void refuse_both(MapReader const& reader, std::string_view one, std::string_view other) {
     if (reader.find(one) != nullptr && reader.find(other) != nullptr) {
         fail_at({*reader.find(one), reader.path_of(one)},

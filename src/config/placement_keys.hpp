@@ -6,8 +6,9 @@
 
 namespace pogosim {
 
-/// Where the objects of a tangible category start: `x`, `y` and `angle`, or `poses`, or `area` and `initial_formation`,
-/// or nothing, so that the formation of all places them. `poses` also says how many there are when `nb` is absent.
+/// Where the objects of a category with a body start: `x`, `y` and `angle`, or `poses`, or `area` and
+/// `initial_formation`; without any of these, the common formation places them. `poses` also says how many there are
+/// when `nb` is absent.
 void read_placement(MapReader& reader, ObjectConfig& object);
 
 /// `area` as a disk, for the reference: `x`, `y` and `radius`.

@@ -1,5 +1,5 @@
-// Where values were written, for messages of those who find out later that one of them cannot work. Outside of
-// this room, code names values, not keys.
+// Where values were written, for messages about values that are found later not to work. Outside this room, code names
+// values, not keys.
 #pragma once
 
 #include <string>
@@ -39,7 +39,7 @@ enum class ObjectSetting {
     y,
 };
 
-/// The key: "arena_surface".
+/// The name of the key: "arena_surface".
 std::string key_of(Setting setting);
 
 /// "conf/a.yaml:14"; of a key that is absent the line of the map.
@@ -54,7 +54,7 @@ std::string place_of(Scenario const& scenario, ObjectConfig const& object, Objec
 /// The line of the key that the error names: "conf/a.yaml:14".
 std::string line_of(Scenario const& scenario, FormationError const& error);
 
-/// Whether the file says something of it.
+/// Whether the file sets this value.
 bool is_written(Scenario const& scenario, Setting setting);
 
 }  // namespace pogosim

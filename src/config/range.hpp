@@ -1,4 +1,4 @@
-// Which numbers a key takes.
+// The range of numbers that a key takes.
 #pragma once
 
 #include <cmath>
@@ -48,7 +48,7 @@ struct Range {
     }
 
     bool is_unusually_small(double value) const {
-        // What a script has computed may miss 0 by a rounding error.
+        // A value that a script has computed may miss 0 by a rounding error.
         constexpr double rounding = 1e-3;
         double const size = std::abs(value);
         return size > (min < 0.0 ? rounding * usual_min : 0.0) && size < usual_min;
@@ -82,7 +82,7 @@ constexpr Range between(double min, double max) {
     return {.min = min, .max = max};
 }
 
-/// A number as people write it: "1000000", "0.01", "1e+30", ".nan".
+/// A number in the usual notation: "1000000", "0.01", "1e+30", ".nan".
 std::string number_text(double value);
 
 }  // namespace pogosim

@@ -124,9 +124,9 @@ Node parse_yaml(std::string const& text, std::string const& source) {
     try {
         std::istringstream stream(text + (text.ends_with('\n') ? "" : "\n") + std::string(kEndMark));
         YAML::Parser parser(stream);
-        TreeBuilder first(source);
+        TreeBuilder first(text, source);
         parser.HandleNextDocument(first);
-        TreeBuilder second(source);
+        TreeBuilder second(text, source);
         if (parser.HandleNextDocument(second)) {
             refuse_remains(text, second.first_line(), source);
             log().warn("{}:{}: a second document starts here; only the first one is used", source, second.first_line());

@@ -1,4 +1,4 @@
-// What a single run makes of batch options, hierarchical alternatives and optimisation domains.
+// Resolves batch options, hierarchical alternatives and optimisation domains for a single run.
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -12,8 +12,8 @@ namespace pogosim {
 
 namespace {
 
-/// `default_option`; without it the point an optimisation starts from; without that nothing, so that the default of
-/// the key holds.
+/// `default_option`, or else the point from which an optimisation starts, or else nothing, so that the default of the
+/// key holds.
 Node chosen_option(Node const& map) {
     if (Node const* option = map.find(kDefaultOption)) {
         return *option;
@@ -24,6 +24,8 @@ Node chosen_option(Node const& map) {
         return *start;
     }
     Node nothing;
+    nothing.blank = true;
+    nothing.scalar = "options without default_option";
     nothing.source = map.source;
     nothing.line = map.line;
     return nothing;

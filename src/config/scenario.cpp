@@ -16,7 +16,7 @@ namespace pogosim {
 namespace {
 
 Node resolved_tree(Node const& written, std::vector<std::string> const& overrides) {
-    // What is set replaces what the file's options have come to, and may offer options itself.
+    // Values of --set replace what the file's options have resolved to, and may be options themselves.
     check_options(written);
     Node root = resolve_options(written);
     for (std::string const& assignment : overrides) {

@@ -22,10 +22,10 @@ enum class LogFormat { dated, minimal };
 /// Largest length and coordinate, mm. A float still tells 0.06 mm apart there.
 inline constexpr double kMaxLength = 1.0e6;
 
-/// More than fit into the memory of most machines.
+/// More objects than fit into the memory of most machines.
 inline constexpr int kMaxObjects = 10'000'000;
 
-/// How the objects of an entry are placed apart from those of the others.
+/// How the objects of an entry are placed separately from other entries.
 struct OwnFormation {
     std::optional<std::string> name{};  // absent: that of the top level
     std::optional<Polygon> area_mm{};   // absent: the arena

@@ -1,4 +1,4 @@
-// Types of objects that are in the way, or in reach, of robots.
+// Types of objects with which robots collide or communicate.
 #include <array>
 #include <span>
 

@@ -20,6 +20,8 @@ struct Node {
     Kind kind = Kind::null;
     std::string scalar;          // text of a scalar, unquoted
     bool quoted = false;         // the scalar stood in quotes: it is a text even if it looks like a number
+    bool blank = false;          // null because nothing was written, as behind "nb:"; not by the word null, or ~.
+                                 // The scalar may say what was written instead.
     std::vector<Entry> entries;  // of a map, in the order of the file
     std::vector<Node> items;     // of a sequence
     std::string source;          // file name, or "--set"

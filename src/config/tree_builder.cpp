@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "config/option_keys.hpp"
+#include "config/values.hpp"
 
 namespace pogosim {
 
@@ -42,7 +43,11 @@ void TreeBuilder::OnDocumentStart(YAML::Mark const& mark) {
 
 void TreeBuilder::OnNull(YAML::Mark const& mark, YAML::anchor_t anchor) {
     admit({1, 1}, line_of(mark));
-    add(make(Node::Kind::null, mark), anchor);
+    Node node = make(Node::Kind::null, mark);
+    // Behind a key without a value, the mark is where the next key stands.
+    std::string_view const written = text_.substr(std::min(text_.size(), static_cast<std::size_t>(mark.pos)), 4);
+    node.blank = !written.starts_with('~') && lower_case(std::string(written)) != "null";
+    add(std::move(node), anchor);
 }
 
 void TreeBuilder::OnScalar(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor,

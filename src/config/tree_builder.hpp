@@ -16,14 +16,15 @@
 
 namespace pogosim {
 
-/// To be put behind a text before it is parsed. In a sound text it is a comment; a quote that is never closed, which
-/// the parser takes to end with the file, swallows it and is found out. Control characters cannot stand in the text
-/// itself.
+/// A sentinel that is appended to a text before it is parsed. In a valid text it is a comment. A quote that is never
+/// closed, which the parser accepts up to the end of the file, contains it and is detected. Its control characters
+/// cannot occur in the text itself.
 inline constexpr std::string_view kEndMark = "#\x01\x02\x03\n";
 
 class TreeBuilder final : public YAML::EventHandler {
 public:
-    explicit TreeBuilder(std::string source) : source_(std::move(source)) {}
+    /// `text`: what is parsed; outlives this.
+    TreeBuilder(std::string_view text, std::string source) : text_(text), source_(std::move(source)) {}
 
     /// The document; null before one was read.
     Node const& root() const { return root_; }
@@ -68,6 +69,7 @@ private:
     void admit(TreeSize const& size, int line);
     [[noreturn]] void fail(int line, std::string const& what) const;
 
+    std::string_view text_;
     std::string source_;
     Node root_;
     int first_line_ = 0;

@@ -33,7 +33,7 @@ double read_number(Place const& place, double largest) {
     return value;
 }
 
-/// A value of which the program takes only the beginning.
+/// A value of which the program reads only the beginning.
 void warn_of_rest(Place const& place, std::string_view what, std::size_t found, std::size_t most) {
     log().warn("{}: {}: the program has room for {} {}, found {}; the rest is ignored", place.node.where(),
                shown(place.path), most, what, found);
@@ -56,7 +56,11 @@ UserParameters UserParameters::with(std::string const& name, std::string const& 
 Node const* UserParameters::ask(std::string const& name) {
     Node const* const node = find_path(parameters_, name);
     if (node != nullptr) {
-        read_.insert(node);
+        bool const is_first = read_.insert(node).second;
+        if (node->blank && is_first) {
+            log().warn("{}: {}: expected a value, found {}; the program keeps its own", node->where(),
+                       shown(path_of(name)), node->scalar.empty() ? "nothing" : node->scalar);
+        }
     } else if (std::ranges::find(missed_, name) == missed_.end()) {
         missed_.push_back(name);
     }

@@ -114,7 +114,7 @@ void read_real(Place const& place, Limits const& limits, Real& value) {
     value = static_cast<Real>(*number);
 }
 
-/// A unit that is easily taken for that of a key.
+/// A unit that is easily confused with that of a key.
 struct SimilarUnit {
     std::string_view expected;
     std::string_view taken;
@@ -161,8 +161,12 @@ Node sequence(Values const& values) {
     return node;
 }
 
-/// For a map of options whose words are all misspelt.
+/// A hint for a map of options whose words are all misspelt, and for values of a batch without their word.
 std::string option_hint(Node const& node) {
+    auto const is_value = [](Node const& item) { return item.kind == Node::Kind::scalar; };
+    if (node.items.size() > 1 && std::ranges::all_of(node.items, is_value)) {
+        return "; several values for a batch are written {batch_options: [...], default_option: ...}";
+    }
     for (auto const& [key, value] : node.entries) {
         if (std::string_view const word = misspelt_option(key); !word.empty()) {
             return fmt::format("; did you mean '{}', not '{}'?", word, shown(key));
@@ -208,7 +212,9 @@ void fail_at(Place const& place, std::string_view what) {
 }
 
 void fail_expected(Place const& place, std::string_view expected) {
-    fail_at(place, fmt::format("expected {}, found {}{}", expected, found_text(place.node), option_hint(place.node)));
+    bool const takes_list = expected.starts_with('[');
+    fail_at(place, fmt::format("expected {}, found {}{}", expected, found_text(place.node),
+                               takes_list ? "" : option_hint(place.node)));
 }
 
 std::optional<double> number_of(Node const& node) {

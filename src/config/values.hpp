@@ -88,7 +88,7 @@ private:
     std::vector<Slip> slips_;
 };
 
-/// Warns of numbers at a node that has been read which stand for others than they say: fractions that are cut
+/// Warns of numbers, at a node that has been read, that are not taken as written: fractions that are cut
 /// (`is_integer`), and what looks like another unit.
 void warn_of_slips(Place const& place, Limits const& limits, bool is_integer);
 

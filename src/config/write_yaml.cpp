@@ -76,7 +76,7 @@ std::string key_text(std::string const& key) {
 
 void write(std::string& out, Node const& node, std::size_t indent);
 
-/// What stands behind "key:" or "-": on the same line when it fits there.
+/// Writes what stands behind "key:" or "-", on the same line if it fits there.
 void write_value(std::string& out, Node const& node, std::size_t indent) {
     bool const is_block = !node.entries.empty() || !node.items.empty();
     out += is_block ? "\n" : " ";

@@ -1,4 +1,4 @@
-// Reading YAML that is already in memory.
+// Reads YAML that is already in memory.
 #pragma once
 
 #include <string>

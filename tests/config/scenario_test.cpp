@@ -590,6 +590,35 @@ TEST(Scenario, NullCountsAsAbsent) {
     EXPECT_EQ(s.output.fields, std::nullopt);
 }
 
+TEST(Scenario, KeyWithoutAValueHasItsDefaultWithAWarning) {
+    struct Case {
+        std::string text;
+        std::string warning;  // empty: none
+    };
+    std::string const expected = "x.yaml:6: time_step: expected a number above 0, at most 1 (s), found ";
+    for (auto const& [text, warning] : {Case{"time_step:", expected + "nothing; the default is used, 0.01"},
+                                        Case{"time_step:   # a comment", expected + "nothing; the default is used"},
+                                        Case{"time_step: {batch_options: [0.1, 0.2]}",
+                                             expected + "options without default_option; the default is used, 0.01"},
+                                        Case{"time_step: null", ""}, Case{"time_step: Null  # a comment", ""},
+                                        Case{"time_step: ~", ""}, Case{"\xC3\xA9: 1\nseed: ~", ""}}) {
+        Warnings const warnings;
+        EXPECT_EQ(load(kRobots + text + "\n").time_step_s, 0.01);
+        if (warning.empty()) {
+            EXPECT_EQ(warnings.text().find("found nothing"), std::string::npos) << text;
+        } else {
+            EXPECT_EQ(warnings.lines().size(), 1U) << text;
+            EXPECT_NE(warnings.text().find(warning), std::string::npos) << warnings.text();
+        }
+    }
+}
+
+TEST(Scenario, SectionsMayBeEmpty) {
+    Warnings const warnings;
+    load(kRobots + "parameters:\n");
+    EXPECT_EQ(warnings.text(), "");
+}
+
 TEST(Scenario, NullBoundaryIsSolidWithAWarning) {
     for (char const* text : {"null", "'null'", ""}) {
         Warnings const warnings;

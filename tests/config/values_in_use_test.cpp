@@ -1,4 +1,4 @@
-// The values that a configuration comes to, defaults included: what is in the data file as resolved_configuration.
+// The resolved values of a configuration, defaults included: resolved_configuration in the data file.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -33,6 +33,7 @@ typedef struct {
 } data_t;
 
 __thread data_t* mydata;
+__attribute__((used)) static data_t const* const pogo_user_data_type = 0;  // as REGISTER_USERDATA has it
 
 data_t example = {.age = 200,
                   .balance = -300,
