@@ -86,9 +86,8 @@ std::vector<std::string> names_of_earlier_files(CommandLine const& options, std:
     return names;
 }
 
-/// A run that is watched replaces nothing that an earlier one has written.
-void keep_and_tell(Scenario const& scenario, CommandLine const& options) {
-    for (KeptFile const& file : keep_earlier_files(scenario, options.video)) {
+void tell_of(std::vector<KeptFile> const& files) {
+    for (KeptFile const& file : files) {
         std::error_code error;  // then it is the whole path
         log().info("'{}' of an earlier run is now '{}' (-g overwrites instead)",
                    escaped(std::filesystem::proximate(file.path, error).string()),
@@ -141,22 +140,29 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
         log().info("restarted with seed {}", restarted->seed);
     }
     bool const window = scenario.view.gui && !options.no_gui;
-    if (window && has_display() && !(restarted && restarted->overwrite)) {
-        keep_and_tell(scenario, options);
+    RunOptions run_options{.progress_bar = options.progress_bar,
+                           .measure_stages = false,
+                           .strict = options.strict,
+                           .hash_period_steps = options.hash_period_steps,
+                           .film = options.video,
+                           .window = window,
+                           .close_at_end = options.close_at_end,
+                           .program_name = options.program_name,
+                           .restarted = restarted,
+                           .restart_problem = [&] { return restart_problem(options, folder); },
+                           .earlier_files = [&] { return names_of_earlier_files(options, folder); }};
+    // A run that is watched replaces nothing that an earlier one has written.
+    bool const keeps = window && has_display() && !(restarted && restarted->overwrite);
+    std::vector<KeptFile> const kept = keeps ? keep_earlier_files(scenario, options.video) : std::vector<KeptFile>();
+    std::unique_ptr<Simulation, DestroyIfIntact> simulation;
+    try {
+        simulation.reset(
+            new Simulation(linked_program(program, process_name()), std::move(scenario), std::move(run_options)));
+    } catch (...) {
+        give_back(kept);
+        throw;
     }
-    std::unique_ptr<Simulation, DestroyIfIntact> const simulation(
-        new Simulation(linked_program(program, process_name()), std::move(scenario),
-                       {.progress_bar = options.progress_bar,
-                        .measure_stages = false,
-                        .strict = options.strict,
-                        .hash_period_steps = options.hash_period_steps,
-                        .film = options.video,
-                        .window = window,
-                        .close_at_end = options.close_at_end,
-                        .program_name = options.program_name,
-                        .restarted = restarted,
-                        .restart_problem = [&] { return restart_problem(options, folder); },
-                        .earlier_files = [&] { return names_of_earlier_files(options, folder); }}));
+    tell_of(kept);
     ProcessRun const scope(simulation->crash_handler());
     auto const begin = std::chrono::steady_clock::now();
     ExitCode const code = simulation->run();

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/locked_file.hpp"
+#include "record/data_file.hpp"
 #include "render/frame_names.hpp"
 
 namespace pogosim {
@@ -23,18 +24,25 @@ fs::path numbered(fs::path const& path, int number, bool is_folder) {
     return path.parent_path() / fmt::format("{}.{}{}", stem, number, extension);
 }
 
+/// True if there is no such file, nor the metadata of one (of a CSV file).
+bool is_free(fs::path const& name) {
+    std::error_code error;
+    std::optional<fs::path> const metadata = DataFile::metadata_beside(name.string());
+    return !fs::exists(fs::symlink_status(name, error)) &&
+           !(metadata && fs::exists(fs::symlink_status(*metadata, error)));
+}
+
 /// Calls take(name) for numbered names, until one is taken.
 template <class Take>
 std::optional<fs::path> first_taken(fs::path const& path, bool is_folder, Take const& take) {
     for (int number = 1; number < kMostNumbers; ++number) {
         fs::path const name = numbered(path, number, is_folder);
-        std::error_code error;
-        if (!fs::exists(fs::symlink_status(name, error))) {
+        if (is_free(name)) {
             if (take(name)) {
                 return name;
             }
-            if (!fs::exists(fs::symlink_status(name, error))) {
-                return std::nullopt;  // for another reason than a faster run
+            if (is_free(name)) {
+                return std::nullopt;  // it failed, and not because another run took the name
             }
         }
     }
@@ -45,7 +53,7 @@ std::optional<fs::path> free_name(fs::path const& path, bool is_folder) {
     return first_taken(path, is_folder, [](fs::path const&) { return true; });
 }
 
-/// Where they really are, so that symbolic links go on leading there.
+/// Resolves symbolic links, so that they still lead to the new files.
 std::vector<fs::path> single_files(Scenario const& scenario, std::string const& film) {
     OutputConfig const& output = scenario.output;
     std::vector<fs::path> files;
@@ -96,10 +104,19 @@ std::optional<fs::path> keep_frames(Frames const& frames) {
     return kept;
 }
 
+/// The metadata of a CSV file go with it.
+void keep_metadata(fs::path const& path, fs::path const& name) {
+    std::error_code error;
+    std::optional<fs::path> const metadata = DataFile::metadata_beside(path.string());
+    if (metadata && fs::exists(*metadata, error)) {
+        fs::rename(*metadata, *DataFile::metadata_beside(name.string()), error);
+    }
+}
+
 std::optional<fs::path> keep_file(fs::path const& path) {
     try {
         LockedFile const lock(path);  // no other run is writing it
-        return first_taken(path, /*is_folder=*/false, [&](fs::path const& name) {
+        auto const kept = first_taken(path, /*is_folder=*/false, [&](fs::path const& name) {
             // A link never replaces a file that another process has made in the meantime. Some file systems have none.
             std::error_code error;
             fs::create_hard_link(path, name, error);
@@ -113,6 +130,10 @@ std::optional<fs::path> keep_file(fs::path const& path) {
             fs::rename(path, name, error);
             return !error;
         });
+        if (kept) {
+            keep_metadata(path, *kept);
+        }
+        return kept;
     } catch (FileError const&) {
         return std::nullopt;
     }
@@ -124,12 +145,12 @@ std::vector<KeptFile> earlier_files(Scenario const& scenario, std::string const&
     std::vector<KeptFile> files;
     for (fs::path const& path : single_files(scenario, film)) {
         if (auto const name = free_name(path, /*is_folder=*/false)) {
-            files.push_back({path, *name});
+            files.push_back({.path = path, .kept = *name});
         }
     }
     Frames const frames = frames_of(scenario);
     if (auto const name = frames.files.empty() ? std::nullopt : free_name(frames.folder, /*is_folder=*/true)) {
-        files.push_back({frames.folder, *name});
+        files.push_back({.path = frames.folder, .kept = *name});
     }
     return files;
 }
@@ -138,14 +159,31 @@ std::vector<KeptFile> keep_earlier_files(Scenario const& scenario, std::string c
     std::vector<KeptFile> files;
     for (fs::path const& path : single_files(scenario, film)) {
         if (auto const name = keep_file(path)) {
-            files.push_back({path, *name});
+            files.push_back({.path = path, .kept = *name});
         }
     }
     Frames const frames = frames_of(scenario);
     if (auto const name = frames.files.empty() ? std::nullopt : keep_frames(frames)) {
-        files.push_back({frames.folder, *name});
+        files.push_back({.path = frames.folder, .kept = *name, .moved = frames.files});
     }
     return files;
+}
+
+void give_back(std::vector<KeptFile> const& files) {
+    for (KeptFile const& file : files) {
+        std::error_code error;
+        for (fs::path const& frame : file.moved) {
+            if (is_free(frame)) {
+                fs::rename(file.kept / frame.filename(), frame, error);
+            }
+        }
+        if (!file.moved.empty()) {
+            fs::remove(file.kept, error);  // if it is empty
+        } else if (is_free(file.path)) {
+            fs::rename(file.kept, file.path, error);
+            keep_metadata(file.kept, file.path);
+        }
+    }
 }
 
 }  // namespace pogosim

@@ -381,6 +381,22 @@ def test_watching_a_run_again_keeps_the_file_of_the_first_time(
     assert len(list(tmp_path.glob("*.feather"))) == 3
 
 
+def test_run_that_cannot_start_leaves_the_file_of_the_first_time(
+    display: Display, window_program: Path, tmp_path: Path
+) -> None:
+    settings = {**FOUR, "simulation_time": 0.5}
+    run(window_program, tmp_path, settings)
+    before = sorted((path.name, path.read_bytes()) for path in tmp_path.glob("*.feather"))
+    write_scene(tmp_path, {**settings, "GUI": True, "objects.robots.nb": 10000})
+    command = [str(window_program), "-c", "scene.yaml", "--close-at-end"]
+    result = subprocess.run(
+        command, cwd=tmp_path, env=display.environment, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert result.returncode == 2
+    assert "of an earlier run is now" not in result.stdout + result.stderr
+    assert sorted((path.name, path.read_bytes()) for path in tmp_path.glob("*.feather")) == before
+
+
 def test_screenshot_shows_what_the_window_shows(display: Display, window_program: Path, tmp_path: Path) -> None:
     with shown(display, window_program, tmp_path, {**STILL, **FOUR}) as window:
         time.sleep(0.5)

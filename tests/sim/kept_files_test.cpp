@@ -38,7 +38,7 @@ protected:
     Scenario scenario_;
 };
 
-TEST_F(KeptFiles, NothingIsKeptWhereNothingIs) {
+TEST_F(KeptFiles, WithoutEarlierFilesNothingIsRenamed) {
     EXPECT_TRUE(earlier_files(scenario_, at("film.mp4")).empty());
     EXPECT_TRUE(keep_earlier_files(scenario_, at("film.mp4")).empty());
 }
@@ -96,9 +96,43 @@ TEST_F(KeptFiles, SymbolicLinkGoesOnLeadingToItsPlace) {
     EXPECT_TRUE(fs::is_symlink(at("run.feather")));
 }
 
+TEST_F(KeptFiles, CsvFileTakesItsMetadataWithIt) {
+    scenario_.output.data_filename = at("run.csv");
+    write(at("run.csv"), "rows");
+    write(at("run.csv.yaml"), "metadata");
+    write(at("run.1.csv.yaml"), "another file's");
+    auto const kept = keep_earlier_files(scenario_, "");
+    ASSERT_EQ(kept.size(), 1U);
+    EXPECT_EQ(content_of(at("run.2.csv")), "rows");
+    EXPECT_EQ(content_of(at("run.2.csv.yaml")), "metadata");
+    EXPECT_FALSE(fs::exists(at("run.csv.yaml")));
+    EXPECT_EQ(content_of(at("run.1.csv.yaml")), "another file's");
+}
+
+TEST_F(KeptFiles, RunThatDoesNotStartGivesThemBack) {
+    scenario_.output.data_filename = at("run.csv");
+    scenario_.output.message_log = at("messages.feather");
+    scenario_.view.save_video_period_s = 0.1;
+    scenario_.view.frames_name = at("frames/f{:010.4f}.png");
+    write(at("run.csv"), "rows");
+    write(at("run.csv.yaml"), "metadata");
+    write(at("messages.feather"), "old");
+    write(at("frames/f00000.1000.png"), "frame");
+    auto const kept = keep_earlier_files(scenario_, "");
+    ASSERT_EQ(kept.size(), 3U);
+    write(at("messages.feather"), "new");
+    give_back(kept);
+    EXPECT_EQ(content_of(at("run.csv")), "rows");
+    EXPECT_EQ(content_of(at("run.csv.yaml")), "metadata");
+    EXPECT_EQ(content_of(at("messages.feather")), "new");
+    EXPECT_EQ(content_of(at("messages.1.feather")), "old");
+    EXPECT_EQ(content_of(at("frames/f00000.1000.png")), "frame");
+    EXPECT_FALSE(fs::exists(at("frames.1")));
+}
+
 TEST_F(KeptFiles, RunWithoutDataKeepsNoDataFile) {
     scenario_.output.enable_data_logging = false;
-    write(at("run.feather"), "of somebody else");
+    write(at("run.feather"), "another program's");
     EXPECT_TRUE(keep_earlier_files(scenario_, "").empty());
 }
 
