@@ -75,6 +75,16 @@ def test_run_that_always_crashes_is_reported_and_spoils_no_other(tmp_path: Path)
     assert len(list((tmp_path / "tmp").glob("sim_*"))) == 1
 
 
+def test_run_whose_configuration_is_refused_is_not_tried_again(tmp_path: Path) -> None:
+    write(tmp_path, {"objects.robots.nb": [10, 20]})
+    result = batch(tmp_path, "-r", "1")
+    assert result.code == 3
+    assert "run 0 of results/result.feather, seed 0, failed 1 time: exit code 2" in result.errors
+    assert "objects.robots.nb: expected an integer from 0 to 10000000, found a list; several values" in result.errors
+    assert "{batch_options: [...], default_option: ...}" in result.errors
+    assert result.output.splitlines()[-1] == "Batch run ended without an output file."
+
+
 def test_batch_whose_runs_all_fail_writes_nothing_and_says_so(tmp_path: Path) -> None:
     write(tmp_path)
     result = batch(tmp_path, "-r", "4", "-R", "0", program=script(tmp_path / "broken", "exit 9"))

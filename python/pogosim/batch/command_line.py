@@ -145,7 +145,10 @@ def run_batch(arguments: argparse.Namespace) -> int:
             tell(output)
         return DONE
     runner.run_all()
-    tell("Batch run completed. Generated output files:")
+    if runner.generated:
+        tell("Batch run completed. Generated output files:")
+    else:
+        tell("Batch run ended without an output file.")
     for output in runner.generated:
         tell(f" - {output}")
     return RUNS_FAILED if runner.failures else DONE

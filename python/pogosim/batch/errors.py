@@ -1,4 +1,4 @@
-"""How a batch says what keeps it from going on."""
+"""Errors of a batch, and how they are reported."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The keys with which a configuration offers alternative values, and slips in them.
 
-A slip would leave out a part of a study without a word. The simulator has the same lists (src/config/option_keys.hpp),
-and refuses the same (src/config/check_options.cpp).
+A misspelt key would silently leave out a part of a study. The simulator has the same lists
+(src/config/option_keys.hpp), and refuses the same (src/config/check_options.cpp).
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def is_slip_of(word: str, key: str) -> bool:
 
 
 def misspelt_option(key: Any) -> str | None:
-    """Return the word that a key is a slip of; None if it is one of them, or like none."""
+    """Return the option word that a key misspells; None if it is such a word, or resembles none."""
     words = (*VALUE_WORDS, HIERARCHICAL_OPTIONS)
     if not isinstance(key, str) or key in words:
         return None
@@ -115,7 +115,7 @@ def check_options(entries: dict[str, Any]) -> None:
 
 
 def look_at(node: Any, path: Path, names: str) -> None:
-    """Look at a node and at all below it; `names` says where its keys come from.
+    """Check a node and everything below it; `names` says who defines its keys.
 
     "top level": the simulator, and tools. "": the simulator. "categories": the user, but not those below. "parameters":
     the user, and those below, too.
@@ -176,7 +176,7 @@ def may_be_a_name(key: str, word: str, node: dict[Any, Any], names: str) -> bool
 
 
 def is_meant_as_options(node: dict[Any, Any]) -> bool:
-    """Tell whether a map has nothing but slips, and one of them with what goes with its word."""
+    """Tell whether all keys are misspelt option words, and the value of at least one has the type of its word."""
     kinds = {LIST: list, RANGE: dict, DOMAIN: dict, HIERARCHICAL_OPTIONS: dict}
     words = {key: misspelt_option(key) for key in node}
     fits = [isinstance(node[key], kinds[word]) for key, word in words.items() if word in kinds]

@@ -86,7 +86,7 @@ def report_failures(failures: Sequence[Failure]) -> None:
     """Say which runs failed, with what is needed to repeat them."""
     for failure in failures[:SHOWN_FAILURES]:
         task, outcome = failure.task, failure.outcome
-        times = f"{task.retries + 1} time{'s' if task.retries else ''}"
+        times = f"{outcome.attempts} time{'s' if outcome.attempts > 1 else ''}"
         log.error("run %d of %s, seed %d, failed %s: %s", task.run, failure.output, task.seed, times, outcome.problem)
         if outcome.command:
             log.error("  command: %s", outcome.command)

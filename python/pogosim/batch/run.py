@@ -23,6 +23,7 @@ from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
 
 LOG = "log.txt"
+REFUSED = 2  # exit code of a program that refuses its configuration, or cannot write its files
 LOG_LINES = 10
 MAX_WARNINGS = 1000  # of one run
 LONGEST_LINE = 10_000  # bytes of a line that are read at once
@@ -68,6 +69,8 @@ class Outcome:
     key: str
     problem: str = ""  # empty: it is done
     is_fatal: bool = False  # other runs would end in the same way
+    is_certain: bool = False  # the same run would end in the same way: its configuration is refused
+    attempts: int = 1
     command: str = ""
     log: str = ""  # its last lines; of a run that is done, its warnings
     folder: str = ""  # what a failure leaves
@@ -225,11 +228,12 @@ def attempt(task: Task, number: int) -> Outcome:
         command = [task.program, *arguments, *([] if task.gui else ["-g"])]
         code, simulator_s = simulators.run(command, task.working_folder, folder / LOG)
         data = folder / "frames" / task.data
-        problem, is_fatal = "", False
+        problem, is_fatal, is_certain = "", False, False
         log = ""
         if code != 0:
             log = tail(folder / LOG)
             problem = ending(code)
+            is_certain = code == REFUSED and f"Error: {arguments[1]}:" in log
             is_fatal = any(words in log for words in DISK_FULL)
             if is_fatal:
                 problem = disk_full(task)
@@ -243,7 +247,8 @@ def attempt(task: Task, number: int) -> Outcome:
             keep(data, task.result, as_copy=task.keep_temp)
         is_kept |= bool(problem)
         line = shlex.join(command)
-        return Outcome(task.key, problem, is_fatal, line, log, str(folder) if is_kept else "", simulator_s)
+        left = str(folder) if is_kept else ""
+        return Outcome(task.key, problem, is_fatal, is_certain, number + 1, line, log, left, simulator_s)
     finally:
         if not is_kept:
             shutil.rmtree(folder, ignore_errors=True)
@@ -276,7 +281,9 @@ def keep(data: Path, result: Path, as_copy: bool) -> None:
 
 
 def do_run(task: Task) -> Outcome:
-    """Do a run, again after each failure; what remains of a failure is the folder of the last attempt.
+    """Do a run, again after each failure that may not come again.
+
+    What remains of a failure is the folder of the last attempt.
 
     Raises:
         StoppedError: The batch ends.
@@ -292,8 +299,9 @@ def do_run(task: Task) -> Outcome:
             is_full = error.errno in (errno.ENOSPC, errno.EDQUOT)
             # What starts the program names it; what cannot be written has no name, and is in the temporary folder.
             problem = disk_full(task) if is_full else f"{error.filename or task.temp_folder}: {reason(error)}"
-            outcome = Outcome(task.key, problem, is_fatal=is_full or error.errno == errno.ENOEXEC)
+            is_fatal = is_full or error.errno == errno.ENOEXEC
+            outcome = Outcome(task.key, problem, is_fatal=is_fatal, attempts=number + 1)
         simulator_s += outcome.simulator_s
-        if not outcome.problem or outcome.is_fatal:
+        if not outcome.problem or outcome.is_fatal or outcome.is_certain:
             break
     return replace(outcome, simulator_s=simulator_s)

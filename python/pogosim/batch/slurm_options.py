@@ -1,4 +1,4 @@
-"""What to ask SLURM for, and the options that say it."""
+"""Resources to request from SLURM, and the command-line options for them."""
 
 from __future__ import annotations
 
