@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -106,6 +107,34 @@ def check_own_columns(path: Path, rows: pd.DataFrame, metadata: Mapping[str, Any
         )
 
 
+def is_kept_beside(path: Path, other: Path) -> bool:
+    """Tell whether the window has kept a file under this name, when a run wrote the other one again (run.1.feather)."""
+    number = Path(path.stem).suffix[1:]
+    return path.parent == other.parent and number.isdecimal() and path.name == f"{other.stem}.{number}{other.suffix}"
+
+
+def warn_of_copies(files: Sequence[Loaded], added: Mapping[str, Sequence[Any]]) -> None:
+    """Warn of two files of the same seed and parameters that hold the same rows, or of which one was kept."""
+    alike: dict[str, list[Loaded]] = {}
+    for number, file in enumerate(files):
+        values = {name: scalar(found[number]) for name, found in added.items() if name != "run"}
+        if values.get("seed") is not None:
+            alike.setdefault(str(values), []).append(file)
+    for group in alike.values():
+        for index, (path, rows, _) in enumerate(group):
+            for other_path, other_rows, _ in group[:index]:
+                kept = is_kept_beside(path, other_path) or is_kept_beside(other_path, path)
+                if kept or (len(rows) == len(other_rows) and rows.equals(other_rows)):
+                    warnings.warn(
+                        f"{other_path} and {path} are of the same seed and parameters"
+                        f"{', and one was kept when the run was repeated' if kept else ' and hold the same rows'}: "
+                        "they count as two runs; leave one out",
+                        RuntimeWarning,
+                        stacklevel=3,
+                    )
+                    break
+
+
 def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Join the rows of several data files.
 
@@ -134,6 +163,7 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     if all(seed is None for seed in added["seed"]):
         del added["seed"]  # of files of results: each of their runs has its own
     added |= varied_parameters(configurations)
+    warn_of_copies(files, added)
     parts, combinations = [], []
     for number, (path, rows, own) in enumerate(files):
         check_own_columns(path, rows, own)

@@ -52,6 +52,19 @@ def test_files_of_a_list_keep_its_order_and_keys_that_some_lack_are_null(tmp_pat
     assert load_dataframe([first])[0]["seed"].tolist() == [1, 1]
 
 
+def test_copies_of_a_run_are_told(tmp_path: Path) -> None:
+    write(tmp_path / "1.feather", world(1))
+    write(tmp_path / "2.feather", world(2))
+    write(tmp_path / "1.5.feather", world(3), rows=3)  # a name of another run, of another seed
+    load_dataframe(tmp_path / "*.feather")
+    write(tmp_path / "1.1.feather", world(1), rows=3)
+    with pytest.warns(RuntimeWarning, match=r"1\.feather and .*1\.1\.feather are of the same seed.*one was kept"):
+        load_dataframe([tmp_path / "1.feather", tmp_path / "1.1.feather"])
+    write(tmp_path / "copy.feather", world(2))
+    with pytest.warns(RuntimeWarning, match=r"2\.feather and .*copy\.feather .* hold the same rows"):
+        load_dataframe([tmp_path / "2.feather", tmp_path / "copy.feather"])
+
+
 def test_file_whose_name_looks_like_a_pattern_is_that_file(tmp_path: Path) -> None:
     write(tmp_path / "[1].feather", world(7))
     write(tmp_path / "1.feather", world(8))
