@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
@@ -103,12 +105,31 @@ std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
     return poses;
 }
 
+/// Empty if the file cannot be read; opening a pipe would wait for its writer.
+std::string first_bytes(std::filesystem::path const& path, std::size_t count) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+        return "";
+    }
+    std::string bytes(count, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(bytes.data(), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    return bytes;
+}
+
 std::vector<ImportedPose> read_poses(PlacementTask const& task) {
     std::filesystem::path const path = task.spec.filename;
     if (path.empty()) {
         throw FormationError(kFormationKey, "'imported' needs a file: set formation_filename");
     }
-    if (path.extension() != ".feather") {
+    // Files of poses may have any name, so their first bytes say the format.
+    std::string const begin = first_bytes(path, 6);
+    if (begin.starts_with("PAR1")) {
+        throw ConfigError(
+            fmt::format("{}: Parquet files cannot be read here; convert it to CSV or Feather", path.string()));
+    }
+    if (path.extension() != ".feather" && begin != "ARROW1") {
         return read_csv_poses(path);
     }
     if (!task.read_feather) {
