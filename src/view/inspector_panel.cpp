@@ -24,11 +24,28 @@ void wrapped(std::string const& text) {
     ImGui::PopTextWrapPos();
 }
 
+/// Breaks a name of a program's variable behind '_' and '.', where it is too long for one line.
+std::string in_lines(std::string const& name, float width_px) {
+    std::string text;
+    std::size_t line = 0;  // where it begins in the text
+    for (std::size_t begin = 0; begin < name.size();) {
+        std::size_t const end = std::min(name.size() - 1, name.find_first_of("_.", begin)) + 1;
+        std::string const part = name.substr(begin, end - begin);
+        if (text.size() > line && ImGui::CalcTextSize((text.substr(line) + part).c_str()).x > width_px) {
+            text += '\n';
+            line = text.size();
+        }
+        text += part;
+        begin = end;
+    }
+    return text;
+}
+
 /// A line of a table of two columns.
 void row(std::string const& name, std::string const& value) {
     ImGui::TableNextColumn();
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    wrapped(name);
+    wrapped(name.find(' ') == std::string::npos ? in_lines(name, ImGui::GetContentRegionAvail().x) : name);
     ImGui::PopStyleColor();
     ImGui::TableNextColumn();
     wrapped(value);
@@ -45,8 +62,11 @@ void table(char const* name, Draw const& draw) {
     }
 }
 
-std::string motor_text(Inspection const& robot, std::size_t motor) {
-    return fmt::format("{}, direction {}", robot.motor_power[motor], robot.motor_direction[motor]);
+/// `forward`: the direction bit that drives the robot forward.
+std::string wheel_text(Inspection const& robot, std::size_t motor, int forward) {
+    int const direction = robot.motor_direction[motor];
+    return fmt::format("{} {} (direction {})", robot.motor_power[motor], direction == forward ? "forward" : "backward",
+                       direction);
 }
 
 std::string joined(std::vector<std::string> const& names) {
@@ -57,25 +77,33 @@ std::string joined(std::vector<std::string> const& names) {
     return text.empty() ? "nothing" : text;
 }
 
+/// Without the sign of what is rounded to zero.
+std::string decimals(float value, int count) {
+    std::string const text = fmt::format("{:.{}f}", value, count);
+    bool const is_zero = text.find_first_of("123456789") == std::string::npos;
+    return text.starts_with('-') && is_zero ? text.substr(1) : text;
+}
+
 void draw_motion(Inspection const& robot) {
     row("category", robot.category);
     if (robot.has_body) {
         row("position", fmt::format("{:.1f}, {:.1f} mm", robot.position_mm.x, robot.position_mm.y));
-        row("heading", fmt::format("{:.3f} rad ({:.0f}\u00b0)", robot.heading_rad, robot.heading_rad * kDegreesPerRad));
+        row("heading", fmt::format("{} rad ({}\u00b0)", decimals(robot.heading_rad, 3),
+                                   decimals(robot.heading_rad * kDegreesPerRad, 0)));
         row(fmt::format("speed, mean of {:g} s", Inspection::kSpeedWindowS),
             fmt::format("{:.1f} mm/s", robot.speed_mm_s));
         row(robot.moved_during_s < 0.9995 ? fmt::format("moved in the last {:.2f} s", robot.moved_during_s)
                                           : "moved in the last second",
             fmt::format("{:.1f} mm", robot.moved_mm));
         row("touches", joined(robot.touches));
-        row("turning", fmt::format("{:.2f} rad/s", robot.angular_velocity_rad_s));
-        row("acceleration",
-            fmt::format("{:.2f}, {:.2f} m/s\u00b2", robot.acceleration_m_s2.x, robot.acceleration_m_s2.y));
+        row("turning", decimals(robot.angular_velocity_rad_s, 2) + " rad/s");
+        row("acceleration", fmt::format("{}, {} m/s\u00b2", decimals(robot.acceleration_m_s2.x, 2),
+                                        decimals(robot.acceleration_m_s2.y, 2)));
     }
     row("ticks", fmt::format("{}, at {:.3f} s", robot.ticks, robot.clock_s));
-    row("motor left", motor_text(robot, 1));
-    row("motor right", motor_text(robot, 0));
-    row("motor back", motor_text(robot, 2));
+    row("motor left", wheel_text(robot, 1, 1));
+    row("motor right", wheel_text(robot, 0, 0));
+    row("motor back", fmt::format("{} (direction {})", robot.motor_power[2], robot.motor_direction[2]));
 }
 
 void draw_leds(Inspection const& robot) {
