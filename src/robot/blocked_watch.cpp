@@ -34,10 +34,10 @@ namespace pogosim {
 namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{250};
-constexpr int kBlockedLooks = 8;  // 2 s. Not by a clock: time in which this process is stopped does not count
-constexpr int kIdleLooks = 40;    // without any run, until this thread ends
+constexpr int kBlockedLooks = 8;  // 2 s, counted in looks so that time in which this process is stopped does not count
+constexpr int kIdleLooks = 40;    // 10 s without a run, after which the thread of the watch ends
 
-/// What a thread waits for in the kernel.
+/// The system call in which a thread waits.
 struct SystemCall {
     long number = -1;
     std::uintptr_t stack_pointer = 0;
@@ -57,7 +57,8 @@ std::string content_of(pid_t thread, char const* file) {
     return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, bytes))};
 }
 
-/// Sleeping, as the system calls it; not if it is stopped, say by a debugger, or waits for a disk or a processor.
+/// Whether the kernel reports the thread as sleeping: not stopped (by a debugger, say), nor waiting for a disk or a
+/// processor.
 bool is_sleeping(pid_t thread) {
     std::string const stat = content_of(thread, "stat");
     std::size_t const end_of_name = stat.rfind(") ");
@@ -100,7 +101,7 @@ public:
             has_thread_ = true;
             try {
                 start_background_thread("watching over blocked calls", [this] { serve(); }).detach();
-            } catch (std::system_error const&) {  // then nothing is said
+            } catch (std::system_error const&) {  // without the thread, there are no warnings
                 has_thread_ = false;
             }
         }
@@ -115,7 +116,7 @@ private:
     struct Watched {
         CrashHandlerState* handler = nullptr;
         unsigned long calls = 0;  // of user code, at the last look
-        int blocked_looks = 0;    // in the present one
+        int blocked_looks = 0;    // looks that found the present call asleep
     };
 
     void serve() {
@@ -141,18 +142,23 @@ private:
             return;
         }
         CrashHandlerState& run = handler.helped != nullptr ? *handler.helped : *watched.handler;
-        if (run.is_told_of_blocked || !is_sleeping(handler.thread_id)) {
+        if (run.is_told_of_blocked) {
             return;
         }
-        std::optional<SystemCall> const call = system_call_of(handler.thread_id);
-        if (!call || writes(*call) || ++watched.blocked_looks < kBlockedLooks) {
+        bool const sleeps = is_sleeping(handler.thread_id);
+        std::optional<SystemCall> const call = sleeps ? system_call_of(handler.thread_id) : std::nullopt;
+        if (!call || writes(*call)) {
+            watched.blocked_looks = 0;
+            return;
+        }
+        if (++watched.blocked_looks < kBlockedLooks) {
             return;
         }
         run.is_told_of_blocked = true;
         tell(handler, *call, calls);
     }
 
-    /// The thread may go on meanwhile, but not end its run.
+    /// The watched thread may continue meanwhile, but its run cannot end before this returns (mutex_).
     static void tell(CrashHandlerState const& handler, SystemCall const& call, unsigned long calls) {
         void const* const place =
             place_in_stack({call.stack_pointer, call.program_counter, handler.thread_id}, handler.program_base);

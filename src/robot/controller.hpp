@@ -92,6 +92,7 @@ struct Controller {
     Phase waits_in = Phase::none;
     int waits = 0;                     // in the call of its program that runs
     std::int64_t call_began_us = 0;    // when that began; time of the step
+    std::uint32_t call_ticks = 0;      // pogobot_ticks then
     std::int64_t longest_call_us = 0;  // of those that have waited and returned
     pthread_t waits_on{};              // the thread in which it began to
     Program program;

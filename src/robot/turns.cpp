@@ -24,8 +24,8 @@ namespace pogosim {
 namespace {
 
 /// Whether code that waits may go on in another thread. It is compiled as if that never happened, so it may keep the
-/// address of a variable that each thread has, such as mydata, in a register. Not on x86-64, where such variables are
-/// read and written without their address.
+/// address of a variable that each thread has, such as mydata, in a register. On x86-64, such variables are read and
+/// written without their address.
 constexpr bool can_change_threads() {
 #ifdef __x86_64__
     return true;
@@ -45,7 +45,7 @@ void Controllers::run_on_fiber(std::uint32_t robot, void (Controllers::*part)(st
     Call call{*this, robot, part};
     Fiber& fiber = free_fiber();
     auto const body = [](void* argument) {
-        Call const copy = *static_cast<Call*>(argument);  // which the robot may outlive
+        Call const copy = *static_cast<Call*>(argument);  // the robot may still run when `call` is gone
         (copy.controllers.*copy.part)(copy.robot);
     };
     if (run_on(fiber, body, &call)) {
@@ -61,13 +61,15 @@ Fiber& Controllers::free_fiber() {
 
 void Controllers::wait() {
     if (is_forked_child()) {
-        end_forked_child(0);  // what comes now is the parent's
+        end_forked_child(0);  // the rest of the run belongs to the parent
     }
     std::uint32_t const robot = context.robot;
     Controller& self = controllers_[robot];
-    if (self.fiber == nullptr) {
+    // A program may also call the main loop's step itself: then it ticks, and has begun another call.
+    if (self.fiber == nullptr || pogobot_ticks != self.call_ticks) {
         self.waits = 0;
         self.call_began_us = step_us_;
+        self.call_ticks = pogobot_ticks;
     }
     ++self.waits;
     self.waits_in = context.phase;
@@ -106,12 +108,12 @@ void Controllers::go_on(std::uint32_t robot) {
     }
 }
 
-/// Robots that take their steps, one after the other, on a fiber: when one of them waits, the fiber is its own until
-/// its step is over, and the others go on on another one.
+/// Robots that take their steps, one after the other, on a fiber: when one of them waits, it keeps the fiber until its
+/// step is over, and the others continue on another one.
 struct Controllers::Turns {
     Controllers& controllers;
     std::uint32_t next;
-    std::uint32_t last;  // not one of them
+    std::uint32_t last;  // exclusive
 };
 
 void Controllers::run_robots(std::uint32_t first, std::uint32_t last) {
@@ -150,14 +152,14 @@ void Controllers::take_turns(Turns& turns) {
             continue;
         }
         if (self.fiber != nullptr) {
-            return;  // it goes on with its own
+            return;  // run_robots() resumes its own fiber
         }
         if (self.loop.loop_hz == 0) {
             self.clock_us = step_us_;  // without a sleep the clock follows the steps
         }
         tick(robot);
         if (self.fiber != nullptr) {
-            return;  // it has waited: the turns have long gone on without it
+            return;  // it has waited, and run_robots() has continued with another fiber since
         }
     }
 }
