@@ -25,6 +25,9 @@ def write_protocol(path: Path) -> None:
     if path.suffix != ".c":
         make_project(path, find_installation())
         shutil.copyfile(PROTOCOL, path / "main.c")
+        world = path / "conf" / "test.yaml"
+        text, _, _ = world.read_text(encoding="utf-8").partition("\n# Variables of the program")
+        world.write_text(text, encoding="utf-8")  # the protocol reads no parameters
         say(f"made: {path}, a project whose main.c is the program of the protocol")
         return
     real = real_output(path)

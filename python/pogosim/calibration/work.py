@@ -132,7 +132,7 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
 def report(
     prog: str, options: argparse.Namespace, scene: Scene, prepared: Prepared, matcher: Matcher, fitted: Fit
 ) -> None:
-    """Print the result, what is doubtful about it, and write it if a folder is given."""
+    """Print the result and the doubts about it, and write it if a folder is given."""
     settings, noise = matcher.settings, fitted.values
     found = found_parameters(fitted, settings.start)
     with_bias = BIAS in settings.free

@@ -46,7 +46,7 @@ def parser(prog: str) -> Parser:
         type=positive,
         default=30.0,
         metavar="HZ",
-        help="ticks per second (%(default)g): main_loop_hz of the program",
+        help="ticks per second (%(default)g, as in the article; a program that does not set main_loop_hz has 60)",
     )
     made.add_argument("-u", "--no-clip", action="store_true", help="print the maximum of the formula even if above 1")
     return made
