@@ -1,8 +1,7 @@
-/// @file
-/// Runs inside another process, such as Python: a run is a value, which the host steps as it likes. Any number of runs
-/// may exist, of the same program or others. Several threads may use one run: a call waits for the end of the time step
-/// that another thread is making, not for all of its steps. The last call of a run is pogosim_run_close(). The package
-/// `pogosim` of Python is made with this (`pogosim.Simulation`); it is meant for other languages, too.
+/// @file Runs inside another process, such as Python: a run is a value that the host advances step by step. Any number
+/// of runs may exist, of the same program or others. Several threads may use one run: a call waits for the end of the
+/// time step that another thread is making, not for all of its steps. The last call of a run is pogosim_run_close().
+/// The package `pogosim` of Python is made with this (`pogosim.Simulation`); it is meant for other languages, too.
 ///
 /// Functions that can fail return a status; pogosim_host_error() then says what, in one line.
 #ifndef POGOSIM_HOST_H
@@ -91,10 +90,10 @@ char const* pogosim_run_columns(pogosim_run const* run);
 /// warning, 'E' error, 'P' printed by the program. Valid until the next call for this run.
 char const* pogosim_run_messages(pogosim_run* run);
 
-/// Puts the body of a robot elsewhere, at rest. mm and rad.
+/// Moves the body of a robot to another pose, at rest. mm and rad.
 int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad);
 
-/// An object: what has a body or runs the program, in the order of the rows of the data file.
+/// An object, which has a body or runs the program; in the order of the rows of the data file.
 struct pogosim_object {
     uint32_t id;        ///< robot_id in the data file
     uint32_t category;  ///< index into pogosim_run_categories
@@ -110,12 +109,12 @@ struct pogosim_object {
 struct pogosim_lamp {
     char const* category;  ///< valid as long as the run; ignored when a lamp is set
     int32_t is_on;         ///< 0: dark, whatever the configuration says
-    double intensity;      ///< its levels are those of the configuration times this; at least 0
+    double intensity;      ///< factor for the levels of the configuration; at least 0
     double x_mm;           ///< where it stands; of one on an orbit, the centre of the orbit
     double y_mm;
 };
 
-/// What an object is like now. `object`: from 0 to the number "object_count" - 1.
+/// The present state of an object. `object`: from 0 to the number "object_count" - 1.
 int pogosim_run_object(pogosim_run const* run, size_t object, struct pogosim_object* found);
 
 /// Puts an object elsewhere, at rest. mm and rad.
@@ -127,7 +126,7 @@ int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive);
 /// What a lamp is like now. `lamp`: from 0 to the number "lamp_count" - 1.
 int pogosim_run_lamp(pogosim_run const* run, size_t lamp, struct pogosim_lamp* found);
 
-/// Switches, dims and moves a lamp. The light on the floor is the new one at once.
+/// Switches, dims and moves a lamp. The light on the floor is updated at once.
 int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, struct pogosim_lamp const* setting);
 
 /// Sets a column that the program has declared: its value in all rows of an object from now on, unless the program's
@@ -137,7 +136,7 @@ int pogosim_run_set_column(pogosim_run* run, int64_t object, char const* name, d
 /// Gives the global variable that the program has set from `parameters.NAME` another value, written in YAML.
 int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* value);
 
-/// Level of light at each robot, sensor counts; mean of its three sensors, without noise. -1 for one without a body.
+/// Light level at each robot, sensor counts: the mean of its three sensors, without noise; -1 if it has no body.
 /// `levels` has a place for each.
 void pogosim_run_light_levels(pogosim_run const* run, double* levels);
 

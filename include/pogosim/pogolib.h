@@ -30,7 +30,7 @@ extern "C++" {
 /// Version of the SDK that these functions follow.
 #define POGOLIB_RELEASE_VERSION "v2.6"
 
-// A variable of which each robot has its own: the simulator puts in the value of the robot that is running.
+// A variable that each robot has for itself: the simulator stores the value of the running robot in it.
 // Thread-local, so that robots can run on several threads; the model makes each access a single instruction, in shared
 // objects, too.
 #ifdef __ELF__
@@ -41,8 +41,8 @@ extern "C++" {
 #define POGO_BEGIN_API _Pragma("GCC visibility push(default)")
 #define POGO_END_API _Pragma("GCC visibility pop")
 
-// The real main() is the simulator's; it calls the program's once for each robot, by the name robot_main, with one
-// argument: the name of the program. Both `int main(void)` and `int main(int argc, char** argv)` do.
+// The real main() is the simulator's. It calls the program's main(), renamed robot_main, once for each robot, with one
+// argument: the name of the program. Both `int main(void)` and `int main(int argc, char** argv)` are accepted.
 #define main(...) \
     POGO_MAIN_PICK(__VA_ARGS__, POGO_MAIN_WITH_ARGUMENTS, POGO_MAIN_WITH_ARGUMENTS, robot_main, )(__VA_ARGS__)
 #define POGO_MAIN_PICK(first, second, third, chosen, ...) chosen

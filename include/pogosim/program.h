@@ -20,7 +20,7 @@ struct pogosim_program {
     char const* for_sdk;                  ///< not NULL: written for the robots' SDK (pogobot.h): main() does not return
 };
 
-/// That of the program which contains it.
+/// The structure of the program that contains it.
 extern struct pogosim_program const pogosim_this_program;
 
 /// Runs a program as its command line says: what main() of an executable does. Returns the exit code.
@@ -38,14 +38,14 @@ void pogosim_before_constructors(struct pogosim_program const* program, void (*s
 /// object of a robot that has variables of its own. Returns 0 unless memory is short.
 int pogosim_at_end(void (*destroy)(void*), void* object, void* library);
 
-// What a program's calls of rand(), srand(), exit(), usleep() and sleep() become.
+// Replacements of rand(), srand(), exit(), usleep() and sleep(), which a program's calls reach.
 int pogosim_rand(void);
 void pogosim_srand(unsigned seed);
 void pogosim_exit(int status) __attribute__((noreturn));
 void pogosim_usleep(int microseconds);
 void pogosim_sleep(int seconds);
 
-/// What msleep() is in the simulator's main loop: nothing of the tick is left to go on with after it.
+/// Replaces msleep() at the end of a tick in the simulator's main loop, after which nothing of the tick is left to do.
 void pogosim_sleep_after_tick(int milliseconds);
 
 /// The robot's program reads its clock, which takes time if it does so again and again.

@@ -1,4 +1,4 @@
-"""Checks of what callers of the package give: plain values, or one line that says what was expected."""
+"""Checks of the arguments of the package's functions: returns plain values, or raises a one-line error."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def is_file_name(text: str) -> bool:
 
 @dataclass(frozen=True)
 class Arguments:
-    """Checks of arguments. What is none of the expected kind raises `error`, with the name of the argument.
+    """Checks of arguments. A value of another kind raises `error`, with the name of the argument.
 
     Attributes:
         error: Type of the exceptions.
@@ -67,7 +67,7 @@ class Arguments:
         return self.error(f"{name}: expected {expected}, found {shown(value)}")
 
     def integer(self, name: str, value: Any, least: int | None = None, most: int | None = None) -> int:
-        """Return an integer; True and 3.0 are none."""
+        """Return an integer; True and 3.0 are refused."""
         found = without_numpy(value)
         expected = "an integer"
         if most is not None:
@@ -101,21 +101,21 @@ class Arguments:
         return number
 
     def numbers(self, name: str, values: Any, count: int) -> list[float]:
-        """Return so many numbers."""
+        """Return a list of `count` numbers."""
         found = without_numpy(values)
         if not isinstance(found, (list, tuple)) or len(found) != count:
             raise self.refused(name, f"{count} numbers", values)
         return [self.number(name, item) for item in found]
 
     def boolean(self, name: str, value: Any) -> bool:
-        """Return True or False, and nothing that is merely taken for one."""
+        """Return True or False; other truth values are refused."""
         found = without_numpy(value)
         if not isinstance(found, bool):
             raise self.refused(name, "True or False", value)
         return found
 
     def text(self, name: str, value: Any) -> str:
-        """Return text, without zeros in it."""
+        """Return text without NUL characters."""
         found = without_numpy(value)
         if not is_text(found):
             raise self.refused(name, "text", value)

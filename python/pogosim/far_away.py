@@ -1,4 +1,4 @@
-"""Rows with positions that no run can have: they are left out, which is said once, and no tool draws or sums them."""
+"""Rows with impossible positions: all tools ignore them, with one warning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the tools look at before they import what reads data, so that a wrong name is told at once."""
+"""Checks of input files before the modules that read them are imported, so that errors are reported at once."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def check_readable(names: Iterable[str]) -> None:
-    """Open files; what is none (a folder, a pipe), and files of a pattern, are looked at later.
+    """Open files, to find errors early. Folders, pipes and files of a pattern are checked later.
 
     Raises:
         OSError: One cannot be read.

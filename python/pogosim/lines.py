@@ -1,4 +1,4 @@
-"""All lines that the tools print: what stands in them, such as names of files, cannot steer a terminal."""
+"""Printing of all lines of the tools, with control characters escaped, so that file names cannot control a terminal."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import os
 import sys
 import unicodedata
 
-LONGEST = 10_000  # characters of a line; longer names than those of files are cut
+LONGEST = 10_000  # characters of a line, more than a path has; the rest is cut
 
 
 def printable(text: object) -> str:
-    """Return a text as one line: control characters, marks of direction and bytes that are no text are escaped."""
+    """Return a text as one line, with control characters, bidirectional marks and undecodable bytes escaped."""
     line = str(text)
     if len(line) > LONGEST:
         line = f"{line[:LONGEST]}... and {len(line) - LONGEST} more characters"
@@ -39,7 +39,7 @@ def say(*lines: object) -> None:
     try:
         print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
     except OSError:
-        # Python would try again at its end.
+        # Otherwise, Python would flush again when it exits, and fail again.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
         os.close(nowhere)

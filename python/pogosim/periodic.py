@@ -42,7 +42,7 @@ def steps_of(offset_mm: Floats, duration_s: Floats, size_mm: Floats | None, top_
         offset_mm: From each row to the next one of the same robot, shape (..., 2).
         duration_s: Between them, shape (...).
         size_mm: Width and height of a periodic arena. None: it has walls.
-        top_speed_mm_s: Top speed mm of the robots. None: unknown, so that of their longest step counts.
+        top_speed_mm_s: Top speed of the robots, mm/s. None: unknown; the speed of their fastest step counts.
 
     Returns:
         Shape (..., 2), mm.
@@ -54,7 +54,7 @@ def steps_of(offset_mm: Floats, duration_s: Floats, size_mm: Floats | None, top_
 
 
 def warn_if_ambiguous(step_mm: Floats, duration_s: Floats, size_mm: Floats, top_speed_mm_s: float | None) -> None:
-    """Warn if one of these steps, shape (..., 2), is not the only one that a robot of this speed can have made."""
+    """Warn if, for one of these steps, shape (..., 2), a robot of this speed could have taken another way."""
     known = np.isfinite(step_mm).all(axis=-1) & (duration_s > 0.0)
     if not known.any():
         return

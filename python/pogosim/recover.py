@@ -119,7 +119,7 @@ def open_rows(path: PathLike, file: IO[bytes]) -> ipc.RecordBatchStreamReader:
 
 
 def with_readable_names(schema: pa.Schema) -> pa.Schema:
-    """Give columns whose names were damaged, so that they are no UTF-8, the names column_0, column_1, ... by place."""
+    """Rename columns whose names are not valid UTF-8 because of damage to column_0, column_1, ... by position."""
 
     def readable(place: int) -> pa.Field:
         field = schema.field(place)
@@ -132,7 +132,7 @@ def with_readable_names(schema: pa.Schema) -> pa.Schema:
 
 
 def check_is_file(path: Path) -> None:
-    """Raise RecoverError for what is no file: a pipe, for instance, would be waited for."""
+    """Raise RecoverError for anything but a regular file; opening a pipe, for example, would wait for a writer."""
     if path.exists() and not path.is_file():
         raise RecoverError(f"{path} is not a file")
 
@@ -197,7 +197,7 @@ def recovered_schema(unfinished: Unfinished) -> pa.Schema:
 
 
 def check_replaceable(target: Path) -> None:
-    """Raise RecoverError for a file that is none of the simulator's: it is not ours to write over."""
+    """Raise RecoverError for a file that the simulator did not write, and that must not be overwritten."""
     if is_ours_in_other_format(target):
         return
     with target.open("rb") as file:

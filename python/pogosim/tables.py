@@ -78,7 +78,7 @@ def read_csv(path: Path) -> pa.Table:
 
 
 def as_read(kind: str) -> pa.DataType:
-    """Return the type as which a column is read from text."""
+    """Return the type with which a column is read from text; it is converted afterwards."""
     return pa.type_for_alias({"halffloat": "float", "binary": "string"}.get(kind, kind))
 
 
@@ -101,7 +101,7 @@ class TableWriter(Protocol):
 
 
 class TextWriter:
-    """Writes CSV: no digit too many, nothing for null, hexadecimal numbers for bytes."""
+    """Writes CSV: numbers with the fewest digits that keep them, empty cells for null, bytes as hexadecimal."""
 
     def __init__(self, file: IO[bytes], schema: pa.Schema) -> None:
         text = [pa.field(own.name, pa.string()) if pa.types.is_binary(own.type) else own for own in schema]
@@ -124,7 +124,7 @@ def in_hexadecimal(column: pa.ChunkedArray) -> pa.Array:
 
 
 def table_writer(file: IO[bytes], kind: str, schema: pa.Schema) -> TableWriter:
-    """Return a writer of tables in a format, to a file that is open; the same bytes as those of the simulator."""
+    """Return a writer of tables in a format to an open file; it writes the same bytes as the simulator."""
     if kind == PARQUET:
         import pyarrow.parquet as pq  # takes a while
 
@@ -137,7 +137,7 @@ def table_writer(file: IO[bytes], kind: str, schema: pa.Schema) -> TableWriter:
 
 
 def write_metadata_beside(table: Path, kind: str, schema: pa.Schema) -> None:
-    """Write the metadata of a table that has no place for them, before the table takes its place."""
+    """Write the metadata of a CSV table to the file beside it, before the table is moved to its final name."""
     if kind != CSV:
         return
     text = BEGIN + "\n"

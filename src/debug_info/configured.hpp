@@ -1,4 +1,4 @@
-// Which variables a program reads from the configuration.
+// Finds the variables that a program reads from the configuration.
 #pragma once
 
 #include <cstdint>

@@ -46,8 +46,8 @@ struct DebugInfo {
     std::map<Scope, std::set<std::string>> local_to_a_call;  ///< parameters and automatic variables of functions
 };
 
-/// Where something is declared, as a path. Tables of files begin with the compiled file, which libdw does not count as
-/// one.
+/// The path of the file in which something is declared. Tables of files begin with the compiled file, which libdw does
+/// not count as one.
 std::string file_of(Dwarf_Die* entry);
 
 /// Reads all compiled files, including objects of library headers.

@@ -10,7 +10,7 @@
 
 namespace shared_state {
 
-/// What is wrong with the file, for the user.
+/// A problem with the file, for the user.
 struct ProgramError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

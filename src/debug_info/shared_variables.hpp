@@ -12,8 +12,8 @@ namespace shared_state {
 /// Folders of the system's headers.
 std::vector<std::string> system_folders();
 
-/// What the program can modify, in source order, other than USERDATA: not what it reads from the configuration, what is
-/// marked POGO_SHARED, nor what is declared in a file of the ignored folders. A variable in a header counts once,
+/// Variables that the program can modify, in source order, except USERDATA, variables read from the configuration,
+/// those marked POGO_SHARED, and those declared in a file of the ignored folders. A variable in a header counts once,
 /// however many files include it.
 std::vector<Object> shared_variables(DebugInfo const& info, ProgramFile const& program,
                                      std::vector<std::string> const& ignored_folders);

@@ -72,7 +72,7 @@ pogosim_array light(LightMap const& map) {
                      {static_cast<std::int64_t>(sizeof(std::int16_t)) * map.columns, sizeof(std::int16_t)});
 }
 
-/// Stands in for the first of no robots.
+/// The address to return when there are no robots.
 Controller const& first_controller(Simulation const& simulation) {
     static Controller const none;
     auto const all = simulation.controllers().all();

@@ -73,7 +73,7 @@ void pogosim_run::must_succeed(Outcome const& outcome) {
     }
     std::size_t const before = lines_.size();
     ExitCode const code = conclude(outcome);
-    // What the log says of it is the message of the error.
+    // The log's text becomes the message of the error.
     std::string message = outcome.failure ? outcome.failure->what : *outcome.shortage;
     for (std::size_t i = before; i < lines_.size(); ++i) {
         if (!lines_[i].is_of_robot && lines_[i].level >= spdlog::level::warn) {

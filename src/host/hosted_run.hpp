@@ -63,7 +63,7 @@ struct RunFailure : std::runtime_error {
 /// The array of this name; nothing if there is none.
 std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_view name);
 
-/// The same of the columns of the data file.
+/// The array of a column of the data file.
 std::optional<pogosim_array> column_array_of(SavedColumns const& saved, std::string_view name);
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-// What functions of pogosim/host.h return: no exception crosses into the host.
+// Return values of functions of pogosim/host.h: no exception crosses into the host.
 #pragma once
 
 #include <exception>
@@ -12,7 +12,7 @@
 
 namespace pogosim {
 
-/// What pogosim_host_error() says in this thread.
+/// The text of pogosim_host_error() in this thread.
 inline std::string& error_text() {
     static thread_local std::string text;
     return text;
@@ -23,7 +23,7 @@ inline int failed(std::string const& what, int status = POGOSIM_USAGE) {
     return status;
 }
 
-/// Runs what may throw, and returns its status.
+/// Runs a function that may throw, and returns its status.
 template <class Body>
 int with_status(Body const& body) {
     StandardFloatingPoint const mode;
@@ -40,7 +40,7 @@ int with_status(Body const& body) {
     }
 }
 
-/// The same of what needs the run for itself.
+/// The same for a function that needs the run for itself.
 template <class Body>
 int with_status_of(pogosim_run const& run, Body const& body) {
     std::lock_guard const lock(run.in_use);

@@ -21,8 +21,8 @@ POGO_PER_ROBOT uint32_t _error_code_initial_time = 0;  // 0: no error is shown
 #define LET_TIME_PASS()
 #else
 #include "pogosim/program.h"
-// In the simulator, a program that reads its clock again and again waits, and may go on in another thread. Only here,
-// where no address of a variable that each thread has is known: the functions of timers do not wait in this file.
+// In the simulator, a program that reads its clock again and again waits, and may go on in another thread. It may do so
+// only here, where no address of a thread-local variable is kept: in this file, the timers' functions do not wait.
 #define LET_TIME_PASS() pogosim_let_time_pass()
 #endif
 

@@ -20,7 +20,7 @@ namespace pogosim {
 /// Steps are counted, so a time that should be equal to another may differ from it in the last bits.
 inline constexpr double kTimeToleranceS = 1e-6;
 
-/// What a lamp shows at one moment, a function of the simulated time alone. Equal states of a lamp look the same.
+/// The state of a lamp at one moment, a function of the simulated time alone. Equal states light the same cells.
 struct LampState {
     int phase = 0;           // the lamp's own numbering: dark, flash, ...
     double angle_rad = 0.0;  // of a beam or on an orbit; 0 where it does not matter

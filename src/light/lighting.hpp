@@ -29,7 +29,7 @@ public:
     std::vector<LampMark> marks() const;
 
 private:
-    /// A lamp, and what of it is on the map.
+    /// A lamp, and the part of its light that is on the map.
     struct Entry {
         LampSpec spec;  // of the configuration
         std::size_t number = 0;

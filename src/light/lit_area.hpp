@@ -38,8 +38,8 @@ struct LitCell {
 /// The same cells as a list, for arena those inside any of its polygons (holes included).
 std::vector<LitCell> lit_cells(Shape const& shape, Vec2 centre_mm, Arena const& arena, LightMap const& map);
 
-/// What the images of cells are nearest to: the lamp, or for global and arena, whose centre counts from that of the
-/// arena's bounding box, the middle of what it lights.
+/// The point to which the images of cells are nearest: the lamp; for global and arena, the middle of what it lights
+/// (its centre counts from that of the arena's bounding box).
 Vec2 middle_of_light(Shape const& shape, Vec2 centre_mm, Arena const& arena);
 
 /// Box around what a lamp at `centre_mm` can light: around its shape, or for global and arena the arena's bounding box,

@@ -23,7 +23,7 @@ void KnownMotion::copy(Bodies const& bodies) {
 }
 
 void KnownMotion::end_step(Bodies& bodies) {
-    // What has been known goes there without a copy.
+    // The poses known from before the step become the start of the step, by a swap instead of a copy.
     bodies.start_mm.swap(position_mm_);
     bodies.start_rad.swap(heading_rad_);
     copy(bodies);

@@ -26,7 +26,7 @@ using arrow::ArrayBuilder;
 using arrow::Status;
 using MakeType = std::shared_ptr<arrow::DataType> const& (*)();
 
-/// The cells of one user column: every `width`-th from the first on.
+/// The cells of one user column: every `width`-th value, from the first on.
 struct UserCells {
     std::span<CellValue const> cells;
     std::size_t width;
@@ -188,7 +188,7 @@ std::vector<BuiltInColumn const*> enabled_built_ins(DataFileOptions const& optio
 constexpr std::array<std::string_view, 3> kColumnsOfRuns{"run", "seed", "arena_file"};
 constexpr std::array<std::string_view, 2> kKeysOfRuns{"objects.", "parameters."};
 
-/// What tools take a user's column of this name for; empty: for what it is.
+/// What tools would take a user's column of this name for; empty: they have no other meaning for it.
 std::string_view meaning_for_tools(std::string_view name) {
     bool const tells_runs_apart =
         std::ranges::find(kColumnsOfRuns, name) != kColumnsOfRuns.end() ||
@@ -199,7 +199,8 @@ std::string_view meaning_for_tools(std::string_view name) {
     return name == "led_rgb" ? "tools take a column of that name for the colour of the head LED (0xRRGGBB)" : "";
 }
 
-/// True if tools would take rows for others. Colours, in a file without those of the simulator, do no harm.
+/// True if tools would mistake the rows for others. In a file without the simulator's own colours, a column of colours
+/// does no harm.
 bool is_reserved(std::string_view name, std::span<BuiltInColumn const* const> built_ins) {
     return name == "subpart_id" ||
            std::ranges::any_of(built_ins, [name](BuiltInColumn const* column) { return column->name == name; });

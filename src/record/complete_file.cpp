@@ -39,12 +39,12 @@ void sync_folder_of(std::filesystem::path const& path) {
     }
 }
 
-/// Makes a file that was not there; -1 with errno otherwise.
+/// Creates a file; fails with -1 and errno if one exists.
 int make_file(std::filesystem::path const& path) {
     return open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
 }
 
-/// Makes a file of a name of its own in the folder for temporary files. The descriptor, or -1 with errno.
+/// Creates a file with a unique name in the folder for temporary files. Returns its descriptor, or -1 with errno.
 int make_temporary_file(std::filesystem::path& path) {
     std::error_code error;
     std::string name = std::filesystem::temp_directory_path(error) / "pogosim-XXXXXX.feather";
@@ -134,7 +134,7 @@ arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::copy_with(std::shared
     auto options = arrow::ipc::IpcReadOptions::Defaults();
     options.use_threads = false;
     ARROW_ASSIGN_OR_RAISE(auto const reader, arrow::ipc::RecordBatchFileReader::Open(input, options));
-    // Without a name, this one goes with the process.
+    // A file without a name is removed with the process.
     scratch_.reset();
     path_.clear();
     ARROW_ASSIGN_OR_RAISE(auto copy, start(unfinished, schema, format));

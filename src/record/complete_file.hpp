@@ -1,5 +1,6 @@
 // The complete data file in progress: a file that is written next to the unfinished one and replaces it at the end, so
-// that at any time one of the two contains all rows. It is a Feather file; other formats are made of it at the end.
+// that at any time one of the two contains all rows. It is a Feather file, converted to another format at the end if
+// the user wants one.
 #pragma once
 
 #include <arrow/ipc/writer.h>
@@ -20,11 +21,11 @@ namespace pogosim {
 
 class CompleteFile {
 public:
-    /// Where the file is written, beside the unfinished one, if nothing else stands there.
+    /// The path where the file is written, beside the unfinished one, if there is no other file.
     static std::filesystem::path path_beside(std::filesystem::path const& unfinished);
 
-    /// Makes an empty file beside `unfinished`, else one without a name in the folder for temporary files. Removes what
-    /// a killed run has left at that place, and nothing else.
+    /// Makes an empty file beside `unfinished`, else one without a name in the folder for temporary files. Removes a
+    /// file that a killed run has left there, but no other file.
     static arrow::Result<std::unique_ptr<CompleteFile>> start(LockedFile const& unfinished,
                                                               std::shared_ptr<arrow::Schema> const& schema,
                                                               TableFormat format = TableFormat::feather);
@@ -40,8 +41,8 @@ public:
     /// Writes the footer; afterwards all rows are in the file. `sync`: waits until it is on the disk.
     arrow::Status finish(bool sync);
 
-    /// The rows of this finished Feather file in another format, and with a schema that may have other
-    /// metadata. The copy gets the name of this file, which has none afterwards, even on failure.
+    /// Copies the rows of this finished Feather file into another format, with a schema that may have other metadata.
+    /// The copy gets the name of this file, which has none afterwards, even on failure.
     arrow::Result<std::unique_ptr<CompleteFile>> copy_with(std::shared_ptr<arrow::Schema> const& schema,
                                                            TableFormat format, LockedFile const& unfinished, bool sync);
 

@@ -1,5 +1,5 @@
-// The data file: Apache Feather V2 (Arrow IPC, zstd), one row per object and save time; how it is written:
-// table_file.hpp. The only room that includes Arrow.
+// The data file: Apache Feather V2 (Arrow IPC, zstd), CSV or Parquet, one row per object and save time; table_file.hpp says how it is
+// written. The only room that includes Arrow.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct DataFileOptions {
     std::vector<std::pair<std::string, std::string>> metadata{};  // of the schema, UTF-8
 };
 
-/// Built-in part of one row.
+/// The built-in part of one row.
 struct ObjectRow {
     double time_s = 0.0;
     std::string_view category;
@@ -52,10 +52,10 @@ public:
     /// file, is detected before the run. The contents remain until a DataFile is created. Throws OutputError.
     static LockedFile reserve(std::string const& path);
 
-    /// The file beside that of `path` in which a run puts the complete file together, if nothing else stands there.
+    /// The temporary file beside `path` in which a run writes the complete file, if there is no other file.
     static std::filesystem::path path_beside(std::string const& path);
 
-    /// The file in which the metadata of `path` are, if that is a CSV file.
+    /// The file with the metadata of `path`, if that is a CSV file.
     static std::optional<std::filesystem::path> metadata_beside(std::string const& path);
 
     explicit DataFile(DataFileOptions const& options) : DataFile(options, reserve(options.path)) {}

@@ -21,8 +21,8 @@ std::uint16_t magnitude_to_half(double magnitude) {
     if (magnitude >= kOverflow) {
         return kInfinity;
     }
-    // Count the value in units of its last mantissa bit. Normal numbers give 1024 to 2048, subnormal ones less; a count
-    // that rounds up to 2048 carries into the exponent by itself.
+    // Counts the value in units of its last mantissa bit. Normal numbers give 1024 to 2048, subnormal ones less; a
+    // count that rounds up to 2048 carries into the exponent by itself.
     int const exponent = std::max(magnitude > 0.0 ? std::ilogb(magnitude) : kMinExponent, kMinExponent);
     double const units = std::nearbyint(std::ldexp(magnitude, kMantissaBits - exponent));
     return static_cast<std::uint16_t>(((exponent - kMinExponent) << kMantissaBits) + static_cast<int>(units));

@@ -8,7 +8,8 @@
 
 namespace pogosim {
 
-/// All rows of a Feather V2 file with columns x and y, optionally theta or angle (rad) and time (s). Throws ConfigError
+/// All rows of a Feather V2 file with columns x and y, optionally angle (rad) and time (s); theta is the angle in files
+/// of other programs. Throws ConfigError
 /// when the file cannot be read or a column is missing or not numeric.
 std::vector<ImportedPose> read_imported_feather(std::filesystem::path const& path);
 

@@ -20,8 +20,8 @@ namespace pogosim {
 namespace {
 
 constexpr std::string_view kFooterEnd = "ARROW1";
-constexpr std::string_view kParquet = "PAR1";         // at the begin, and at the end of what is complete
-constexpr std::string_view kCsvHeader = "\"time\",";  // unless a run records no times; its leftover then stays
+constexpr std::string_view kParquet = "PAR1";         // at the beginning, and at the end of a complete file
+constexpr std::string_view kCsvHeader = "\"time\",";  // missing if a run records no times; its leftover is then kept
 
 class OpenFile {
 public:

@@ -20,7 +20,7 @@ constexpr TableKind kKind{.name = "message log", .key = "message_log", .how_to_d
 constexpr std::array<std::string_view, 3> kOutcomes{"heard", "lost", "queue_full"};
 constexpr std::string_view kNobodyInReach = "nobody_in_reach";
 
-/// The cells of a robot, or nulls.
+/// Appends the cells of a robot, or nulls.
 struct RobotCells {
     arrow::Int32Builder index{table_memory()};
     arrow::Int32Builder id{table_memory()};
@@ -63,7 +63,7 @@ struct Cells {
         arrow::ArrayBuilder* cells;
     };
 
-    /// In the order of the file.
+    /// The columns in the order of the file.
     std::array<Column, 21> columns() {
         return {{{"time", &time},
                  {"step", &step},

@@ -1,5 +1,5 @@
-// The message log: a table like the data file, with one row per transmission and robot in its reach, and one for each
-// transmission that reaches no robot.
+// The message log: a table like the data file, with one row for each transmission and robot in range, and one for each
+// transmission without a robot in range.
 #pragma once
 
 #include <cstddef>
@@ -32,13 +32,13 @@ struct LoggedRobot {
 
 enum class MessageOutcome { heard, lost, queue_full };
 
-/// What became of a transmission at one robot in reach.
+/// The fate of a transmission at one robot in reach.
 struct LoggedReception {
     LoggedRobot receiver;
     std::optional<float> distance_mm{};  // from the emitter to the receiver's border; null to or from an outline
     std::uint8_t emitters = 0;           // bit d: emitter d of the sender reaches it
     std::uint8_t faces = 0;              // bit d: face d of the receiver sees the emitter
-    std::int32_t cluster_size = 1;       // the sender and the robots in reach
+    std::int32_t cluster_size = 1;       // the sender and the robots in range
     float probability = 0.0F;            // of reception, 0 to 1
     MessageOutcome outcome = MessageOutcome::heard;
     std::int8_t copies = 0;  // that found room in the receiver's queue

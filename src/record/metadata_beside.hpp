@@ -1,5 +1,5 @@
-// The metadata of a CSV file, which has no place for them: a YAML file beside it, d.csv.yaml of d.csv, with the types
-// of the columns.
+// The metadata of a CSV file, which cannot hold any: a YAML file beside it (d.csv.yaml for d.csv), with the types of
+// the columns.
 #pragma once
 
 #include <arrow/result.h>
@@ -15,17 +15,17 @@ namespace pogosim {
 
 class MetadataBeside {
 public:
-    /// Where the metadata of a table are.
+    /// The path of the metadata of a table.
     static std::filesystem::path path_of(std::filesystem::path const& table);
 
-    /// True if a file is there that is none of ours: it must not be overwritten.
+    /// True if another program's file is there, which must not be overwritten.
     static bool is_taken(std::filesystem::path const& table);
 
     /// Writes the metadata of a schema to a file of another name beside the table. `sync`: waits for the disk.
     static arrow::Result<std::unique_ptr<MetadataBeside>> write(std::filesystem::path const& table,
                                                                 arrow::Schema const& schema, bool sync);
 
-    /// Makes it the metadata of a table in the same folder. Otherwise it goes with this object.
+    /// Renames the file to that of a table in the same folder. Without this call, it is removed with this object.
     arrow::Status belong_to(std::filesystem::path const& table);
 
 private:

@@ -12,7 +12,7 @@ namespace pogosim {
 
 namespace {
 
-/// With the interface of the writer of Arrow files.
+/// Gives Arrow's Parquet writer the interface of its writer of Arrow files.
 class ParquetWriter final : public arrow::ipc::RecordBatchWriter {
 public:
     explicit ParquetWriter(std::unique_ptr<parquet::arrow::FileWriter> file) : file_(std::move(file)) {}

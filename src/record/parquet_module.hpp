@@ -1,5 +1,5 @@
-// The function of the module libpogosim_parquet, which libpogosim loads when a Parquet file is wanted: other runs start
-// without the library behind it. The two are built together.
+// The entry point of libpogosim_parquet, a module that libpogosim loads only when a Parquet file is wanted, so that
+// other runs do not load the Parquet library. Both are built together.
 #pragma once
 
 #include <arrow/io/interfaces.h>

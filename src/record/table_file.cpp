@@ -38,7 +38,7 @@ namespace {
     throw OutputError(fmt::format("cannot write the {} '{}' ({}): {}", kind.name, path, kind.key, reason));
 }
 
-/// A failure of the system, in our own words, or of the library.
+/// The reason of a failure: in our own words if it is the system's, else in the library's.
 std::string reason_of(Status const& status) {
     if (status.IsOutOfMemory()) {
         return "there is not enough memory for its rows";
@@ -139,17 +139,18 @@ struct Moment {
     std::int64_t row_end;  // rows of the whole run up to and with these
 };
 
-/// When the unfinished file is due again.
+/// Decides when the unfinished file is due again.
 class SaveClock {
 public:
     using Clock = std::chrono::steady_clock;
 
     bool is_due() const { return Clock::now() >= next_; }
 
-    /// Rows are synced against power failures once the run is old enough for it to matter.
+    /// Rows are synced to the disk, against power failures, once the run is old enough for that to matter.
     bool run_is_long() const { return Clock::now() - start_ >= kLongRun; }
 
-    /// Saving began at `begin` and is over now. While a run is young, rows are saved whenever its age has doubled.
+    /// To be called when a save that began at `begin` is over. While a run is young, rows are saved whenever its age
+    /// has doubled.
     void saved(Clock::time_point begin) {
         auto const now = Clock::now();
         Clock::duration const usual = std::min<Clock::duration>(now - start_, kUsualPeriod);
@@ -161,7 +162,7 @@ private:
     static constexpr std::chrono::seconds kLongRun{1};
     static constexpr std::chrono::seconds kUsualPeriod{2};
     static constexpr std::chrono::seconds kLongestPeriod{4};  // on a slow disk
-    static constexpr int kLeastRatio = 100;                   // of the time between to the time it takes
+    static constexpr int kLeastRatio = 100;                   // of the time between two saves to the duration of one
 
     Clock::time_point start_ = Clock::now();
     Clock::time_point next_ = start_ + kFirst;
@@ -169,8 +170,8 @@ private:
 
 constexpr std::uint64_t kBytesPerCell = 8;
 constexpr std::int64_t kMostUnsavedRows = 1 << 20;  // a bound on memory
-// Rows of whole moments become a piece when there are so many: cells that grow further double their memory, which the
-// system has to clear each time.
+// When there are this many rows, those of whole moments become a piece: builders that grow further double their memory,
+// which the system has to clear each time.
 constexpr std::int64_t kMostBufferedRows = 4096;
 
 }  // namespace
@@ -213,7 +214,7 @@ struct TableFile::Impl {
         if (!started.ok()) {
             fail(kind, path, reason_of(started.status()));
         }
-        // A device such as /dev/null accepts everything and stores nothing.
+        // A device such as /dev/null accepts all bytes and stores none.
         if (type_of(path) == std::filesystem::file_type::character) {
             fail(kind, path, not_a_file(kind));
         }
@@ -224,7 +225,7 @@ struct TableFile::Impl {
 
     bool is_writable() const { return open && getpid() == owner; }
 
-    /// About, and not compressed.
+    /// Approximate size, uncompressed.
     std::uint64_t byte_count() const {
         return static_cast<std::uint64_t>(row_count) * static_cast<std::uint64_t>(schema->num_fields()) * kBytesPerCell;
     }
@@ -287,7 +288,7 @@ struct TableFile::Impl {
         saved_time_s = last.time_s;
     }
 
-    /// Where not all rows fit, on the disk or in memory together, those of the first moments do.
+    /// If not all rows fit, on the disk or in memory, as many of the first moments as possible are kept.
     Status save_what_fits() {
         ARROW_RETURN_NOT_OK(cut());
         std::int64_t first_row = saved_rows;  // of the piece
@@ -355,7 +356,8 @@ struct TableFile::Impl {
         return Status::OK();
     }
 
-    /// What was begun without the metadata is copied. Where that is impossible, all rows are there nevertheless.
+    /// Copies a complete file that was begun before metadata were added. If the copy fails, the file lacks them, but no
+    /// rows.
     void replace_schema_of_complete() {
         auto copy = complete->copy_with(final_schema, TableFormat::feather, file, clock.run_is_long());
         if (copy.ok()) {
@@ -386,7 +388,7 @@ struct TableFile::Impl {
                          reason, saved_time_s, path));
     }
 
-    /// The complete file stays beside the place that it cannot take, under a name of its own.
+    /// If the complete file cannot replace the unfinished one, it stays beside it under a name of its own.
     [[noreturn]] void fail_beside(std::string const& reason) {
         auto const kept = complete->keep_beside(file);
         complete.reset();

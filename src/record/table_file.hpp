@@ -25,7 +25,7 @@
 
 namespace pogosim {
 
-/// What messages say about a table.
+/// The words for a table in messages.
 struct TableKind {
     char const* name;               // "data file"
     char const* key;                // of the configuration, that names its file

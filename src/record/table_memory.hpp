@@ -5,7 +5,7 @@
 
 namespace pogosim {
 
-/// That of the C library, which keeps large pieces for the next ones: other pools give them back to the system, which
+/// The C library's memory. It keeps large pieces for reuse, where other pools give them back to the system, which
 /// clears each page before it is used again.
 inline arrow::MemoryPool* table_memory() {
     return arrow::system_memory_pool();

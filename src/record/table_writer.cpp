@@ -63,7 +63,8 @@ std::shared_ptr<arrow::Schema> as_text(arrow::Schema const& schema) {
     return arrow::schema(fields);
 }
 
-/// Numbers have as many digits as tell them from their neighbours; null is nothing, an empty text "".
+/// Writes CSV. Numbers have the fewest digits that give the same value when read back; null is an empty cell, an empty
+/// text "".
 class CsvWriter final : public arrow::ipc::RecordBatchWriter {
 public:
     static Result<Writer> make(std::shared_ptr<arrow::io::OutputStream> const& stream, arrow::Schema const& schema) {

@@ -14,7 +14,7 @@
 namespace pogosim {
 
 /// A writer of tables with this schema. The bytes depend on the rows, and on how they are divided into batches, alone.
-/// Metadata of the schema are in the file, but for CSV. Binary columns are hexadecimal numbers in CSV.
+/// The file holds the metadata of the schema, except CSV, in which binary columns are hexadecimal numbers.
 arrow::Result<std::shared_ptr<arrow::ipc::RecordBatchWriter>> make_table_writer(
     TableFormat format, std::shared_ptr<arrow::io::OutputStream> const& stream,
     std::shared_ptr<arrow::Schema> const& schema);

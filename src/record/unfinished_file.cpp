@@ -39,8 +39,8 @@ arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descrip
     // The schema is written with the first batch only, but a file without rows must also be readable.
     ARROW_ASSIGN_OR_RAISE(auto const nothing, arrow::RecordBatch::MakeEmpty(schema));
     ARROW_RETURN_NOT_OK(file->writer_->WriteRecordBatch(*nothing));
-    // Before what stands there is cut off: once the head is written, the file never lacks it. A reader that comes just
-    // then may find a part of it, or rows of the older file behind it, which it takes for torn ones.
+    // The head is written before the old contents are cut off, so that the file never lacks it. A reader that comes
+    // just then may find a part of the head, or rows of the older file behind it, which it takes for torn ones.
     ARROW_RETURN_NOT_OK(file->stream_->Flush());
     ARROW_ASSIGN_OR_RAISE(file->size_bytes_, file->stream_->Tell());
     file->stream_->go_back_to(file->size_bytes_);

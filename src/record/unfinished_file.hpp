@@ -17,7 +17,7 @@
 
 namespace pogosim {
 
-/// An Arrow file begins with this.
+/// The first bytes of an Arrow file.
 inline constexpr std::string_view kFileMagic("ARROW1\0\0", 8);
 
 /// Metadata of unfinished files.

@@ -100,7 +100,7 @@ void Background::draw_light(Camera const& camera, Scenery const& scenery, LightM
         }
     }
 
-    // An even light shows nothing.
+    // Even light is not drawn.
     int darkest = 32767;
     int brightest = 0;
     for (std::size_t i = 0; i < cells; ++i) {

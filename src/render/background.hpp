@@ -1,4 +1,4 @@
-// What lies below everything else: paper, floor, light, walls. It is drawn anew only when it changes.
+// The lowest layer: paper, floor, light, walls. It is redrawn only when it changes.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ public:
     /// Fills the whole canvas.
     void draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, bool light_levels);
 
-    /// Where the floor is in the picture drawn last.
+    /// The place of the floor in the picture drawn last.
     Coverage const& floor() const { return floor_; }
 
 private:
@@ -25,7 +25,7 @@ private:
     void draw_programmed_walls(Camera const& camera, Snapshot const& snapshot);
     std::vector<Pixel> wall_colours(Snapshot const& snapshot) const;
 
-    // What the picture shows.
+    // The state that the picture shows.
     std::shared_ptr<Scenery const> scenery_;
     Camera camera_;
     std::shared_ptr<LightMap const> light_;

@@ -9,8 +9,8 @@
 
 namespace pogosim {
 
-/// The pixel under a colour of an opacity of 0 to 256. What is opaque stays so; what is not becomes the more opaque,
-/// its colours premultiplied by its alpha: T. Porter and T. Duff, "Compositing Digital Images", SIGGRAPH 1984.
+/// Lays a colour with an opacity of 0 to 256 over a pixel. Opaque pixels stay opaque; others become more so, with
+/// colours premultiplied by alpha: T. Porter and T. Duff, "Compositing Digital Images", SIGGRAPH 1984.
 inline Pixel blended(Pixel below, Pixel colour, std::uint32_t opacity) {
     std::uint32_t const rest = 256U - opacity;
     std::uint32_t const over = colour | 0xFF000000U;
@@ -35,7 +35,7 @@ inline float opacity_of(Pixel colour) {
     return static_cast<float>(colour >> 24U) * (256.0F / 255.0F);
 }
 
-/// The nearest whole number, of one that is not negative. (By a signed integer: that is one instruction.)
+/// Rounds a number that is not negative. (By a signed integer: that is one instruction.)
 inline std::uint32_t rounded(float value) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(value + 0.5F));
 }
@@ -49,7 +49,7 @@ inline float clamp01(float value) {
     return std::clamp(value, 0.0F, 1.0F);
 }
 
-/// The whole number at or below, within limits; the lower limit for what is not a number.
+/// Rounds down to a whole number, within limits; NaN gives the lower limit.
 inline int floor_within(float value, int low, int high) {
     if (!(value > static_cast<float>(low))) {
         return low;

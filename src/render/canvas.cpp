@@ -29,7 +29,7 @@ public:
           height_(1.0F / (outer_ + inner_)),
           bend_(outer_ - inner_ > 1e-4F ? 0.5F * height_ / (outer_ - inner_) : 0.0F) {}
 
-    /// At distance d from the middle of a stripe of half width h.
+    /// The share of a pixel covered at distance d from the middle of a stripe of half width h.
     float covered(float d, float h) const { return below(d + h) - below(d - h); }
 
 private:
@@ -54,7 +54,7 @@ Vec2 unit_along(Vec2 along) {
 
 constexpr float kHalfDiagonal = 0.71F;  // of a pixel
 
-/// Whether it can be calculated with: a number, and one whose square is one, too.
+/// Whether the number and its square are finite.
 bool is_sound(float length) {
     return std::abs(length) <= 1e9F;
 }

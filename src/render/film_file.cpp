@@ -27,7 +27,7 @@ constexpr std::size_t kLongestMessage = 400;
         fmt::format("--video: the film '{}' cannot be written: {}; choose another file", path.string(), reason));
 }
 
-/// ffmpeg's own bound on pictures (av_image_check_size), which it would only tell of with the first one.
+/// ffmpeg's own limit on the size of pictures (av_image_check_size), which it would report only with the first picture.
 void check_size(PictureSize size) {
     constexpr std::int64_t kMargin = 128;
     constexpr std::int64_t kMostPixels = (std::int64_t{1} << 31U) / 8;

@@ -17,12 +17,12 @@ inline constexpr int kFilmHz = 30;
 
 class FilmFile {
 public:
-    /// The film is written under another name beside `path`, and takes its place when it is complete: what stands
-    /// there stays until then. Missing folders are made. Throws ConfigError for what can be known before the run: a
-    /// wrong ending, no ffmpeg, a file that cannot be written.
+    /// The film is written under another name beside `path`, and renamed when it is complete: an older film stays until
+    /// then. Missing folders are made. Throws ConfigError for what can be known before the run: a wrong ending, no
+    /// ffmpeg, a file that cannot be written.
     FilmFile(std::filesystem::path const& path, PictureSize size);
 
-    /// A film that was not finished is given up.
+    /// Deletes a film that was not finished.
     ~FilmFile();
 
     FilmFile(FilmFile const&) = delete;

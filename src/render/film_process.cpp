@@ -37,7 +37,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kLongestStall{20};  // without taking a byte; the run waits so long
 constexpr std::chrono::seconds kLongestEnd{300};   // of what it does with a whole film
 
-/// The end of the pipe that children of the user's program inherit. While one has it open, the film has no end.
+/// The end of the pipe must not be inherited by children of the user's program: while one of them has it open, ffmpeg
+/// does not see the end of the film.
 std::atomic<int> open_pipe = -1;
 
 void close_in_forked_children() {
@@ -51,7 +52,7 @@ void close_in_forked_children() {
     });
 }
 
-/// A file that has no name and is gone when it is closed; where there is no room for one, nothing is kept.
+/// A file without a name, which is removed when it is closed; if there is no room for one, ffmpeg's messages are lost.
 int make_output() {
 #ifdef __linux__
     if (int const memory = memfd_create("ffmpeg", MFD_CLOEXEC); memory >= 0) {

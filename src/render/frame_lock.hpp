@@ -1,4 +1,4 @@
-// Which run may draw frames of certain names, and which may delete frames of a folder.
+// Locks that say which run may draw frames of certain names, and which may delete frames of a folder.
 //
 //     a file beside the frame of t = 0     locked: one run draws frames of these names
 //     the folder of the frames             locked by all runs that draw into it: none deletes the frames of another;
@@ -12,7 +12,7 @@
 
 namespace pogosim {
 
-/// What keeps a run from drawing.
+/// The reason why a run must not draw.
 enum class FrameConflict {
     none,
     same_names,    // another run draws frames of these names

@@ -30,8 +30,8 @@ struct Inspection {
     float heading_rad = 0.0F;  // (-pi, pi]
     float speed_mm_s = 0.0F;   // mean of the last kSpeedWindowS
     float angular_velocity_rad_s = 0.0F;
-    float moved_mm = 0.0F;             // between the ends of its way
-    double moved_during_s = 0.0;       // in so long until now: the last second, or the whole run
+    float moved_mm = 0.0F;             // in a straight line
+    double moved_during_s = 0.0;       // duration of that motion: 1 s, or the whole run if it is shorter
     std::vector<std::string> touches;  // "wall", "robot 7", "obstacles 3"
     std::uint32_t ticks = 0;
     double clock_s = 0.0;                  // the robot's own: when its next tick is due
@@ -41,7 +41,7 @@ struct Inspection {
     std::array<int, 3> light{};            // without noise and bias: back, front left, front right; sensor counts
     Vec2 acceleration_m_s2;                // in the robot's frame, without noise
     std::vector<Neighbour> neighbours;     // by id
-    std::uint64_t messages_sent = 0;       // by whatever function; to all directions counts once
+    std::uint64_t messages_sent = 0;       // by any function; a message in all directions counts once
     std::uint64_t messages_received = 0;   // that its program has read
     std::size_t messages_waiting = 0;      // in its queue
     std::vector<std::pair<std::string, std::string>> variables;  // of its program, now: name and value

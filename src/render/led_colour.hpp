@@ -34,7 +34,7 @@ constexpr Pixel led_colour(Rgb led, Pixel dark = palette::kDarkLed) {
     return is_lit(led) ? 0xFF000000U | channel(led.r, 16) | channel(led.g, 8) | channel(led.b, 0) : dark;
 }
 
-/// What stands out from a colour: the palette's paper or its edge.
+/// The palette's paper or edge colour, whichever stands out from a colour.
 constexpr Pixel contrast_to(Pixel colour) {
     auto const channel = [&](unsigned shift) { return static_cast<float>(colour >> shift & 0xFFU); };
     float const luma = 0.299F * channel(16) + 0.587F * channel(8) + 0.114F * channel(0);  // ITU-R BT.601

@@ -30,7 +30,7 @@ int whole(float value) {
     return static_cast<int>(std::lround(value));
 }
 
-/// What text is legible on, wherever it lies: a rectangle with round corners.
+/// A rectangle with round corners on which text is legible, whatever is below.
 void draw_plate(Scene const& scene, PixelBox const& box) {
     float const radius = 3.0F * scene.point_px();
     auto const left = static_cast<float>(box.left);

@@ -62,7 +62,7 @@ void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapsh
     impl_->background.draw(canvas, camera, snapshot, options.light_levels);
     Scene const scene{canvas, camera, snapshot, impl_->background.floor()};
 
-    // What crosses a seam comes back on the other side, and shows nowhere else.
+    // Objects across a seam are drawn on both sides of it, but not beyond the arena.
     if (snapshot.scenery->periodic) {
         Box const& bounds = snapshot.scenery->arena.bounds;
         Box const seams{scene.to_pixels(bounds.min), scene.to_pixels(bounds.max)};

@@ -23,10 +23,10 @@ struct PaintOptions {
     std::optional<std::uint32_t> selected_robot{};  // gets a mark around it
 };
 
-/// What a snapshot must have for a picture with these options.
+/// The parts of a snapshot that a picture with these options needs.
 SnapshotParts parts_for(PaintOptions const& options);
 
-/// Remembers what stays from one picture to the next, such as the floor; not for several threads at once.
+/// Keeps what does not change between pictures, such as the floor. Not thread-safe.
 class Painter {
 public:
     Painter();

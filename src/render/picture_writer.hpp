@@ -29,14 +29,14 @@ struct PictureFormat {
     PaintOptions paint;
 };
 
-/// What becomes of one snapshot.
+/// The files that one snapshot goes into.
 struct PictureJob {
     Snapshot snapshot;
     std::filesystem::path frame{};   // empty: no frame
     std::int64_t film_pictures = 0;  // how many of the film show it, one after the other
 };
 
-/// What could not be written, once everything is done.
+/// Pictures that could not be written, known at the end.
 struct PictureErrors {
     std::int64_t frames = 0;  // added
     std::int64_t frames_written = 0;
@@ -51,7 +51,7 @@ public:
     /// OutputError if no thread can be started.
     PictureWriter(PictureFormat const& format, unsigned threads, std::unique_ptr<FilmFile> film);
 
-    /// Does what finish() does.
+    /// Calls finish().
     ~PictureWriter();
 
     PictureWriter(PictureWriter const&) = delete;

@@ -84,7 +84,8 @@ bool encode(PngOutput& output, Canvas const& picture, std::uint8_t* const row) {
     return true;
 }
 
-/// A file of its own: what a killed process of the same number has left, be it a link or a pipe, is not written to.
+/// Opens a new file. Whatever a killed process with the same number has left there, such as a link or a pipe, is not
+/// written to.
 int open_unfinished(std::filesystem::path const& path) {
     constexpr mode_t kNewFile = 0666;  // less the umask
     unlink(path.c_str());

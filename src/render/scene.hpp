@@ -1,4 +1,4 @@
-// A snapshot, and where and how large it is drawn: what the layers of a picture share.
+// What the layers of a picture share: a snapshot, and where and how large it is drawn.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a picture shows of the world at one moment: a copy, so that pictures can be drawn while the run goes on.
+// A copy of what a picture shows of the world at one moment, so that it can be drawn while the run goes on.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace pogosim {
 
-/// What pictures need of a world and never changes in a run. Members as in World.
+/// The constant parts of a world that pictures need. Members as in World.
 struct Scenery {
     Arena arena;
     bool periodic = false;

@@ -68,7 +68,7 @@ std::string_view system_font() {
 
 namespace {
 
-/// ImGui does not look whether it was given memory.
+/// Allocates for ImGui, which does not check whether it got the memory.
 void* allocate(std::size_t bytes, void* /*user_data*/) {
     void* const memory = std::malloc(bytes);
     if (memory == nullptr) {

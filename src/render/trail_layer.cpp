@@ -18,7 +18,7 @@ struct Pen {
     Pixel colour;
 };
 
-/// How a trail looks where it is as old as that: 0 for the end, 1 for the robot.
+/// Opacity of a trail by age: 0 at its end, 1 at the robot.
 Pen pen_at(float freshness, float unit_px, Rgb led) {
     float const opacity = 0.04F + 0.7F * freshness * freshness * freshness;
     return {(0.5F + 0.9F * freshness) * unit_px, with_opacity(led_colour(led), opacity)};

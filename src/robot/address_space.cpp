@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::uint64_t kAddressElsewhere = 0xADD2E55;  // any number
 
-// Where the system puts programs, their heaps, libraries, stacks and what a sanitizer allocates. A word in there is
-// taken for an address, whatever this run has there: else a number would be one in some runs and not in others.
+// Where the system puts programs, their heaps, libraries, stacks and what a sanitizer allocates. A word in these ranges
+// counts as an address, whether or not this run has mapped anything there: otherwise the same number would be an
+// address in some runs and a number in others.
 #ifdef __aarch64__
 constexpr std::uint64_t kFirstAddress = 0xaaaa00000000;
 constexpr std::uint64_t kEndOfAddresses = 0x1000000000000;
@@ -31,8 +32,8 @@ AddressSpace::AddressSpace(ProgramImage const& image)
     for (std::span<std::byte> const piece : image.variables) {
         program_.end = std::max(program_.end, reinterpret_cast<std::uint64_t>(piece.data() + piece.size()));
     }
-    // The heap of a process without random addresses (-no-pie) begins behind its executable. It may be in pieces, some
-    // part of which has been given other properties (madvise).
+    // The heap of a process without random addresses (-no-pie) begins behind its executable. It may be in pieces,
+    // because madvise() splits a mapping.
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
         Range range;

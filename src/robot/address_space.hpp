@@ -1,4 +1,4 @@
-// Words of memory without what depends on the addresses of this run.
+// Makes words of memory comparable between runs, which have different addresses.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace pogosim {
 
 class AddressSpace {
 public:
-    /// Takes the present address space.
+    /// Reads the present address space of the process.
     explicit AddressSpace(ProgramImage const& image);
 
     /// The word in a form that is the same in every run: the offset of an address in the program, a constant for any

@@ -63,20 +63,20 @@ void assign_text(ParameterSource& source, std::string const& name, void* text, s
     }
 }
 
-/// Only what lives as long as the run may be set later: not a variable on the stack.
+/// Variables on the stack are left out: only what lives as long as the run can be set later.
 bool is_in_program(void const* variable) {
     return pogosim::is_in_any(context.services->program_variables, variable) ||
            pogosim::is_in_any({&context.services->user_data, 1}, variable);
 }
 
-/// Where parts of the swarm run on several threads, a variable of all robots has had its value before the first step:
-/// setting it again, to the default in between, would be seen by others.
+/// Where parts of the swarm run on several threads, a variable that all robots share has had its value since before the
+/// first step. Setting it again, with the default in between, would be visible to other threads.
 bool is_set_for_all(void const* variable) {
     return context.outbox != nullptr && pogosim::is_in_any(context.services->program_variables, variable);
 }
 
 void bind(BoundVariable const& bound) {
-    // A program that has no such memory crashes here, without the lock.
+    // An invalid pointer of the program crashes here, before the lock is taken.
     auto* const bytes = static_cast<unsigned char volatile*>(bound.variable);
     if (bound.bytes > 0) {
         bytes[0] = bytes[0];

@@ -69,7 +69,7 @@ void print_complete_lines(std::string& text, std::size_t searched) {
     }
 }
 
-/// Before main(), after the run, in a thread or a child process: the program prints, not a robot.
+/// False before main(), after the run, in a thread and in a child process: there the program prints, not a robot.
 bool is_robot_printing() {
     return context.printed != nullptr && !pogosim::is_forked_child();
 }
@@ -87,7 +87,7 @@ void print(std::string_view text) {
     });
 }
 
-/// Printing for ever is what some programs for the robots alone do in main(); in a step it is a mistake.
+/// Some programs for the robots alone print for ever in main(); in a step that is a mistake.
 void note_output() {
     if (is_robot_printing() && context.phase == pogosim::Phase::main) {
         pogosim::note_call();

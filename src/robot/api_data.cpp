@@ -24,7 +24,7 @@ using pogosim::without_exceptions;
 
 namespace {
 
-/// As in the names of the functions.
+/// The types as the names of the functions spell them.
 constexpr std::string_view name_of(ColumnType type) {
     switch (type) {
         case ColumnType::int8:
@@ -73,8 +73,8 @@ void add_column(char const* function, char const* name, ColumnType type) {
     });
 }
 
-/// Columns are few; programs set them in the order in which they declared them, so the search starts behind the last
-/// one.
+/// Columns are few, and programs usually set them in the order of their declaration: the search starts behind the
+/// column found last.
 std::size_t find_column(DataExport& data, char const* name) {
     std::size_t const count = data.columns.size();
     for (std::size_t tried = 0; tried < count; ++tried) {

@@ -24,7 +24,7 @@ pogosim::RandomStream stream_of_seed(unsigned seed) {
     return {seed, 0x72616e64};
 }
 
-/// Outside user code (a library that calls rand()).
+/// The stream for calls outside user code, from a library that calls rand().
 pogosim::RandomStream& outside_stream() {
     static thread_local pogosim::RandomStream stream = stream_of_seed(1);
     return stream;

@@ -23,7 +23,7 @@ using pogosim::require_robot;
 
 namespace {
 
-// The article's library counts these for a message's size: 3 bytes in front of a short payload, 8 of a long one.
+// The article's library adds these to a message's size: 3 bytes in front of a short payload, 8 in front of a long one.
 constexpr std::uint16_t kShortHeaderBytes = 3;
 constexpr std::uint16_t kLongHeaderBytes = 8;
 

@@ -8,7 +8,7 @@ using pogosim::context;
 using pogosim::note_slip;
 using pogosim::require_robot;
 
-// What the function of the main loop's part is called in the simulator.
+// hsv_to_rgb() of colormaps.c, which is renamed where the simulator compiles it (src/CMakeLists.txt).
 extern "C" void pogosim_hsv_to_rgb(float h_deg, float s, float v, uint8_t* r, uint8_t* g, uint8_t* b);
 
 void hsv_to_rgb(float h_deg, float s, float v, uint8_t* r, uint8_t* g, uint8_t* b) {

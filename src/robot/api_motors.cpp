@@ -23,7 +23,7 @@ bool is_motor(char const* function, motor_id motor) {
     return known;
 }
 
-/// What is negative in 16 bits was meant otherwise.
+/// A power that is negative as a 16-bit number was meant as a reversed direction.
 void note_power(char const* function, std::uint16_t power) {
     if (power > INT16_MAX) {
         note_slip({function, "value", "0 to 1023 (motorFull)",
@@ -47,7 +47,7 @@ void set_power(char const* function, motor_id motor, std::uint16_t power) {
     }
 }
 
-/// Whether there is a place for the three values of the persistent memory.
+/// False, with a message, if the caller gave no place for the three values of the persistent memory.
 bool has_place(char const* function, char const* argument, void const* place) {
     if (place == nullptr) [[unlikely]] {
         note_slip({function, argument, "the address of three values", "nothing is read or written"}, "NULL");
@@ -55,7 +55,7 @@ bool has_place(char const* function, char const* argument, void const* place) {
     return place != nullptr;
 }
 
-/// Notes a value that is to be stored, above what motors take.
+/// Reports a value to be stored that is above what motors take.
 template <class T>
 void note_stored(char const* function, char const* argument, T const* values, T most, char const* expected) {
     T const* const wrong = std::find_if(values, values + kMotorCount, [most](T value) { return value > most; });

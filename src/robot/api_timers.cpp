@@ -39,14 +39,14 @@ int32_t saturate(char const* function, std::int64_t us) {
     return static_cast<int32_t>(fitting);
 }
 
-/// Time since the origin, for a function that says it.
+/// Time since the origin, us; `function` is named in the warning if it does not fit.
 int32_t elapsed_us(char const* function, time_reference_t const* stopwatch) {
     require_robot(function);
     require_argument(stopwatch, function, "stopwatch");
     return saturate(function, now_us() - stopwatch->origin_us);
 }
 
-/// Time left, for a function that says it.
+/// Time left, us; `function` as above.
 int32_t remaining_us(char const* function, time_reference_t const* timer) {
     require_robot(function);
     require_argument(timer, function, "timer");
@@ -144,7 +144,7 @@ void pogosim_let_time_pass() {
     pogosim::note_clock_read();
 }
 
-/// What pogobot_stopwatch_get_elapsed_microseconds() is in the main loop.
+/// The main loop's own way to read a stopwatch: pogobot_stopwatch_get_elapsed_microseconds().
 extern "C" int32_t pogosim_elapsed_microseconds(time_reference_t* stopwatch);
 int32_t pogosim_elapsed_microseconds(time_reference_t* stopwatch) {
     return saturate("current_time_milliseconds", context.controller->clock_us - stopwatch->origin_us);

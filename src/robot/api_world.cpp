@@ -33,7 +33,7 @@ using pogosim::WorldAccess;
 
 namespace {
 
-/// Refuses the call outside of the callbacks that may see the world.
+/// Refuses the call outside the callbacks that may see the world.
 void require_world(char const* function) {
     require_robot(function);
     pogosim::take_back_floating_point();
@@ -64,7 +64,7 @@ Object const& object_at(char const* function, uint32_t object) {
     return context.world->objects[object];
 }
 
-/// An object that runs the program.
+/// Returns an object that runs the program; refuses others.
 Object const& robot_at(char const* function, uint32_t object) {
     Object const& found = object_at(function, object);
     if (found.robot == kNone) {
@@ -82,7 +82,7 @@ PlacedLamp& lamp_at(char const* function, uint32_t lamp) {
     return context.world->lamps[lamp];
 }
 
-/// A number that a float can be.
+/// Returns the number as a float; refuses one beyond the range of a float.
 float number(char const* function, char const* name, double value) {
     if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()))) {
         without_exceptions([&] {

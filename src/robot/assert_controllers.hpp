@@ -1,4 +1,4 @@
-// What holds for all robots' controllers between two steps, checked in Debug builds only.
+// Invariants of all robots' controllers between two steps, checked in Debug builds only.
 #pragma once
 
 #include <span>

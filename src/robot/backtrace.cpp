@@ -35,7 +35,7 @@ bool is_code(void const* place) {
     return place != nullptr && dladdr(place, &object) != 0;
 }
 
-/// After a call through a bad pointer there is no frame to unwind; the caller is found beside it.
+/// A call through a bad pointer leaves no frame to unwind; its caller is found on the stack or in a register.
 void const* caller_by_bad_pointer(Search const& search, void const* signal_context) {
     auto const* const next = static_cast<char const*>(return_address(signal_context));
     return is_code_of(search.program_base, next) ? next - 1 : nullptr;

@@ -15,7 +15,8 @@ namespace pogosim {
 
 namespace {
 
-// By program. Needed before the constructors of this library's own objects are certain to have run.
+// One entry for each program. Allocated on first use, which may come before the static objects of this library are
+// constructed.
 struct Noted {
     std::mutex mutex;
     std::map<pogosim_program const*, std::shared_ptr<Constructors const>> of_program;
@@ -82,7 +83,8 @@ int pogosim_at_end(void (*destroy)(void*), void* object, void* library) {
     if (pogosim::context.controller != nullptr && pogosim::context.has_own_memory) {
         return 0;
     }
-    // By its name: in an executable that contains this, the program's own one, which calls this, would be meant.
+    // Found by name: in an executable that contains this library, a plain call would reach the program's own function,
+    // which calls this one.
     using AtEnd = int (*)(void (*)(void*), void*, void*);
     static auto const of_library = reinterpret_cast<AtEnd>(dlsym(RTLD_DEFAULT, "__cxa_atexit"));
     return of_library(destroy, object, library);

@@ -21,7 +21,7 @@ struct Constructors {
     std::vector<void (*)()> functions;
 };
 
-/// That of a program in memory; null: it has no static objects to construct.
+/// Returns the static objects of a program in memory; null: it has none to construct.
 std::shared_ptr<Constructors const> constructors_of(pogosim_program const& program);
 
 /// Copies the list of constructors, so that it outlives a program that is unloaded.

@@ -35,7 +35,7 @@ struct BoundVariable {
 
 class Controllers;
 
-/// What callbacks of the whole run need of other rooms to see and change the world.
+/// The parts of other rooms through which callbacks of the whole run see and change the world.
 struct WorldAccess {
     Controllers* controllers = nullptr;
     std::function<bool(Object const& object, Vec2 centre_mm)> is_free{};  // of walls
@@ -124,7 +124,7 @@ struct Context {
 /// The context of this thread.
 extern constinit thread_local Context context;
 
-/// As long as this lives, this thread works for no robot.
+/// While this exists, the thread works for no robot.
 class WithoutRobot {
 public:
     WithoutRobot() : before_(context) { context = {}; }
@@ -141,7 +141,7 @@ inline TransmissionQueue& current_air() {
     return context.outbox != nullptr ? context.outbox->air : context.world->air;
 }
 
-/// The robot that runs in a thread, or ran last, to be named in another one.
+/// The robot that runs in a thread, or ran last, for messages from another thread.
 struct RunningRobot {
     Context its_context;
     std::uint32_t ticks = 0;

@@ -26,7 +26,7 @@
 #include "robot/velocity_command.hpp"
 
 extern "C" {
-// What programs declare as a pointer to their type of user data.
+// Programs declare it as a pointer to their own type of user data.
 __attribute__((visibility("default"))) POGO_PER_ROBOT void* mydata = nullptr;
 
 POGO_PER_ROBOT void (*callback_global_setup)() = nullptr;
@@ -45,7 +45,7 @@ constexpr std::size_t kUserDataAlignment = 64;  // a cache line; more than any C
 constexpr double kMicrosecondsPerSecond = 1e6;
 constexpr char const* kSystemCategory = "__system";
 
-// Ids of the random streams that do not belong to one robot's body.
+// Ids of random streams for purposes other than the noise of one robot's body.
 constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
 
@@ -246,7 +246,7 @@ void Controllers::set_callbacks(Program const& program) {
     callback_robot_click = program.click;
 }
 
-/// Code of the whole run that has a robot's memory, such as callback_global_setup.
+/// Calls code of the whole run, such as callback_global_setup, with a robot's memory in place.
 void Controllers::enter_as_system(std::uint32_t robot, Phase phase) {
     enter(robot, phase);
     context.printed = &system_.printed;
@@ -258,7 +258,7 @@ void Controllers::leave() {
     take_back_floating_point();
 }
 
-/// A robot that is switched off is as it was before, for the call; it sends nothing.
+/// For the call, a robot that is switched off is as it was before that; it sends nothing.
 void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world) {
     if (function == nullptr) {
         return;
@@ -274,7 +274,7 @@ void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), boo
     context.sees_world = sees_world;
     function();
     leave();
-    controller(robot).calls = calls;  // of one that waits
+    controller(robot).calls = calls;  // a callback must not use up the calls of a robot that waits
     if (SwitchedOff* const still_off = find_switched_off(robot)) {
         rest(*still_off);
         world_.air.transmissions.resize(transmissions);
@@ -290,8 +290,8 @@ void Controllers::call_as_system(std::uint32_t robot, Phase phase, void (*functi
     }
 }
 
-/// In C++, what robots do with their globals before main(). All of them, before the first main(): objects that they
-/// share (POGO_SHARED) are constructed by each.
+/// In C++, constructs the globals of all robots before the first main(). Objects that they share (POGO_SHARED) are
+/// constructed by each robot.
 void Controllers::construct_static_objects() {
     for (std::uint32_t i = 0; i < controllers_.size() && own_memory_ && image_.constructors; ++i) {
         enter(i, Phase::construct_static_objects);
@@ -330,7 +330,7 @@ void Controllers::run_init(std::uint32_t robot) {
     }
 }
 
-/// Its mydata is that of the last robot, as long as programs are known to read it there.
+/// mydata is that of the last robot here, because existing programs read it in callback_global_setup.
 void Controllers::run_global_setup() {
     auto const count = static_cast<std::uint32_t>(controllers_.size());
     std::uint32_t const robot = count == 0 ? kNone : count - 1;
@@ -363,7 +363,7 @@ void Controllers::start() {
     warn_of_large_memory("the program's variables have", own_memory_ ? own_memory_->bytes() : 0);
     std::size_t const allocated_before = allocated_bytes();
     start_programs();
-    // In a process of others, their threads allocate, too.
+    // In a host's process, other threads allocate, too.
     std::size_t const allocated_now = run_stage() == RunStage::hosted ? 0 : allocated_bytes();
     warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), count);
 }
@@ -398,7 +398,7 @@ void Controllers::start_programs() {
     warn_of_missing_init(controllers_);
 }
 
-/// Up to where main() waits for the first time. Walls and membranes have no such program.
+/// Runs main() until it waits for the first time. Walls and membranes have no such program.
 void Controllers::start_sdk_program() {
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
         bool const is_robot =
@@ -421,7 +421,7 @@ void Controllers::run_sdk_main(std::uint32_t robot) {
     command_motors(robot);
 }
 
-/// Calls a callback that runs once, before the first step.
+/// Warns of callbacks that are set too late, since they run once, before the first step.
 void Controllers::warn_of_late_callbacks() {
     auto const warn_if = [this](bool is_late, char const* name) {
         if (is_late) {

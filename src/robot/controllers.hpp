@@ -30,7 +30,7 @@ public:
     Controllers(Controllers const&) = delete;
     Controllers& operator=(Controllers const&) = delete;
 
-    /// As long as this lives, the callbacks of the whole run are those that this program has set.
+    /// While this exists, the callbacks of the whole run are those that this program has set.
     class Thread {
     public:
         explicit Thread(Controllers& controllers);
@@ -70,14 +70,14 @@ public:
     /// One step: begin_step(), run_robots() of all, end_step().
     void run_step();
 
-    /// What comes before the robots: the global step.
+    /// The part of a step before the robots: the global step.
     void begin_step();
 
     /// The robots from `first` to `last` - 1 that are due. Those that share nothing may run on several threads at a
     /// time, each with an outbox of its own (Context::outbox).
     void run_robots(std::uint32_t first, std::uint32_t last);
 
-    /// What comes after them: checks of debug builds.
+    /// The part of a step after the robots: checks of debug builds.
     void end_step() const;
 
     /// Puts messages on the air, lines and warnings into the log. What is in the outbox is lost.
@@ -89,7 +89,7 @@ public:
     /// Why run_robots() must not run on several threads, see why_one_after_the_other(); empty: it may.
     std::string why_one_after_the_other() const;
     ConfiguredVariables configured_variables() const;
-    /// A callback of the whole run has had user data of robots: these may share memory from then on.
+    /// A callback of the whole run has had access to robots' user data: from then on, these may share memory.
     bool gave_user_data() const { return services_.access.gave_user_data; }
 
     /// callback_export_data of one robot, index `object` in World::objects, fills `cells`: one for each of the user's
@@ -102,9 +102,9 @@ public:
     /// callback_robot_end of every robot.
     void end();
 
-    /// Switches a robot off or on. Off, it runs only callbacks that look at it (callback_export_data,
-    /// callback_robot_end, callback_robot_click), its motors hold its body, and its LEDs are dark. On again, it goes on
-    /// as it was, at its own time or now, whatever is later. Does nothing the second time.
+    /// Switches a robot off or on. While it is off, only callback_export_data, callback_robot_end and
+    /// callback_robot_click run, its motors hold its body, and its LEDs are dark. Switched on, it continues at its own
+    /// time or now, whichever is later. Does nothing if it is in that state already.
     void set_alive(std::uint32_t robot, bool alive);
 
     /// A robot that is switched off, and what it goes on with.
@@ -125,7 +125,7 @@ public:
     /// Warns about stacks for which a real robot has no room.
     void warn_of_stacks() const;
 
-    /// Warns about messages that were sent in vain. `arrivals`: messages that reached robots in the whole run.
+    /// Warns about messages that no robot received or read. `arrivals`: messages that reached robots in the whole run.
     void warn_of_messages(std::uint64_t arrivals) const;
 
     /// Tells of columns that the program has declared and never set. `fields`: those of the data file; absent: all.
@@ -144,7 +144,7 @@ public:
     /// The user data of all robots: bytes from one robot's to the next one's.
     std::size_t user_data_stride() const;
 
-    /// Reach of a message that this robot sends now, at its present emitter power, mm; 0: it sends none.
+    /// Range of a message that this robot sends at its present emitter power, mm; 0 if it is switched off.
     float ir_range_mm(std::uint32_t robot) const {
         if (!is_alive(world_, robot)) {
             return 0.0F;
@@ -154,7 +154,7 @@ public:
 
     /// The highest main_loop_hz of all robots.
     int highest_loop_hz() const;
-    /// From now on, a robot that raises its main_loop_hz so that it skips ticks is warned of.
+    /// From now on, warns of robots whose main_loop_hz is so high that they skip ticks.
     void watch_loop_rates();
 
     /// Bytes of one robot's user data.
@@ -221,7 +221,7 @@ private:
     GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step
-    int most_loop_hz_ = 255;    // with which robots skip no ticks
+    int most_loop_hz_ = 255;    // the highest main_loop_hz at which robots skip no ticks
     std::atomic<bool> has_waited_ = false;
     std::int64_t next_look_us_ = 0;  // at calls that do not return
     std::vector<bool> is_warned_;    // of them, for each category

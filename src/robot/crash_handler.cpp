@@ -32,7 +32,7 @@ constexpr auto kOwnMemoryAdvice =
     ", most likely because the user program wrote to memory it does not own; build the program with "
     "-fsanitize=address to find out where";
 
-/// Signals that no run may lose: those of crashes, and of the watch.
+/// Signals that must stay unblocked during a run: those of crashes, and of the watchdog.
 class CaughtSignals {
 public:
     void need();
@@ -44,7 +44,7 @@ private:
 };
 CaughtSignals caught_signals;
 
-/// For good, without ending the program.
+/// Stops the calling thread for ever, without ending the program.
 [[noreturn]] void stop_this_thread() {
     sigset_t all;
     sigfillset(&all);
@@ -54,7 +54,7 @@ CaughtSignals caught_signals;
     }
 }
 
-/// The run ends as soon as the simulator's thread is back in control.
+/// Ends the run as soon as the simulator's thread is back in control.
 [[noreturn]] void end_run_from_background_thread(CrashHandlerState& run, char const* crash) {
     note_crash_of_background_thread();
     SignalText<512> what;
@@ -141,7 +141,7 @@ UserFailure requested_failure(CrashHandlerState& handler, EndRequest const& requ
     return failure;
 }
 
-/// What went wrong in an exception that user code did not catch.
+/// The message of an exception that user code did not catch.
 std::string text_of(std::exception const& error) {
     return dynamic_cast<std::bad_alloc const*>(&error) != nullptr ? std::string("C++ exception: ") + kOutOfMemory
                                                                   : std::string("C++ exception: ") + error.what();

@@ -55,7 +55,7 @@ public:
     /// True if user code was aborted: no destructor or atexit() handler may rely on its memory and locks.
     bool was_left_by_force() const;
 
-    /// The run is to end, says another thread of the simulator; `request_name` says by what. If user code does not
+    /// Asks the run to end, from another thread of the simulator; `request_name` names the cause. If user code does not
     /// return soon, prints what the run is waiting for, and aborts it after `user_code_timeout` of wall-clock time.
     void hurry(char const* request_name);
 
@@ -71,12 +71,12 @@ private:
     std::unique_ptr<CrashHandlerState, Destroy> state_;
 };
 
-/// The crash handler of a worker that runs user code beside the thread of the run: crashes and endless loops in that
-/// code end the call in this thread, and what asks the run to end asks this thread, too.
+/// The crash handler of a worker that runs user code beside the thread of the run. Crashes and endless loops in that
+/// code end the call in this thread; requests to end the run reach this thread, too.
 class WorkerCrashHandler {
 public:
     explicit WorkerCrashHandler(CrashHandler& run);
-    /// Its thread has ended, or does nothing any more.
+    /// To be called when its thread has ended, or does nothing any more.
     ~WorkerCrashHandler();
     WorkerCrashHandler(WorkerCrashHandler const&) = delete;
     WorkerCrashHandler& operator=(WorkerCrashHandler const&) = delete;
@@ -162,8 +162,8 @@ bool is_other_thread_of_run();
 /// program started. Ends the program with a message and exit code 3.
 [[noreturn]] void called_without_robot(char const* function);
 
-/// The thread that calls this is about to end. Returns in a thread that the program started; the simulator's own cannot
-/// be spared: user code is left with a failure, and elsewhere the program ends with a message, with exit code 3.
+/// To be called by a thread that is about to end. Returns in a thread that the program started. The simulator's own
+/// must not end: user code is left with a failure; elsewhere, the program ends with a message and exit code 3.
 void check_end_of_thread();
 
 /// A signal asks the process's run to end: the first one hurries user code, see CrashHandler::hurry(); a second one

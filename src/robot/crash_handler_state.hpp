@@ -1,5 +1,5 @@
-// State of the crash handler of one run, shared by the handler (crash_handler.cpp), its watchdog (watchdog.cpp) and the
-// crash message (crash_message.cpp). Not included anywhere else.
+// State of the crash handler of one run, shared by the handler (crash_handler.cpp), its watchdog (watchdog.cpp), the crash
+// message (crash_message.cpp), and what watches processes, children and blocked calls. For this room only.
 #pragma once
 
 #include <pthread.h>
@@ -38,7 +38,7 @@ struct ProcessorWatch {
     bool retrying = false;
 };
 
-/// State since a stop was requested.
+/// State from the request to stop onwards.
 struct WallClockWatch {
     char const* request_name = "";  // "SIGTERM"
     unsigned long calls_seen = 0;
@@ -46,7 +46,7 @@ struct WallClockWatch {
     bool told = false;
 };
 
-/// Over the data file, after user code was left by force.
+/// Watches over the data file, after user code was left by force.
 struct RescueWatch {
     std::uint64_t writes_seen = 0;
     double last_write_s = 0.0;
@@ -146,10 +146,10 @@ bool is_in_user_program(CrashHandlerState const& handler, void const* signal_con
 void request_end(CrashHandlerState& handler, char const* what, ExitCode code, bool in_other_thread,
                  void const* place = nullptr);
 
-/// Null while there is none.
+/// The request to stop; null while there is none.
 EndRequest const* end_request(CrashHandlerState const& handler);
 
-/// It has been met: what remains is to save the data.
+/// The request has been met: what remains is to save the data.
 void drop_end_request(CrashHandlerState& handler);
 
 /// In an executable, crashes are reported from the start to the end of the process.
@@ -159,7 +159,7 @@ void catch_crashes_of_process();
 /// after `user_code_timeout` of wall-clock time. For signal handlers.
 void hurry_user_code(CrashHandlerState& handler, char const* request_name);
 
-/// A second one: aborts user code. Returns at once; does nothing outside user code. For signal handlers.
+/// A second signal aborts user code. Returns at once; does nothing outside user code. For signal handlers.
 void abandon_user_code(CrashHandlerState& handler);
 
 /// Handlers of the signals of the watch, until they are given back.
@@ -169,7 +169,7 @@ void give_back_watch_signals();
 /// Watches over the thread that calls this.
 void start_watch(CrashHandlerState& handler);
 
-/// From now on the only thing that is watched is that the data file gets on. `grace_s`: for what comes before.
+/// From now on, the watchdog only checks that the data file makes progress. `grace_s`: time allowed until that starts.
 void watch_rescue(CrashHandlerState& handler, double grace_s = 0.0);
 
 void stop_watch(CrashHandlerState& handler);

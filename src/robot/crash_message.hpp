@@ -39,10 +39,10 @@ PlaceText running_place();
 /// code may have corrupted can be the last. For signal handlers.
 void prepare_crash_message(char const* what, bool in_other_thread);
 
-/// The same for a program that ends although nothing has failed.
+/// Composes the message of a program that ends although nothing has failed.
 void prepare_plain_message(char const* what);
 
-/// The same for a program that a signal ends outside of the run.
+/// Composes the message of a program that a signal ends before or after the run.
 void prepare_interrupt_message(char const* signal_name);
 
 /// Prints the message and ends the program. For signal handlers.

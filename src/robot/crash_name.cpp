@@ -27,7 +27,8 @@ constexpr std::array kNames{
 };
 static_assert(kNames.size() == kCrashSignals.size());
 
-// A function may touch this much around its stack pointer, and the last pages before the end are not given out.
+// How far from the stack pointer a function may touch memory, plus the last pages before the end, which the system
+// keeps free.
 constexpr std::uintptr_t kStackMarginBytes = 65536;
 constexpr std::uintptr_t kBytesPerKib = 1024;
 

@@ -18,7 +18,7 @@ void note_stack();
 /// "segmentation fault at address 0x10"; for signal handlers. `signal_context` is what the handler was given.
 CrashText crash_name(int signal, siginfo_t const& info, void const* signal_context);
 
-/// Where the function that has just been called returns to, if its first instruction is what failed; else any address.
+/// Return address of the function that has just been called, if its first instruction failed; otherwise any address.
 void const* return_address(void const* signal_context);
 
 /// The instruction pointer at the time of the signal; null on unknown architectures.

@@ -1,4 +1,4 @@
-// The user's columns of the data file, and what the program gives for them.
+// The user's columns of the data file, and the values that the program gives them.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@ namespace pogosim {
 /// on, unless an object's callback_export_data sets its own.
 class HeldValues {
 public:
-    /// No value has been set.
+    /// Whether no value has been set.
     bool empty() const { return columns_.empty(); }
 
-    /// Also for objects that had a value of their own.
+    /// Sets the value for all objects, also for those that had one of their own.
     void set_for_all(std::size_t column, CellValue const& value);
 
     /// `object`: index into World::objects, of so many.

@@ -1,4 +1,5 @@
-// The parts of a program's file (ELF), which need not be well-formed: what it has no room for is missing.
+// The parts of a program's file (ELF). The file need not be well-formed: parts that lie beyond its end count as
+// missing.
 #pragma once
 
 #ifdef __linux__

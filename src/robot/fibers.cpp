@@ -30,8 +30,8 @@ namespace pogosim {
 
 namespace {
 
-// boost::context::fiber would unwind the stacks of code that is never resumed, which is a program's: so this uses what
-// it is made of.
+// boost::context::fiber would unwind the stack of code that is never resumed, which is the user's. So this uses the
+// functions that it is made of.
 using boost::context::detail::fcontext_t;
 using boost::context::detail::jump_fcontext;
 using boost::context::detail::make_fcontext;
@@ -76,10 +76,10 @@ private:
     std::byte* mapping_ = nullptr;
 };
 
-/// What the C++ runtime keeps for each thread of the exceptions that are being handled.
+/// The exceptions being handled, which the C++ runtime keeps for each thread.
 using HandledExceptions = std::array<std::byte, 2 * sizeof(void*)>;
 
-/// Those of this thread become those of the code that runs next.
+/// Replaces this thread's exceptions with those of the code that runs next.
 void swap_handled_exceptions(HandledExceptions& other) {
     void* const of_thread = abi::__cxa_get_globals();
     HandledExceptions before;
@@ -163,7 +163,7 @@ void Fiber::main_of_fiber(transfer_t from) {
     }
 }
 
-/// The first thing that happens after a switch to it.
+/// Tells the sanitizer that this fiber runs now. To be called first after each switch to it.
 void Fiber::note_entry() {
     if (__sanitizer_finish_switch_fiber != nullptr) {
         __sanitizer_finish_switch_fiber(fake_stack_, &outside_stack_, &outside_stack_bytes_);
@@ -227,7 +227,7 @@ void Fiber::forget() {
         __sanitizer_finish_switch_fiber(outside_fake_stack_, nullptr, nullptr);
     }
     if (__asan_unpoison_memory_region != nullptr) {
-        // Frames that the jump has skipped. The sanitizer has seen to those on the fiber alone.
+        // Clears the marks of frames that the jump has skipped: the sanitizer did so only for those on the fiber.
         auto const* const here = static_cast<std::byte const*>(__builtin_frame_address(0));
         std::byte const* const end = outside_frame_ - kJumpedBytes;
         __asan_unpoison_memory_region(end, static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, here - end)));

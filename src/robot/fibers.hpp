@@ -26,7 +26,7 @@ public:
     FiberPool(FiberPool const&) = delete;
     FiberPool& operator=(FiberPool const&) = delete;
 
-    /// One on which no code runs. Throws OutOfMemory.
+    /// Returns a fiber on which no code runs. Throws OutOfMemory.
     Fiber& take();
     void put_back(Fiber& fiber);
 
@@ -44,16 +44,16 @@ private:
 /// leave_fiber() (false). Exceptions that leave the body are thrown here.
 bool run_on(Fiber& fiber, void (*body)(void*), void* argument);
 
-/// Goes on where the code on the fiber has left it; returns as run_on() does.
+/// Continues the code on the fiber where it left it; returns as run_on() does.
 bool resume(Fiber& fiber);
 
 /// Switches back to the caller of run_on() or resume(). Returns when the fiber is resumed, perhaps in another thread.
 void leave_fiber();
 
-/// Calls body(argument) on the stack of a fiber that was left, beyond the code that has left it.
+/// Calls body(argument) on the stack of a suspended fiber, below the frames of its suspended code.
 void visit(Fiber& fiber, void (*body)(void*), void* argument);
 
-/// The one on which this thread runs, or null.
+/// The fiber on which this thread runs, or null.
 Fiber* running_fiber();
 
 /// The code on the running fiber of this thread was left with a jump; it cannot be resumed.

@@ -58,9 +58,9 @@ void end_forked_child(int status) {
 #ifdef __GLIBC__
 #if __GLIBC_PREREQ(2, 34)
 
-/// As the C library's, which it calls: this library stands before libc in the search order. After the run, handlers
-/// that libraries have registered with pthread_atfork() may wait for ever for locks that their destructors have
-/// destroyed (Arrow's do), so the child is made without them.
+/// Replaces the C library's function, and calls it: this library stands before libc in the search order. After the run,
+/// handlers that libraries have registered with pthread_atfork() may wait for ever for locks that their destructors
+/// have destroyed (Arrow's do), so the child is made without them.
 extern "C" __attribute__((visibility("default"))) pid_t fork() noexcept {
     using namespace pogosim;
     if (run_stage() != RunStage::finished) {

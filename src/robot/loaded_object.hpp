@@ -14,7 +14,7 @@ struct LoadedObject {
     std::span<void (*const)()> initializers{};  // called before main(), or when it was loaded
 };
 
-/// The one around a place in memory. Empty where that is not known, on other systems than Linux.
+/// The object that contains a place in memory. Empty if that is not known, as on systems other than Linux.
 LoadedObject loaded_object_at(void const* place);
 
 }  // namespace pogosim

@@ -92,8 +92,8 @@ void prepare_main_thread_for_crashes() {
 
 }  // namespace pogosim
 
-// With clang's sanitizers in the library itself, their own pthread_create() must stay the one that is called, or else they
-// do not know the threads (and take what only a thread's stack points to for lost).
+// When clang's sanitizers are in the library itself, their pthread_create() must be the one that is called: otherwise
+// they do not know the threads, and report what only a thread's stack points to as a leak.
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
 #define POGOSIM_HAS_SANITIZER
@@ -136,7 +136,7 @@ __attribute__((visibility("default"))) int pthread_create(pthread_t* thread, pth
     return error;
 }
 
-/// As the C library's, which it calls.
+/// Replaces the C library's function, and calls it.
 __attribute__((visibility("default"))) void pthread_exit(void* result) {
     pogosim::check_end_of_thread();
     static auto const end_thread = reinterpret_cast<void (*)(void*)>(dlsym(RTLD_NEXT, "pthread_exit"));

@@ -9,8 +9,8 @@ namespace pogosim {
 /// For the thread that calls main(). Threads that the program starts prepare themselves.
 void prepare_main_thread_for_crashes();
 
-/// For a thread that works for a run: as long as this lives, the thread's signal handlers have a stack that is large
-/// enough. One that a host has given it, which may be small, comes back afterwards.
+/// For a thread that works for a run: while this exists, the thread's signal handlers have a large enough stack. A
+/// stack that the host had given it, which may be small, is restored afterwards.
 class SignalStackScope {
 public:
     SignalStackScope();

@@ -1,5 +1,5 @@
-// What the robots of a part of the swarm send and say while other threads run other parts. The parts are joined in the
-// order of the robots, so that results do not depend on the number of workers.
+// Messages and lines that the robots of one part of the swarm send and print while other threads run other parts. The
+// parts are joined in the order of the robots, so that results do not depend on the number of workers.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace pogosim {
 
-/// What distinguishes warnings of which a run says the first only. All are literals.
+/// The key of a warning that a run gives only once. All parts are literals.
 struct WarningKind {
-    std::string_view text{};  // of it, or of its end
+    std::string_view text{};  // the format of the warning, or its last part
     std::string_view function{};
     std::string_view argument{};
 

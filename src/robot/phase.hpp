@@ -42,7 +42,7 @@ constexpr char const* name_of(Phase phase) {
     return kNames[static_cast<std::size_t>(phase)];
 }
 
-/// Whether a robot has ticks by then; before pogobot_start() it has none.
+/// Whether robots tick in this phase; before pogobot_start(), they do not.
 constexpr bool has_ticks(Phase phase) {
     return phase != Phase::construct_static_objects && phase != Phase::construct_user_data && phase != Phase::main;
 }

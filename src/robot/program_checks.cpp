@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kRobotMemoryBytes = std::size_t{128} * 1024;  // SRAM of a real robot
 
-/// For each category, whether it has robots and all of them are so.
+/// For each category, whether it has robots and the condition holds for all of them.
 template <class Test>
 std::vector<bool> categories_where_all(World const& world, std::span<Controller const> controllers, Test const& is_so) {
     std::vector<std::size_t> robots(world.categories.size());
@@ -82,7 +82,7 @@ void warn_of_user_data_in_setup(std::uint32_t id) {
 
 void warn_of_idle_categories(World const& world, std::span<Controller const> controllers,
                              std::span<std::string const> started) {
-    // A name that is another category's is no slip.
+    // A name that another category has is not a typing mistake.
     std::vector<std::string> strange;
     std::ranges::copy_if(started, std::back_inserter(strange), [&world](std::string const& name) {
         return std::ranges::find(world.categories, name, &Category::name) == world.categories.end();

@@ -21,11 +21,11 @@ namespace pogosim {
 /// Variables too large for a real robot. `what`: "USERDATA has"; `bytes`: of one robot.
 void warn_of_large_memory(std::string_view what, std::size_t bytes);
 
-/// The same for what `robots` have allocated together in main() and user_init.
+/// Allocations of all `robots` together in main() and user_init, on average too large for a real robot.
 void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots);
 
-/// The same of what a robot needs in all. `variables`: USERDATA, or its own copies of the program's variables; `stack`:
-/// how much of one was used, at most.
+/// All the memory that a robot needs, too large for a real one. `variables`: USERDATA, or its own copies of the
+/// program's variables; `stack`: how much of one was used, at most.
 void warn_of_large_stack(std::size_t variables, std::size_t stack);
 
 /// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
@@ -71,13 +71,13 @@ inline bool skips_ticks(int loop_hz, double time_step_s) {
     return loop_hz > 0 && time_step_s > seconds_between_ticks(loop_hz);
 }
 
-/// Whether variables of the main loop are not as they should be. `most_loop_hz`: without skipping ticks.
+/// Whether variables of the main loop have values that cannot be followed. `most_loop_hz`: without skipping ticks.
 inline bool are_odd(LoopGlobals const& loop, int most_loop_hz) {
     return loop.send_percent > kMostSendPercent || loop.error_led >= static_cast<int>(kLedCount) ||
            loop.loop_hz > most_loop_hz;
 }
 
-/// Says which, for the running robot.
+/// Warns of them, for the running robot.
 void note_loop_globals(World const& world, LoopGlobals const& loop, int most_loop_hz);
 
 }  // namespace pogosim

@@ -37,7 +37,7 @@ std::string version_text(std::uint32_t encoded) {
     return fmt::format("{}.{}.{}", encoded / 1000000, encoded / 1000 % 1000, encoded % 1000);
 }
 
-/// In one go: programs with debug information are large. Absent: it cannot be read, see errno.
+/// Reads a file in one go, as programs with debug information are large. Absent: it cannot be read, see errno.
 std::optional<std::vector<char>> read_file(std::filesystem::path const& file) {
     std::ifstream input(file, std::ios::binary | std::ios::ate);
     std::vector<char> content(input ? static_cast<std::size_t>(std::max<std::streamoff>(0, input.tellg())) : 0);
@@ -46,7 +46,8 @@ std::optional<std::vector<char>> read_file(std::filesystem::path const& file) {
     return input ? std::optional(std::move(content)) : std::nullopt;
 }
 
-/// A file whose bytes are read as they are looked at: of a program, its symbols are a small part.
+/// A file mapped into memory, so that only the pages that are looked at are read: symbols are a small part of a
+/// program.
 class MappedFile {
 public:
     explicit MappedFile(std::filesystem::path const& file) {
@@ -81,7 +82,7 @@ private:
     throw ConfigError(fmt::format("the program '{}' {}", escaped(file.string()), problem));
 }
 
-// Constructors and destructors of static objects are of no robot, although one may have run last in this thread.
+// Constructors and destructors of static objects belong to no robot, although a robot may have run last in this thread.
 void* loaded(std::filesystem::path const& file) {
     WithoutRobot const nobody;
     StandardFloatingPoint const mode;  // which constructors may change
@@ -106,7 +107,7 @@ std::vector<char> content_of(std::filesystem::path const& file) {
     return *std::move(content);
 }
 
-/// What keeps a file from being loaded; empty: nothing.
+/// The reason why a file cannot be loaded; empty: there is none.
 std::string problem_of(std::vector<char> const& bytes) {
     ElfFile const elf = elf_file(bytes);
     if (elf.header == nullptr) {
@@ -138,7 +139,7 @@ void let_each_copy_have_its_variables(std::vector<char>& bytes) {
     }
 }
 
-/// A file in memory, which the dynamic linker takes for a new one.
+/// A copy of the file in memory, which the dynamic linker takes for a new one.
 class MemoryFile {
 public:
     MemoryFile(std::string const& name, std::vector<char> const& bytes)

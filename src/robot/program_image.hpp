@@ -30,7 +30,7 @@ struct ProgramImage {
     std::filesystem::file_time_type file_time{};             // when it was written; none: it is the one that runs
     std::shared_ptr<ProgramSymbols const> loaded_symbols{};  // of a loaded program
 
-    /// Empty if another file is there now, or none.
+    /// The bytes of the file; empty if it has changed or gone since.
     std::vector<char> bytes_of_file() const;
 
     /// What its file says.

@@ -56,7 +56,7 @@ std::string_view name_of(ElfFile const& file, Elf64_Shdr const& section) {
     return text_at(elf_array<char>(file.bytes, names.sh_offset, names.sh_size), section.sh_name);
 }
 
-/// Those of the linker, and of sanitizers, are as the dynamic linker leaves them.
+/// Variables of the linker and of sanitizers stay as the dynamic linker leaves them.
 bool has_variables_of_robots(ElfFile const& file, Elf64_Shdr const& section) {
     constexpr std::uint64_t kWritable = SHF_WRITE | SHF_ALLOC;
     bool const is_memory = section.sh_type == SHT_PROGBITS || section.sh_type == SHT_NOBITS;
@@ -158,7 +158,7 @@ ProgramSymbols symbols_of(std::span<char const> bytes) {
             });
         } else if (section.sh_type == SHT_DYNSYM) {
             for_each_symbol(file, section, [&](Elf64_Sym const& symbol, std::string_view name) {
-                // Variables of each thread are the simulator's.
+                // Thread-local variables are those of the simulator.
                 if (symbol.st_shndx == SHN_UNDEF && !name.empty() && ELF64_ST_TYPE(symbol.st_info) != STT_TLS) {
                     found.imports.emplace_back(name);
                 }

@@ -1,4 +1,4 @@
-// What the file of a program says about its variables, and about the functions that it calls.
+// The variables of a program and the functions that it calls, by the symbol table of its file.
 #pragma once
 
 #include <cstddef>

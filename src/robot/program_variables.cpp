@@ -140,7 +140,7 @@ void add_members(Dwarf_Die& structure, std::size_t offset, int depth, std::vecto
             members.push_back(std::move(member));
             return;
         }
-        // A base class, or a structure without a name in this one.
+        // The members of a base class, or of a structure without a name, count as members of this one.
         for (VariableType::Member inner : member.type->members) {
             inner.offset += member.offset;
             members.push_back(std::move(inner));
@@ -148,7 +148,7 @@ void add_members(Dwarf_Die& structure, std::size_t offset, int depth, std::vecto
     });
 }
 
-/// What a class is to a reader: std::array is its only member, and other classes of libraries say nothing.
+/// A class as it is shown: std::array as its only member; other classes of libraries are opaque.
 VariableTypePointer as_read(VariableType type) {
     auto const is_inner = [](std::string const& name) { return name.starts_with("_M_") || name.starts_with("__"); };
     if (type.members.size() == 1 && type.members.front().type->kind == Kind::array &&
@@ -305,7 +305,7 @@ private:
         }
     }
 
-    /// Names that several variables have get the place of each.
+    /// Puts the place of each variable in front of names that several have.
     void tell_apart() {
         std::map<std::string, int> count;
         for (Found const& found : found_) {

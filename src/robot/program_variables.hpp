@@ -58,7 +58,7 @@ struct ProgramVariables {
         own{};  // those of which each robot may have its own (robot_memory: own), by place in the source
 };
 
-/// Reads the file of a program. What is not understood in it is left out.
+/// Reads the variables from the file of a program; leaves out those whose debug information is not understood.
 ProgramVariables variables_of(ProgramImage const& image);
 
 }  // namespace pogosim

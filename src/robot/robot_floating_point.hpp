@@ -1,5 +1,5 @@
 // A robot may change the mode of the floating-point unit; the world must not depend on that, nor the other robots. So
-// whatever computes for the simulator after user code has run takes the mode back first.
+// the simulator restores the mode before it computes anything after user code has run.
 #pragma once
 
 #include "base/floating_point.hpp"

@@ -25,7 +25,7 @@ namespace pogosim {
 
 namespace {
 
-// Any four words, wherever they are. Neither memcpy() nor memcmp(), which sanitizers replace with functions of theirs.
+// Four words at any address. Written out, since sanitizers replace memcpy() and memcmp() with their own functions.
 using Words = std::uint64_t __attribute__((vector_size(16), may_alias, aligned(1)));
 constexpr std::size_t kWordsPerBlock = 4;
 constexpr std::size_t kBlocksAtOnce = 8;
@@ -53,7 +53,7 @@ POGOSIM_SEES_ALL_BYTES inline bool is_same_block(std::byte const* a, std::byte c
     return (difference[0] | difference[1]) == 0;
 }
 
-/// kBlocksAtOnce of them.
+/// Whether kBlocksAtOnce blocks are the same.
 POGOSIM_SEES_ALL_BYTES inline bool are_same_blocks(std::byte const* a, std::byte const* b) {
     auto const* left = reinterpret_cast<Words const*>(a);
     auto const* right = reinterpret_cast<Words const*>(b);
@@ -104,7 +104,7 @@ RobotMemory::RobotMemory(std::span<std::span<std::byte> const> pieces, std::uint
     find_runs();
 }
 
-/// What is in the program.
+/// Copies all blocks of the program.
 void RobotMemory::read_program(std::span<std::byte> to) const {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         copy_bytes(to.data() + i * kBlockBytes, blocks_[i].place, blocks_[i].bytes);
@@ -135,7 +135,7 @@ void RobotMemory::load(std::uint32_t copy) {
     }
 }
 
-/// From or to the copy of no robot, in which any block may be another one.
+/// Switches from or to the copy that belongs to no robot, in which any block may differ.
 void RobotMemory::load_all(std::uint32_t copy) {
     save();
     loaded_ = copy;
@@ -144,7 +144,8 @@ void RobotMemory::load_all(std::uint32_t copy) {
     }
 }
 
-/// The stored content of a block that is not in the program at present. `copy`: kNone for that of the outside.
+/// The stored content of a block that is not in the program at present. `copy`: kNone for the copy that belongs to no
+/// robot.
 std::byte const* RobotMemory::content(std::uint32_t copy, std::size_t block) const {
     if (copy == kNone) {
         return other_.data() + block * kBlockBytes;
@@ -261,7 +262,8 @@ void RobotMemory::make_room(std::uint32_t capacity) {
     capacity_ = capacity;
 }
 
-/// What all robots have set to the same value, such as a table that each has computed, need not be copied any more.
+/// Blocks that all robots have set to the same bytes, such as a table that each has computed, need not be copied any
+/// more.
 void RobotMemory::find_same() {
     save();
     std::vector<std::uint32_t> still_different;
@@ -321,7 +323,7 @@ void RobotMemory::give_to_all(std::span<std::byte const> place) {
     }
 }
 
-/// The bytes of a block from `at` on, to all copies.
+/// Writes the bytes of a block from `at` on to all copies.
 void RobotMemory::give(std::size_t block, std::size_t at, std::size_t bytes) {
     auto const [place, size, own_slot] = blocks_[block];
     std::size_t const offset = block * kBlockBytes + at;

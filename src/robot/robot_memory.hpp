@@ -20,21 +20,21 @@ void copy_program_bytes(std::byte* to, std::byte const* from, std::size_t count)
 
 class RobotMemory {
 public:
-    /// What is in these pieces of the program's memory now: `robots` copies of it, and one more for code that is of no
-    /// robot. The pieces must not overlap.
+    /// Makes `robots` copies of what is in these pieces of the program's memory now, and one more for code that belongs
+    /// to no robot. The pieces must not overlap.
     RobotMemory(std::span<std::span<std::byte> const> pieces, std::uint32_t robots);
 
     /// Puts a copy into the program: that of a robot, or kNone. What is in the program belongs to the copy before.
     void load(std::uint32_t copy);
 
-    /// What a copy, that of a robot, has in a place of the program; bytes outside of its variables are as the program
-    /// has them. Nothing is loaded for it.
+    /// Reads what a robot's copy has at a place in the program, without loading the copy. Bytes outside variables are
+    /// as the program has them.
     void read(std::uint32_t copy, std::byte const* place, std::span<std::byte> to) const;
 
-    /// What the program has in this place now is in every copy from now on. Bytes outside of its variables are ignored.
+    /// Copies what the program has in this place now to every copy. Bytes outside of its variables are ignored.
     void give_to_all(std::span<std::byte const> place);
 
-    /// What the program changes from here to the other one is changed in every copy.
+    /// Changes that the program makes from here to the end of the common change are made in every copy.
     void begin_common_change();
     void end_common_change();
 
@@ -42,7 +42,7 @@ public:
         std::size_t offset = 0;            // in all pieces, one after the other
         std::span<std::byte const> bytes;  // valid until the next change
     };
-    /// What a copy, that of a robot or kNone, has else than in the beginning, ascending.
+    /// The blocks in which a copy (of a robot, or kNone) differs from the beginning, ascending.
     std::vector<Part> changed_parts(std::uint32_t copy);
 
     /// Bytes of one copy.

@@ -1,4 +1,4 @@
-// What the sensors of a robot would measure without noise and bias.
+// Readings of a robot's sensors without noise and bias.
 #pragma once
 
 #include <cstddef>

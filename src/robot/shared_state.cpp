@@ -15,9 +15,8 @@ using namespace std::string_view_literals;
 namespace {
 
 // Functions of the C and C++ libraries whose results do not depend on the caller or the order of calls, and that are
-// safe on several threads.
-// Among those that are not here: strtok(), which remembers a text; fopen() and fprintf(), whose output would be in
-// another order.
+// safe on several threads. Not among them: strtok(), which remembers a text; fopen() and fprintf(), whose output would
+// come in another order.
 constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
                                "_ITM_registerTMCloneTable"sv,
                                "_Unwind_Resume"sv,
@@ -106,7 +105,7 @@ constexpr std::array kHarmlessBeginnings{"__cxa_"sv,
 constexpr std::array kOwnVariables{"REGISTER_USERDATA_once"sv, "UserdataConstruct"sv, "UserdataSize"sv,
                                    "_ZStL8__ioinit"sv, "__dso_handle"sv};
 
-/// Where the object begins that a place in memory belongs to, and its file.
+/// The start of the object that a place in memory belongs to, and its file.
 struct LoadedObject {
     void* begin = nullptr;
     std::string_view file{};
@@ -163,7 +162,7 @@ std::byte* address_in(ProgramImage const& image, ProgramSymbols::Variable const&
     return reinterpret_cast<std::byte*>(image.load_address + variable.address);
 }
 
-/// Each byte of it belongs to one that is set from the configuration.
+/// Whether each byte of the variable is set from the configuration.
 bool is_configured(std::byte const* begin, std::size_t bytes, std::span<BoundVariable const> bound) {
     std::vector<bool> is_bound(bytes, false);
     for (BoundVariable const& one : bound) {

@@ -81,7 +81,7 @@ void SharedSteps::run_part(WorkRange range) {
     }
 }
 
-/// After a failure, the other parts have not been.
+/// After a failure, the parts that follow have not run.
 std::optional<UserFailure> SharedSteps::join(Part& part) {
     controllers_.take_over(part.outbox);
     if (part.callbacks != callbacks_) {
@@ -102,7 +102,7 @@ std::optional<UserFailure> SharedSteps::look_at_variables() {
     if (changed.empty()) {
         return std::nullopt;
     }
-    context.is_system = true;  // it is unknown which robot it was
+    context.is_system = true;  // the robot that changed it is unknown
     return UserFailure{
         fmt::format("a robot has changed the variable that is set from the parameter '{}', which all robots "
                     "share, while others ran on other threads: give each robot its own in USERDATA, or "

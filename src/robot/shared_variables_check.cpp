@@ -100,7 +100,7 @@ std::vector<std::string> configured_expressions(ProgramImage const& /*image*/) {
 
 #endif
 
-/// Whether an expression has this word in it.
+/// Whether an expression contains this word.
 bool mentions(std::string_view expression, std::string_view word) {
     auto const is_part_of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
     for (std::size_t at = expression.find(word); at != std::string_view::npos; at = expression.find(word, at + 1)) {
@@ -113,8 +113,8 @@ bool mentions(std::string_view expression, std::string_view word) {
     return false;
 }
 
-/// Constants that C++ calculates at the start are among the variables as far as symbols can tell. Parameters are known
-/// by their names, whether they have been read yet or not.
+/// Finds shared variables by symbols alone. These do not distinguish variables from C++ constants that are initialised
+/// at run time. Parameters are recognised by name, even if they have not been read yet.
 Found found_by_symbols(ProgramImage const& image, std::vector<ProgramSymbols::Variable> const& suspects) {
     Found found{.is_certain = image.constructors == nullptr};
     std::vector<std::string> const configured =
@@ -135,7 +135,7 @@ Found found_by_symbols(ProgramImage const& image, std::vector<ProgramSymbols::Va
 Found found_in(ProgramImage const& image, std::vector<ProgramSymbols::Variable> suspects) {
     std::error_code error;
     if (image.loaded && std::filesystem::last_write_time(image.file, error) != image.file_time) {
-        return found_by_symbols(image, suspects);  // it has been built again since
+        return found_by_symbols(image, suspects);  // the file was rebuilt after it was loaded
     }
     try {
         shared_state::ProgramFile const file(image.file.string());

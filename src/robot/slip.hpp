@@ -1,5 +1,5 @@
-// What functions of the interface say about values that they cannot take as they are: once in a run for each function
-// and kind of mistake. What happens to the values is what the headers say.
+// Warnings about values that functions of the interface cannot take as they are: once in a run for each function and
+// kind of mistake. The headers say what happens to such values.
 #pragma once
 
 #include <string_view>

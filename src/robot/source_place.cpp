@@ -27,7 +27,7 @@ struct FreeMemory {
     void operator()(void* memory) const { std::free(memory); }
 };
 
-/// What has called the simulator: no code of the user's is under way. The headers rename the program's main().
+/// Functions above all user code in a stack. The headers rename the program's main().
 bool is_start_of_process(std::string const& function) {
     return function == "_start" || function == "main";
 }
@@ -78,7 +78,7 @@ private:
     Dwarf* dwarf_;
 };
 
-/// As the compiler was given it.
+/// The source file of a line, with the path that was given to the compiler.
 std::string_view file_of(Dwarf_Line* line, Dwarf_Die* unit) {
     char const* const file = dwarf_linesrc(line, nullptr, nullptr);
     std::string_view path = file != nullptr ? file : "";
@@ -91,7 +91,7 @@ std::string_view file_of(Dwarf_Line* line, Dwarf_Die* unit) {
     return path;
 }
 
-/// The innermost one, which may be inlined into another.
+/// The innermost function, which may be inlined into another.
 std::string function_in(Dwarf_Die* unit, Dwarf_Addr address) {
     Dwarf_Die* scopes = nullptr;
     int const count = dwarf_getscopes(unit, address, &scopes);

@@ -1,4 +1,4 @@
-// The line of a program's source that a place in its code was made from.
+// From a place in a program's code to the line of its source.
 #pragma once
 
 #include <string>

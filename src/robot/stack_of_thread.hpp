@@ -14,8 +14,8 @@ struct ThreadPlace {
     pid_t thread = 0;
 };
 
-/// The place in the code of a program, loaded at `program_base`, from which a thread has called what it waits in. Null:
-/// unknown, or the thread does not wait any more.
+/// The place in a program (loaded at `program_base`) from which a waiting thread has called the function in which it
+/// waits. Null: unknown, or the thread does not wait any more.
 void const* place_in_stack(ThreadPlace const& thread, void const* program_base);
 
 }  // namespace pogosim

@@ -39,7 +39,8 @@ void Controllers::wake(SwitchedOff const& self) {
     world_.robots.led[self.robot] = self.leds;
 }
 
-/// Never due: that takes no branch in run_robots(). A robot that rests already is left as it is.
+/// Switches the robot off by a clock that is never due, so that run_robots() needs no branch for it. Does nothing if it
+/// is off already.
 void Controllers::rest(SwitchedOff& self) {
     std::int64_t const clock_us = std::exchange(controllers_[self.robot].clock_us, kNever);
     Leds const leds = std::exchange(world_.robots.led[self.robot], {});
@@ -49,7 +50,7 @@ void Controllers::rest(SwitchedOff& self) {
     }
 }
 
-/// As motors without power do, but without their noise.
+/// Commands rest, as motors without power do, but without their noise.
 void Controllers::hold_switched_off() {
     for (SwitchedOff const& self : switched_off_) {
         if (controllers_[self.robot].motors.driven && world_.spec_of(self.robot).has_wheels) {

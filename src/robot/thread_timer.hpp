@@ -10,8 +10,8 @@ enum class TimerClock {
     wall,
 };
 
-/// Belongs to the thread that calls arm() first. Neither children of fork() nor what takes the place of this program by
-/// exec() have it. On systems without such timers, each process has one of each kind.
+/// Belongs to the thread that calls arm() first. Children of fork() and programs started with exec() do not inherit it.
+/// On systems without such timers, each process has one of each kind.
 class ThreadTimer {
 public:
     /// The handler of `signal` finds `owner` in siginfo_t::si_value.
@@ -23,7 +23,7 @@ public:
     /// From now on a signal each `period_s`. For signal handlers, too, once it was armed or prepared.
     void arm(double period_s);
 
-    /// Does what arm() must not do in a signal handler, without starting it.
+    /// Does the part of arm() that is not allowed in a signal handler, without starting the timer.
     void prepare();
 
     /// No signal comes after this.

@@ -17,30 +17,30 @@ namespace pogosim {
 namespace {
 
 constexpr std::int64_t kUsPerS = 1000000;
-constexpr std::int64_t kLongUs = 60 * kUsPerS;  // during the run, when all robots of a category are in it
+constexpr std::int64_t kLongUs = 60 * kUsPerS;  // during the run, if all robots of a category are in such a call
 constexpr std::int64_t kLookPeriodUs = 10 * kUsPerS;
-// At the end of the run, for each robot. A robot that waits for something may be long in one call, too: compared with
-// what was usual in its category, not so much longer.
+// At the end of the run, for each robot: how long its call must last at least, in time, as a part of the run, and
+// compared with the usual in its category. A robot that only waits for something may be in one call for long, too.
 constexpr std::int64_t kLongAtEndUs = 10 * kUsPerS;
 constexpr std::int64_t kPartOfRunAtEnd = 4;
 constexpr std::int64_t kTimesTheUsual = 10;
 constexpr int kWaitsOfLoop = 5;  // fewer may be a few long sleeps, one after the other
 
-/// Robots of one category that are in a call for long.
+/// Robots of one category that have been in a call for long.
 struct Unreturned {
     std::uint32_t alive = 0;
     std::uint32_t count = 0;
-    std::uint32_t first = kNone;       // the robot that is so the longest
-    std::int64_t longest_call_us = 0;  // that has returned
+    std::uint32_t first = kNone;       // the robot whose call has lasted longest
+    std::int64_t longest_call_us = 0;  // the longest call that has returned
 };
 
-/// What a look at the stack of a robot that waits finds.
+/// What the stack of a waiting robot tells.
 struct Wait {
     Controller const* robot = nullptr;
     void const* program = nullptr;  // any place in its code
     char const* function = "";      // of the program, that the main loop has called
     void const* place = nullptr;    // where it waits
-    void const* caller = nullptr;   // of the function there
+    void const* caller = nullptr;   // where the function at `place` was called
 };
 
 void look_at_stack(void* of_wait) {
@@ -93,7 +93,7 @@ void Controllers::warn_of_unreturned_calls_at_end() {
     warn_of_unreturned_calls(std::min(kLongAtEndUs, now_us() / kPartOfRunAtEnd), /*all=*/false);
 }
 
-/// `least_us`: how long a call takes at least. `all`: only of categories in which all robots are in one.
+/// `least_us`: shorter calls do not count. `all`: warns only about categories all of whose robots are in such a call.
 void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool all) {
     if (!has_waited_ || image_.is_for_sdk) {
         return;
@@ -136,7 +136,7 @@ void Controllers::warn_of_unreturned_call(std::uint32_t robot, std::uint32_t cou
     Wait wait{.robot = &self, .program = reinterpret_cast<void const*>(image_.main)};
     visit(*self.fiber, look_at_stack, &wait);
     std::string place = place_in_source(image_, wait.place);
-    if (place.ends_with("in sleep()") || place.ends_with("in usleep()")) {  // the part of ours in the program
+    if (place.ends_with("in sleep()") || place.ends_with("in usleep()")) {  // our wrappers, linked into the program
         place = place_in_source(image_, wait.caller);
     }
     std::string const robots = count < alive ? fmt::format("{} of {} robots", count, alive)
@@ -144,7 +144,7 @@ void Controllers::warn_of_unreturned_call(std::uint32_t robot, std::uint32_t cou
                                              : fmt::format("all {} robots", alive);
     log().warn(
         "category '{}': {} of {} has not returned since t = {:.4g} s (robot #{} waits{}{}): {}. Let it return: the "
-        "main loop calls user_step at each tick. An endless loop as on the robot belongs into main(), with pogobot.h "
+        "main loop calls user_step at each tick. An endless loop as on the robot belongs in main(), with pogobot.h "
         "(docs/porting.md)",
         world_.categories[world_.robots.category[robot]].name, wait.function, robots,
         static_cast<double>(self.call_began_us) / static_cast<double>(kUsPerS), world_.robots.id[robot],

@@ -8,7 +8,7 @@ namespace pogosim {
 
 namespace {
 
-/// Nothing of this thread may be used after it: the robot may go on in another one.
+/// After it, nothing that belongs to this thread may be used: the robot may go on in another one.
 void wait_for_step(Waiting least) {
     if (context.waiting >= least && context.controller->clock_us > context.step_us) {
         context.services->access.controllers->wait();

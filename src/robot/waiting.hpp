@@ -14,7 +14,7 @@ namespace pogosim {
 inline constexpr int kFreeCalls = 1000;      // of each tick, and after each sleep
 inline constexpr std::int64_t kCallUs = 10;  // of a processor with 21 MHz
 
-/// The robot sleeps until its clock shows this. If it does already, that is a call like others.
+/// The robot sleeps until its clock shows this time; one that has passed counts as any other call.
 void sleep_until(std::int64_t clock_us);
 
 void take_time_to_read_clock();

@@ -1,6 +1,6 @@
-// The watch over user code that does not return: by the processor time of its thread (SIGPROF), which a program on a
-// busy machine does not use up by waiting; and, once the run was asked to end, by wall-clock time (SIGALRM), which runs
-// in sleep(), too. After user code was left by force, SIGALRM watches over the data file alone.
+// The watch over user code that does not return. It goes by the processor time of the thread (SIGPROF), which waiting
+// on a busy machine does not use up; and, once the run was asked to end, by wall-clock time (SIGALRM), which passes in
+// sleep(), too. After user code was left by force, SIGALRM watches only over the data file.
 #include <pthread.h>
 
 #include <algorithm>
@@ -106,7 +106,7 @@ bool has_busy_helper(CrashHandlerState const& handler) {
     return helper != nullptr;
 }
 
-/// Tells the waiting user what is going on, once.
+/// Prints once what the run is waiting for.
 void tell_what_is_waited_for(CrashHandlerState& handler) {
     WallClockWatch& waiting = handler.waiting;
     ProcessorWatch const& busy = handler.busy;
@@ -153,7 +153,7 @@ void look_after_request(CrashHandlerState& handler, void const* signal_context, 
     }
 }
 
-/// A large file, or a slow disk, takes its time.
+/// Large files and slow disks take long.
 void look_after_rescue(CrashHandlerState& handler, double now_s) {
     RescueWatch& rescue = handler.rescue;
     SaveProgress const& progress = save_progress();

@@ -8,8 +8,8 @@
 
 namespace pogosim {
 
-/// Everything stands in its place, no user code has run. Throws ConfigError when the arena cannot be read or the
-/// objects do not fit. `scenario` is as loaded.
+/// Builds the world: every object is in its place, and no user code has run. Throws ConfigError when the arena cannot
+/// be read or the objects do not fit. `scenario` is as loaded.
 World build_world(Scenario const& scenario, std::uint32_t seed);
 
 }  // namespace pogosim

@@ -25,7 +25,7 @@ struct Motion {
     char const* speed_unit;  // of `speed`
 };
 
-/// Three digits, not more than the value.
+/// Rounded down to three digits.
 double rounded_down(double value) {
     double const digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
     return std::floor(value / digit) * digit;

@@ -1,4 +1,4 @@
-// Speeds that the physics or the rows of the data file cannot follow.
+// Checks for speeds that the physics or the rows of the data file cannot follow.
 #pragma once
 
 #include "config/scenario.hpp"
@@ -11,8 +11,8 @@ namespace pogosim {
 /// speed and the largest step that can be.
 void check_motion(Scenario const& scenario, MotionLimits const& limits, double time_step_s);
 
-/// Warns when robots are fast enough to cross half of a periodic arena between two rows of the data file: what computes
-/// displacements from them takes the shortest way.
+/// Warns when robots are fast enough to cross half of a periodic arena between two rows of the data file: tools that
+/// compute displacements from rows assume the shortest way.
 void warn_of_ambiguous_rows(Scenario const& scenario, World const& world);
 
 }  // namespace pogosim

@@ -17,7 +17,7 @@ namespace {
 // An overlap is deep if it exceeds this share of half the thickness of the thinner object. Physics resolves the rest.
 constexpr float kDeepShare = 0.1F;
 
-/// A problem with the fixed objects of one or two categories; the text is about the first object.
+/// A problem with the fixed objects of one or two categories; the text names the first object.
 struct Finding {
     StandingObject const* entry;
     ObjectConfig const* other;  // nullptr: a wall

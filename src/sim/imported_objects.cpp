@@ -16,8 +16,8 @@ namespace pogosim {
 
 namespace {
 
-// Less is what a run may leave: physics lets bodies overlap a little for a moment. For small ones, a share of half
-// their thickness.
+// Smaller overlaps may come from the run that wrote the file: physics lets bodies overlap a little for a moment. For
+// small bodies, the limit is a share of half their thickness.
 constexpr float kToleratedMm = 1.0F;
 constexpr float kToleratedShare = 0.1F;
 

@@ -98,7 +98,7 @@ void Inspector::add_variables(std::uint32_t robot, Inspection& inspection) {
     }
 }
 
-/// Those of its own category are just robots.
+/// Objects of its own category are called robots.
 std::vector<std::string> Inspector::names_of_touched(Object const& object) const {
     Touched const touched = touched_by(world_, object, gaps_);
     std::vector<std::string> names;

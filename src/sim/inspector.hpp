@@ -1,4 +1,4 @@
-// What a window shows of single robots.
+// Looks into single robots, for the window.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ public:
     /// Call it after each step.
     void note_step() { recent_motion_.follow(world_); }
 
-    /// A robot as it is between two steps. Only reads: no user code runs, and nothing is drawn from a random stream.
+    /// The state of a robot between two steps. Reads only: no user code runs, and no random stream is used.
     Inspection inspect(std::uint32_t robot);
 
     // Filled during the run.

@@ -38,7 +38,7 @@ char const* name_of(int signal) {
     return "a signal";
 }
 
-/// Nothing is lost where no robot runs.
+/// No data can be lost where no robot runs.
 [[noreturn]] void end_outside_of_the_run(int signal) {
     prepare_interrupt_message(name_of(signal));
     end_with_crash_message(static_cast<int>(ExitCode::interrupted));

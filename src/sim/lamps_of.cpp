@@ -48,8 +48,8 @@ bool lights_a_cell(LampArea const& area, LightMap const& map) {
     return lights;
 }
 
-/// Where a lamp has its area in the course of time; of an orbit, many places that are in the arena, which all are in a
-/// periodic one.
+/// Places of the area that a lamp lights in the course of time. For an orbit: many places, those within the arena (all,
+/// if it is periodic).
 std::vector<LampArea> areas_of(LampSpec const& lamp, World const& world) {
     Arena const& arena = world.arena;
     LampArea const start = area_at_start(lamp);
@@ -72,7 +72,7 @@ std::vector<LampArea> areas_of(LampSpec const& lamp, World const& world) {
     return areas;
 }
 
-/// The centre of a cell decides what lights it, so a small lamp may stand between them.
+/// A cell is lit if its centre is, so a small lamp that stands between the centres lights nothing.
 void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, World const& world) {
     LampSpec const& lamp = *object.spec.lamp;
     LightMap const& map = world.light;
@@ -93,7 +93,7 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
     }
 }
 
-/// Nothing places lamps apart.
+/// Lamps may overlap.
 void warn_of_copies(Scenario const& scenario, ObjectConfig const& object) {
     if (object.nb > 1) {
         bool const is_spot = std::holds_alternative<SpotSpec>(*object.spec.lamp);

@@ -12,7 +12,7 @@ namespace pogosim {
 /// that light nothing: their centre is outside the arena's bounding box, or they lie between the centres of cells.
 std::vector<LampSpec> lamps_of(Scenario const& scenario, World const& world);
 
-/// The same lamps as things of the world.
+/// The same lamps as objects of the world.
 std::vector<PlacedLamp> placed_lamps(Scenario const& scenario, Arena const& arena);
 
 /// The area that a lamp can light at time 0.

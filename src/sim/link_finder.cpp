@@ -18,7 +18,7 @@ float radius_of(World const& world, std::uint32_t robot) {
     return world.bodies.radius_mm[world.robots.body[robot]];
 }
 
-/// From rim to rim; for robots that touch or overlap, a point between them.
+/// The link from rim to rim; for robots that touch or overlap, a point between them.
 void place_between_robots(World const& world, Link& link) {
     Vec2 const centre = wrapped(world, centre_of(world, link.from));
     Vec2 const offset = minimum_image(world, centre_of(world, link.from), centre_of(world, link.to));
@@ -45,7 +45,7 @@ void LinkFinder::place(World const& world, float range_mm, Link& link) {
         place_between_robots(world, link);
         return;
     }
-    // Between the rim of one and the nearest point of the other's outline.
+    // The link between the rim of one robot and the nearest point of the other's outline.
     std::uint32_t const robot = is_from_outline ? link.to : link.from;
     std::uint32_t const outline = is_from_outline ? link.from : link.to;
     Vec2 const to_outline =

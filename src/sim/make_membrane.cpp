@@ -9,12 +9,12 @@ namespace pogosim {
 
 namespace {
 
-// The bodies' centres are this much of the bounding radius inside of the shape's outline at most.
+// At most this share of the bounding radius lies between the bodies' centres and the shape's outline.
 constexpr float kMostInset = 0.3F;
 // Stiffness of the springs across, in parts of that between neighbours.
 constexpr float kCrossOfDisks = 0.8F;
 constexpr float kCrossOfSegments = 0.4F;
-// A membrane of cloth, not of rubber: neighbours are never further apart than this part more than at rest.
+// Membranes are of cloth, not of rubber: the distance of neighbours never exceeds that at rest by more than this share.
 constexpr float kMaxStretch = 0.05F;
 
 /// The shape on whose outline the bodies' centres lie.

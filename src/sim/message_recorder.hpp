@@ -1,4 +1,4 @@
-// What became of every message, on its way to the message log.
+// Writes what became of every message into the message log.
 #pragma once
 
 #include <cstdint>

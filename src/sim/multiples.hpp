@@ -1,4 +1,4 @@
-// What happens at multiples of a period: at the first step at or after each of them, without drift.
+// Counts multiples of a period, for what happens at the first step at or after each of them, without drift.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What all bodies really did in the last step, as arrays: for hosts, which read them where they are.
+// Velocities of all bodies observed in the last step, as arrays that hosts read in place.
 #pragma once
 
 #include <vector>
@@ -16,10 +16,10 @@ public:
         update(world);
     }
 
-    /// After a step.
+    /// To be called after a step.
     void update(World const& world) { update(world, 0, static_cast<std::uint32_t>(world.bodies.size())); }
 
-    /// After an object has been put elsewhere.
+    /// To be called after an object has been put elsewhere.
     void update(World const& world, Object const& object) {
         update(world, object.body, object.body + object.body_count);
     }

@@ -99,7 +99,7 @@ void check_frame(Scenario const& scenario, std::filesystem::path const& frame) {
     unlink(beside.c_str());
 }
 
-/// What can go wrong with frames is found before the run, as far as it can be.
+/// Finds problems with frames before the run, as far as possible.
 void check_frames(Scenario const& scenario, FrameNames const& names) {
     if (makes_frames(scenario)) {
         check_names_differ(scenario, names);

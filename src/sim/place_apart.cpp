@@ -18,7 +18,7 @@ namespace {
 
 enum class Overlap { none, partial, full };
 
-/// How much of an area is in the arena.
+/// The part of an area that is in the arena.
 Overlap overlap_with(Arena const& arena, Polygon const& area_mm) {
     constexpr std::size_t area = 0;
     constexpr std::size_t outer = 1;

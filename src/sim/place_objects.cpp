@@ -155,7 +155,7 @@ Arena root_domain(Scenario const& scenario, World const& world, ObjectConfig con
     return make_arena({moved(space, pose.position_mm, pose.heading_rad)});
 }
 
-/// A lamp may light more than the arena, but nothing starts beyond the walls.
+/// The area of a lamp may reach beyond the arena, but no object starts beyond the walls.
 void check_inside(Scenario const& scenario, World const& world, ObjectConfig const& root,
                   std::vector<std::vector<Placement>> const& poses) {
     for (std::size_t i = 0; i < poses.size(); ++i) {

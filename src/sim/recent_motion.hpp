@@ -1,4 +1,4 @@
-// How far robots have come in the last time: what tells one that drives from one that pushes. Pressed against a wall, a
+// How far robots have come lately, which tells a robot that drives from one that pushes. Pressed against a wall, a
 // robot bounces by a millimetre (wall_restitution) at each of its ticks, so a single step does not tell.
 #pragma once
 
@@ -17,18 +17,18 @@ public:
 
     explicit RecentMotion(World const& world);
 
-    /// Call it after each step. What puts robots elsewhere between two steps does not count.
+    /// Call it after each step. Moves of robots by hand or by a host between two steps do not count.
     void follow(World const& world);
 
     struct Displacement {
-        float distance_mm = 0.0F;  // between the ends of its way
-        double during_s = 0.0;     // the window, less when the run is younger
+        float distance_mm = 0.0F;  // in a straight line, from the start of the window to now
+        double during_s = 0.0;     // length of the window; shorter if the run is younger
     };
     /// `window_s`: up to kWindowS.
     Displacement of(std::uint32_t robot, double window_s) const;
 
 private:
-    /// Where the sum of all steps has brought each robot, from where it was at the first one.
+    /// Sum of all displacements of each robot since the first step.
     struct Sample {
         double time_s = 0.0;
         std::vector<Vec2> way_mm;

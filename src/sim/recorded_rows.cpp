@@ -23,7 +23,7 @@ namespace {
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-/// What a plot shows of the built-in columns.
+/// The built-in columns that a plot shows.
 struct BuiltIn {
     std::string_view name;
     float (*value)(ObjectRow const& row);
@@ -101,7 +101,7 @@ void RecordedRows::add(std::uint32_t robot, ObjectRow const& row, std::span<Cell
 
 void RecordedRows::end() {
     if (moments_.size() >= kMostMoments) {
-        // They are not taken, because the display hangs. Every second one is enough for a plot.
+        // The window does not take them, because its display hangs. Every second one is enough for a plot.
         for (std::size_t i = 1; 2 * i < moments_.size(); ++i) {
             moments_[i] = std::move(moments_[2 * i]);
         }

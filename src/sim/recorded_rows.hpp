@@ -1,4 +1,4 @@
-// What was recorded of the robots, for plots and the inspector.
+// Recorded values of the robots, for plots and the inspector.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ public:
     /// order of the file. Empty before the first row.
     std::vector<std::string> const& columns() const { return columns_; }
 
-    /// What was recorded since the last call. Booleans are 0 or 1.
+    /// Values recorded since the last call. Booleans are 0 or 1.
     std::vector<RecordedValues> take() { return std::exchange(moments_, {}); }
 
     /// The last row of a robot as text, by column, and its time; empty when it has none.

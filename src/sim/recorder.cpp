@@ -57,7 +57,7 @@ ObjectRow row_of(World const& world, Object const& object, std::optional<std::in
     return row;
 }
 
-/// The ending of its name says the format of a table.
+/// The ending of a table's name says its format.
 void check_table_format(Scenario const& scenario, Setting setting, std::string const& name) {
     if (!table_format(name)) {
         throw ConfigError(fmt::format("{}: the format of '{}' is unknown; expected a name that ends in {}",

@@ -31,10 +31,10 @@ public:
     /// Lets the program declare its columns and opens the files that are wanted. Throws OutputError.
     std::optional<UserFailure> open();
 
-    /// For a program that failed before open(): empty files. Does nothing when they are open.
+    /// Makes empty files for a program that failed before open(). Does nothing when they are open.
     void open_without_rows();
 
-    /// What the messages of the next step fill; null: there is no message log.
+    /// Takes the messages of the next step; null: there is no message log.
     DeliveryLog* deliveries() { return messages_ ? &messages_->deliveries() : nullptr; }
 
     /// Writes what became of the last step's messages, and the current rows if a multiple of the save period has been
@@ -54,7 +54,7 @@ public:
     /// From open() on, `columns` gets what robots give at each save. `columns` outlives this.
     void keep(SavedColumns* columns) { kept_ = columns; }
 
-    /// One more entry in the metadata of the complete files.
+    /// Adds an entry to the metadata of the complete files.
     void add_metadata(std::string const& key, std::string const& value);
 
     /// Completes the files, the data file first. Throws OutputError.
@@ -69,7 +69,8 @@ public:
     /// Rows of the data file so far; none if there is no data file.
     std::optional<std::int64_t> row_count() const;
 
-    /// Behind a message about a run that ended early: where its data is. Empty before close() has completed the file.
+    /// The end of a message about a run that ended early: where its data are. Empty before close() has completed the
+    /// file.
     std::string note() const;
 
 private:
@@ -79,7 +80,7 @@ private:
     void open_message_log();
     /// The rows of all objects, also of those before the one whose code fails.
     std::optional<UserFailure> record_rows();
-    /// All user code of a save. After a failure the table has the rows until then.
+    /// Runs all user code of a save. After a failure, the table has the rows until then.
     std::optional<UserFailure> fill_table();
     void add_to_table(std::uint32_t object);
     void write_table();
@@ -99,7 +100,7 @@ private:
     std::unique_ptr<MessageRecorder> messages_;  // null: there is no message log
     bool is_opened_ = false;                     // by open(): rows come into it
     bool is_complete_ = false;
-    RecordedRows* shown_ = nullptr;       // null: no window
+    RecordedRows* shown_ = nullptr;       // of the inspector; null: rows are not shown
     SavedColumns* kept_ = nullptr;        // null: not kept
     DataTable table_;                     // of the present save
     std::vector<ObjectRow> built_in_;     // of its rows

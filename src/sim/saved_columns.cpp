@@ -58,7 +58,7 @@ void write_value(ColumnType type, std::byte* place, CellValue const& cell) {
     }
 }
 
-/// What C takes for the end of a text cannot be part of one: data_set_value_string took it from C.
+/// A text cannot contain a zero byte, since it comes from C (data_set_value_string).
 void add_text(std::string& texts, CellValue const& cell) {
     if (auto const* const given = std::get_if<std::string>(&cell)) {
         texts += well_formed_prefix(*given) == given->size() ? *given : replace_malformed(*given);

@@ -1,4 +1,4 @@
-// What robots gave for the columns of the data file at its last save, as arrays: for hosts.
+// The values that robots gave for the columns of the data file at its last save, as arrays for hosts.
 #pragma once
 
 #include <cstddef>

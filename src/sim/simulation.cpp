@@ -184,7 +184,7 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     }
     std::optional<UserFailure> const& failure = outcome.failure;
     if (failure) {
-        // The message last, since it says what has become of the data file. When completing that crashes, because
+        // The message comes last, since it says what has become of the data file. When completing that crashes, because
         // memory is corrupted, the message of the first crash is printed.
         try {
             if (!failure->refused) {
@@ -295,8 +295,11 @@ std::string Simulation::summary(double wall_s) const {
     std::string const record =
         rows ? fmt::format("{} row{} in '{}'", *rows, *rows == 1 ? "" : "s", escaped(scenario_.output.data_filename))
              : "no data file (enable_data_logging: false)";
-    return fmt::format("{:.9g} s of {} robot{} simulated in {:.2f} s, {:.3g} x real time; {}", world_.time_s(), robots,
-                       robots == 1 ? "" : "s", wall_s, world_.time_s() / wall_s, record);
+    double const times_real = world_.time_s() / wall_s;
+    std::string const speed =
+        times_real < 1000.0 ? fmt::format("{:.3g}", times_real) : fmt::format("{:.0f}", times_real);
+    return fmt::format("{:.9g} s of {} robot{} simulated in {:.2f} s, {} x real time; {}", world_.time_s(), robots,
+                       robots == 1 ? "" : "s", wall_s, speed, record);
 }
 
 std::optional<Restart> Simulation::restart() {

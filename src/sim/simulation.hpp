@@ -54,7 +54,7 @@ struct RunOptions {
     std::function<std::vector<std::string>()> earlier_files = [] { return std::vector<std::string>(); };
 };
 
-/// What became of a part of a run.
+/// The outcome of a part of a run.
 struct Outcome {
     std::optional<UserFailure> failure{};   // of the program
     std::optional<std::string> shortage{};  // of memory, outside user code
@@ -76,7 +76,7 @@ public:
     /// OutputError and, if strict, ConfigError at the end of a run in which a parameter was not read.
     ExitCode run();
 
-    // The same in parts, for tests and benchmarks. start() once, then steps, then finish().
+    // The parts of a run, for tests and benchmarks: start() once, then steps, then finish().
     std::optional<UserFailure> start();
     std::optional<UserFailure> step();
     std::optional<UserFailure> end_programs();
@@ -88,13 +88,13 @@ public:
 
     Outcome attempt(std::function<std::optional<UserFailure>()> const& part);
 
-    /// Completes the files, then says in the log what failed, if anything did, or what may be wrong with the program.
+    /// Completes the files, then logs what failed, if anything did, or what may be wrong with the program.
     ExitCode conclude(Outcome const& outcome);
 
     /// After conclude(): other runs may write the files of this one.
     void release_files() { recorder_.release(); }
 
-    /// The simulated time is over, or the run was asked to end.
+    /// Whether the simulated time is over, or the run was asked to end.
     bool is_over() const;
 
     std::uint32_t seed() const { return seed_; }
@@ -124,14 +124,14 @@ public:
     /// Brings the file of a run that goes on up to date. Throws OutputError.
     void save_now();
 
-    /// After run(): one line about a run without a window that came to its end, which took `wall_s`; empty otherwise,
-    /// when the user has seen it, or has been told how it ended.
+    /// After run(): one line about a run without a window that reached its end after `wall_s` of wall-clock time. Empty
+    /// for a run with a window, and for one that ended early, which was reported.
     std::string summary(double wall_s) const;
 
     /// After run(): how the user wants the run again; absent otherwise.
     std::optional<Restart> restart();
 
-    /// While nothing happens: brings files up to date. Throws OutputError.
+    /// Brings files up to date while the run is paused. Throws OutputError.
     void save_while_waiting();
 
     /// Takes pictures of the world between two steps. Made at the first call, so that it costs nothing without one.
@@ -146,7 +146,7 @@ public:
     void keep_columns() { recorder_.keep(&saved_columns_); }
     SavedColumns const& saved_columns() const { return saved_columns_; }
 
-    // What a user does in the window, between two steps. The data file says that the run was touched.
+    // Actions of the user in the window, between two steps. The data file says that the run was touched.
 
     /// Calls callback_robot_click of a robot, if it has one.
     std::optional<UserFailure> click(std::uint32_t robot);
@@ -158,14 +158,15 @@ public:
     /// True from the first click that ran a callback, or the first move, on.
     bool is_touched() const { return touches_.any(); }
 
-    /// What bodies did in the last step. From the first call on, the arrays stay in place and are always those of now.
+    /// Motions observed in the last step. From the first call on, the arrays stay in place and are always up to date.
     ObservedMotions const& observed_motions() const;
 
     /// The crash handler of this run's user code, for the owner of the process.
     CrashHandler& crash_handler() { return crash_handler_; }
 
     World const& world() const { return world_; }
-    /// To be written between two steps; see world.hpp for what that does. The data file does not say so.
+    /// The world, which may be written to between two steps (world.hpp says what that does). The data file does not
+    /// record it.
     World& world() { return world_; }
     IrChannel const& channel() const { return channel_; }
     Controllers const& controllers() const { return controllers_; }
@@ -173,7 +174,7 @@ public:
     std::int64_t step_count() const;  // steps of the whole run
 
 private:
-    /// This thread works for this run.
+    /// While this exists, the thread works for this run.
     struct Thread {
         explicit Thread(Simulation& simulation)
             : logging(simulation.options_.log.get()),
@@ -191,7 +192,7 @@ private:
     void open_window();
     void stay_open();
     FreePlaces const& free_places();
-    /// At rest, wherever that is.
+    /// Puts an object at a place that has been checked, at rest.
     void put(std::uint32_t object, Vec2 centre_mm, float heading_rad);
     void report(UserFailure const& failure) const;
     void report_unread_parameters() const;

@@ -21,8 +21,8 @@ public:
 
     std::shared_ptr<Scenery const> const& scenery() const { return scenery_; }
 
-    /// The world as it is between two steps. It changes nothing that a result depends on. Walls and membranes are
-    /// included in the links; every sender counts at its present emitter power.
+    /// A copy of the world between two steps. Taking it changes nothing that a result depends on. Walls and membranes
+    /// are included in the links; every sender counts at its present emitter power.
     Snapshot take(SnapshotParts parts);
 
     /// Trails take no more memory than this. Call it before follow_trails().

@@ -36,10 +36,10 @@ struct Overlap {
 /// Finds overlaps; in a periodic world across the seams, too.
 class OverlapFinder {
 public:
-    /// Both must outlive the finder.
+    /// Both arguments must outlive the finder.
     OverlapFinder(std::vector<StandingObject> const& objects, World const& world);
 
-    /// With the objects before this one, in their order.
+    /// Overlaps with the objects before this one, in their order.
     std::vector<Overlap> with_earlier(std::size_t object) const;
 
     /// How deep the object reaches into walls, mm; 0 in a periodic world, which has none.

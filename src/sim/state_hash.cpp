@@ -30,7 +30,7 @@ public:
         add(stream.bits());  // of a copy: the numbers that would come
         add(stream.bits());
     }
-    /// Without their number.
+    /// Hashes the elements, but not their number.
     void add_bytes(std::span<std::byte const> bytes) {
         for (std::byte const byte : bytes) {
             add(std::to_integer<std::uint8_t>(byte));
@@ -101,8 +101,8 @@ void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailbo
     hash.add(mailboxes.dropped(robot));
 }
 
-/// What robots have changed of their own memory. Addresses differ from run to run: of one in the program, its offset
-/// counts, and of another one that it is one.
+/// Hashes what robots have changed in their own memory. Addresses differ from run to run: for an address in the
+/// program, its offset counts; for any other, only that it is an address.
 void add_own_memory(Hash& hash, Controllers const& controllers) {
     AddressSpace const addresses(controllers.image());
     auto const add_part = [&](RobotMemory::Part const& part) {
@@ -130,7 +130,7 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
         add_robot(hash, all[robot], world.mailboxes, robot);
     }
-    // Nothing is added if none of these has changed.
+    // Adds nothing where none of these has changed.
     for (Controllers::SwitchedOff const& off : controllers.switched_off()) {
         hash.add(off.robot);
         hash.add(off.clock_us);

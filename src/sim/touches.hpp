@@ -1,4 +1,4 @@
-// What a user did to a run in the window, or a host between two steps.
+// A record of what a user did to a run in the window, or a host between two steps.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ public:
 
     bool any() const { return total() > 0; }
 
-    /// For the metadata: "3 times from t = 1.2300 s on: objects moved by hand". Empty for an untouched run.
+    /// The text for the metadata: "3 times from t = 1.2300 s on: objects moved by hand". Empty for an untouched run.
     std::string text() const;
 
 private:

@@ -10,10 +10,10 @@ namespace pogosim {
 
 namespace {
 
-/// A body that motors press against something bounces back by up to so much at each tick.
+/// A body that its motors press against something bounces back by up to this distance at each tick.
 constexpr float kBounceMm = 1.5F;
 
-/// A body as a polygon with a margin: of a disk, its centre and its radius.
+/// A body as a polygon with a margin: a disk is its centre with its radius as margin.
 struct Solid {
     Polygon corners;
     float margin_mm = 0.0F;

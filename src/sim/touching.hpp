@@ -1,4 +1,4 @@
-// What an object touches.
+// Finds what an object touches.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct Touched {
     std::vector<std::uint32_t> objects;  // indices into World::objects, ascending
 };
 
-/// What is no further away than motors make a body bounce. `gaps`: of the engine that moves them.
+/// Walls and objects no further away than motors make a body bounce. `gaps`: those of the engine that moves them.
 Touched touched_by(World const& world, Object const& object, TouchGaps const& gaps);
 
 }  // namespace pogosim

@@ -72,12 +72,12 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     return files;
 }
 
-/// A file and the one beside it, in which it is put together.
+/// A file, and the temporary one beside it in which it is written.
 bool are_named_together(UsedFile const& a, UsedFile const& b) {
     return a.setting == b.setting && a.is_output == b.is_output;
 }
 
-/// A device may well be used twice: /dev/stdin and /dev/stdout are one terminal.
+/// A device may be used twice: /dev/stdin and /dev/stdout are often one terminal.
 bool are_same(std::filesystem::path const& a, std::filesystem::path const& b) {
     std::error_code error;
     bool const both_exist = std::filesystem::exists(a, error) && std::filesystem::exists(b, error);

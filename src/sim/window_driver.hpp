@@ -48,7 +48,7 @@ private:
     void look_for_its_end();
     std::optional<UserFailure> carry_out_commands();
     std::optional<UserFailure> carry_out(Command const& command);
-    /// Puts the object in the hand where the hand is.
+    /// Moves the object that the user drags to the mouse.
     void drag();
     void show_if_wanted();
 

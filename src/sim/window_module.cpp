@@ -22,7 +22,7 @@ constexpr std::chrono::seconds kLongestClosing{2};
 
 std::atomic<bool> left_behind = false;
 
-/// SDL says little of a missing display.
+/// SDL's own message hardly explains a missing display.
 void check_display() {
     if (!has_display()) {
         throw std::runtime_error("there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)");

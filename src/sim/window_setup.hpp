@@ -9,7 +9,7 @@
 
 namespace pogosim {
 
-/// All but the scenery, the seed and the place, which the run knows.
+/// Sets all but the scenery, the seed and the place, which the run knows.
 WindowSetup window_setup(Scenario const& scenario, World const& world, std::string const& program_name);
 
 }  // namespace pogosim

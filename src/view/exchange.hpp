@@ -44,7 +44,7 @@ public:
     std::vector<Command> take_commands();
     /// The request since the last call.
     std::optional<MomentRequest> take_request();
-    /// What was recorded in a moment that the window has not taken goes over to this one.
+    /// Records in a moment that the window has not taken are moved to this one.
     void publish(std::shared_ptr<Moment> moment);
     /// Returns at that time, or earlier with a command or a request.
     void wait_until(Clock::time_point time);
@@ -85,7 +85,7 @@ inline void Exchange::report_end(WindowEnd end, std::string const& error) {
 
 inline void Exchange::send(Command const& command) {
     std::lock_guard const lock(mutex_);
-    // A mouse reports faster than a slow run takes notice: only the last place counts.
+    // A mouse moves more often than a slow run reads commands: only the last place counts.
     auto const* const place = std::get_if<DragObject>(&command);
     auto* const last = commands_.empty() ? nullptr : std::get_if<DragObject>(&commands_.back());
     if (place != nullptr && last != nullptr) {

@@ -1,4 +1,4 @@
-// What the window shows of the selected robot.
+// The panel about the selected robot.
 #pragma once
 
 #include "render/inspection.hpp"

@@ -1,4 +1,4 @@
-// A display that goes away while a window is open. Xlib ends the program then; the run must go on.
+// Handles a display that is lost while a window is open. Xlib would end the program; the run must go on.
 #pragma once
 
 #include <csetjmp>

@@ -1,4 +1,4 @@
-// What the simulation and its window tell each other.
+// Messages between the simulation and its window.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct DragObject {
     Vec2 centre_mm;            // where the mean of its bodies is to be
 };
 struct DropObject {};
-/// How a window looks and runs, for one that takes its place.
+/// The state of a window, for the one that replaces it.
 struct WindowState {
     int x_px = 0;
     int y_px = 0;
@@ -61,7 +61,7 @@ struct Note {
 };
 using Command = std::variant<Pause, StepOnce, SetSpeedUp, ClickRobot, DragObject, DropObject, Restart, Quit, Note>;
 
-/// What the window wants to show next.
+/// The parts of the next moment that the window wants.
 struct MomentRequest {
     SnapshotParts parts{};
     std::optional<std::uint32_t> robot{};  // to inspect
@@ -84,7 +84,7 @@ struct Moment {
     std::vector<RecordedValues> recorded{};  // since the moment before
 };
 
-/// What stays the same while the window is open.
+/// The constants of an open window.
 struct WindowSetup {
     std::string title;
     PictureSize size;

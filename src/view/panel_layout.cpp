@@ -27,7 +27,8 @@ float area(Box const& box) {
     return std::max(size.x * size.y, 1.0F);
 }
 
-/// The largest height, up to `most_px`, of a panel that hangs down from `top_px` and covers so much of the arena.
+/// The largest height, up to `most_px`, at which a panel whose upper edge is at `top_px` covers at most this much of
+/// the arena.
 float height_from(float top_px, float left_px, float width_px, float share, float most_px, Box const& arena) {
     float const across = overlap(left_px, left_px + width_px, arena.min.x, arena.max.x);
     if (across <= 0.0F) {
@@ -51,7 +52,8 @@ PanelBox lay_control(PanelRoom const& room) {
     PanelBox const open{corner, {kControlWidthPx * room.scale, room.control_px}};
     float const both_px = (kControlWidthPx + kInspectorWidthPx) * room.scale + 3.0F * kMarginPx;
     bool const is_beside = !room.has_inspector || both_px <= room.window_px.x;
-    PanelBox const least{corner, {open.size_px.x, room.control_least_px}};  // what the user opens in it may cover more
+    PanelBox const least{corner,
+                         {open.size_px.x, room.control_least_px}};  // sections that the user opens may make it larger
     bool const fits = is_beside && open.size_px.y + 2.0F * kMarginPx <= room.window_px.y &&
                       covered_share(least, room.arena_px) <= kMostOfControl;
     return fits ? open : collapsed(corner, room);

@@ -1,5 +1,5 @@
-// Where panels are at first: at most a quarter of the arena is under them, and none is under another one. What finds no
-// room is collapsed to its title.
+// Where panels are at first: at most a quarter of the arena is under them, and none is under another one. Panels
+// without room are collapsed to their titles.
 #pragma once
 
 #include "base/vec2.hpp"
@@ -12,7 +12,7 @@ inline constexpr float kInspectorWidthPx = 286.0F;
 inline constexpr float kTitleWidthPx = 120.0F;  // of a collapsed panel
 inline constexpr Vec2 kLeastPlotPx{250.0F, 130.0F};
 
-/// What decides on the layout. Sizes in pixels.
+/// The inputs of the layout. Sizes in pixels.
 struct PanelRoom {
     Vec2 window_px;
     Box arena_px;                     // when all of it is shown

@@ -127,7 +127,7 @@ void draw_buttons(PanelState const& state, float scale, PanelActions const& acti
     }
 }
 
-/// What is left to do when the simulated time is over.
+/// The choices when the simulated time is over.
 void draw_end(PanelActions const& actions) {
     text(kWarning, "over: its files are complete");
     if (ImGui::Button("Save a picture")) {
@@ -193,7 +193,7 @@ void draw_message(std::string const& text) {
     ImGui::End();
 }
 
-/// What the keys do at the end, while no panel says so.
+/// Shows what the keys do at the end of a run, while no panel does.
 constexpr auto kEnd = "over: R runs it again, F12 saves a picture, Esc closes the window";
 
 void draw_question(PanelState const& state, PanelActions const& actions) {
@@ -297,7 +297,7 @@ void Panels::draw_all(PanelState& state, PanelActions const& actions) {
 
     if (room.has_inspector) {
         PanelBox box = layout.inspector;
-        if (box.is_collapsed && inspector_is_open_) {  // the user wants to see it all the same
+        if (box.is_collapsed && inspector_is_open_) {  // the user has opened it nevertheless
             float const right_px = box.corner_px.x + box.size_px.x;
             box.size_px = {kInspectorWidthPx * scale_, room.window_px.y - box.corner_px.y - kMarginPx};
             box.corner_px.x = std::max(right_px - box.size_px.x, kMarginPx);

@@ -20,7 +20,7 @@ namespace pogosim {
 /// A step that takes longer is worth a word.
 inline constexpr double kBusyS = 0.5;
 
-/// What the panels see of the user.
+/// Input for the panels.
 struct PanelInput {
     MouseState mouse;
     float wheel = 0.0F;    // lines up
@@ -34,14 +34,14 @@ struct RestartQuestion {
 };
 enum class RestartAnswer { keep, overwrite, cancel };
 
-/// What the user asks for.
+/// The user's wishes.
 struct PanelActions {
     std::function<void(Command const&)> send;
     std::function<void()> save_picture;
     std::function<void(RestartAnswer)> answer;
 };
 
-/// What the panels show and change.
+/// The state that the panels show and change.
 struct PanelState {
     WindowSetup const* setup = nullptr;
     Moment const* moment = nullptr;  // null: none yet

@@ -1,4 +1,4 @@
-// What lies under the mouse.
+// Finds what lies under the mouse.
 #pragma once
 
 #include <cstdint>

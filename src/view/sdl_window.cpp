@@ -12,7 +12,7 @@ namespace {
 constexpr int kLeastSizePx = 16;
 constexpr float kPlainDotsPerInch = 96.0F;
 
-/// Without a display that it can reach, SDL draws into nothing, or to a console.
+/// If no display can be reached, SDL falls back to a driver that draws nowhere, or to a console.
 void check_driver() {
     char const* const driver = SDL_GetCurrentVideoDriver();
     if (driver == nullptr || SDL_getenv("SDL_VIDEODRIVER") != nullptr) {

@@ -41,7 +41,7 @@ constexpr double kSlower = 0.8;
 constexpr double kFaster = 1.2;
 constexpr double kSlowest = 1e-3;  // that the keys ask for
 constexpr double kFastest = 1e6;
-constexpr double kUnlimitedSlower = 10.0;  // from no limit, in simulated seconds per second
+constexpr double kUnlimitedSlower = 10.0;  // speed after "slower" from no limit, simulated seconds per second
 constexpr double kTrailPeriodS = 0.1;      // of simulated time
 constexpr int kMostScreenshots = 10000;
 
@@ -154,7 +154,7 @@ private:
                 reset_view();
             }
         } else if (event.event == SDL_WINDOWEVENT_FOCUS_LOST || event.event == SDL_WINDOWEVENT_LEAVE) {
-            // A button may be let go elsewhere.
+            // The button may be released outside the window.
             if ((SDL_GetGlobalMouseState(nullptr, nullptr) & SDL_BUTTON_LMASK) == 0) {
                 drop();
             }
@@ -254,7 +254,7 @@ private:
             say("the run is over: R runs it again");
             return;
         }
-        // Until the simulation has taken notice, the panels show what was asked for.
+        // Until the simulation has answered, the panels show what was requested.
         if (auto const* const pause = std::get_if<Pause>(&command)) {
             state_.status.paused = pause->on;
         } else if (std::holds_alternative<StepOnce>(command)) {
@@ -465,7 +465,7 @@ private:
             history_.add(recorded);
         }
         last_moment_ = Clock::now();
-        // While the run is paused, nothing changes but by the user.
+        // While the run is paused, only the user changes anything.
         is_stale_ = is_stale_ || moment_ == nullptr || newest->snapshot.step != moment_->snapshot.step ||
                     newest->status.touched != moment_->status.touched ||
                     newest->status.is_over != moment_->status.is_over;
@@ -572,7 +572,7 @@ void show_window(WindowSetup const& setup, Exchange& exchange) {
     static sigjmp_buf lost;
     static Window* window = nullptr;  // out of reach of the jump
     if (sigsetjmp(lost, 0) != 0) {
-        // SDL and Xlib are in the middle of something: what they hold stays held.
+        // SDL and Xlib were interrupted: their resources are not released.
         exchange.report_end(WindowEnd::display_lost, "");
         exchange.report_opened("the display is gone");
         return;

@@ -1,5 +1,5 @@
-// What bodies really did in the last step, as an observer of the world sees it. The velocities of Bodies are those with
-// which an engine goes on: a robot that its motors press against a wall has one there, and stands still.
+// The motion of bodies in the last step, as an observer sees it. The velocities in Bodies are those with which the
+// engine continues: a robot that its motors press against a wall has one, although it stands still.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ struct ObservedMotion {
     float angular_velocity_rad_s = 0.0F;  // clockwise on the screen
 };
 
-/// Displacement and turn of a body in the last step, by the duration of a step. 0 before the first step, and for a body
-/// that has been put elsewhere since the last one. In a periodic world, a body moves by less than half of it in a step.
+/// Displacement and rotation of a body in the last step, divided by its duration. 0 before the first step, and for a
+/// body that was moved by hand since the last one. In a periodic world, a body moves by less than half of it in a step.
 ObservedMotion observed_motion(World const& world, std::uint32_t body);
 
 /// The same of an object: of a membrane, the mean of its bodies, without rotation. 0 for one without a body.

@@ -1,4 +1,4 @@
-// What one thread hands to others: everything, in order, and not too much at once.
+// A bounded queue between threads delivers every item, in order, and never holds more than its limit.
 #include "base/bounded_queue.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Two runs and one file, and what comes between a look and the next step.
+// Two runs that write one file, and changes of the file between a check and the action that follows it.
 #include "base/locked_file.hpp"
 
 #include <dlfcn.h>
@@ -22,7 +22,7 @@ std::function<void()> before_lock;  // what another program does, once, just bef
 
 }  // namespace
 
-/// Stands before the system's.
+/// Replaces the system's function of that name.
 extern "C" int flock(int descriptor, int operation) noexcept {
     if (auto const other = std::exchange(before_lock, nullptr)) {
         other();

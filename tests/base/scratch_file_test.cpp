@@ -45,7 +45,7 @@ TEST_F(ScratchFiles, AreRemovedOnceWhenTheProcessEndsEarly) {
     EXPECT_TRUE(is_there(path("other"))) << "of the user";
 }
 
-/// Those of two runs do not know of each other.
+/// The scratch files of two runs are independent.
 TEST_F(ScratchFiles, AreRemovedInAnyNumberAndOrder) {
     std::vector<std::unique_ptr<ScratchFile>> files;
     for (int i = 0; i < 100; ++i) {

@@ -1,4 +1,5 @@
-// Runs inside another process, by way of pogosim/host.h: on threads at once, each gives what it gives alone.
+// Runs inside another process, through pogosim/host.h: run on several threads at once, each gives the same results as
+// alone.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,5 +1,4 @@
-// Lamps across the borders of a periodic arena: whatever they are, a lamp that is moved, and its light with it, is the
-// same.
+// Lamps across the borders of a periodic arena: for every type, moving a lamp moves its light unchanged.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,8 +29,8 @@ int level(World const& world, int column, int row) {
     return world.light.level[wrap(row) * kCells + wrap(column)];
 }
 
-/// How many cells of the one differ from those of the other that are so many columns and rows further, by more than the
-/// rounding of a place on an orbit makes.
+/// Number of cells of one map that differ, by more than the rounding of a position on an orbit, from the cells of the
+/// other map that are this many columns and rows further.
 int cells_that_differ(World const& world, World const& moved, int columns, int rows) {
     int count = 0;
     for (int row = 0; row < kCells; ++row) {

@@ -79,8 +79,8 @@ float area(Shape const& shape) {
     }
 }
 
-/// Mass of a body of density 10 in parts of that of a disk of radius 26.5 mm, told from how far it throws back that
-/// disk, which comes along `towards` through both centres: u = (1 - m) / (1 + m) * v.
+/// Mass of a body of density 10 relative to a disk of radius 26.5 mm, from the speed at which that disk rebounds after
+/// it hits the body along `towards`, through both centres: u = (1 - m) / (1 + m) * v.
 float mass_in_disks(Shape const& shape, Vec2 towards, float density = 10.0F) {
     World world = fine_world();
     float const far_mm = bounding_radius(shape) + 40.0F;

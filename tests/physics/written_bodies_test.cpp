@@ -1,4 +1,4 @@
-// What others write to the bodies of the world, as a hand in the window does, is true from then on.
+// Poses and velocities written to the world from outside, as by a drag in the window, take effect.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What goes wrong between the simulator and the disk is said, with the path and the system's reason.
+// Every failure to write is reported, with the path and the system's reason.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -271,7 +271,7 @@ TEST_F(OutputFailure, RowsThatFindNoMemoryTogetherAreSavedPieceByPiece) {
     EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), kRows);
 }
 
-/// Takes what the process can still get, but for `bytes_left`.
+/// Allocates all memory that the process can still get, except `bytes_left`.
 class MemoryHog {
 public:
     explicit MemoryHog(std::size_t bytes_left) {

@@ -1,4 +1,4 @@
-// What the disk holds while a run goes on, and how the complete file takes its place.
+// The file on disk during a run, and how the complete file replaces it.
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>

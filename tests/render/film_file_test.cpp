@@ -1,4 +1,4 @@
-// Films, as far as they need no run: names, and what stands in their way.
+// Films without a run: names, and errors that keep them from being written.
 #include "render/film_file.hpp"
 
 #include <gtest/gtest.h>

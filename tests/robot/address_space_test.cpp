@@ -41,7 +41,8 @@ TEST(AddressSpace, NumbersCountAsTheyAre) {
     }
 }
 
-/// Such as two counters of 32 bits: whether it counts must not depend on what this run has put there.
+/// A word such as two counters of 32 bits: whether it counts as an address must not depend on what this run has mapped
+/// there.
 TEST(AddressSpace, NumberThatLooksLikeAnAddressIsOneInEveryRun) {
     AddressSpace const space(testing::test_program());
 #ifdef __aarch64__

@@ -21,7 +21,7 @@ TEST(ObservedMotion, IsTheDisplacementAndTheTurnByTheDurationOfAStep) {
     EXPECT_EQ(motion.angular_velocity_rad_s, 0.5F);
 }
 
-TEST(ObservedMotion, IsThatOfTheEngineToTheLastBitWhereTheBodyGotThere) {
+TEST(ObservedMotion, EqualsTheEnginesVelocityToTheLastBitIfTheBodyMovedByIt) {
     World world = testing::square_world();
     std::uint32_t const robot = testing::add_robot(world, {987.654F, 321.012F}, 1.0F);
     Vec2 const velocity{73.3F, -12.1F};
@@ -40,7 +40,7 @@ TEST(ObservedMotion, CrossesTheSeamOfAPeriodicWorldTheShortWay) {
     EXPECT_NEAR(observed_motion(world, robot).velocity_mm_s.x, 6.0F, 1e-3F);
 }
 
-TEST(ObservedMotion, WhatIsPutElsewhereHasNotMoved) {
+TEST(ObservedMotion, OfABodyMovedByHandIsZero) {
     World world = testing::square_world();
     std::uint32_t const robot = testing::add_robot(world, {200, 200});
     world.bodies.position_mm[robot] = {201, 200};

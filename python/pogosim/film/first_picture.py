@@ -1,4 +1,4 @@
-"""The first picture of a replay as SVG: what a page shows before its program runs, and where none may run."""
+"""The first picture of a replay as SVG, shown before the page's script runs, and where scripts are blocked."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ Bools = npt.NDArray[np.bool_]
 
 @dataclass
 class Timeline:
-    """What a file knew of each of n objects at each of its t times. Lengths in mm, angles in rad."""
+    """The last known state of each of n objects at each of the t times of a file. Lengths in mm, angles in rad."""
 
     times_s: Floats  # shape (t,), ascending
     rows: pd.DataFrame  # finite poses, ordered by time

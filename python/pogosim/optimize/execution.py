@@ -27,13 +27,13 @@ from pogosim.optimize.variables import Space, as_json
 
 DONE = 0
 NOTHING_FOUND = 3
-REFRESHING = 20  # how much longer a search runs than it writes down what it has found so far
+REFRESHING = 20  # ratio of search time to the time for writing intermediate results
 
 log = logging.getLogger("pogosim.optimize")
 
 
 def objective_of(settings: Settings) -> Objective:
-    """Return the functions that judge candidates; without a file, the usual ones, with a warning.
+    """Return the objective functions: those of the file, or else the defaults, with a warning.
 
     Raises:
         OptimizeError: They cannot be had.
@@ -51,7 +51,7 @@ def objective_of(settings: Settings) -> Objective:
 
 
 def say_where_it_starts(space: Space) -> None:
-    """Say what the initial values are, and which of them the configuration does not say."""
+    """Log the initial values, and the variables whose initial value the configuration does not give."""
     log.info("Evaluation 1, the initial values: %s", as_json(space.values_at(space.init)))
     if unsaid := [variable.name for variable in space.variables if not variable.has_init]:
         log.info(

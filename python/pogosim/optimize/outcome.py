@@ -179,7 +179,7 @@ def as_entries(fresh: FreshRuns | None) -> dict[str, Any] | None:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What fresh runs say; None: there are none that could be judged.
+    """Results of the runs on fresh seeds; None where no run could be judged.
 
     Attributes:
         best: Best of the best candidate.
@@ -240,7 +240,7 @@ def fresh_runs(folder: Path, search: Search, best: Evaluation) -> Outcome:
 
 
 def judged(search: Search, finished: Finished, seeds: Sequence[int], name: str) -> FreshRuns | None:
-    """Judge the fresh runs of a candidate, each alone; None if there are none, which is said."""
+    """Judge each fresh run of a candidate; None, with a warning, if there are none."""
     if finished.rows is None:
         log.warning("no fresh runs of the %s: %s", name, finished.problem)
         return None

@@ -17,7 +17,7 @@ TEXT = b"text"
 
 
 class Memory:
-    """Memory of a run, for NumPy. The array made of it keeps `owner` alive."""
+    """Memory of a run, for NumPy. Arrays made from it keep `owner` alive."""
 
     def __init__(self, place: ArrayPlace, owner: object) -> None:
         self.owner = owner
@@ -40,9 +40,9 @@ def check_process(process: int) -> None:
 
 
 class RunState:
-    """What one run is like now. Any thread may ask at any time: it is answered between two time steps.
+    """The present state of a run. Any thread may read it at any time; reads are answered between two time steps.
 
-    A simulation gets another one with each reset; what has kept this one then sees the end of its run.
+    Each reset of a simulation creates a new one; code that keeps an old one sees the end of the old run.
     """
 
     def __init__(self, run: OpenRun) -> None:

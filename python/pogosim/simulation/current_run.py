@@ -1,4 +1,4 @@
-"""The run that a simulation is at, and what is left to do when it is over."""
+"""The current run of a simulation, and its cleanup."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def own_folder() -> Path:
 
 
 class CurrentRun:
-    """What a `Simulation` shares with whatever ends its run if it is not closed.
+    """State that a `Simulation` shares with the finaliser that ends its run if it is not closed.
 
     Attributes:
         run: None: it is closed, or its last reset failed.
         lock: Lock of the thread that steps, resets, changes or closes it.
-        should_pause: Steps end between two of them.
-        process: The one that has made it.
+        should_pause: Makes `step` return after the present slice.
+        process: Id of the process that created it.
     """
 
     def __init__(self, folder: Path | None) -> None:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_SEED = 2**32 - 1
-MOST_STEPS = 2**62  # of one call, which ends with the run
+MOST_STEPS = 2**62  # of one call, which stops at the end of the run anyway
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
 LEVELS = {"D": logging.DEBUG, "I": logging.INFO, "W": logging.WARNING, "E": logging.ERROR}
@@ -44,7 +44,7 @@ def yaml_text(name: str, value: Any) -> str:
     """Return a value as YAML in one line.
 
     Raises:
-        ConfigurationError: It is nothing that YAML has.
+        ConfigurationError: YAML cannot represent it.
     """
     return dump_yaml(given.value(name, value), is_flow=True).strip()
 
@@ -69,7 +69,7 @@ def checked_settings(values: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def settings_of(values: Mapping[str, Any]) -> list[str]:
-    """Return the texts that `--set` would take."""
+    """Return the settings as arguments of `--set`."""
     return [f"{key}={yaml_text(key, value)}" for key, value in values.items()]
 
 
@@ -102,11 +102,11 @@ class Parameters(MutableMapping[str, Any]):
 
 
 class Simulation:
-    """A run of a program, which goes on as far as it is told to.
+    """A run of a program, advanced step by step.
 
     Any number of them can exist at the same time, of the same program or others; each result is what it would be alone.
-    One thread at a time steps, resets, changes or closes a simulation; all may look at it meanwhile, and are answered
-    between two time steps. `step` lets other threads of Python run.
+    One thread at a time may step, reset, change or close a simulation. Other threads may read it at any time; reads are
+    answered between two time steps. `step` releases the GIL.
 
         with pogosim.Simulation("examples/hanabi/hanabi.so", "conf/simple.yaml", seed=3) as sim:
             sim.step(100)
@@ -186,7 +186,7 @@ class Simulation:
     # ---- The run
 
     def step(self, steps: int = 1) -> int:
-        """Go on by so many time steps, or to the end of the run.
+        """Advance by `steps` time steps, or to the end of the run.
 
         Returns:
             How many steps were made: fewer when the simulated time is over, or the program has ended the run.
@@ -233,7 +233,7 @@ class Simulation:
             self._pass_messages_on()
 
     def reset(self, seed: int | None = None) -> None:
-        """Begin again: the program is loaded anew, with variables as new, and the parameters set so far.
+        """Start again with a freshly loaded program, whose variables are reset, and the parameters set so far.
 
         Other threads that look at the simulation meanwhile see the end of the run before.
 
@@ -545,9 +545,9 @@ class Simulation:
         return run
 
     def _busy(self) -> threading.Lock:
-        """Return the lock for a `with` block, which no other thread has: a second one gets an error, no wrong results.
+        """Return the lock for a `with` block. A second thread gets an error instead of wrong results.
 
-        Python takes and gives back the lock itself in one piece each, so that Ctrl-C cannot leave it behind.
+        Acquiring and releasing a threading.Lock is atomic, so Ctrl-C cannot leave it locked.
         """
         check_process(self._current.process)
         if self._lock.locked():
