@@ -92,7 +92,7 @@ static void create_data_schema(void) {
 static void export_data(void) {
     static POGO_SHARED int32_t rows_since_consensus;
     data_set_value_int32("consensus_tick", mydata->consensus_tick);
-    data_set_value_int8("opinion", (int8_t)mydata->opinion);
+    data_set_value_int8("opinion", mydata->opinion);
     rows_since_consensus += mydata->consensus_tick >= 0;
     if (rows_since_consensus > nb_robots) {
         stop_simulation();

@@ -211,7 +211,7 @@ static void create_data_schema(void) {
 }
 
 static void export_data(void) {
-    data_set_value_int8("phase", (int8_t)mydata->phase);
+    data_set_value_int8("phase", mydata->phase);
     data_set_value_double("velocity_forward", mydata->velocity_forward);
 }
 #endif

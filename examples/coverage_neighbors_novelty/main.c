@@ -296,12 +296,12 @@ static void export_data(void) {
         length += (size_t)snprintf(list + length, sizeof(list) - length, format, mydata->neighbors.list[i].id);
     }
     uint8_t const nb_met = mydata->encounters.nb;
-    data_set_value_int8("total_neighbors", (int8_t)mydata->neighbors.nb);
-    data_set_value_int8("nov_unique", (int8_t)(nb_met < INT8_MAX ? nb_met : INT8_MAX));
+    data_set_value_int8("total_neighbors", mydata->neighbors.nb);
+    data_set_value_int8("nov_unique", nb_met < INT8_MAX ? nb_met : INT8_MAX);
     data_set_value_double("iso_cnt", (double)mydata->iso_cnt);
     data_set_value_double("nov_cnt", (double)mydata->nov_cnt);
     data_set_value_double("surprise", (double)surprise());
-    data_set_value_int8("state", (int8_t)mydata->state);
+    data_set_value_int8("state", mydata->state);
     data_set_value_string("neighbors_list", list);
 }
 #endif

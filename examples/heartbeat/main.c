@@ -57,8 +57,8 @@ static void create_data_schema(void) {
 }
 
 static void export_data(void) {
-    data_set_value_int32("sent", (int32_t)nb_msgs_sent);
-    data_set_value_int32("heard", (int32_t)mydata->heard);
+    data_set_value_int32("sent", nb_msgs_sent);
+    data_set_value_int32("heard", mydata->heard);
 }
 #endif
 

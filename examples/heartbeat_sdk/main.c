@@ -60,8 +60,8 @@ static void create_data_schema(void) {
 }
 
 static void export_data(void) {
-    data_set_value_int32("sent", (int32_t)sent);
-    data_set_value_int32("heard", (int32_t)heard);
+    data_set_value_int32("sent", sent);
+    data_set_value_int32("heard", heard);
 }
 #endif
 

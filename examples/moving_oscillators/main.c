@@ -266,7 +266,7 @@ static void create_data_schema(void) {
 
 static void export_data(void) {
     data_set_value_double("theta", mydata->theta);
-    data_set_value_int8("nb_neighbors", (int8_t)mydata->nb_neighbors);
+    data_set_value_int8("nb_neighbors", mydata->nb_neighbors);
 }
 #endif
 

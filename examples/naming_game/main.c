@@ -192,12 +192,12 @@ static void create_data_schema(void) {
 }
 
 static void export_data(void) {
-    data_set_value_int16("nb_words", (int16_t)mydata->nb_words);
+    data_set_value_int16("nb_words", mydata->nb_words);
     if (mydata->nb_words > 0) {  // otherwise there is none yet: null
         data_set_value_int16("word", mydata->word);
     }
-    data_set_value_int8("nb_neighbors", (int8_t)mydata->nb_neighbors);
-    data_set_value_int8("nb_agreeing_neighbors", (int8_t)nb_agreeing_neighbors());
+    data_set_value_int8("nb_neighbors", mydata->nb_neighbors);
+    data_set_value_int8("nb_agreeing_neighbors", nb_agreeing_neighbors());
 }
 #endif
 

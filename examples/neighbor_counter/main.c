@@ -148,9 +148,9 @@ static void create_data_schema(void) {
 
 static void export_data(void) {
     for (uint8_t face = 0; face < IR_RX_COUNT; face++) {
-        data_set_value_int8(dir_columns[face], (int8_t)mydata->dir_neighbors[face]);
+        data_set_value_int8(dir_columns[face], mydata->dir_neighbors[face]);
     }
-    data_set_value_int8("total_neighbors", (int8_t)mydata->nb_neighbors);
+    data_set_value_int8("total_neighbors", mydata->nb_neighbors);
     char list[MAX_NEIGHBORS * sizeof("65535,")] = "";
     int length = 0;
     for (uint8_t i = 0; i < mydata->nb_neighbors; i++) {

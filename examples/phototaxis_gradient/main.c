@@ -169,7 +169,7 @@ static void create_data_schema(void) {
 
 static void export_data(void) {
     data_set_value_double("light", mydata->level);
-    data_set_value_int8("phase", (int8_t)mydata->phase);
+    data_set_value_int8("phase", mydata->phase);
 }
 #endif
 

@@ -82,8 +82,8 @@ static void create_data_schema(void) {
 }
 
 static void export_data(void) {
-    data_set_value_int32("sent", (int32_t)mydata->sent);
-    data_set_value_int32("received", (int32_t)mydata->received);
+    data_set_value_int32("sent", mydata->sent);
+    data_set_value_int32("received", mydata->received);
 }
 #endif
 

@@ -282,9 +282,9 @@ static void export_data(void) {
     data_set_value_double("estimate", estimated_mean());
     data_set_value_int32("round", mydata->round);
     for (uint8_t face = 0; face < IR_RX_COUNT; face++) {
-        data_set_value_int8(dir_columns[face], (int8_t)mydata->dir_neighbors[face]);
+        data_set_value_int8(dir_columns[face], mydata->dir_neighbors[face]);
     }
-    data_set_value_int8("total_neighbors", (int8_t)mydata->nb_neighbors);
+    data_set_value_int8("total_neighbors", mydata->nb_neighbors);
     char list[MAX_NEIGHBORS * sizeof("65535,")] = "";
     int length = 0;
     for (uint8_t i = 0; i < mydata->nb_neighbors; i++) {

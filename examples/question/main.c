@@ -104,8 +104,8 @@ static void create_data_schema(void) {
 }
 
 static void export_data(void) {
-    data_set_value_int32("asked", (int32_t)asked);
-    data_set_value_int32("answered", (int32_t)answered);
+    data_set_value_int32("asked", asked);
+    data_set_value_int32("answered", answered);
     data_set_value_int32("waited_ms", waited_ms);
 }
 #endif

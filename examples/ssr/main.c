@@ -477,7 +477,7 @@ static void export_neighbors(void) {
         length +=
             (size_t)snprintf(list + length, sizeof(list) - length, i == 0 ? "%u" : ",%u", mydata->neighbor_ids[i]);
     }
-    data_set_value_int8("nb_neighbors", (int8_t)mydata->nb_neighbors);
+    data_set_value_int8("nb_neighbors", mydata->nb_neighbors);
     data_set_value_string("neighbors_list", list);
 }
 
@@ -485,7 +485,7 @@ static void export_neighbors(void) {
 static void export_data(void) {
     diffusion_t const* const first = &mydata->diffusion[0];
     bool const diffuses = mydata->behavior == PRE_DIFFUSION || mydata->behavior == DIFFUSION;
-    data_set_value_int8("current_behavior", (int8_t)mydata->behavior);
+    data_set_value_int8("current_behavior", mydata->behavior);
     data_set_value_bool("diffusion_valid1", decay_is_known(&first->decay, diffusion_min_nb_points));
     data_set_value_double("t", diffuses ? (double)mydata->periods / (double)inv_tau : 0.0);
     export_neighbors();

@@ -145,8 +145,8 @@ static void create_data_schema(void) {
 }
 
 static void export_data(void) {
-    data_set_value_int8("opinion", (int8_t)mydata->opinion);
-    data_set_value_int8("nb_neighbors", (int8_t)mydata->nb_neighbors);
+    data_set_value_int8("opinion", mydata->opinion);
+    data_set_value_int8("nb_neighbors", mydata->nb_neighbors);
     data_set_value_bool("local_consensus", neighbors_agree());
 }
 #endif

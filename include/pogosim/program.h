@@ -4,6 +4,7 @@
 #ifndef POGOSIM_PROGRAM_H
 #define POGOSIM_PROGRAM_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -50,6 +51,9 @@ void pogosim_sleep_after_tick(int milliseconds);
 
 /// The robot's program reads its clock, which takes time if it does so again and again.
 void pogosim_let_time_pass(void);
+
+/// Calls msg_tx_fn for the main loop, and notes whether it sends what it says.
+bool pogosim_call_msg_tx_fn(bool (*send)(void));
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

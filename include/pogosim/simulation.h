@@ -102,7 +102,7 @@ void data_add_column_float16(char const* name);
 /// Sets the value of a column in this object's row; only in callback_export_data. Elsewhere, it does nothing, with a
 /// warning. A column that is not set is null, and so is a NULL string. An unknown column, or a type other than
 /// declared, is an error; columns omitted from `data_logger_fields` are ignored. float has 24 significant bits, float16
-/// has 11 and is at most 65504.
+/// has 11 and is at most 65504. Integers beyond the range of the type wrap around, with a warning.
 /// @range the range of the type
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
@@ -114,6 +114,16 @@ void data_set_value_string(char const* name, char const* value);
 void data_set_value_bool(char const* name, bool value);
 void data_set_value_float16(char const* name, float value);
 ///@}
+
+/// What data_set_value_int8() and the others call, with the `bits` of their type.
+/// @range bits: 8, 16 or 32
+void pogosim_data_set_value_int(char const* name, int64_t value, int bits);
+#ifndef POGOSIM_INSIDE
+// So that a value beyond the range is told: as an argument of these functions, it would have been wrapped already.
+#define data_set_value_int8(name, value) pogosim_data_set_value_int((name), (value), 8)
+#define data_set_value_int16(name, value) pogosim_data_set_value_int((name), (value), 16)
+#define data_set_value_int32(name, value) pogosim_data_set_value_int((name), (value), 32)
+#endif
 
 ///@{
 /// Determines, in callback_export_data, whether this object's row is recorded this time. Re-enabled before each call.

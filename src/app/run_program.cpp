@@ -71,21 +71,6 @@ Scenario read_scenario(CommandLine const& options) {
     return load_scenario(options.config, {.overrides = options.overrides, .strict = options.strict});
 }
 
-/// What a restart would overwrite; see WindowSetup::earlier_files. Empty once the program has left its folder: the new
-/// run keeps all files then.
-std::vector<std::string> names_of_earlier_files(CommandLine const& options, std::filesystem::path const& folder) {
-    std::vector<std::string> names;
-    std::error_code error;
-    if (std::filesystem::current_path(error) != folder) {
-        return names;
-    }
-    for (KeptFile const& file : earlier_files(read_scenario(options), options.video)) {
-        names.push_back(
-            fmt::format("{} -> {}", escaped(file.path.filename().string()), escaped(file.kept.filename().string())));
-    }
-    return names;
-}
-
 void tell_of(std::vector<KeptFile> const& files) {
     for (KeptFile const& file : files) {
         std::error_code error;  // then it is the whole path
@@ -95,21 +80,28 @@ void tell_of(std::vector<KeptFile> const& files) {
     }
 }
 
-/// Why the program cannot be started again as it was in `folder`; empty if it can.
-std::string restart_problem(CommandLine const& options, std::filesystem::path const& folder) {
+/// Whether the program can be started again as it was in `folder`. Once it has left that, the new run will see, and keep
+/// all files.
+RestartCheck check_restart(CommandLine const& options, std::filesystem::path const& folder) {
+    RestartCheck check;
     std::error_code error;
     if (std::filesystem::current_path(error) != folder) {
-        return "";  // the program has left it; the new run will see
+        return check;
     }
     if (!std::filesystem::is_regular_file(options.config, error)) {
-        return fmt::format("the configuration '{}' is not a file that can be read again", escaped(options.config));
+        check.problem =
+            fmt::format("the configuration '{}' is not a file that can be read again", escaped(options.config));
+        return check;
     }
     try {
-        read_scenario(options);
-        return "";
+        for (KeptFile const& file : earlier_files(read_scenario(options), options.video)) {
+            check.overwritten.push_back(fmt::format("{} -> {}", escaped(file.path.filename().string()),
+                                                    escaped(file.kept.filename().string())));
+        }
     } catch (std::exception const& problem) {
-        return escaped(problem.what());
+        check.problem = escaped(problem.what());
     }
+    return check;
 }
 
 Ended simulate(pogosim_program const& program, CommandLine const& options, std::filesystem::path const& folder,
@@ -149,8 +141,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                            .close_at_end = options.close_at_end,
                            .program_name = options.program_name,
                            .restarted = restarted,
-                           .restart_problem = [&] { return restart_problem(options, folder); },
-                           .earlier_files = [&] { return names_of_earlier_files(options, folder); }};
+                           .check_restart = [&] { return check_restart(options, folder); }};
     // A run that is watched replaces nothing that an earlier one has written.
     bool const keeps = window && has_display() && !(restarted && restarted->overwrite);
     std::vector<KeptFile> const kept = keeps ? keep_earlier_files(scenario, options.video) : std::vector<KeptFile>();

@@ -19,11 +19,13 @@ POGO_PER_ROBOT uint32_t _error_code_initial_time = 0;  // 0: no error is shown
 
 #ifdef REAL_ROBOT
 #define LET_TIME_PASS()
+#define CALL_MSG_TX_FN() msg_tx_fn()
 #else
 #include "pogosim/program.h"
 // In the simulator, a program that reads its clock again and again waits, and may go on in another thread. It may do so
 // only here, where no address of a thread-local variable is kept: in this file, the timers' functions do not wait.
 #define LET_TIME_PASS() pogosim_let_time_pass()
+#define CALL_MSG_TX_FN() pogosim_call_msg_tx_fn(msg_tx_fn)
 #endif
 
 uint32_t current_time_milliseconds(void) {
@@ -53,7 +55,7 @@ void display_led_error_code(error_code_t code) {
 }
 
 static void send_message_by_chance(void) {
-    if (msg_tx_fn && rand() % 100 < percent_msgs_sent_per_ticks && msg_tx_fn()) {
+    if (msg_tx_fn && rand() % 100 < percent_msgs_sent_per_ticks && CALL_MSG_TX_FN()) {
         nb_msgs_sent++;
     }
 }

@@ -1,5 +1,5 @@
-// The data file: Apache Feather V2 (Arrow IPC, zstd), CSV or Parquet, one row per object and save time; table_file.hpp says how it is
-// written. The only room that includes Arrow.
+// The data file: Apache Feather V2 (Arrow IPC, zstd), CSV or Parquet, one row per object and save time; table_file.hpp
+// says how it is written. The only room that includes Arrow.
 #pragma once
 
 #include <cstdint>

@@ -113,6 +113,18 @@ void set_value(char const* function, char const* name, ColumnType type, CellValu
     });
 }
 
+template <class Integer>
+void set_integer(char const* function, char const* name, ColumnType type, std::int64_t value) {
+    auto const recorded = static_cast<Integer>(value);
+    set_value(function, name, type, std::int64_t{recorded});
+    if (recorded != value) [[unlikely]] {
+        constexpr std::string_view expected = sizeof(Integer) == 1   ? "-128 to 127"
+                                              : sizeof(Integer) == 2 ? "-32768 to 32767"
+                                                                     : "-2147483648 to 2147483647";
+        pogosim::note_slip({function, "value", expected, "its lowest bits are recorded; take a larger type"}, value);
+    }
+}
+
 void set_exported(char const* function, bool exported) {
     require_robot(function);
     if (!context.services->data.filling) [[unlikely]] {
@@ -153,6 +165,18 @@ void data_add_column_float(char const* name) {
     add_column(__func__, name, ColumnType::float32);
 }
 
+void pogosim_data_set_value_int(char const* name, int64_t value, int bits) {
+    switch (bits) {
+        case 8:
+            set_integer<std::int8_t>("data_set_value_int8", name, ColumnType::int8, value);
+            break;
+        case 16:
+            set_integer<std::int16_t>("data_set_value_int16", name, ColumnType::int16, value);
+            break;
+        default:
+            set_integer<std::int32_t>("data_set_value_int32", name, ColumnType::int32, value);
+    }
+}
 void data_set_value_int8(char const* name, int8_t value) {
     set_value(__func__, name, ColumnType::int8, std::int64_t{value});
 }

@@ -42,6 +42,9 @@ int pogosim_rand() {
 
 void pogosim_srand(unsigned seed) {
     current_stream() = stream_of_seed(seed);
+    if (context.controller != nullptr) {
+        context.controller->program.seed = seed;
+    }
 }
 
 void pogosim_exit(int status) {

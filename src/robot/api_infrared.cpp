@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/log.hpp"
+#include "pogosim/program.h"
 #include "robot/context.hpp"
 #include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
@@ -278,3 +279,15 @@ void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const cou
 void pogobot_infrared_reset_receiver_error_counter() {}
 
 void pogobot_infrared_ll_init() {}
+
+bool pogosim_call_msg_tx_fn(bool (*send)()) {
+    if (context.controller == nullptr) {
+        return send();
+    }
+    std::uint64_t const before = context.controller->messages_sent;
+    bool const is_sent = send();
+    pogosim::Controller& self = *context.controller;
+    self.send_results.sent += self.messages_sent > before ? 1U : 0U;
+    self.send_results.said += is_sent ? 1U : 0U;
+    return is_sent;
+}

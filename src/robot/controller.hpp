@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "base/random.hpp"
@@ -34,16 +35,23 @@ struct LoopGlobals {
 
 /// What the program registered for this robot.
 struct Program {
-    bool registered = false;        // a pogobot_start() named this robot's category
-    bool prepared = false;          // pogobot_init() was called
-    bool reads_messages = false;    // it looked into its queue, in user code or for msg_rx_fn
-    bool decodes_messages = false;  // pogobot_infrared_update() was called
-    bool returned = false;          // main() of a program for the SDK has ended
+    bool registered = false;         // a pogobot_start() named this robot's category
+    bool prepared = false;           // pogobot_init() was called
+    bool reads_messages = false;     // it looked into its queue, in user code or for msg_rx_fn
+    bool decodes_messages = false;   // pogobot_infrared_update() was called
+    bool returned = false;           // main() of a program for the SDK has ended
+    std::optional<unsigned> seed{};  // of its last srand()
     void (*init)() = nullptr;
     void (*step)() = nullptr;
     void (*export_data)() = nullptr;
     void (*end)() = nullptr;
     void (*click)() = nullptr;
+};
+
+/// Calls of msg_tx_fn in which messages were sent, and which said so.
+struct SendResults {
+    std::uint64_t sent = 0;
+    std::uint64_t said = 0;
 };
 
 inline constexpr int kMotorCount = 3;  // right, left, back: the order of motor_id
@@ -103,6 +111,7 @@ struct Controller {
     std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
     std::uint8_t ir_power = 1;
     std::uint64_t messages_sent = 0;  // by whatever function
+    SendResults send_results;
     SentRate sent_rate;
     std::uint64_t messages_received = 0;  // taken out of its queue
     RandomStream random;                  // rand() and srand() of the program

@@ -396,6 +396,7 @@ void Controllers::start_programs() {
         }
     }
     warn_of_missing_init(controllers_);
+    warn_of_equal_seeds(controllers_);
 }
 
 /// Runs main() until it waits for the first time. Walls and membranes have no such program.
@@ -412,6 +413,7 @@ void Controllers::start_sdk_program() {
     begun_with_ = callbacks_of_thread();
     run_global_setup();
     warn_of_missing_init(controllers_);
+    warn_of_equal_seeds(controllers_);
 }
 
 void Controllers::run_sdk_main(std::uint32_t robot) {
@@ -591,6 +593,7 @@ void Controllers::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, controllers_);
     warn_of_unused_messages(world_, controllers_, arrivals);
     warn_of_undecoded_messages(controllers_);
+    warn_of_send_results(controllers_);
     tell_of_ended_programs(controllers_);
 }
 

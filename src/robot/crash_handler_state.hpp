@@ -1,5 +1,5 @@
-// State of the crash handler of one run, shared by the handler (crash_handler.cpp), its watchdog (watchdog.cpp), the crash
-// message (crash_message.cpp), and what watches processes, children and blocked calls. For this room only.
+// State of the crash handler of one run, shared by the handler (crash_handler.cpp), its watchdog (watchdog.cpp), the
+// crash message (crash_message.cpp), and what watches processes, children and blocked calls. For this room only.
 #pragma once
 
 #include <pthread.h>

@@ -185,6 +185,46 @@ void warn_of_unused_messages(World const& world, std::span<Controller const> con
     }
 }
 
+void warn_of_equal_seeds(std::span<Controller const> controllers) {
+    std::optional<unsigned> first;
+    std::size_t count = 0;
+    for (Controller const& controller : controllers) {
+        if (std::optional<unsigned> const seed = controller.program.seed) {
+            if (count > 0 && seed != first) {
+                return;
+            }
+            first = seed;
+            ++count;
+        }
+    }
+    if (count > 1) {
+        log().warn(
+            "{} robots have called srand({}): with the same seed, they draw the same random numbers. For numbers of "
+            "its own, each robot calls srand(pogobot_helper_getRandSeed())",
+            count, *first);
+    }
+}
+
+void warn_of_send_results(std::span<Controller const> controllers) {
+    SendResults all;
+    for (Controller const& controller : controllers) {
+        all.sent += controller.send_results.sent;
+        all.said += controller.send_results.said;
+    }
+    if (all.sent > 0 && all.said == 0) {
+        log().warn(
+            "msg_tx_fn has sent messages in {} calls and returned false in each, so nb_msgs_sent is 0: return true "
+            "when a message was sent (the send functions return 0 then)",
+            all.sent);
+    }
+    if (all.sent == 0 && all.said > 0) {
+        log().warn(
+            "msg_tx_fn has returned true in {} calls and sent nothing in any, but nb_msgs_sent counts them: return "
+            "false when no message was sent",
+            all.said);
+    }
+}
+
 void warn_of_undecoded_messages(std::span<Controller const> controllers) {
     auto const reads = [](Controller const& controller) { return controller.program.reads_messages; };
     auto const decodes = [](Controller const& controller) { return controller.program.decodes_messages; };

@@ -38,6 +38,12 @@ void warn_of_idle_categories(World const& world, std::span<Controller const> con
 /// A program that has never called pogobot_init(), not even in user_init.
 void warn_of_missing_init(std::span<Controller const> controllers);
 
+/// Robots that have all called srand() with the same seed, and so draw the same random numbers.
+void warn_of_equal_seeds(std::span<Controller const> controllers);
+
+/// A program whose msg_tx_fn never says what it does.
+void warn_of_send_results(std::span<Controller const> controllers);
+
 /// Columns of the data file that cannot be filled.
 void warn_of_empty_columns(std::span<ColumnSpec const> columns, std::span<Controller const> controllers);
 

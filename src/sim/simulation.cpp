@@ -275,8 +275,7 @@ void Simulation::open_window() {
         if (setup.restored) {
             setup.speed_up = setup.restored->speed_up;
         }
-        setup.restart_problem = options_.restart_problem;
-        setup.earlier_files = options_.earlier_files;
+        setup.check_restart = options_.check_restart;
         setup.hurry = [this](char const* what) { crash_handler_.hurry(what); };
         setup.scenery = snapshots().scenery();
         window_ = std::make_unique<WindowDriver>(*this, setup);

@@ -48,10 +48,7 @@ struct RunOptions {
     bool close_at_end = false;           // else the window stays open when the simulated time is over
     std::string program_name{};          // for the window's title
     std::optional<Restart> restarted{};  // by the user, in the window of the run before
-    // Why the user cannot start the run again, empty if it is possible. Called in the window's thread.
-    std::function<std::string()> restart_problem = [] { return std::string(); };
-    // See WindowSetup::earlier_files.
-    std::function<std::vector<std::string>()> earlier_files = [] { return std::vector<std::string>(); };
+    std::function<RestartCheck()> check_restart = [] { return RestartCheck{}; };  // see WindowSetup
 };
 
 /// The outcome of a part of a run.

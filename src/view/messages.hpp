@@ -84,6 +84,12 @@ struct Moment {
     std::vector<RecordedValues> recorded{};  // since the moment before
 };
 
+/// Whether the run can be started again, and what that would overwrite.
+struct RestartCheck {
+    std::string problem{};                   // such as a configuration that is wrong by now; empty: there is none
+    std::vector<std::string> overwritten{};  // and the name to keep it under: "run.feather -> run.1.feather"
+};
+
 /// The constants of an open window.
 struct WindowSetup {
     std::string title;
@@ -99,12 +105,7 @@ struct WindowSetup {
     std::vector<std::string> columns;  // of RecordedValues
     // Called in the window's thread once the run is to end, be it in a long step; says by what.
     std::function<void(char const* what)> hurry;
-    // Why the run cannot be started again, such as a configuration that is wrong by now; empty if it can. Called in the
-    // window's thread.
-    std::function<std::string()> restart_problem;
-    // What a restart would overwrite, and the name under which it can be kept: "run.feather -> run.1.feather". Called
-    // in the window's thread.
-    std::function<std::vector<std::string>()> earlier_files;
+    std::function<RestartCheck()> check_restart;  // called in the window's thread
 };
 
 /// How a window ended.

@@ -30,7 +30,7 @@ struct PanelInput {
 /// A restart would overwrite files: what becomes of them?
 struct RestartQuestion {
     std::uint32_t seed = 0;          // that the new run is to have
-    std::vector<std::string> files;  // see WindowSetup::earlier_files
+    std::vector<std::string> files;  // see RestartCheck::overwritten
 };
 enum class RestartAnswer { keep, overwrite, cancel };
 

@@ -266,15 +266,13 @@ private:
     }
 
     void restart(std::uint32_t seed) {
-        if (std::string const problem = setup_.restart_problem(); !problem.empty()) {
-            say("cannot restart: " + problem);
-            return;
-        }
-        std::vector<std::string> const files = setup_.earlier_files();
-        if (files.empty()) {
+        RestartCheck const check = setup_.check_restart();
+        if (!check.problem.empty()) {
+            say("cannot restart: " + check.problem);
+        } else if (check.overwritten.empty()) {
             restart(seed, /*overwrite=*/false);
         } else {
-            state_.question = RestartQuestion{seed, files};
+            state_.question = RestartQuestion{seed, check.overwritten};
         }
     }
 

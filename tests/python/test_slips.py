@@ -407,3 +407,95 @@ def test_fraction_of_an_integer_parameter_is_warned_of_once(program: Compile, tm
     (warning,) = warnings(slip(program, tmp_path, "nothing", {"parameters.turn_duration": 400.7}))
     assert warning.startswith("scene.yaml:")
     assert warning.endswith(": parameters.turn_duration: expected an integer, found 400.7; 400 is used")
+
+
+# ---- Values that a function or a variable cannot say ----
+
+SAME = """#include "pogobase.h"
+typedef struct {{ uint8_t count; }} USERDATA;
+DECLARE_USERDATA(USERDATA)
+REGISTER_USERDATA(USERDATA)
+{functions}
+static void user_init(void) {{ {init} }}
+static void user_step(void) {{}}
+int main(void) {{
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    {setup}
+    return 0;
+}}
+"""
+
+
+def program_with(folder: Path, init: str = "", functions: str = "", setup: str = "") -> Path:
+    return compile_text(folder, SAME.format(init=init, functions=functions, setup=setup))
+
+
+@pytest.mark.parametrize(
+    ("init", "robots", "warning"),
+    [
+        ("srand(42);", 3, "3 robots have called srand(42): with the same seed, they draw the same random numbers."),
+        ("srand(42);", 1, ""),
+        ("srand((unsigned)pogobot_helper_getRandSeed());", 3, ""),
+        ("srand(pogobot_helper_getid());", 3, ""),
+        ("if (pogobot_helper_getid() == 1) { srand(42); }", 3, ""),
+    ],
+)
+def test_robots_of_the_same_seed_are_told(tmp_path: Path, init: str, robots: int, warning: str) -> None:
+    result = run(program_with(tmp_path, init), tmp_path, {"objects.robots.nb": robots, "simulation_time": 0.1})
+    assert [line[: len(warning)] for line in warnings(result)] == ([warning] if warning else [])
+
+
+@pytest.mark.parametrize(
+    ("send", "warning"),
+    [
+        (
+            "return pogobot_infrared_sendShortMessage_omni(data, 1);",
+            r"msg_tx_fn has sent messages in \d+ calls and ret",
+        ),
+        ("return true;", r"msg_tx_fn has returned true in \d+ calls and sent nothing in any, but nb_msgs_sent counts"),
+        ("return pogobot_infrared_sendShortMessage_omni(data, 1) == 0;", ""),
+        ("(void)data; return false;", ""),
+    ],
+)
+def test_results_of_msg_tx_fn_that_are_always_wrong_are_told(tmp_path: Path, send: str, warning: str) -> None:
+    functions = f"static bool send(void) {{ static uint8_t POGO_SHARED data[1] = {{1}}; (void)data; {send} }}"
+    program = program_with(tmp_path, "msg_tx_fn = send;", functions.replace("POGO_SHARED ", ""))
+    said = warnings(run(program, tmp_path, {"simulation_time": 2}))
+    found = [line for line in said if line.startswith("msg_tx_fn has")]
+    assert len(found) == (1 if warning else 0)
+    assert not warning or re.match(warning, found[0])
+
+
+EXPORT = """
+static void add(void) {{ data_add_column_int{bits}("n"); }}
+static void export_values(void) {{ data_set_value_int{bits}("n", {value}); }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("bits", "value", "recorded", "warns"),
+    [
+        (8, "(uint8_t)156", -100, True),
+        (8, "127", 127, False),
+        (8, "-128", -128, False),
+        (8, "-129", 127, True),
+        (16, "(uint16_t)40000", -25536, True),
+        (16, "32767", 32767, False),
+        (32, "(uint32_t)4000000000u", -294967296, True),
+        (32, "INT32_MIN", -(2**31), False),
+    ],
+)
+def test_integers_beyond_the_type_of_their_column_are_told(
+    tmp_path: Path, bits: int, value: str, recorded: int, *, warns: bool
+) -> None:
+    program = program_with(
+        tmp_path,
+        functions=EXPORT.format(bits=bits, value=value),
+        setup="SET_CALLBACK(callback_create_data_schema, add); SET_CALLBACK(callback_export_data, export_values);",
+    )
+    result = run(program, tmp_path, {"simulation_time": 0.1})
+    said = warnings(result)
+    assert len(said) == (1 if warns else 0), said
+    assert not warns or f"data_set_value_int{bits}(): value is " in said[0]
+    assert set(result.frame()["n"]) == {recorded}

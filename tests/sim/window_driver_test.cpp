@@ -92,7 +92,10 @@ protected:
         scenario_.simulation_time_s = 1e5;
         scenario_.view.gui_speed_up = 0.0;
     }
-    void TearDown() override { window_script = nullptr; }
+    void TearDown() override {
+        simulation_.reset();  // waits for the window's thread, which calls the script
+        window_script = nullptr;
+    }
 
     /// Runs to the end; the user ends the run when the script is over. What the script throws fails the test.
     ExitCode run_with(std::function<void(Exchange&)> const& script, RunOptions options = {}) {
@@ -107,9 +110,9 @@ protected:
     }
 
     ExitCode run_until_end(WindowScript const& script, RunOptions options = {}) {
-        bool is_shown = false;
-        window_script = [&is_shown, script](WindowSetup const& setup, Exchange& exchange) {
-            is_shown = true;
+        auto const is_shown = std::make_shared<std::atomic<bool>>(false);
+        window_script = [is_shown, script](WindowSetup const& setup, Exchange& exchange) {
+            *is_shown = true;
             try {
                 return script(setup, exchange);
             } catch (std::exception const& error) {
@@ -121,7 +124,8 @@ protected:
         options.window = true;
         simulation_ = std::make_unique<Simulation>(test_program(), scenario_, std::move(options));
         ExitCode const code = simulation_->run();
-        EXPECT_TRUE(is_shown) << "the run had no window";
+        // A short run may be over before the thread of its window calls the script.
+        wait_for("the run's window", [&] { return is_shown->load(); });
         return code;
     }
 
