@@ -1,4 +1,5 @@
-/// @file Runs inside another process, such as Python: a run is a value that the host advances step by step. Any number
+/// @file
+/// Runs inside another process, such as Python: a run is a value that the host advances step by step. Any number
 /// of runs may exist, of the same program or others. Several threads may use one run: a call waits for the end of the
 /// time step that another thread is making, not for all of its steps. The last call of a run is pogosim_run_close().
 /// The package `pogosim` of Python is made with this (`pogosim.Simulation`); it is meant for other languages, too.

@@ -47,7 +47,7 @@ POGO_BEGIN_API
 /// Number of ticks executed; incremented at the end of each tick.
 /// @range from 0
 extern POGO_PER_ROBOT uint32_t pogobot_ticks;
-/// Requested ticks per second, initially 60; 0 means a tick in every `time_step`, since robots do not sleep then.
+/// Requested ticks per second, initially 60; 0: a tick in every `time_step`, without a sleep.
 /// The sleep between ticks is truncated to milliseconds, so 60 gives 62.5.
 /// @range Hz, 0 to 255; initially 60
 extern POGO_PER_ROBOT uint8_t main_loop_hz;
