@@ -27,7 +27,7 @@ def seen_places(position_mm: Floats, reach_mm: npt.ArrayLike, box: Box | None) -
     Args:
         position_mm: Shape (n, 2), finite.
         reach_mm: Radius of each, or one of all.
-        box: Of a periodic arena. None: walls are solid, and every body is seen at its own place only.
+        box: The box of a periodic arena. None: walls are solid, and every body is seen at its own place only.
 
     Returns:
         Which body is seen, shape (k,), in the order of bodies, and where, shape (k, 2).

@@ -42,7 +42,7 @@ def trail_segments(rows: pd.DataFrame, extent_mm: Floats, box: Box | None = None
     Args:
         rows: As in Swarm.
         extent_mm: Width and height of the arena.
-        box: Of a periodic arena, in which a step across the border is one line from either end. None: steps of more
+        box: The box of a periodic arena, in which a step across the border is one line from either end. None: steps of more
             than half the arena are left out.
 
     Returns:
