@@ -167,13 +167,14 @@ class Moving:
                 starts[:, 1:] = ~is_way[begin:end, mine].T
                 path = outline_of(self.pixels(way[begin : end + 1, mine]).transpose(1, 0, 2), False, starts)
                 crossing = np.nonzero(is_crossing[begin:end] & mine)
-                if len(crossing[0]):
+                crosses = len(crossing[0]) > 0
+                if crosses:
                     from_mm, to_mm = way[begin:end][crossing], way[begin + 1 : end + 1][crossing]
                     lines = outline_of(self.pixels(lines_between(from_mm, to_mm, self.box)[0]), False)
                     path = Outline.make_compound_path(path, lines)
                     path.should_simplify = False
                 colour = (*self.trail_shades[number], 0.04 + 0.7 * freshness**3)
-                brush.draw(path, line=colour, width_pt=0.5 + 0.9 * freshness, cap="round", on_floor=self.is_cut)
+                brush.draw(path, line=colour, width_pt=0.5 + 0.9 * freshness, cap="round", on_floor=crosses)
 
     def draw_links(self, brush: Brush, now: Rows, place: Floats) -> None:
         """Draw lines between objects near enough to hear each other; they end at the walls."""
