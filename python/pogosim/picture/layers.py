@@ -42,8 +42,8 @@ def trail_segments(rows: pd.DataFrame, extent_mm: Floats, box: Box | None = None
     Args:
         rows: As in Swarm.
         extent_mm: Width and height of the arena.
-        box: The box of a periodic arena, in which a step across the border is one line from either end. None: steps of more
-            than half the arena are left out.
+        box: The box of a periodic arena, in which a step across the border is one line from either end. None: steps of
+            more than half the arena are left out.
 
     Returns:
         The steps, shape (n, 2, 2): from and to, x and y. And the n rows that they lead to.
