@@ -14,9 +14,11 @@ from pathlib import Path
 from pages import code_blocks, run
 from pictures import DOCS, ROOT, Picture, fingerprint
 from pogosim.utils import load_dataframe
+from quotes import Quote
 
-NAMES = ("parameter_study.png",)
+NAMES = ("parameter_study.png", "parameter_study.md: results")
 PAGE = DOCS / "parameter_study.md"
+PARAMETERS = ("objects.robots.nb", "objects.robots.communication_radius", "parameters.power")
 FILES = {"c": "main.c", "yaml": "rumour.yaml", "python": "plot.py"}
 
 
@@ -39,9 +41,16 @@ def picture_in(folder: Path) -> Picture:
     return Picture((folder / "rumour" / "rumour.png").read_bytes(), fingerprint(rows))
 
 
-def draw(folder: Path) -> dict[str, Picture]:
-    """Follow the page; return its figure."""
+def size_in(folder: Path) -> Quote:
+    """Return how much the results of the page's batch are."""
+    results = folder / "rumour" / "results" / "rumour.feather"
+    runs = len(load_dataframe(results)[0][["run", *PARAMETERS]].drop_duplicates())
+    return Quote((f"The results of the {runs} runs take {results.stat().st_size / 1e6:.1f} MB of disk space.",))
+
+
+def draw(folder: Path) -> dict[str, Picture | Quote]:
+    """Follow the page; return its figure, and the size of its results."""
     for name in (".venv", "arenas", "build"):
         (folder / name).symlink_to(ROOT / name)
     follow(folder)
-    return {NAMES[0]: picture_in(folder)}
+    return dict(zip(NAMES, (picture_in(folder), size_in(folder)), strict=True))

@@ -29,8 +29,10 @@ PYTHON = sys.executable
 def stamp() -> str:
     """Return the line that says when, with what and where times are measured now; see STAMP."""
     today = datetime.now(timezone.utc).date().isoformat()
-    compiler = drawn_on()["Platform"].rpartition(" glibc ")[2]
-    return f"Measured on {today} with v{__version__}: {processor()}, {os.cpu_count()} processors, glibc {compiler}"
+    glibc, _, compiler = drawn_on()["Platform"].rpartition(" glibc ")[2].partition(" ")
+    compiler = compiler.replace("GNU", "gcc")  # as CMake calls it
+    machine = f"{processor()}, {os.cpu_count()} processors"
+    return f"Measured on {today} with v{__version__}: {machine}, glibc {glibc}, {compiler}"
 
 
 @dataclass(frozen=True)

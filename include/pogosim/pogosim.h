@@ -47,8 +47,8 @@ POGO_BEGIN_API
 /// Number of ticks executed; incremented at the end of each tick.
 /// @range from 0
 extern POGO_PER_ROBOT uint32_t pogobot_ticks;
-/// Requested ticks per second, initially 60. The sleep between ticks is truncated to milliseconds, so 60 gives 62.5.
-/// 0: no sleep, i.e. one tick per `time_step` in the simulator.
+/// Requested ticks per second, initially 60; 0: a tick in every `time_step`, without a sleep.
+/// The sleep between ticks is truncated to milliseconds, so 60 gives 62.5.
 /// @range Hz, 0 to 255; initially 60
 extern POGO_PER_ROBOT uint8_t main_loop_hz;
 /// Maximum number of messages passed to msg_rx_fn per tick, initially 3; any others waiting are dropped.

@@ -34,7 +34,7 @@ extern POGO_PER_ROBOT void (*callback_global_setup)(void);
 extern POGO_PER_ROBOT void (*callback_create_data_schema)(void);
 /// For each object at time 0 and at each save period: set the values of its row.
 extern POGO_PER_ROBOT void (*callback_export_data)(void);
-/// At each tick of a 60 Hz loop, before the robots, in its own context (category "__system", no body).
+/// Every 16 ms of simulated time, before the robots, in its own context (category "__system", no body).
 extern POGO_PER_ROBOT void (*callback_global_step)(void);
 /// For each object at the end of the run.
 extern POGO_PER_ROBOT void (*callback_robot_end)(void);

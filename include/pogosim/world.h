@@ -78,7 +78,7 @@ void* pogosim_world_user_data(uint32_t object);
 
 /// Whether the object is switched on, as all are at first. True for objects that run no program.
 bool pogosim_world_is_alive(uint32_t object);
-/// Switches an object off or on. Switched off, it runs no user code, neither sends nor receives messages, its motors
+/// Switches an object off or on. Switched off, it runs no user code and neither sends nor receives messages; its motors
 /// stand still and its LEDs are dark. Its body stays, and so do its rows in the data file, with callback_export_data,
 /// and callback_robot_end. Switched on, it goes on where it was: variables, motors, LEDs and waiting messages are as
 /// they were, and its clock has gone on. Only for objects that run the program.

@@ -86,9 +86,10 @@ void check_format(TableKind const& kind, std::string const& path) {
     }
     if (format == TableFormat::csv && MetadataBeside::is_taken(path)) {
         fail(kind, path,
-             fmt::format("its metadata go to '{}', and the file that is there is none of Pogosim; move it, or choose "
-                         "another name",
-                         MetadataBeside::path_of(path).string()));
+             fmt::format(
+                 "its metadata belong in '{}', but a file that Pogosim did not write is already there; move it, or "
+                 "choose another name",
+                 MetadataBeside::path_of(path).string()));
     }
 }
 

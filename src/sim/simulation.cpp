@@ -44,7 +44,7 @@ std::uint32_t thread_count(Scenario const& scenario, World const& world) {
     if (threads > processors) {
         log().warn(
             "{}: {} threads wait for each other on {} processor{}, which makes the run slower; 'auto' takes as many as "
-            "are of use",
+            "are useful",
             place_of(scenario, Setting::threads), threads, processors, processors == 1 ? "" : "s");
     }
     return threads;
@@ -439,7 +439,7 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
     }
     if (!free_places().is_free(moved, centre_mm)) {
         throw ConfigError(
-            fmt::format("({:g}, {:g}) mm is no place for an object: it is in a wall or outside of the arena",
+            fmt::format("({:g}, {:g}) mm is inside a wall or outside the arena; an object cannot be placed there",
                         centre_mm.x, centre_mm.y));
     }
     put(object, centre_mm, heading_rad);

@@ -149,7 +149,7 @@ public:
     std::optional<UserFailure> click(std::uint32_t robot);
 
     /// Moves an object (index into World::objects) to the free place nearest to `centre_mm`, see FreePlaces. It stands
-    /// still there until its motors or others move it. False: it stays where it is.
+    /// still there until its motors or other objects move it. False: it stays where it is.
     bool move_object(std::uint32_t object, Vec2 centre_mm);
 
     /// True from the first click that ran a callback, or the first move, on.

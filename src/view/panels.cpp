@@ -204,7 +204,7 @@ void draw_question(PanelState const& state, PanelActions const& actions) {
     if (ImGui::Begin("Run again", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
         ImGui::PushTextWrapPos(std::max(size.x - 6.0F * kMarginPx, kMarginPx));
         ImGui::TextUnformatted(
-            fmt::format("Run again with seed {}: what becomes of the files of this run?", question.seed).c_str());
+            fmt::format("Run again with seed {}: keep the files of this run?", question.seed).c_str());
         for (std::string const& file : question.files) {
             ImGui::TextUnformatted(file.c_str());
         }

@@ -269,14 +269,15 @@ def test_frame_shows_what_a_picture_shows(tmp_path: Path, look: Look, boundary: 
 
     swarm = recording.until(6.0)
     stills.canvas.restore_region(stills.still)
-    for artist in list(stills.axes.collections):
+    for artist in [*stills.axes.collections, *stills.axes.patches]:
         artist.remove()
     if look.tail_s:
-        layers.draw_trails(stills.axes, swarm, layers.extent_of(swarm), look.tail_s, 60)
+        layers.draw_trails(stills.axes, swarm, stills.floor, look.tail_s, 60)
     if look.links:
         layers.draw_links(stills.axes, links_at_end(swarm), stills.floor)
     layers.draw_bodies(stills.axes, swarm, stills.floor)
-    for artist in sorted(stills.axes.collections, key=lambda one: one.get_zorder()):
+    layers.draw_border(stills.axes, swarm)
+    for artist in sorted([*stills.axes.collections, *stills.axes.patches], key=lambda one: one.get_zorder()):
         artist.draw(stills.canvas.get_renderer())
     picture = np.array(stills.canvas.buffer_rgba())[40:-45, :, :3].astype(int)
 
@@ -303,6 +304,16 @@ def test_glow_ends_at_the_wall(tmp_path: Path) -> None:
     image = pixels(stills, 0.0)
     assert image[place_of(stills, -13.0, 500)].tolist() == [255, 255, 255]
     assert image[place_of(stills, 52.0, 500)][0] > 30
+
+
+def test_robot_at_a_periodic_border_comes_back_on_the_other_side(tmp_path: Path) -> None:
+    rows = walkers(1, 2).assign(x=995.0, y=500.0)
+    recording = read_recording(write(tmp_path / "border.feather", rows, boundary_condition="periodic"))
+    stills = Stills(recording, (720, 800), Look())
+    image = pixels(stills, 0.0)
+    for x_mm in (980.0, 12.0):
+        assert np.ptp(image[place_of(stills, x_mm, 500)]) > 100  # red
+    assert image[place_of(stills, 1014.0, 500)].tolist() == [255, 255, 255]
 
 
 def test_headings_stand_out_from_bright_and_dark_colours(data: Path) -> None:

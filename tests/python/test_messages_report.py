@@ -178,8 +178,8 @@ def test_unknown_category_and_empty_log_are_one_message(tmp_path: Path, capsys: 
 
 
 def test_run_of_probes_follows_the_articles_equation(tmp_path: Path) -> None:
-    changes = {"simulation_time": 20.0, "message_log": str(tmp_path / "m.feather"), "parameters.send_percent": 80}
-    run_shipped("probes", tmp_path, changes)
+    changes = {"message_log": str(tmp_path / "m.feather"), "parameters.send_percent": 80}
+    run_shipped("probes", tmp_path, {"simulation_time": 20.0, "save_data_period": 0, **changes})
     assert analyze("messages", ["-i", str(tmp_path / "m.feather"), "-o", str(tmp_path / "out")], PROG) == 0
     table = pd.read_csv(tmp_path / "out" / "reception_by_cluster_size.csv").set_index("cluster_size")
     law = DynamicLaw().probability(6, 0.8, table.index.to_numpy(float))
@@ -192,7 +192,7 @@ def test_run_of_probes_follows_the_articles_equation(tmp_path: Path) -> None:
 def test_several_logs_have_a_curve_for_each_combination(tmp_path: Path) -> None:
     for percent in (20, 80):
         changes = {"message_log": str(tmp_path / f"{percent}.feather"), "parameters.send_percent": percent}
-        run_shipped("probes", tmp_path, {"simulation_time": 2.0, **changes})
+        run_shipped("probes", tmp_path, {"simulation_time": 2.0, "save_data_period": 0, **changes})
     assert analyze("messages", ["-i", str(tmp_path / "[28]0.feather"), "-o", str(tmp_path / "out")], PROG) == 0
     table = pd.read_csv(tmp_path / "out" / "reception_by_cluster_size.csv")
     assert set(table["parameters.send_percent"]) == {20, 80}

@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from parameter_study import NAMES, PAGE, follow, picture_in
+from parameter_study import NAMES, PAGE, follow, picture_in, size_in
 from pictures import DOCS, difference, drawn_on
 from PIL import Image
 from pogosim.confidence import mean_over_runs
 from pogosim.utils import load_dataframe
+from quotes import quote_difference
 from running import ROOT, build_folder
 
 NUMBER, RANGE, POWER = PARAMETERS = ["objects.robots.nb", "objects.robots.communication_radius", "parameters.power"]
@@ -52,6 +53,7 @@ def informed(rows: pd.DataFrame) -> pd.DataFrame:
 def test_figure_is_the_one_on_the_page(folder: Path, rows: pd.DataFrame) -> None:
     assert len(rows) > 0
     assert difference(DOCS / NAMES[0], picture_in(folder)) == ""
+    assert quote_difference(NAMES[1], PAGE, size_in(folder)) == ""
 
 
 def test_script_prints_what_the_page_quotes_where_its_figure_was_drawn(printed: str) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from pogosim.picture.colouring import Legend, Scale, colouring_of
 from pogosim.picture.errors import PictureError
@@ -91,9 +92,31 @@ def test_column_colours_robots_and_their_key_names_it(data: Path) -> None:
     assert legend.get_title().get_text() == "state"
 
 
+@pytest.mark.parametrize("categories", [("robots",), ("robots", "others")])
+def test_categories_without_leds_have_a_legend_if_there_are_several(tmp_path: Path, categories: tuple[str]) -> None:
+    rows = walkers().drop(columns="led_rgb")
+    rows["robot_category"] = np.array(categories)[rows["robot_id"] % len(categories)]
+    recording = read_recording(write(tmp_path / "a.feather", rows, {name: {"type": "pogobot"} for name in categories}))
+    legends = draw(recording.until()).legends
+    shown = [[text.get_text() for text in legend.get_texts()] for legend in legends]
+    assert shown == ([["others", "robots"]] if len(categories) > 1 else [])
+    if legends:
+        (legend,) = legends
+        swatches = [to_rgb(line.get_markerfacecolor()) for line in legend.get_lines()]
+        own = recording.last.rows.groupby("robot_category")[RGB].first().to_numpy().tolist()
+        assert swatches == [pytest.approx(colour) for colour in own]
+        assert legend.get_title().get_text() == "robot_category"
+
+
 @pytest.mark.parametrize(
     ("column", "said"),
-    [("none", "it has no column none; it has time, "), ("lists", "holds neither numbers nor names nor truth values")],
+    [
+        ("none", "it has no column none; it has time, "),
+        ("heared", "it has no column heared; did you mean 'heard'\\?"),
+        ("sped", "it has no column sped; did you mean 'speed'\\?"),
+        ("subpart_id", "it has no column subpart_id; it has time, "),
+        ("lists", "holds neither numbers nor names nor truth values"),
+    ],
 )
 def test_column_that_gives_no_colours_is_refused(tmp_path: Path, column: str, said: str) -> None:
     data = write(tmp_path / "a.feather", walkers().assign(lists=pd.Series([[1]] * 15)))

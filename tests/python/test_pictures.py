@@ -54,6 +54,13 @@ def test_demonstration_ends_while_new_colours_spread(tmp_path: Path) -> None:
     assert window.moment(rows)[0] <= window.LAST_S
 
 
+def test_robots_of_the_page_on_learning_drive_with_the_weights_that_it_quotes() -> None:
+    page = DOCS / "learning.md"
+    (learnt,) = (line for line in quoted(page, "returns") if re.match(r"light +policy: ", line))
+    (used,) = re.findall(r"parameters\.policy=(\[.*\])", page.read_text())
+    assert used == learnt.partition("policy: ")[2]
+
+
 def quotes_on_pages() -> set[str]:
     """Return the names of all quotes that stand on pages."""
     found = {

@@ -102,8 +102,10 @@ def test_screenshot_taken_at_once_shows_the_arena_and_its_robots(tmp_path: Path)
     assert share_of_floor(shot) > 0.2
 
 
-def test_page_without_javascript_shows_the_same_first_picture(browser: Browser, tmp_path: Path) -> None:
-    page = page_of(write(tmp_path / "run.feather", walkers()))
+@pytest.mark.parametrize("boundary", ["solid", "periodic"])
+def test_page_without_javascript_shows_the_same_first_picture(browser: Browser, tmp_path: Path, boundary: str) -> None:
+    rows = walkers().assign(x=lambda frame: frame["x"] - 160.0, y=1.0)  # at the border, and in a corner
+    page = page_of(write(tmp_path / "run.feather", rows, boundary_condition=boundary))
     pictures = []
     for has_javascript in (True, False):
         opened = browser.new_page(viewport={"width": 900, "height": 700}, java_script_enabled=has_javascript)
@@ -258,6 +260,23 @@ def test_way_across_a_periodic_border_leaves_no_streak(browser: Browser, tmp_pat
     page.evaluate("replay.setTime(0.5)")
     x, y = page.evaluate("replay.screen(0)")
     assert max(pixel(page, x + 200, y)) < 40  # the floor
+    assert page.said == []  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("boundary", ["solid", "periodic"])
+def test_robot_at_a_periodic_border_comes_back_on_the_other_side(
+    browser: Browser, tmp_path: Path, boundary: str
+) -> None:
+    rows = walkers(2, 1).assign(x=[995.0, 495.0], y=500.0, led_rgb=[0x190000, 0])
+    page = show(browser, page_of(write(tmp_path / "run.feather", rows, boundary_condition=boundary)))
+    (x, y), (other_x, _) = page.evaluate("[replay.screen(0), replay.screen(1)]")
+    scale = (x - other_x) / 500.0  # pixels per mm
+    is_red, is_back, is_beyond = (
+        bool(np.ptp(pixel(page, x + scale * (mm - 995.0), y)) > 100) for mm in (980.0, 12.0, 1012.0)
+    )
+    assert is_red
+    assert is_back == (boundary == "periodic")
+    assert is_beyond == (boundary == "solid")
     assert page.said == []  # type: ignore[attr-defined]
 
 

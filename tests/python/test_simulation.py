@@ -280,7 +280,7 @@ def test_poses_can_be_set(sim: pogosim.Simulation) -> None:
     assert np.hypot(*(sim.positions[1] - (500.0, 520.0))) < 5
     sim.set_pose(1, 480.0, 520.0)
     for robot, x, y, message in (
-        (1, 0.0, 0.0, "no place for an object"),
+        (1, 0.0, 0.0, "is inside a wall or outside the arena"),
         (1, math.nan, 0.0, "x: expected a finite number, found nan"),
         (3, 500.0, 500.0, "there is no robot 3: the run has 3"),
         (-1, 500.0, 500.0, "there is no robot -1: the run has 3"),

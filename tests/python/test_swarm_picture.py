@@ -12,7 +12,10 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 import yaml
+from matplotlib.colors import to_rgb
 from pogosim import swarm_picture
+from pogosim.picture.images import seen_places
+from pogosim.picture.palette import PALETTE
 from pogosim.picture.swarm import OBJECT
 from pogosim.swarm_picture import led_brightness, led_colours, main, read_swarm, round_length, thinned
 from pyarrow import feather
@@ -129,11 +132,31 @@ def test_thinning_keeps_the_first_and_last_time() -> None:
     assert len(thinned(frame, 1000)) == 3000
 
 
-def test_step_across_the_seam_of_a_periodic_arena_is_no_line() -> None:
+def test_jump_over_half_the_arena_is_no_line() -> None:
     frame = pd.DataFrame({OBJECT: 0, "time": range(4), "x": [300.0, 390.0, 10.0, 60.0], "y": 5.0})
     segments, ends = swarm_picture.trail_segments(frame, np.array([400.0, 400.0]))
     np.testing.assert_array_equal(segments[:, :, 0], [[300, 390], [10, 60]])
     assert ends["time"].tolist() == [1, 3]
+
+
+def test_step_across_the_border_of_a_periodic_arena_is_a_line_from_either_end() -> None:
+    frame = pd.DataFrame({OBJECT: 0, "time": range(4), "x": [300.0, 390.0, 10.0, 60.0], "y": 5.0})
+    box = (np.zeros(2), np.full(2, 400.0))
+    segments, ends = swarm_picture.trail_segments(frame, np.array([400.0, 400.0]), box)
+    np.testing.assert_array_equal(segments[:, :, 0], [[300, 390], [390, 410], [10, 60], [10, -10]])
+    assert ends["time"].tolist() == [1, 2, 3, 2]
+
+
+def test_body_is_seen_from_every_border_of_a_periodic_arena_that_it_crosses() -> None:
+    box = (np.array([-100.0, 0.0]), np.array([300.0, 200.0]))
+    place = np.array([[100.0, 100.0], [-95.0, 100.0], [290.0, 195.0]])
+    which, seen = seen_places(place, 20.0, box)
+    corner = [(290, 195), (290, -5), (-110, 195), (-110, -5)]
+    assert which.tolist() == [0, 1, 1, 2, 2, 2, 2]
+    assert sorted(map(tuple, seen.tolist())) == sorted([(100, 100), (-95, 100), (305, 100), *corner])
+    which, seen = seen_places(place, 20.0, None)
+    assert which.tolist() == [0, 1, 2]
+    assert seen.tolist() == place.tolist()
 
 
 def test_trails_do_not_join_different_objects() -> None:
@@ -187,14 +210,66 @@ class Map:
         return float(self.at(x, y).mean())
 
 
+ROBOTS = {"robots": {"type": "pogobot", "geometry": "disk", "radius": 26.5}}
+
+
 def scene(folder: Path, objects: dict[str, Any], extra: pd.DataFrame | None = None) -> Map:
     """Two robots and other objects."""
-    robots = {"robots": {"type": "pogobot", "geometry": "disk", "radius": 26.5}}
     frame = rows(subpart_id=np.array([-1] * 4, np.int16))
     if extra is not None:
         frame = pd.concat([frame, extra])
-    configuration = yaml.safe_dump({"objects": {**robots, **objects}})
+    configuration = yaml.safe_dump({"objects": {**ROBOTS, **objects}})
     return Map(picture(folder, write(folder, frame, configuration=configuration), "--tail", "0.001"))
+
+
+def periodic_map(folder: Path, objects: dict[str, Any], frame: pd.DataFrame) -> Map:
+    """Two robots and other objects in a periodic arena, with their trails."""
+    configuration = yaml.safe_dump({"boundary_condition": "periodic", "objects": {**ROBOTS, **objects}})
+    frame = pd.concat([rows(subpart_id=np.array([-1] * 4, np.int16)), frame])
+    return Map(picture(folder, write(folder, frame, configuration=configuration)))
+
+
+def is_paper(colour: npt.NDArray[np.float64]) -> bool:
+    return bool(np.abs(colour - to_rgb(PALETTE["paper"])).max() < 0.02)
+
+
+def test_robot_at_a_periodic_border_is_seen_on_both_sides_and_ends_at_the_border(tmp_path: Path) -> None:
+    objects = {"others": ROBOTS["robots"]}
+    frame = others("others", [395], [200], angle=math.pi / 2)
+    picture_mm = periodic_map(tmp_path, objects, frame)
+    assert is_green(picture_mm.at(380, 200))  # the robot itself
+    assert is_green(picture_mm.at(15, 200))  # its other part
+    assert not is_green(picture_mm.at(25, 200))  # 26.5 mm - 5 mm is where that ends
+    assert is_paper(picture_mm.at(405, 200))  # beyond the border
+
+    plain = yaml.safe_dump({"objects": {**ROBOTS, **objects}})
+    walled = Map(picture(tmp_path, write(tmp_path, pd.concat([rows(), frame]), configuration=plain)))
+    assert not is_green(walled.at(15, 200))
+
+
+def test_robot_in_the_corner_of_a_periodic_arena_is_seen_in_all_four(tmp_path: Path) -> None:
+    picture_mm = periodic_map(tmp_path, {"others": ROBOTS["robots"]}, others("others", [398], [2], angle=0.5))
+    for x, y in ((390, 10), (10, 10), (390, 390), (10, 390)):
+        assert is_green(picture_mm.at(x, y))
+
+
+def test_way_across_a_periodic_border_is_drawn_on_both_sides(tmp_path: Path) -> None:
+    way = [others("others", [x], [200]).assign(time=np.float32(time)) for time, x in ((0, 310.0), (1, 90.0))]
+    picture_mm = periodic_map(tmp_path, {"others": ROBOTS["robots"]}, pd.concat(way))
+    for x in (360.0, 30.0):
+        assert max(picture_mm.at(x, y)[1] for y in np.arange(198.5, 201.6, 0.25)) > 0.3
+    assert is_floor(picture_mm.at(200, 200))
+
+
+def test_membrane_across_a_periodic_border_is_one_ring(tmp_path: Path) -> None:
+    turn = 2 * np.pi * np.arange(60) / 60
+    x, y = ((370 + 80 * np.cos(turn)) % 400).tolist(), (200 + 80 * np.sin(turn)).tolist()
+    ring = {"type": "membrane", "geometry": "disk", "radius": 300, "dot_radius": 6}
+    picture_mm = periodic_map(tmp_path, {"ring": ring}, others("ring", x, y))
+    for place in range(0, 60, 7):
+        assert is_green(picture_mm.at(x[place], y[place]))
+    assert is_floor(picture_mm.at(200, 200))  # no line leads across the arena
+    assert is_floor(picture_mm.at(200, y[10]))
 
 
 def others(category: str, x: list[float], y: list[float], angle: float = 0.0, led: int = 0x001900) -> pd.DataFrame:
@@ -424,10 +499,10 @@ def test_picture_in_the_place_of_its_data_is_refused(
         (".", ". is a folder, not a file"),
         ("folder.png", "folder.png is a folder, not a file"),
         ("pipe.png", "pipe.png is a pipe, not a file"),
-        (".png", ".png is no name of a picture, which ends in .eps, "),
-        ("out", "out is no name of a picture, which ends in .eps, "),
+        (".png", ".png is not a picture file name; expected one that ends in .eps, "),
+        ("out", "out is not a picture file name; expected one that ends in .eps, "),
         ("out.feather", ".pdf, .png, .ps, .svg"),
-        ("out.", "out. is no name of a picture"),
+        ("out.", "out. is not a picture file name"),
         ("new/", "new/ is the name of a folder"),
         ("none/out.png", "there is no folder "),
     ],

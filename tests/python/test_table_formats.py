@@ -187,7 +187,7 @@ def test_file_of_a_user_in_the_place_of_the_metadata_is_refused(tmp_path: Path, 
     (tmp_path / "d.csv.yaml").write_text("my: own\n")
     result = run(example("helloworld"), tmp_path, {key: "d.csv"})
     assert result.code == 2
-    assert "its metadata go to" in result.errors
+    assert "its metadata belong in" in result.errors
     assert (tmp_path / "d.csv.yaml").read_text() == "my: own\n"
     same = run(example("helloworld"), tmp_path, {key: "scene.csv", "console_filename": "scene.csv.yaml"})
     assert same.code == 0  # no console file is written

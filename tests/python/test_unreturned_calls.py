@@ -34,7 +34,7 @@ def line_of(comment: str) -> int:
 
 
 ADVICE = (
-    "Let it return: the main loop calls user_step at each tick. An endless loop as on the robot belongs into main(), "
+    "Let it return: the main loop calls user_step at each tick. An endless loop as on the robot belongs in main(), "
     "with pogobot.h (docs/porting.md)"
 )
 

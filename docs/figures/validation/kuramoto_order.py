@@ -30,8 +30,8 @@ QUICK_COUPLINGS = (0.5, 2.0, 3.0)
 TICK_S, TIME_S, LEFT_OUT_S, RECORD_S = 0.1, 100.0, 40.0, 0.5
 SETTINGS = {  # title, communication radius (mm), motor power, chance to send (%), colour
     "all": ("all robots hear each other", 3000, 0, 10, "#1b6ca8"),
-    "driving": ("those within 0.4 m, driving at 1 m/s", 400, 512, 100, "#d98200"),
-    "standing": ("those within 0.4 m, standing", 400, 0, 100, "#a8321b"),
+    "driving": ("only within 0.4 m, driving at 1 m/s", 400, 512, 100, "#d98200"),
+    "standing": ("only within 0.4 m, standing", 400, 0, 100, "#a8321b"),
 }
 FAR_ABOVE = 1.5  # critical couplings, from where on theory is compared: near the transition, 100 oscillators are few
 MARGIN_THEORY, MARGIN_DRIVING, MARGIN_MODEL = 0.02, 0.05, 0.005

@@ -81,7 +81,7 @@ def draw(rows: pd.DataFrame) -> Figure:
     cells = difference.reshape(len(labels), len(chances))
     image = axes.imshow(cells, cmap="RdBu_r", vmin=-0.4, vmax=0.4, aspect="auto")
     for (row, column), value in np.ndenumerate(cells):
-        axes.text(column, row, f"{value:+.2f}", ha="center", va="center", fontsize=7)
+        axes.text(column, row, f"{round(value, 2) + 0.0:+.2f}", ha="center", va="center", fontsize=7)
     axes.set_yticks(range(len(labels)), labels, fontsize=8)
     axes.set_xticks(range(len(chances)), [f"{chance:g}" for chance in chances])
     axes.set(xlabel="chance to send, per tick", ylabel="payload, neighbours", title="simulated minus measured")

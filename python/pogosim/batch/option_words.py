@@ -115,7 +115,7 @@ def check_options(entries: dict[str, Any]) -> None:
 
 
 def look_at(node: Any, path: Path, names: str) -> None:
-    """Check a node and everything below it; `names` says what defines its keys.
+    """Check a node and everything below it; `names` says where its keys come from.
 
     "top level": the simulator, and tools. "": the simulator. "categories": the user, but not those below. "parameters":
     the user, and those below, too.

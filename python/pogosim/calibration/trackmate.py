@@ -37,7 +37,7 @@ def encoding_of(path: Path) -> str:
 def spots(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     """Return the columns that are needed of a table of spots, and their units where it says them.
 
-    Spots of no track have no id. Times that count frames are left out, since there is a column of frames.
+    Spots that belong to no track have no id. Times that count frames are left out, since there is a column of frames.
     """
     columns = {name: table[own] for name, own in OF_SPOTS.items() if own in table}
     rows = pd.DataFrame(columns)

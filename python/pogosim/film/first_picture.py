@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.picture.images import seen_places
 from pogosim.picture.palette import PALETTE
 
 BRIGHT = 64.0  # luminance, 0 to 255, from which on headings are dark; as in replay.js
@@ -56,6 +57,7 @@ def first_picture(head: dict[str, Any], poses: npt.NDArray[np.float64], colours:
         colours: Colours of each object.
     """
     (left, top), (right, bottom) = head["low"], head["high"]
+    box = (np.array(head["low"]), np.array(head["high"])) if head["periodic"] else None
     floor = "".join(path_of(polygon) for polygon in head["polygons"])
     shapes: dict[str, list[str]] = {}
     headings: dict[str, list[str]] = {}
@@ -63,18 +65,23 @@ def first_picture(head: dict[str, Any], poses: npt.NDArray[np.float64], colours:
         category = head["categories"][number_of_category]
         if not (math.isfinite(x) and math.isfinite(y)) or category["membrane"]:
             continue
-        shapes.setdefault(colour, []).append(body(category, x, y, angle))
-        if math.isfinite(angle):
-            ink = PALETTE["edge"] if is_bright(colour) else PALETTE["paper"]
-            headings.setdefault(ink, []).append(heading(category, x, y, angle))
+        ink = PALETTE["edge"] if is_bright(colour) else PALETTE["paper"]
+        for px, py in seen_places(np.array([[x, y]]), category["radius"], box)[1]:
+            shapes.setdefault(colour, []).append(body(category, px, py, angle))
+            if math.isfinite(angle):
+                headings.setdefault(ink, []).append(heading(category, px, py, angle))
     line = 'vector-effect="non-scaling-stroke"'
     parts = [
         f'<svg id="first" aria-hidden="true" viewBox="{number(left)} {number(top)} {number(right - left)} '
         f'{number(bottom - top)}" stroke-linejoin="round">',
-        f'<path d="{floor}" fill="{PALETTE["floor"]}" fill-rule="evenodd" stroke="{PALETTE["wall"]}" '
-        f'stroke-width="3" {line}/>',
+        f'<path d="{floor}" fill="{PALETTE["floor"]}" fill-rule="evenodd"/>',
+        f'<clipPath id="inside"><path d="{floor}" clip-rule="evenodd"/></clipPath><g clip-path="url(#inside)">'
+        if box
+        else "<g>",
         *(f'<g fill="{colour}" stroke="{PALETTE["edge"]}">{"".join(own)}</g>' for colour, own in shapes.items()),
         *(f'<path d="{"".join(own)}" stroke="{ink}" stroke-width="2" {line}/>' for ink, own in headings.items()),
+        "</g>",
+        f'<path d="{floor}" fill="none" stroke="{PALETTE["wall"]}" stroke-width="3" {line}/>',
         "</svg>",
     ]
     return "".join(parts)

@@ -9,10 +9,13 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.path import Path as Outline
 
 from pogosim.film.brush import Brush, Disks, outline_of
 from pogosim.film.timeline import Rows, timeline_of
 from pogosim.picture import layers
+from pogosim.picture.images import lines_between, seen_places
+from pogosim.picture.layers import GLOWS
 from pogosim.picture.links import box_of, link_segments, proximity_pairs
 from pogosim.picture.palette import DARK_LED, EDGE, LINK, PAPER
 from pogosim.picture.swarm import OBJECT, RGB, Recording
@@ -25,7 +28,6 @@ TRAIL_STEPS, TRAIL_STEPS_OF_ALL, MIN_TRAIL_STEPS = 60, 24_000, 24
 TRAIL_PIECES, TRAIL_PIECES_OF_ALL, MIN_TRAIL_PIECES = 24, 12_000, 12
 MAX_TRAIL_COLOURS = 64  # of more, similar ones are one
 
-GLOWS = ((1.75, 0.05), (1.5, 0.08), (1.25, 0.13))  # as in layers.py
 EDGE_PT = 0.8
 TICK_PT = 1.6
 
@@ -62,6 +64,7 @@ class Moving:
         self.bodies = timeline_of(recording, swarm.rows, [OBJECT])
         self.extent_mm = layers.extent_of(swarm)
         self.box = box_of(swarm)
+        self.is_cut = swarm.is_periodic  # at the border, where things come back on the other side
 
         # Colour and category of each row.
         rows = self.bodies.rows
@@ -109,6 +112,8 @@ class Moving:
             self.draw_trails(brush, time_s, now, place)
         if self.has_links:
             self.draw_links(brush, now, place)
+        which, place = seen_places(place, GLOWS[0][0] * self.of_category["radius"][self.kind[now]], self.box)
+        now, angle = now[which], angle[which]
         kinds = [(own, np.flatnonzero(self.kind[now] == i)) for i, own in enumerate(self.categories)]
         shown = [(own, which) for own, which in kinds if len(which) and own.type not in MEMBRANES]
         if self.glows:
@@ -143,9 +148,10 @@ class Moving:
         known = line.known[records][:, line.known[last] >= 0]  # shape (records, objects)
         way = np.concatenate([line.position[known], place[None]])  # shape (records + 1, objects, 2)
         step = np.abs(np.diff(way, axis=0))
-        is_way = (step <= self.extent_mm / 2.0).all(axis=-1) & (known >= 0)
-        is_way &= ~self.of_category["membrane"][self.kind[now]]  # the pose of those is their first dot's
-        way = self.pixels(way)
+        is_step = (known >= 0) & ~self.of_category["membrane"][self.kind[now]]  # the pose of those is their first dot's
+        is_near = (step <= self.extent_mm / 2.0).all(axis=-1)
+        is_way = is_step & is_near
+        is_crossing = is_step & ~is_near & self.is_cut
         shade = np.concatenate([self.trail_shade[known], self.trail_shade[now][None]])
         times_s = np.append(line.times_s[records], time_s)
         piece = (records // stride) // self.steps_in_piece  # that each step belongs to
@@ -154,14 +160,21 @@ class Moving:
             middle_s = 0.5 * (times_s[begin] + times_s[end])
             freshness = float(np.clip((middle_s - start_s) / tail_s, 0.0, 1.0))
             for number in np.unique(shade[end]):
-                mine = (shade[end] == number) & is_way[begin:end].any(axis=0)
+                mine = (shade[end] == number) & (is_way | is_crossing)[begin:end].any(axis=0)
                 if not mine.any():
                     continue
                 starts = np.ones((int(mine.sum()), end - begin + 1), dtype=bool)
                 starts[:, 1:] = ~is_way[begin:end, mine].T
-                path = outline_of(way[begin : end + 1, mine].transpose(1, 0, 2), False, starts)
+                path = outline_of(self.pixels(way[begin : end + 1, mine]).transpose(1, 0, 2), False, starts)
+                crossing = np.nonzero(is_crossing[begin:end] & mine)
+                crosses = len(crossing[0]) > 0
+                if crosses:
+                    from_mm, to_mm = way[begin:end][crossing], way[begin + 1 : end + 1][crossing]
+                    lines = outline_of(self.pixels(lines_between(from_mm, to_mm, self.box)[0]), False)
+                    path = Outline.make_compound_path(path, lines)
+                    path.should_simplify = False
                 colour = (*self.trail_shades[number], 0.04 + 0.7 * freshness**3)
-                brush.draw(path, line=colour, width_pt=0.5 + 0.9 * freshness, cap="round")
+                brush.draw(path, line=colour, width_pt=0.5 + 0.9 * freshness, cap="round", on_floor=crosses)
 
     def draw_links(self, brush: Brush, now: Rows, place: Floats) -> None:
         """Draw lines between objects near enough to hear each other; they end at the walls."""
@@ -191,7 +204,11 @@ class Moving:
             return
         places, radius = self.pixels(place), own.shape.bounding_radius_mm * self.scale[0]
         half_edge = 0.5 * EDGE_PT * brush.renderer.dpi / 72.0
-        disks = Disks(places).add(radius + half_edge, hex_rgb(EDGE)).add(max(radius - half_edge, 0.5 * radius), colours)
+        disks = (
+            Disks(places, on_floor=self.is_cut)
+            .add(radius + half_edge, hex_rgb(EDGE))
+            .add(max(radius - half_edge, 0.5 * radius), colours)
+        )
         brush.stamp_disks(disks)
 
     def draw_outlines(
@@ -211,7 +228,7 @@ class Moving:
         for number, colour in enumerate(shades):
             path = outline_of(corners[shade == number], True)
             if opacity is None:
-                brush.draw(path, line=edge, width_pt=EDGE_PT, fill=(*colour, 1.0))
+                brush.draw(path, line=edge, width_pt=EDGE_PT, fill=(*colour, 1.0), on_floor=self.is_cut)
             else:
                 brush.draw(path, fill=(*colour, opacity), on_floor=True)
 
@@ -223,7 +240,8 @@ class Moving:
         for colour, which in ((EDGE, is_bright), (PAPER, ~is_bright)):
             mine = which & np.isfinite(angle)
             if mine.any():
-                brush.draw(outline_of(ticks[mine], False), line=(*hex_rgb(colour), 1.0), width_pt=TICK_PT)
+                path = outline_of(ticks[mine], False)
+                brush.draw(path, line=(*hex_rgb(colour), 1.0), width_pt=TICK_PT, on_floor=self.is_cut)
 
 
 def is_disk(own: Category) -> bool:

@@ -91,13 +91,8 @@ class Track {
         pose.y = this.y[cell];
         pose.angle = this.angle[cell];
         if (share <= 0 || index + 1 >= length) return pose;
-        let dx = this.x[cell + 1] - pose.x, dy = this.y[cell + 1] - pose.y;
-        if (head.periodic) {
-            dx -= size[0] * Math.round(dx / size[0]);
-            dy -= size[1] * Math.round(dy / size[1]);
-        } else if (Math.abs(dx) > size[0] / 2 || Math.abs(dy) > size[1] / 2) {
-            dx = dy = 0;
-        }
+        let [dx, dy] = nearestImage(this.x[cell + 1] - pose.x, this.y[cell + 1] - pose.y);
+        if (!head.periodic && (Math.abs(dx) > size[0] / 2 || Math.abs(dy) > size[1] / 2)) dx = dy = 0;
         pose.x += share * dx;
         pose.y += share * dy;
         if (head.periodic) {
@@ -114,6 +109,12 @@ class Track {
         const start = this.times[index];
         return Math.min(Math.max((time - start) / (this.times[index + 1] - start), 0), 1);
     }
+}
+
+// The shortest of all images of an offset; in an arena with walls, the offset itself.
+function nearestImage(dx, dy) {
+    if (!head.periodic) return [dx, dy];
+    return [dx - size[0] * Math.round(dx / size[0]), dy - size[1] * Math.round(dy / size[1])];
 }
 
 function wrapped(value, axis) {
@@ -259,11 +260,7 @@ function objectAt(px, py) {
     const [x, y] = toArena(px, py);
     let nearest = -1, least = Infinity;
     for (let object = 0; object < count; object++) {
-        let dx = x - poses[object].x, dy = y - poses[object].y;
-        if (head.periodic) {
-            dx -= size[0] * Math.round(dx / size[0]);
-            dy -= size[1] * Math.round(dy / size[1]);
-        }
+        const [dx, dy] = nearestImage(x - poses[object].x, y - poses[object].y);
         const distance = Math.hypot(dx, dy);
         const radius = categoryOf(object).membrane ? 8 / camera.scale : categoryOf(object).radius + 3 / camera.scale;
         if (distance <= radius && distance < least) [nearest, least] = [object, distance];
@@ -398,8 +395,16 @@ function drawTrails() {
             const path = paths.get(colour);
             let [x, y] = [NaN, NaN];
             const lead = (toX, toY) => {
-                if (Math.abs(toX - x) <= size[0] / 2 && Math.abs(toY - y) <= size[1] / 2) path.lineTo(toX, toY);
-                else path.moveTo(toX, toY);
+                if (Math.abs(toX - x) <= size[0] / 2 && Math.abs(toY - y) <= size[1] / 2) {
+                    path.lineTo(toX, toY);
+                } else if (head.periodic && x === x && toX === toX) {  // across the border: one line from either end
+                    const [dx, dy] = nearestImage(toX - x, toY - y);
+                    path.lineTo(x + dx, y + dy);
+                    path.moveTo(toX - dx, toY - dy);
+                    path.lineTo(toX, toY);
+                } else {
+                    path.moveTo(toX, toY);
+                }
                 [x, y] = [toX, toY];
             };
             for (let i = from; i < to; i += stride) lead(track.x[object * length + i], track.y[object * length + i]);
@@ -445,11 +450,7 @@ function linkedPairs() {
                 if (seen.has(key)) continue;
                 seen.add(key);
                 for (const other of grid.get(key) || []) {
-                    let dx = poses[other].x - x, dy = poses[other].y - y;
-                    if (head.periodic) {
-                        dx -= size[0] * Math.round(dx / size[0]);
-                        dy -= size[1] * Math.round(dy / size[1]);
-                    }
+                    const [dx, dy] = nearestImage(poses[other].x - x, poses[other].y - y);
                     const [a, b] = [categoryOf(object), categoryOf(other)];
                     const range = Math.max(a.range, b.range);
                     if (range > 0 && Math.hypot(dx, dy) <= range + a.radius + b.radius) {
@@ -500,25 +501,33 @@ function drawMembranes() {
     const at = dots.indexAt(state.time), share = dots.shareAt(state.time, at);
     const pose = {};
     for (const group of head.membranes.groups) {
-        const places = [];
+        const places = [];  // from dot to dot on the shortest way, maybe out of the arena
         for (let i = 0; i < group.count; i++) {
             dots.at(group.first + i, at, share, pose);
-            if (pose.x === pose.x) places.push([pose.x, pose.y]);
+            if (!(pose.x === pose.x)) continue;
+            const [x, y] = places[places.length - 1] || [pose.x, pose.y];
+            const [dx, dy] = nearestImage(pose.x - x, pose.y - y);
+            places.push([x + dx, y + dy]);
         }
-        const known = group.object !== null;
-        const line = new Path2D();
-        if (places.length) pathOf(line, places);
-        pen.strokeStyle = pen.fillStyle = known ? colourOf(group.object) : palette.dark_led;
+        if (!places.length) continue;
+        const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
+        const middle = [(Math.min(...xs) + Math.max(...xs)) / 2, (Math.min(...ys) + Math.max(...ys)) / 2];
+        const reach = Math.max(...places.map(([x, y]) => Math.hypot(x - middle[0], y - middle[1])));
+        pen.strokeStyle = pen.fillStyle = group.object !== null ? colourOf(group.object) : palette.dark_led;
         pen.lineJoin = "round";
         pen.lineWidth = 2 * group.half_thickness * (group.segments ? 1 : 1 / 3);
-        pen.globalAlpha = 0.5;
-        pen.stroke(line);
-        pen.globalAlpha = 1;
-        for (const [x, y] of places) {
-            pen.beginPath();
-            pen.arc(x, y, group.half_thickness * (group.segments ? 0.35 : 1), 0, 2 * Math.PI);
-            pen.fill();
-        }
+        forEachImage(...middle, reach + group.half_thickness, (dx, dy) => {
+            const line = new Path2D();
+            pathOf(line, places.map(([x, y]) => [x + dx, y + dy]));
+            pen.globalAlpha = 0.5;
+            pen.stroke(line);
+            pen.globalAlpha = 1;
+            for (const [x, y] of places) {
+                pen.beginPath();
+                pen.arc(x + dx, y + dy, group.half_thickness * (group.segments ? 0.35 : 1), 0, 2 * Math.PI);
+                pen.fill();
+            }
+        });
     }
 }
 
@@ -617,14 +626,17 @@ function drawMark(x, y, colour) {
 function drawSelection() {
     for (const [object, colour, width] of [[state.hovered, "#ffffff", 1.5], [state.selected, palette.selection_rim, 3]]) {
         if (object < 0 || !(poses[object].x === poses[object].x)) continue;
-        const own = categoryOf(object);
-        bodyPath(own, poses[object].x, poses[object].y, poses[object].angle, 1 + 3 / (camera.scale * own.radius));
-        pen.strokeStyle = palette.selection;
-        pen.lineWidth = (width + 1.5) / camera.scale;
-        pen.stroke();
-        pen.strokeStyle = colour;
-        pen.lineWidth = width / camera.scale;
-        pen.stroke();
+        const own = categoryOf(object), {x, y, angle} = poses[object];
+        const larger = 1 + 3 / (camera.scale * own.radius);
+        forEachImage(x, y, own.radius * larger, (dx, dy) => {
+            bodyPath(own, x + dx, y + dy, angle, larger);
+            pen.strokeStyle = palette.selection;
+            pen.lineWidth = (width + 1.5) / camera.scale;
+            pen.stroke();
+            pen.strokeStyle = colour;
+            pen.lineWidth = width / camera.scale;
+            pen.stroke();
+        });
     }
 }
 
@@ -662,12 +674,15 @@ function draw() {
     if (!head.periodic) pen.restore();
     drawMembranes();
     drawBodies();
-    if (head.periodic) pen.restore();
+    if (head.periodic) {
+        drawSelection();
+        pen.restore();
+    }
     pen.strokeStyle = palette.wall;
     pen.lineWidth = 3 / camera.scale;
     pen.lineJoin = "round";
     pen.stroke(floor);
-    drawSelection();
+    if (!head.periodic) drawSelection();
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     drawScaleBar();
     element("clock").textContent = `${state.time.toFixed(2)} s`;

@@ -81,6 +81,8 @@ class Stills:
         self.clock.draw(self.canvas.get_renderer())
         membranes = (lambda: self.draw_membranes(time_s)) if self.has_membranes else None
         self.moving.draw(self.brush, self.axes, time_s, membranes)
+        if self.border is not None:
+            self.border.draw(self.canvas.get_renderer())
         return bytes(self.canvas.buffer_rgba())
 
     def background_key(self, time_s: float, wall_colours: dict[str, Floats]) -> object:
@@ -114,6 +116,7 @@ class Stills:
         with any_characters():
             self.canvas.draw()
         self.still = self.canvas.copy_from_bbox(figure.bbox)
+        self.border = layers.draw_border(self.axes, swarm)
         self.clock = figure.text(share - 0.15 / width, y, "", color=INK, fontsize=11, va="center", ha="right")
 
         if self.brush is None:
@@ -124,7 +127,7 @@ class Stills:
         rows = self.moving.bodies.at(time_s)
         dots = self.recording.last.dots.iloc[:0] if self.dots is None else self.dots.at(time_s)
         below = len(self.axes.collections)
-        layers.draw_membranes(self.axes, replace(self.recording.last, rows=rows, dots=dots, end_s=time_s))
+        layers.draw_membranes(self.axes, replace(self.recording.last, rows=rows, dots=dots, end_s=time_s), self.floor)
         renderer = self.canvas.get_renderer()
         for artist in sorted(list(self.axes.collections)[below:], key=lambda one: one.get_zorder()):
             artist.draw(renderer)

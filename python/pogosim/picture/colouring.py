@@ -14,8 +14,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import Colormap, ListedColormap
 
+from pogosim.nearest_name import nearest_name
 from pogosim.picture.errors import PictureError
 from pogosim.picture.palette import NO_LED
+from pogosim.picture.speed import SPEED
 from pogosim.scene import Floats
 
 MAX_LABELS = 20  # in a legend
@@ -101,8 +103,10 @@ def checked_column(rows: pd.DataFrame, name: str) -> pd.Series[Any]:
     """
     found = [own for own in rows.columns if own == name and not is_internal(own)]
     if not found:
-        there = ", ".join(str(own) for own in rows.columns if not is_internal(own))
-        raise PictureError(f"it has no column {name}; it has {there}")
+        there = [str(own) for own in rows.columns if not is_internal(own)]
+        nearest = nearest_name(name, {*there, SPEED})
+        known = f"did you mean '{nearest}'?" if nearest else f"it has {', '.join(there)}"
+        raise PictureError(f"it has no column {name}; {known}")
     if len(found) > 1:
         raise PictureError(f"it has several columns {name}")
     values = rows[name]
@@ -120,6 +124,13 @@ def colouring_of(rows: pd.DataFrame, name: str) -> Colouring:
         return scale_of(name, numbers_of(values))
     labels = sorted(set(labels_of(values)) - {""})
     return Legend(name, tuple(labels), swatches_of(len(labels)))
+
+
+def legend_of_categories(categories: pd.Series[Any]) -> Legend:
+    """Return the colours of categories, for a file without LEDs: matplotlib's Set2, repeated after eight."""
+    names = sorted(categories.unique())
+    palette = np.asarray(mpl.colormaps["Set2"].colors)  # type: ignore[attr-defined]
+    return Legend("robot_category", tuple(names), palette[np.arange(len(names)) % len(palette)])
 
 
 def scale_of(name: str, numbers: Floats) -> Scale:

@@ -17,14 +17,14 @@ def picture_file(name: str, data: str) -> Path:
     """Return where the picture is to be written.
 
     Raises:
-        OutputError: It is no name of a picture, no file, or that of the data.
+        OutputError: It is not a picture's file name, not a file, or that of the data.
     """
     suffix = Path(name).suffix[1:].lower()
     if name and leads_to(name, data):
         raise OutputError(f"the picture {name} would take the place of the data file {data}; name another picture")
     path = real_output(name)
     if suffix not in PICTURES:
-        raise OutputError(f"{name} is no name of a picture, which ends in .{', .'.join(PICTURES)}")
+        raise OutputError(f"{name} is not a picture file name; expected one that ends in .{', .'.join(PICTURES)}")
     return path
 
 

@@ -6,18 +6,23 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
-from pogosim.picture.links import links_at_end
+from pogosim.picture.images import Box, joined, lines_between, seen_places
+from pogosim.picture.links import box_of, links_at_end
 from pogosim.picture.palette import DARK_LED, DARK_WALL, EDGE, FLOOR, LAMPLIGHT, LINK, MAX_LAMPLIGHT, PAPER, WALL
 from pogosim.picture.swarm import OBJECT, RGB, Swarm
 from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, light_levels
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500
+
+WALL_PT = 2.2
+GLOWS = ((1.75, 0.05), (1.5, 0.08), (1.25, 0.13))  # shares of the radius of a robot, and opacities
 
 LIGHT_CELLS = 240  # along either side of the arena
 
@@ -31,26 +36,25 @@ def thinned(rows: pd.DataFrame, max_snapshots: int = MAX_SNAPSHOTS) -> pd.DataFr
     return rows[rows["time"].isin(chosen)]
 
 
-def trail_segments(rows: pd.DataFrame, extent_mm: Floats) -> tuple[Floats, pd.DataFrame]:
+def trail_segments(rows: pd.DataFrame, extent_mm: Floats, box: Box | None = None) -> tuple[Floats, pd.DataFrame]:
     """Steps of all objects: from each pose to the next one of the same object.
-
-    Steps of more than half the arena are left out: there the object left through one side of a
-    periodic arena and came in through the other.
 
     Args:
         rows: As in Swarm.
         extent_mm: Width and height of the arena.
+        box: The box of a periodic arena, in which a step across the border is one line from either end. None: steps of
+            more than half the arena are left out.
 
     Returns:
         The steps, shape (n, 2, 2): from and to, x and y. And the n rows that they lead to.
     """
     ordered = rows.sort_values([OBJECT, "time"], kind="stable")
     position = ordered[["x", "y"]].to_numpy(dtype=float)
-    same_object = np.diff(ordered[OBJECT].to_numpy()) == 0
-    inside = (np.abs(np.diff(position, axis=0)) <= extent_mm / 2.0).all(axis=1)
-    kept = same_object & inside
-    segments = np.stack([position[:-1], position[1:]], axis=1)
-    return segments[kept], ordered.iloc[1:][kept]
+    kept = np.diff(ordered[OBJECT].to_numpy()) == 0
+    if box is None:
+        kept &= (np.abs(np.diff(position, axis=0)) <= extent_mm / 2.0).all(axis=1)
+    segments, which = lines_between(position[:-1][kept], position[1:][kept], box)
+    return segments, ordered.iloc[1:][kept].iloc[which]
 
 
 def turned(polygon: Floats, clockwise: bool) -> Floats:
@@ -69,32 +73,48 @@ def floor_outline(polygons: list[Floats]) -> Outline:
 def draw_arena(axes: Axes, polygons: list[Floats]) -> PathPatch:
     """Draw the floor, with holes cut out, and the walls around it. Returns the floor."""
     floor = PathPatch(
-        floor_outline(polygons), facecolor=FLOOR, edgecolor=WALL, linewidth=2.2, joinstyle="round", zorder=1
+        floor_outline(polygons), facecolor=FLOOR, edgecolor=WALL, linewidth=WALL_PT, joinstyle="round", zorder=1
     )
     axes.add_patch(floor)
     return floor
 
 
-def draw_trails(axes: Axes, swarm: Swarm, extent_mm: Floats, tail_s: float, max_snapshots: int = MAX_SNAPSHOTS) -> None:
+def draw_border(axes: Axes, swarm: Swarm) -> PathPatch | None:
+    """Draw the border of a periodic arena over the bodies that cross it. Returns the border; None where walls are."""
+    if not swarm.is_periodic:
+        return None
+    outline = floor_outline(swarm.polygons)
+    border = PathPatch(outline, fill=False, edgecolor=WALL, linewidth=WALL_PT, joinstyle="round", zorder=6)
+    axes.add_patch(border)
+    return border
+
+
+def cut_off(artist: Artist, swarm: Swarm, floor: PathPatch) -> None:
+    """In a periodic arena, cut off what lies beyond the border: it is drawn on the other side, too."""
+    if swarm.is_periodic:
+        artist.set_clip_path(floor)
+
+
+def draw_trails(axes: Axes, swarm: Swarm, floor: PathPatch, tail_s: float, max_snapshots: int = MAX_SNAPSHOTS) -> None:
     """Draw the last `tail_s` seconds of all trajectories, fading into the past, from so many snapshots at most."""
     swarm.check_steps()
     start_s = swarm.end_s - tail_s
     rows = swarm.rows[~is_membrane(swarm)]  # the pose of those is their first dot's
     recent = rows[rows["time"] >= start_s]
-    segments, ends = trail_segments(thinned(recent, max_snapshots), extent_mm)
+    segments, ends = trail_segments(thinned(recent, max_snapshots), extent_of(swarm), box_of(swarm))
     # Oldest first, so that the present lies above the past.
     order = np.argsort(ends["time"].to_numpy(), kind="stable")
     freshness = np.clip((ends["time"].to_numpy(dtype=float) - start_s) / tail_s, 0.0, 1.0)
     colours = np.column_stack([ends[RGB].to_numpy(), 0.04 + 0.7 * freshness**3])
-    axes.add_collection(
-        LineCollection(
-            list(segments[order]),
-            colors=list(map(tuple, colours[order])),
-            linewidths=list(0.5 + 0.9 * freshness[order]),
-            capstyle="round",
-            zorder=2,
-        )
+    trails = LineCollection(
+        list(segments[order]),
+        colors=list(map(tuple, colours[order])),
+        linewidths=list(0.5 + 0.9 * freshness[order]),
+        capstyle="round",
+        zorder=2,
     )
+    axes.add_collection(trails)
+    cut_off(trails, swarm, floor)
 
 
 def is_membrane(swarm: Swarm) -> pd.Series[bool]:
@@ -180,31 +200,34 @@ def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
                 glow.set_clip_path(floor)
 
 
-def draw_membranes(axes: Axes, swarm: Swarm) -> None:
+def draw_membranes(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw the lines and dots of membranes; those without dots in the file as a mark at their first."""
     for (name, _), dots in swarm.dots.sort_values("subpart_id").groupby(["robot_category", "robot_id"]):
         half_thickness = swarm.category(str(name)).half_thickness_mm
-        centres = dots[["x", "y"]].to_numpy(dtype=float)
+        ring = joined(dots[["x", "y"]].to_numpy(dtype=float), box_of(swarm))
+        middle = (ring.min(axis=0) + ring.max(axis=0)) / 2.0
+        reach = np.hypot(*(ring - middle).T).max() + half_thickness
+        places = seen_places(middle[None], reach, box_of(swarm))[1]
+        lines = list(ring + (places - middle)[:, None])
         colour = dots[RGB].to_numpy()[0]
-        line = [np.vstack([centres, centres[:1]])]
         width = 2.0 * half_thickness * points_per_mm(axes)
         segments = swarm.category(str(name)).type == "rectmembrane"
         style = {"joinstyle": "round", "capstyle": "round"}
-        axes.add_collection(
-            LineCollection(
-                line, colors=[(*colour, 0.45)], linewidths=width if segments else width / 3, zorder=4, **style
-            )
+        outline = LineCollection(
+            lines, colors=[(*colour, 0.45)], linewidths=width if segments else width / 3, zorder=4, **style
         )
         dot = Shape(radius_mm=half_thickness * (0.35 if segments else 1.0)).outline()
-        axes.add_collection(
-            PolyCollection(
-                list(placed(dot, centres, np.zeros(len(centres)))),
-                facecolors=[tuple(colour)],
-                edgecolors=EDGE,
-                linewidths=0.5,
-                zorder=4.1,
-            )
+        centres = np.concatenate([line[:-1] for line in lines])
+        disks = PolyCollection(
+            list(placed(dot, centres, np.zeros(len(centres)))),
+            facecolors=[tuple(colour)],
+            edgecolors=EDGE,
+            linewidths=0.5,
+            zorder=4.1,
         )
+        for collection in (outline, disks):
+            axes.add_collection(collection)
+            cut_off(collection, swarm, floor)
     marks = marked_membranes(swarm)
     axes.scatter(
         marks["x"], marks["y"], s=60.0, marker="D", facecolors="none", edgecolors=list(marks[RGB].to_numpy()), zorder=4
@@ -221,15 +244,16 @@ def draw_bodies(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw every rigid object at its last pose: its shape, and a tick where it heads."""
     last = swarm.rows[~is_membrane(swarm)].groupby(OBJECT).tail(1)
     for name, rows in last.groupby("robot_category"):
-        draw_category(axes, swarm.category(str(name)), rows, floor, glows=swarm.colouring is None)
+        draw_category(axes, swarm, swarm.category(str(name)), rows, floor)
 
 
-def draw_category(axes: Axes, category: Category, rows: pd.DataFrame, floor: PathPatch, glows: bool = True) -> None:
+def draw_category(axes: Axes, swarm: Swarm, category: Category, rows: pd.DataFrame, floor: PathPatch) -> None:
     """Draw the objects of one category; lit LEDs, if colours are those, glow."""
     shape = category.shape
-    position = rows[["x", "y"]].to_numpy(dtype=float)
-    angle = rows["angle"].to_numpy(dtype=float)
-    colours = rows[RGB].to_numpy()
+    reach = GLOWS[0][0] * shape.bounding_radius_mm
+    which, position = seen_places(rows[["x", "y"]].to_numpy(dtype=float), reach, box_of(swarm))
+    angle = rows["angle"].to_numpy(dtype=float)[which]
+    colours = rows[RGB].to_numpy()[which]
 
     def bodies(scale: float, **style: Any) -> PolyCollection:
         collection = PolyCollection(list(placed(scale * shape.outline(), position, angle)), **style)
@@ -238,25 +262,25 @@ def draw_category(axes: Axes, category: Category, rows: pd.DataFrame, floor: Pat
 
     # A lit LED lights up the floor around.
     lit = (colours != DARK_LED).any(axis=1) & (category.type != "passive_object")
-    for scale, alpha in ((1.75, 0.05), (1.5, 0.08), (1.25, 0.13)) if glows else ():
+    for scale, alpha in GLOWS if swarm.colouring is None else ():
         glow = bodies(scale, facecolors=np.column_stack([colours, alpha * lit]), zorder=3)
         glow.set_clip_path(floor)
 
     # Bodies, with ticks that stand out from them.
-    bodies(1.0, facecolors=colours, edgecolors=EDGE, linewidths=0.8, zorder=4)
+    cut_off(bodies(1.0, facecolors=colours, edgecolors=EDGE, linewidths=0.8, zorder=4), swarm, floor)
     brightness = colours @ [0.299, 0.587, 0.114]
     heading = np.column_stack([np.cos(angle), np.sin(angle)])
     ticks = np.stack([position + heading * shape.reach_mm * f for f in (0.25, 0.95)], axis=1)
     known = np.isfinite(angle)
-    axes.add_collection(
-        LineCollection(
-            list(ticks[known]),
-            colors=list(np.where(brightness > 0.25, EDGE, PAPER)[known]),
-            linewidths=1.6,
-            capstyle="butt",
-            zorder=5,
-        )
+    marks = LineCollection(
+        list(ticks[known]),
+        colors=list(np.where(brightness > 0.25, EDGE, PAPER)[known]),
+        linewidths=1.6,
+        capstyle="butt",
+        zorder=5,
     )
+    axes.add_collection(marks)
+    cut_off(marks, swarm, floor)
 
 
 def points_per_mm(axes: Axes) -> float:
@@ -305,8 +329,9 @@ def draw_scene(axes: Axes, swarm: Swarm, tail_s: float | None = None, links: boo
     floor = draw_arena(axes, swarm.polygons)
     draw_light(axes, swarm, floor)
     draw_walls(axes, swarm, floor)
-    draw_trails(axes, swarm, extent_of(swarm), tail_s or max(swarm.end_s - first_s, 1e-9))
+    draw_trails(axes, swarm, floor, tail_s or max(swarm.end_s - first_s, 1e-9))
     if links:
         draw_links(axes, links_at_end(swarm), floor)
-    draw_membranes(axes, swarm)
+    draw_membranes(axes, swarm, floor)
     draw_bodies(axes, swarm, floor)
+    draw_border(axes, swarm)

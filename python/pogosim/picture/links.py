@@ -11,15 +11,14 @@ import numpy.typing as npt
 import pandas as pd
 from scipy.spatial import KDTree
 
+from pogosim.picture.images import Box, lines_between
 from pogosim.picture.swarm import OBJECT, Swarm
 from pogosim.scene import TALKERS, Floats, bounds
 
 Pairs = npt.NDArray[np.int64]
 
 
-def proximity_pairs(
-    position_mm: Floats, range_mm: Floats, radius_mm: Floats, box: tuple[Floats, Floats] | None = None
-) -> Pairs:
+def proximity_pairs(position_mm: Floats, range_mm: Floats, radius_mm: Floats, box: Box | None = None) -> Pairs:
     """Find the pairs of bodies in range.
 
     Args:
@@ -51,7 +50,7 @@ def proximity_pairs(
     return np.asarray(pairs[np.lexsort(pairs.T[::-1])])
 
 
-def link_segments(position_mm: Floats, pairs: Pairs, box: tuple[Floats, Floats] | None = None) -> Floats:
+def link_segments(position_mm: Floats, pairs: Pairs, box: Box | None = None) -> Floats:
     """Lines that join pairs; a link across the border of a periodic arena is one line from either end.
 
     Args:
@@ -62,19 +61,10 @@ def link_segments(position_mm: Floats, pairs: Pairs, box: tuple[Floats, Floats] 
     Returns:
         Shape (k, 2, 2): from and to, x and y; k is at least m.
     """
-    start, end = position_mm[pairs[:, 0]], position_mm[pairs[:, 1]]
-    if box is None:
-        return np.stack([start, end], axis=1)
-    size = box[1] - box[0]
-    step = end - start
-    step -= size * np.round(step / size)
-    crosses = ~np.isclose(start + step, end).all(axis=1)
-    forth = np.stack([start, start + step], axis=1)
-    back = np.stack([end, end - step], axis=1)[crosses]
-    return np.concatenate([forth, back])
+    return lines_between(position_mm[pairs[:, 0]], position_mm[pairs[:, 1]], box)[0]
 
 
-def box_of(swarm: Swarm) -> tuple[Floats, Floats] | None:
+def box_of(swarm: Swarm) -> Box | None:
     """Return the box of a periodic arena; None where walls are solid."""
     return bounds(swarm.polygons) if swarm.is_periodic else None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
@@ -13,7 +12,7 @@ import pandas as pd
 from pogosim.arguments import Arguments
 from pogosim.far_away import is_near
 from pogosim.outputs import PathLike
-from pogosim.picture.colouring import Colouring, colouring_of
+from pogosim.picture.colouring import Colouring, checked_column, colouring_of, legend_of_categories
 from pogosim.picture.errors import PictureError
 from pogosim.picture.palette import NO_LED, led_colours
 from pogosim.picture.selection import checked, one_run
@@ -60,7 +59,7 @@ class Swarm:
     end_s: float
     is_periodic: bool = False
     top_speed_mm_s: float | None = None  # of the robots that drive; None: the file does not say
-    colouring: Colouring | None = None  # what colours mean; None: LEDs
+    colouring: Colouring | None = None  # what colours mean; None: LEDs, or the only category of a file without
 
     @property
     def period_mm(self) -> Floats | None:
@@ -164,6 +163,8 @@ def read_recording(
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
     rows, polygons, left_out = one_run(checked(with_exact_times(rows)), metadata, run, combination)
     rows = rows[is_near(rows)]
+    if color_by not in (None, SPEED, "led_rgb"):
+        checked_column(rows, str(color_by))
     configuration = metadata["configuration"]
     categories = read_categories(configuration)
     rows = completed(with_defaults(rows))
@@ -213,7 +214,7 @@ def coloured(
     rows: pd.DataFrame, categories: dict[str, Category], color_by: str | None = None
 ) -> tuple[pd.DataFrame, Colouring | None]:
     """Add the colours of a column, by default LEDs, or of categories if the file does not have those."""
-    colouring = None
+    colouring: Colouring | None = None
     if color_by not in (None, "led_rgb"):
         colouring = colouring_of(rows, str(color_by))
         colours = colouring.colours(rows[str(color_by)])
@@ -224,15 +225,10 @@ def coloured(
     elif color_by == "led_rgb":
         raise PictureError("it has no column led_rgb of integers (data_logger_led: true writes it)")
     else:
-        colours = category_colours(rows["robot_category"])
+        legend = legend_of_categories(rows["robot_category"])
+        colours = legend.colours(rows["robot_category"])
+        colouring = legend if len(legend.labels) > 1 else None
     return rows.assign(**dict(zip(RGB, colours.T, strict=True))), colouring
-
-
-def category_colours(categories: pd.Series[Any]) -> Floats:
-    """One colour per category, in order of their names. Shape (n, 3), 0 to 1."""
-    names = sorted(categories.unique())
-    palette = np.asarray(mpl.colormaps["Set2"].colors)  # type: ignore[attr-defined]
-    return palette[[names.index(name) % len(palette) for name in categories]]
 
 
 def box_around(rows: pd.DataFrame, categories: dict[str, Category]) -> Floats:

@@ -66,7 +66,7 @@ def warn_of_what_is_left_out(tables: Sequence[RunTables], prog: str) -> None:
     if blind := sum(not np.isfinite(own.run.heading_rad).any() for own in tables):
         warn(prog, f"{blind} of {runs} runs have no headings (column angle): no angular velocities")
     if missing := sum(int(own.peclet["peclet"].isna().sum()) for own in tables):
-        warn(prog, f"{missing} of {robots} robots did not get away from where they began: no Peclet number for them")
+        warn(prog, f"{missing} of {robots} robots ended near their starting points: no Peclet number for them")
 
 
 def summary_text(tables: Sequence[RunTables], names: Sequence[str]) -> str:

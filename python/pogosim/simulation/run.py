@@ -351,8 +351,8 @@ class Simulation:
     def velocities(self) -> npt.NDArray[Any]:
         """Velocities of the robots, mm/s: displacements in the last step by its duration. Shape (robots, 2); read-only.
 
-        0 for a robot that has just been put elsewhere. One that its motors press against a wall bounces by a millimetre
-        (`wall_restitution`): take the mean of some steps.
+        0 for a robot that has just been moved by hand or by a program. A robot whose motors press it against a wall
+        bounces by a millimetre (`wall_restitution`): take the mean of some steps.
         """
         return self._run.of_robots("bodies.velocity")
 
