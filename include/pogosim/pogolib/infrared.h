@@ -177,14 +177,14 @@ POGO_END_API
 
 /// Removes the oldest message from the queue; bytes beyond its payload are zero. If no message is waiting, warns once
 /// and leaves the argument unchanged.
-static inline void pogobot_infrared_recover_next_message(message_t* message) {
+static POGO_INLINE void pogobot_infrared_recover_next_message(message_t* message) {
     pogosim_recover_next_message(message, MAX_PAYLOAD_SIZE_BYTES);
 }
 
 // Records in the program what a call sends, for pogosim-shared-state: a constant with the text of its arguments, in the
 // scope in which that text is valid. (Inside a macro, its own name is the function's.)
 #ifndef POGOSIM_INSIDE
-static inline uint32_t pogosim_first(uint32_t result, char const* note) {
+static POGO_INLINE uint32_t pogosim_first(uint32_t result, char const* note) {
     (void)note;
     return result;
 }
