@@ -129,8 +129,12 @@ bool is_artificial(Dwarf_Die* function) {
 /// The line in the innermost function of the program's own, which may be inlined into another.
 SourceLine own_line_at(Dwarf_Die* unit, Dwarf_Addr address) {
     SourceLine found = line_at(unit, address);
+    Dwarf_Die* innermost = nullptr;
+    int const any = dwarf_getscopes(unit, address, &innermost);
+    std::unique_ptr<Dwarf_Die, FreeMemory> const owner_of_innermost(innermost);
+    // From there outwards through the callers, where dwarf_getscopes() leaves an inlined function for its definition.
     Dwarf_Die* scopes = nullptr;
-    int const count = dwarf_getscopes(unit, address, &scopes);
+    int const count = any > 0 ? dwarf_getscopes_die(innermost, &scopes) : 0;
     std::unique_ptr<Dwarf_Die, FreeMemory> const owner(scopes);
     for (int i = 0; i < count; ++i) {
         int const tag = dwarf_tag(&scopes[i]);
