@@ -38,6 +38,8 @@ extern "C++" {
 #else
 #define POGO_PER_ROBOT __thread
 #endif
+// Functions of the headers: messages name the line of the program that calls them.
+#define POGO_INLINE inline __attribute__((always_inline, artificial))
 #define POGO_BEGIN_API _Pragma("GCC visibility push(default)")
 #define POGO_END_API _Pragma("GCC visibility pop")
 

@@ -147,50 +147,50 @@ POGO_END_API
 #ifdef __cplusplus
 extern "C++" {
 template <class T>
-inline void pogosim_init_variable(T&, char const*) {
+POGO_INLINE void pogosim_init_variable(T&, char const*) {
     static_assert(sizeof(T) == 0, POGO_CONFIGURABLE_TYPES);
 }
-inline void pogosim_init_variable(bool& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(bool& v, char const* name) {
     init_bool_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(float& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(float& v, char const* name) {
     init_float_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(double& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(double& v, char const* name) {
     init_double_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(int32_t& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(int32_t& v, char const* name) {
     init_int32_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(uint32_t& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(uint32_t& v, char const* name) {
     init_uint32_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(int16_t& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(int16_t& v, char const* name) {
     init_int16_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(uint16_t& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(uint16_t& v, char const* name) {
     init_uint16_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(int8_t& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(int8_t& v, char const* name) {
     init_int8_from_configuration(&v, name, v);
 }
-inline void pogosim_init_variable(uint8_t& v, char const* name) {
+POGO_INLINE void pogosim_init_variable(uint8_t& v, char const* name) {
     init_uint8_from_configuration(&v, name, v);
 }
 template <class T>
-inline void pogosim_init_array(T&, char const*) {
+POGO_INLINE void pogosim_init_array(T&, char const*) {
     static_assert(sizeof(T) == 0, POGO_CONFIGURABLE_ARRAYS);
 }
 template <size_t N>
-inline void pogosim_init_array(float (&a)[N], char const* name) {
+POGO_INLINE void pogosim_init_array(float (&a)[N], char const* name) {
     init_float_array_from_configuration(a, name, N);
 }
 template <size_t N>
-inline void pogosim_init_array(double (&a)[N], char const* name) {
+POGO_INLINE void pogosim_init_array(double (&a)[N], char const* name) {
     init_double_array_from_configuration(a, name, N);
 }
 template <size_t N>
-inline void pogosim_init_array(char (&a)[N], char const* name) {
+POGO_INLINE void pogosim_init_array(char (&a)[N], char const* name) {
     init_string_from_configuration(a, name, N);
 }
 }

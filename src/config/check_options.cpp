@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +17,8 @@
 namespace pogosim {
 
 namespace {
+
+constexpr double kMostOptions = 1000000;
 
 using Words = std::span<std::string_view const>;
 
@@ -51,6 +55,82 @@ void refuse_others(Node const& map, std::string const& path, Words words, std::s
     }
 }
 
+/// Messages are those of pogobatch (batch/options.py).
+[[noreturn]] void refuse(Node const& value, std::string const& path, std::string_view key, std::string const& message) {
+    fail_at({value, path}, fmt::format("{}: {}", key, message));
+}
+
+void check_list(Node const& options, std::string const& path) {
+    if (options.kind != Node::Kind::sequence) {
+        bool const is_value = options.kind == Node::Kind::scalar;
+        refuse(options, path, kBatchOptions,
+               fmt::format("expected a list of values, found {}{}", found_text(options),
+                           is_value ? fmt::format("; write [{}]", shown(options.scalar)) : ""));
+    }
+    if (options.items.empty()) {
+        refuse(options, path, kBatchOptions, "expected at least one value, found an empty list");
+    }
+}
+
+double number_of_range(Node const& range, std::string const& path, std::string_view key) {
+    Node const* const node = range.find(key);
+    if (node == nullptr) {
+        refuse(range, path, kBatchRange, fmt::format("'{}' is missing; expected start, stop and step", key));
+    }
+    std::optional<double> const number = number_of(*node);
+    if (!number || !(std::abs(*number) < 1e300)) {
+        refuse(*node, path, kBatchRange, fmt::format("{}: expected a number, found {}", key, found_text(*node)));
+    }
+    return *number;
+}
+
+bool is_inclusive(Node const& range, std::string const& path) {
+    Node const* const node = range.find("inclusive");
+    if (node == nullptr) {
+        return false;
+    }
+    std::optional<bool> const truth = truth_of(*node);
+    if (!truth) {
+        refuse(*node, path, kBatchRange, fmt::format("inclusive: expected true or false, found {}", found_text(*node)));
+    }
+    return *truth;
+}
+
+/// pogobatch counts in decimals; one value more or less of rounding makes no difference here.
+void check_range(Node const& range, std::string const& path) {
+    if (range.kind != Node::Kind::map) {
+        refuse(range, path, kBatchRange,
+               fmt::format("expected a map, such as {{start: 0, stop: 10, step: 1}}, found {}", found_text(range)));
+    }
+    refuse_others(range, child(path, kBatchRange), kRangeKeys, {});
+    double const start = number_of_range(range, path, "start");
+    double const stop = number_of_range(range, path, "stop");
+    double const step = number_of_range(range, path, "step");
+    if (step == 0.0) {
+        refuse(range, path, kBatchRange, "step is 0; give a step from start towards stop");
+    }
+    double const steps = (stop - start) / step;
+    if (is_inclusive(range, path) ? steps < 0.0 : steps <= 0.0) {
+        refuse(range, path, kBatchRange,
+               fmt::format("there is no value from {} to {} in steps of {}; give another stop, a step of the other "
+                           "sign, or inclusive: true",
+                           range.find("start")->scalar, range.find("stop")->scalar, range.find("step")->scalar));
+    }
+    if (steps > kMostOptions) {
+        refuse(range, path, kBatchRange,
+               fmt::format("there are more than {} values; give a larger step", kMostOptions));
+    }
+    Node const* const type = range.find("type");
+    if (type != nullptr && type->scalar != "int" && type->scalar != "float") {
+        refuse(*type, path, kBatchRange, fmt::format("type: expected int or float, found {}", found_text(*type)));
+    }
+    if (type != nullptr && type->scalar == "int" && (std::trunc(start) != start || std::trunc(step) != step)) {
+        refuse(*type, path, kBatchRange,
+               fmt::format("type is int, but start {} or step {} is not a whole number", range.find("start")->scalar,
+                           range.find("step")->scalar));
+    }
+}
+
 class OptionsCheck {
 public:
     explicit OptionsCheck(Node const& root) : names_of_batches_(batch_names(root)) {}
@@ -81,17 +161,31 @@ private:
 
     void look_at_options(Node const& options, std::string const& path, Names names) const {
         refuse_other_keys(options, path);
+        check_values(options, path);
         for (auto const& [key, value] : options.entries) {
             std::string const inner = child(path, key);
-            if (key == kBatchRange) {
-                refuse_others(value, inner, kRangeKeys, {});
-            } else if (key == kOptimizationDomain) {
+            if (key == kOptimizationDomain) {
                 look_at_domain(value, inner, names);
             } else if (key == kBatchOptions) {
                 look_at_each(value, inner, names);
             } else if (key == kDefaultOption) {
                 look_at(value, inner, names);
             }
+        }
+    }
+
+    static void check_values(Node const& options, std::string const& path) {
+        Node const* const list = options.find(kBatchOptions);
+        Node const* const range = options.find(kBatchRange);
+        if (list != nullptr && range != nullptr) {
+            fail_at({options, path},
+                    fmt::format("expected either {} or {}, found both; remove one", kBatchOptions, kBatchRange));
+        }
+        if (list != nullptr) {
+            check_list(*list, path);
+        }
+        if (range != nullptr) {
+            check_range(*range, path);
         }
     }
 

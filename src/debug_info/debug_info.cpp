@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 namespace shared_state {
 
@@ -34,42 +33,6 @@ bool flag(Dwarf_Die* entry, unsigned name) {
     Dwarf_Attribute attribute;
     bool set = false;
     return dwarf_attr_integrate(entry, name, &attribute) && dwarf_formflag(&attribute, &set) == 0 && set;
-}
-
-// Address of a variable that has one for the whole run; not that of an automatic or a thread-local one.
-std::optional<uint64_t> address_of(Dwarf_Die* variable) {
-    Dwarf_Attribute location;
-    Dwarf_Op* operations = nullptr;
-    std::size_t count = 0;
-    if (!dwarf_attr_integrate(variable, DW_AT_location, &location) ||
-        dwarf_getlocation(&location, &operations, &count) != 0) {
-        return std::nullopt;
-    }
-    std::optional<uint64_t> address;
-    bool is_value = false;
-    bool is_read = false;
-    for (std::size_t i = 0; i < count; i++) {
-        Dwarf_Op const& operation = operations[i];
-        if (operation.atom == DW_OP_form_tls_address || operation.atom == DW_OP_GNU_push_tls_address) {
-            return std::nullopt;
-        }
-        is_value = is_value || operation.atom == DW_OP_stack_value;
-        is_read = is_read || operation.atom == DW_OP_deref || operation.atom == DW_OP_deref_size;
-        if (address) {
-            continue;  // a variable in pieces is where its first piece is
-        }
-        if (operation.atom == DW_OP_addr) {
-            address = operation.number;
-        } else if (operation.atom == DW_OP_addrx || operation.atom == DW_OP_GNU_addr_index) {
-            Dwarf_Attribute entry;
-            Dwarf_Addr found = 0;
-            if (dwarf_getlocation_attr(&location, &operation, &entry) == 0 && dwarf_formaddr(&entry, &found) == 0) {
-                address = found;
-            }
-        }
-    }
-    // An automatic variable may be the address of another one; compilers keep variables with two values as a flag.
-    return is_value && !is_read ? std::nullopt : address;
 }
 
 void read_type(Dwarf_Die* variable, Object& object) {
@@ -230,6 +193,41 @@ private:
 };
 
 }  // namespace
+
+std::optional<uint64_t> address_of(Dwarf_Die* variable) {
+    Dwarf_Attribute location;
+    Dwarf_Op* operations = nullptr;
+    std::size_t count = 0;
+    if (!dwarf_attr_integrate(variable, DW_AT_location, &location) ||
+        dwarf_getlocation(&location, &operations, &count) != 0) {
+        return std::nullopt;
+    }
+    std::optional<uint64_t> address;
+    bool is_value = false;
+    bool is_read = false;
+    for (std::size_t i = 0; i < count; i++) {
+        Dwarf_Op const& operation = operations[i];
+        if (operation.atom == DW_OP_form_tls_address || operation.atom == DW_OP_GNU_push_tls_address) {
+            return std::nullopt;
+        }
+        is_value = is_value || operation.atom == DW_OP_stack_value;
+        is_read = is_read || operation.atom == DW_OP_deref || operation.atom == DW_OP_deref_size;
+        if (address) {
+            continue;  // a variable in pieces is where its first piece is
+        }
+        if (operation.atom == DW_OP_addr) {
+            address = operation.number;
+        } else if (operation.atom == DW_OP_addrx || operation.atom == DW_OP_GNU_addr_index) {
+            Dwarf_Attribute entry;
+            Dwarf_Addr found = 0;
+            if (dwarf_getlocation_attr(&location, &operation, &entry) == 0 && dwarf_formaddr(&entry, &found) == 0) {
+                address = found;
+            }
+        }
+    }
+    // An automatic variable may be the address of another one; compilers keep variables with two values as a flag.
+    return is_value && !is_read ? std::nullopt : address;
+}
 
 std::string file_of(Dwarf_Die* entry) {
     Dwarf_Die unit;

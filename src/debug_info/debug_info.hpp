@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -49,6 +50,9 @@ struct DebugInfo {
 /// The path of the file in which something is declared. Tables of files begin with the compiled file, which libdw does
 /// not count as one.
 std::string file_of(Dwarf_Die* entry);
+
+/// Address of a variable that has one for the whole run; none for an automatic or a thread-local one.
+std::optional<uint64_t> address_of(Dwarf_Die* variable);
 
 /// Reads all compiled files, including objects of library headers.
 DebugInfo read_debug_info(ProgramFile const& program);

@@ -44,7 +44,7 @@ bool starts_with_letter(std::string_view field) {
 
 /// What is probably wrong with a line that is not two numbers.
 std::string_view advice(std::string_view line, bool is_first) {
-    std::vector<std::string_view> const fields = split_fields(line);
+    std::vector<std::string> const fields = split_fields(line);
     if (line.find(';') != std::string_view::npos) {
         return "Separate the numbers by a comma, and write decimals with a point";
     }
@@ -67,7 +67,7 @@ std::optional<float> parse_coordinate(std::string_view field) {
 }
 
 Vec2 parse_corner(Drawing const& drawing, CsvLine const& line) {
-    std::vector<std::string_view> const fields = split_fields(line.text);
+    std::vector<std::string> const fields = split_fields(line.text);
     if (fields.size() == 2) {
         auto const x = parse_coordinate(fields[0]);
         auto const y = parse_coordinate(fields[1]);
@@ -100,7 +100,7 @@ bool says_periodic(Drawing const& drawing, CsvLine const& comment) {
         return false;
     }
     text.remove_prefix(kKey.size());
-    std::string_view const value = split_fields(text).front();
+    std::string const value = split_fields(text).front();
     if (value != "periodic") {
         refuse(drawing, comment.number,
                fmt::format("expected 'boundary_condition: periodic', found {}. Solid walls need no such line",

@@ -18,14 +18,64 @@ namespace {
 
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{256} << 20U;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view kBlanks = " \t\v\f";
 
 std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blanks = " \t\v\f";
-    std::size_t const first = text.find_first_not_of(blanks);
+    std::size_t const first = text.find_first_not_of(kBlanks);
     if (first == std::string_view::npos) {
         return {};
     }
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+/// Where the field that begins at `start` ends: at one of the characters `ends` outside double quotes, or with the text.
+/// npos: its quotes are not closed.
+std::size_t end_of_field(std::string_view text, std::size_t start, std::string_view ends) {
+    std::size_t next = text.find_first_not_of(kBlanks, start);
+    if (next < text.size() && text[next] == '"') {
+        do {
+            std::size_t const closing = text.find('"', next + 1);
+            if (closing == std::string_view::npos) {
+                return closing;
+            }
+            next = closing + 1;
+        } while (next < text.size() && text[next] == '"');  // two of them stand for one
+    } else {
+        next = start;
+    }
+    return std::min(text.find_first_of(ends, next), text.size());
+}
+
+/// Where the first line ends, which texts in double quotes may continue below. npos: their quotes are not closed.
+std::size_t end_of_line(std::string_view text) {
+    std::size_t const first = text.find_first_not_of(kBlanks);
+    if (first < text.size() && text[first] == '#') {
+        return std::min(text.find_first_of("\r\n"), text.size());
+    }
+    std::size_t end = end_of_field(text, 0, ",\r\n");
+    while (end < text.size() && text[end] == ',') {
+        end = end_of_field(text, end + 1, ",\r\n");
+    }
+    return end;
+}
+
+std::size_t count_line_ends(std::string_view text) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        count += text[i] == '\n' || (text[i] == '\r' && !text.substr(i + 1).starts_with('\n')) ? 1 : 0;
+    }
+    return count;
+}
+
+std::string without_quotes(std::string_view field) {
+    if (field.size() < 2 || !field.starts_with('"') || !field.ends_with('"')) {
+        return std::string(field);
+    }
+    std::string text(trimmed(field.substr(1, field.size() - 2)));
+    for (std::size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1)) {
+        text.erase(at, 1);
+    }
+    return text;
 }
 
 std::string read_text(std::filesystem::path const& path) {
@@ -58,29 +108,30 @@ CsvText read_csv(std::filesystem::path const& path) {
         rest.remove_prefix(kByteOrderMark.size());
     }
     CsvText csv;
-    for (std::size_t number = 1; !rest.empty(); ++number) {
-        std::size_t const end = std::min(rest.find_first_of("\r\n"), rest.size());
+    for (std::size_t number = 1; !rest.empty();) {
+        std::size_t const end = end_of_line(rest);
+        if (end == std::string_view::npos) {
+            throw ConfigError(fmt::format("{}:{}: a text in double quotes begins on this line and does not end",
+                                          path.string(), number));
+        }
         std::string_view const line = trimmed(rest.substr(0, end));
         if (line.starts_with('#')) {
             csv.comments.push_back({number, std::string(trimmed(line.substr(1)))});
         } else {
             csv.lines.push_back({number, std::string(line)});
         }
+        number += 1 + count_line_ends(line);
         rest.remove_prefix(end);
         rest.remove_prefix(rest.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest.size(), 1));
     }
     return csv;
 }
 
-std::vector<std::string_view> split_fields(std::string_view line) {
-    std::vector<std::string_view> fields;
+std::vector<std::string> split_fields(std::string_view line) {
+    std::vector<std::string> fields;
     for (std::size_t start = 0; start <= line.size();) {
-        std::size_t const end = std::min(line.find(',', start), line.size());
-        std::string_view field = trimmed(line.substr(start, end - start));
-        if (field.size() >= 2 && field.starts_with('"') && field.ends_with('"')) {
-            field = trimmed(field.substr(1, field.size() - 2));
-        }
-        fields.push_back(field);
+        std::size_t const end = std::min(end_of_field(line, start, ","), line.size());
+        fields.push_back(without_quotes(trimmed(line.substr(start, end - start))));
         start = end + 1;
     }
     return fields;

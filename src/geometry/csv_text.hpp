@@ -11,7 +11,7 @@ namespace pogosim {
 
 struct CsvLine {
     std::size_t number = 0;  // from 1
-    std::string text;        // without spaces and tabs at either end; empty for a blank line
+    std::string text;        // without spaces and tabs at either end; empty for a blank line; more lines if in quotes
 };
 
 struct CsvText {
@@ -19,12 +19,14 @@ struct CsvText {
     std::vector<CsvLine> comments;  // lines that start with '#', without it
 };
 
-/// All lines of a text file. Accepts a UTF-8 byte order mark and line ends of
-/// every kind. Throws ConfigError when it is not a regular file that can be read, or larger than 256 MiB.
+/// All lines of a text file. Accepts a UTF-8 byte order mark and line ends of every kind; a field in double quotes may
+/// have line ends (RFC 4180). Throws ConfigError when it is not a regular file that can be read, is larger than 256 MiB,
+/// or does not close its quotes.
 CsvText read_csv(std::filesystem::path const& path);
 
-/// Fields between commas, without spaces and tabs at either end, nor one pair of double quotes around them.
-std::vector<std::string_view> split_fields(std::string_view line);
+/// Fields between commas, without spaces and tabs at either end, nor one pair of double quotes around them. In these,
+/// commas are text, and two quotes stand for one.
+std::vector<std::string> split_fields(std::string_view line);
 
 /// A finite decimal number ("-1.5e3", "+2"), or nothing.
 std::optional<double> parse_number(std::string_view field);

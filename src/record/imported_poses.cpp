@@ -45,8 +45,12 @@ std::shared_ptr<arrow::io::ReadableFile> open_file(std::filesystem::path const& 
 }
 
 /// One of the names' columns, or nullptr.
-std::shared_ptr<arrow::Array> find_column(arrow::RecordBatch const& batch, std::initializer_list<char const*> names) {
+std::shared_ptr<arrow::Array> find_column(std::filesystem::path const& path, arrow::RecordBatch const& batch,
+                                          std::initializer_list<char const*> names) {
     for (char const* const name : names) {
+        if (batch.schema()->GetAllFieldIndices(name).size() > 1) {
+            fail(path, fmt::format("it has several columns '{}'; rename or remove all but one", name));
+        }
         if (auto column = batch.GetColumnByName(name)) {
             return column;
         }
@@ -74,8 +78,8 @@ std::vector<double> numbers_of(std::filesystem::path const& path, arrow::Array c
 
 void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& batch,
                   std::vector<ImportedPose>& poses) {
-    auto const x = find_column(batch, {"x"});
-    auto const y = find_column(batch, {"y"});
+    auto const x = find_column(path, batch, {"x"});
+    auto const y = find_column(path, batch, {"y"});
     if (!x || !y) {
         fail(path, "it has no columns 'x' and 'y'");
     }
@@ -84,9 +88,9 @@ void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& b
     // In a data file of ours, theta is a column of the program: a phase, for instance.
     auto const metadata = batch.schema()->metadata();
     bool const is_ours = metadata && metadata->Contains("program_version");
-    auto const angle = is_ours ? find_column(batch, {"angle"}) : find_column(batch, {"theta", "angle"});
+    auto const angle = is_ours ? find_column(path, batch, {"angle"}) : find_column(path, batch, {"theta", "angle"});
     auto const angles = angle ? numbers_of(path, *angle, "angle") : std::vector<double>();
-    auto const time = find_column(batch, {"time"});
+    auto const time = find_column(path, batch, {"time"});
     auto const times = time ? numbers_of(path, *time, "time") : std::vector<double>();
     for (std::size_t i = 0; i < xs.size(); ++i) {
         ImportedPose pose;

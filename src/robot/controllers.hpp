@@ -189,7 +189,7 @@ private:
     Fiber& free_fiber();
     void go_on(std::uint32_t robot);
     void warn_of_unreturned_calls_if_due();
-    void warn_of_unreturned_calls(std::int64_t least_us, bool all);
+    void warn_of_unreturned_calls(std::int64_t least_us, bool most);
     void warn_of_unreturned_call(std::uint32_t robot, std::uint32_t count, std::uint32_t alive) const;
     bool is_due(std::uint32_t robot) const;
     bool is_waiting(std::uint32_t robot) const;

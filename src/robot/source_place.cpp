@@ -78,9 +78,8 @@ private:
     Dwarf* dwarf_;
 };
 
-/// The source file of a line, with the path that was given to the compiler.
-std::string_view file_of(Dwarf_Line* line, Dwarf_Die* unit) {
-    char const* const file = dwarf_linesrc(line, nullptr, nullptr);
+/// As it was given to the compiler.
+std::string_view without_folder(char const* file, Dwarf_Die* unit) {
     std::string_view path = file != nullptr ? file : "";
     Dwarf_Attribute attribute;
     char const* const folder = dwarf_formstring(dwarf_attr(unit, DW_AT_comp_dir, &attribute));
@@ -91,35 +90,74 @@ std::string_view file_of(Dwarf_Line* line, Dwarf_Die* unit) {
     return path;
 }
 
-/// The innermost function, which may be inlined into another.
-std::string function_in(Dwarf_Die* unit, Dwarf_Addr address) {
+struct SourceLine {
+    char const* file = nullptr;
+    int number = 0;  // 0: unknown
+    std::string function;
+};
+
+SourceLine line_at(Dwarf_Die* unit, Dwarf_Addr address) {
+    SourceLine found;
+    if (Dwarf_Line* const line = dwarf_getsrc_die(unit, address); line != nullptr) {
+        found.file = dwarf_linesrc(line, nullptr, nullptr);
+        dwarf_lineno(line, &found.number);
+    }
+    return found;
+}
+
+/// Where an inlined function is called.
+SourceLine call_of(Dwarf_Die* inlined, Dwarf_Die* unit) {
+    Dwarf_Attribute attribute;
+    Dwarf_Word file = 0;
+    Dwarf_Word line = 0;
+    Dwarf_Files* files = nullptr;
+    std::size_t count = 0;
+    bool const is_known = dwarf_formudata(dwarf_attr(inlined, DW_AT_call_file, &attribute), &file) == 0 &&
+                          dwarf_formudata(dwarf_attr(inlined, DW_AT_call_line, &attribute), &line) == 0 &&
+                          dwarf_getsrcfiles(unit, &files, &count) == 0 && file < count;
+    return is_known ? SourceLine{dwarf_filesrc(files, file, nullptr, nullptr), static_cast<int>(line), ""}
+                    : SourceLine{};
+}
+
+/// An inline function of our headers: POGO_INLINE.
+bool is_artificial(Dwarf_Die* function) {
+    Dwarf_Attribute attribute;
+    bool is_set = false;
+    return dwarf_formflag(dwarf_attr_integrate(function, DW_AT_artificial, &attribute), &is_set) == 0 && is_set;
+}
+
+/// The line in the innermost function of the program's own, which may be inlined into another.
+SourceLine own_line_at(Dwarf_Die* unit, Dwarf_Addr address) {
+    SourceLine found = line_at(unit, address);
+    Dwarf_Die* innermost = nullptr;
+    int const any = dwarf_getscopes(unit, address, &innermost);
+    std::unique_ptr<Dwarf_Die, FreeMemory> const owner_of_innermost(innermost);
+    // From there outwards through the callers, where dwarf_getscopes() leaves an inlined function for its definition.
     Dwarf_Die* scopes = nullptr;
-    int const count = dwarf_getscopes(unit, address, &scopes);
+    int const count = any > 0 ? dwarf_getscopes_die(innermost, &scopes) : 0;
     std::unique_ptr<Dwarf_Die, FreeMemory> const owner(scopes);
     for (int i = 0; i < count; ++i) {
         int const tag = dwarf_tag(&scopes[i]);
         char const* const name = dwarf_diename(&scopes[i]);
-        if ((tag == DW_TAG_subprogram || tag == DW_TAG_inlined_subroutine) && name != nullptr) {
-            return name;
+        if (tag == DW_TAG_inlined_subroutine && is_artificial(&scopes[i])) {
+            found = call_of(&scopes[i], unit);
+        } else if ((tag == DW_TAG_subprogram || tag == DW_TAG_inlined_subroutine) && name != nullptr) {
+            found.function = name;
+            return found;
         }
     }
-    return "";
+    return found;
 }
 
 std::string place_by_debug_information(std::string const& file, std::uintptr_t address) {
     DebugInfo const info(file);
     std::optional<Dwarf_Die> unit = info.unit_at(address);
-    Dwarf_Line* const line = unit ? dwarf_getsrc_die(&*unit, address) : nullptr;
-    int number = 0;
-    if (line == nullptr || dwarf_lineno(line, &number) != 0 || number == 0) {
+    SourceLine const line = unit ? own_line_at(&*unit, address) : SourceLine{};
+    if (line.number == 0 || is_start_of_process(line.function)) {
         return "";
     }
-    std::string const function = function_in(&*unit, address);
-    if (is_start_of_process(function)) {
-        return "";
-    }
-    return fmt::format("at {}:{}{}", file_of(line, &*unit), number,
-                       function.empty() ? "" : fmt::format(" in {}()", own_name(function)));
+    return fmt::format("at {}:{}{}", without_folder(line.file, &*unit), line.number,
+                       line.function.empty() ? "" : fmt::format(" in {}()", own_name(line.function)));
 }
 
 #else

@@ -17,7 +17,7 @@ namespace pogosim {
 namespace {
 
 constexpr std::int64_t kUsPerS = 1000000;
-constexpr std::int64_t kLongUs = 60 * kUsPerS;  // during the run, if all robots of a category are in such a call
+constexpr std::int64_t kLongUs = 60 * kUsPerS;  // during the run, if half of a category is in such a call or more
 constexpr std::int64_t kLookPeriodUs = 10 * kUsPerS;
 // At the end of the run, for each robot: how long its call must last at least, in time, as a part of the run, and
 // compared with the usual in its category. A robot that only waits for something may be in one call for long, too.
@@ -85,16 +85,17 @@ void Controllers::warn_of_unreturned_calls_if_due() {
     }
     next_look_us_ = std::max(step_us_ + kLookPeriodUs, kLongUs);
     if (step_us_ >= kLongUs) {
-        warn_of_unreturned_calls(kLongUs, /*all=*/true);
+        warn_of_unreturned_calls(kLongUs, /*most=*/true);
     }
 }
 
 void Controllers::warn_of_unreturned_calls_at_end() {
-    warn_of_unreturned_calls(std::min(kLongAtEndUs, now_us() / kPartOfRunAtEnd), /*all=*/false);
+    warn_of_unreturned_calls(std::min(kLongAtEndUs, now_us() / kPartOfRunAtEnd), /*most=*/false);
 }
 
-/// `least_us`: shorter calls do not count. `all`: warns only about categories all of whose robots are in such a call.
-void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool all) {
+/// `least_us`: shorter calls do not count. `most`: warns only about categories half of whose robots are in such a call,
+/// or more. (Rarely all of them: a robot that hears nobody any more is not called back with messages.)
+void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool most) {
     if (!has_waited_ || image_.is_for_sdk) {
         return;
     }
@@ -123,7 +124,7 @@ void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool all) {
     }
     for (std::size_t i = 0; i < categories.size(); ++i) {
         Unreturned const& category = categories[i];
-        if (category.count > 0 && !is_warned_[i] && (!all || category.count == category.alive)) {
+        if (category.count > 0 && !is_warned_[i] && (!most || 2 * category.count >= category.alive)) {
             is_warned_[i] = true;
             warn_of_unreturned_call(category.first, category.count, category.alive);
         }

@@ -55,7 +55,9 @@ void warn_of_ambiguous_rows(Scenario const& scenario, World const& world) {
     OutputConfig const& output = scenario.output;
     double const period_s = output.save_data_period_s;
     bool const has_steps = output.enable_data_logging && period_s > 0.0 && period_s <= scenario.simulation_time_s;
-    if (!world.periodic || !has_steps) {
+    auto const is_coordinate = [](std::string const& column) { return column == "x" || column == "y"; };
+    bool const has_positions = !output.fields || std::ranges::any_of(*output.fields, is_coordinate);
+    if (!world.periodic || !has_steps || !has_positions) {
         return;
     }
     auto const drives = [](ObjectConfig const& object) {

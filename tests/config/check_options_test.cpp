@@ -60,6 +60,42 @@ TEST(MisspeltOption, OfARangeOrADomainIsRefused) {
               "x.yaml:1: a.optimization_domain: unknown key 'x'; known are type, min, max, init, log, choices");
 }
 
+TEST(ValuesOfOptions, MustBeAListOfAtLeastOne) {
+    std::string const begin = "x.yaml:1: a: batch_options: expected ";
+    EXPECT_EQ(checked("a: {batch_options: []}\n"), begin + "at least one value, found an empty list");
+    EXPECT_EQ(checked("a: {batch_options: 3}\n"), begin + "a list of values, found 3; write [3]");
+    EXPECT_EQ(checked("a: {default_option: 1, batch_options: {a: 1}}\n"), begin + "a list of values, found a map");
+    EXPECT_EQ(checked("a: {default_option: 1, batch_options: }\n"), begin + "a list of values, found nothing");
+    EXPECT_EQ(load_error(kRobots + "    nb: {batch_options: []}\n"),
+              "x.yaml:6: objects.robots.nb: batch_options: expected at least one value, found an empty list");
+    EXPECT_EQ(checked("a: {batch_options: [1], batch_options_range: {start: 0, stop: 1, step: 1}}\n"),
+              "x.yaml:1: a: expected either batch_options or batch_options_range, found both; remove one");
+}
+
+TEST(ValuesOfOptions, OfARangeMustBeThere) {
+    auto const range = [](std::string const& words) {
+        std::string const message = checked("a: {batch_options_range: " + words + "}\n");
+        std::string const begin = "x.yaml:1: a: batch_options_range: ";
+        return message.starts_with(begin) ? message.substr(begin.size()) : message;
+    };
+    EXPECT_EQ(range("3"), "expected a map, such as {start: 0, stop: 10, step: 1}, found 3");
+    EXPECT_EQ(range(""), "expected a map, such as {start: 0, stop: 10, step: 1}, found nothing");
+    EXPECT_EQ(range("{start: 0, step: 1}"), "'stop' is missing; expected start, stop and step");
+    EXPECT_EQ(range("{start: a, stop: 1, step: 1}"), "start: expected a number, found 'a'");
+    EXPECT_EQ(range("{start: 0, stop: .inf, step: 1}"), "stop: expected a number, found .inf");
+    EXPECT_EQ(range("{start: 0, stop: 1, step: 0}"), "step is 0; give a step from start towards stop");
+    EXPECT_EQ(range("{start: 0, stop: 1, step: -1}"),
+              "there is no value from 0 to 1 in steps of -1; give another stop, a step of the other sign, or "
+              "inclusive: true");
+    EXPECT_TRUE(range("{start: 0, stop: 0, step: 1}").starts_with("there is no value from 0 to 0"));
+    EXPECT_EQ(range("{start: 0, stop: 0, step: 1, inclusive: true}"), "no error");
+    EXPECT_EQ(range("{start: 0, stop: 1, step: 1, inclusive: 3}"), "inclusive: expected true or false, found 3");
+    EXPECT_EQ(range("{start: 0, stop: 1e9, step: 1}"), "there are more than 1000000 values; give a larger step");
+    EXPECT_EQ(range("{start: 0, stop: 1, step: 1, type: text}"), "type: expected int or float, found 'text'");
+    EXPECT_EQ(range("{start: 0, stop: 1, step: 0.5, type: int}"),
+              "type is int, but start 0 or step 0.5 is not a whole number");
+}
+
 TEST(MisspeltOption, IsFoundInAlternativesThatASingleRunDoesNotTake) {
     std::string const wrong = "{batch_option: [1], default_option: 1}";
     std::string const message = ": unknown key 'batch_option' beside 'default_option'; did you mean 'batch_options'?";

@@ -667,7 +667,7 @@ TEST(Scenario, SetWinsOverTheFileAndOverItsOptions) {
                              "    nb: {batch_options: [1, 2], default_option: 1}\n"
                              "    batch_hierarchical_options: {default: {max_linear_speed: 10}}\n";
     Scenario const s = load(text, {.overrides = {"objects.robots.nb=7", "objects.robots.max_linear_speed=20", "seed=3",
-                                                 "seed=4", "time_step={default_option: 0.5, batch_options: []}"}});
+                                                 "seed=4", "time_step={default_option: 0.5, batch_options: [1]}"}});
     EXPECT_EQ(s.objects.at(0).nb, 7);
     EXPECT_EQ(s.objects.at(0).spec.robot->max_linear_speed_mm_s, 20.0F);
     EXPECT_EQ(s.seed, 4U);

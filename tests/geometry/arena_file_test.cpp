@@ -116,12 +116,17 @@ TEST_F(ArenaFile, LineThatIsNoCornerIsNamedWithWhatWasFound) {
     char const* const bad_lines[] = {
         "1",     "1,",    ",1",     "1,2,3",     "1,2,",    ",",          "1 2",     "1;2",      "1,5;2,5",    "one,2",
         "1,two", "nan,1", "1,NaN",  "inf,1",     "1,-inf",  "1,infinity", "0x10,1",  "1e400,1",  "1e39,1",     "1,1e",
-        "--1,2", "+-1,2", "1,2abc", "1,2 # end", "1.2.3,4", "1 000,2",    "1,2\x01", "\xff\xfe", "PK\x03\x04", "1,\"2",
+        "--1,2", "+-1,2", "1,2abc", "1,2 # end", "1.2.3,4", "1 000,2",    "1,2\x01", "\xff\xfe", "PK\x03\x04", "1,2\"",
     };
     for (char const* const bad : bad_lines) {
         std::string const message = error_of("0,0\n# comment\n10,0\n" + std::string(bad) + "\n0,10\n");
         EXPECT_TRUE(message.starts_with("arena.csv:4: expected a corner 'x,y', found ")) << bad << " -> " << message;
     }
+}
+
+TEST_F(ArenaFile, QuotesThatDoNotCloseAreNamedWithTheirLine) {
+    EXPECT_EQ(error_of("0,0\n10,0\n1,\"2\n0,10\n"),
+              "arena.csv:3: a text in double quotes begins on this line and does not end");
 }
 
 TEST_F(ArenaFile, MessageShowsUnprintableBytesAndCutsLongLines) {

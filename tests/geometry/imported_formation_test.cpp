@@ -1,14 +1,18 @@
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
 
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "geometry/formation.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -175,6 +179,63 @@ TEST_F(ImportedFormation, BadRowsAreRefusedWithTheirLine) {
     EXPECT_TRUE(error_of("x,y\n1e300,2\n", 1).starts_with("poses.csv:2: the position"));
     EXPECT_TRUE(error_of("", 1).starts_with("poses.csv: expected at least 1 pose (rows"));
     EXPECT_TRUE(error_of(std::string("\0\x01\x02\xff\n", 5), 1).starts_with("poses.csv:1: "));
+}
+
+TEST_F(ImportedFormation, NumberThatOverflowsSinglePrecisionIsShownAsWritten) {
+    EXPECT_TRUE(error_of("x,y\n1e300,2\n", 1).starts_with("poses.csv:2: the position (1e+300, 2) mm is outside"));
+    spec_.imported_min = {0, 0};
+    spec_.imported_max = {1, 1};
+    EXPECT_TRUE(error_of("x,y\n0.5,1e300\n", 1).starts_with("poses.csv:2: the position (500, 5e+302) mm is outside"));
+}
+
+TEST_F(ImportedFormation, TextInQuotesMayHaveCommasQuotesAndLineEnds) {
+    auto const placements = place_from(
+        "\"a \"\"name\"\", in\r\ntwo lines\",x,\"y\"\n\"1,\n2\n\n# 3\",10, \"20\" \n\"\"\"\",30,40\n\"\",50,60\n", 3);
+    EXPECT_EQ(placements[0].position_mm, (Vec2{10, 20}));
+    EXPECT_EQ(placements[1].position_mm, (Vec2{30, 40}));
+    EXPECT_EQ(placements[2].position_mm, (Vec2{50, 60}));
+}
+
+TEST_F(ImportedFormation, LinesBelowATextOfSeveralLinesKeepTheirNumbers) {
+    EXPECT_TRUE(
+        error_of("x,y,name\n10,20,\"a\r\nb\rc\nd\"\nz,40,e\n", 2).starts_with("poses.csv:6: expected a finite"));
+}
+
+TEST_F(ImportedFormation, TextWhoseQuotesDoNotCloseIsRefused) {
+    EXPECT_EQ(error_of("x,y,name\n10,20,\"a\n30,40,b\n", 2),
+              "poses.csv:2: a text in double quotes begins on this line and does not end");
+    EXPECT_EQ(error_of("# 5\" of rain\nx,y,name\n10,20,5\" wide\n", 1), "");
+}
+
+TEST_F(ImportedFormation, ColumnThatIsThereTwiceIsRefused) {
+    EXPECT_EQ(error_of("x,y,x\n10,20,30\n", 1),
+              "poses.csv:1: the header has several columns 'x'; rename or remove all but one");
+    EXPECT_NE(error_of("time,x,y,time\n0,10,20,30\n", 1), "");
+    EXPECT_NE(error_of("angle,x,y,angle\n0,10,20,30\n", 1), "");
+    EXPECT_EQ(error_of("a,x,y,a\n0,10,20,30\n", 1), "");
+}
+
+class AnglesOfAFile : public ImportedFormation {
+protected:
+    AnglesOfAFile() { log().sinks().push_back(std::make_shared<spdlog::sinks::ostream_sink_mt>(messages_)); }
+    ~AnglesOfAFile() override { log().sinks().pop_back(); }
+
+    std::ostringstream messages_;
+};
+
+TEST_F(AnglesOfAFile, InDegreesAreToldOnce) {
+    place_from("x,y,angle\n10,20,0\n30,40,90\n50,60,180\n70,80,-270\n", 4);
+    std::string const text = messages_.str();
+    EXPECT_NE(text.find("poses.csv:3: the angle 90 rad is unusually large, like those of 2 other rows; if you meant "
+                        "degrees, write 1.5708\n"),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("unusually"), text.rfind("unusually"));
+}
+
+TEST_F(AnglesOfAFile, UpToAFullTurnAreUsual) {
+    place_from("x,y,angle\n10,20,6.2832\n30,40,-6.28319\n50,60,\n", 3);
+    EXPECT_EQ(messages_.str(), "");
 }
 
 TEST_F(ImportedFormation, MissingFileOrNameIsRefused) {

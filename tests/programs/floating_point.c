@@ -22,6 +22,10 @@ static void change(char const* here) {
 #ifdef __x86_64__
     if (strcmp(how, "flush") == 0) {
         _mm_setcsr(_mm_getcsr() | 0x8040);
+    } else if (strcmp(how, "flush results") == 0) {
+        _mm_setcsr(_mm_getcsr() | 0x8000);
+    } else if (strcmp(how, "flush operands") == 0) {
+        _mm_setcsr(_mm_getcsr() | 0x0040);
     } else if (strcmp(how, "traps") == 0) {
         _mm_setcsr(_mm_getcsr() & ~0x1000U);  // an inexact result
     } else if (strcmp(how, "x87") == 0) {

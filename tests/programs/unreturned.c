@@ -70,6 +70,13 @@ void user_step(void) {
         if (pogobot_ticks == 50 && !is_first) {
             loop();
         }
+    } else if (is("slower")) {
+        for (int i = 0; i < 100; i++) {
+            msleep(10);
+        }
+        if (pogobot_ticks > 0) {
+            loop();
+        }
     } else if (is("now and then")) {
         for (int i = 0; i < (is_first ? 8 : 2); i++) {
             msleep(1000);

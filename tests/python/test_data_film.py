@@ -57,6 +57,12 @@ def test_times_of_frames_follow_speed_and_rate(
     assert frame_times(*span, speed, fps) == pytest.approx(times)
 
 
+def test_last_frame_is_not_lost_to_rounding() -> None:
+    assert (0.7 - 0.4) * 10.0 < 3.0
+    assert len(frame_times(0.4, 0.7, 1.0, 10.0)) == 4
+    assert len(frame_times(0.4, 0.699, 1.0, 10.0)) == 3
+
+
 def line_of(rows: pd.DataFrame, folder: Path, **settings: str) -> Timeline:
     recording = read_recording(write(folder / "line.feather", rows, None, **settings))
     return timeline_of(recording, recording.last.rows, [OBJECT])

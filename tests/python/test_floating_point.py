@@ -14,7 +14,8 @@ from conftest import Compile
 from pogosim import ProgramFailedError, Simulation
 from running import PROGRAMS, Run, compile_program, compile_text, run, write_scene
 
-MODES = ["rounding", "flush", "traps", "x87"] if platform.machine() == "x86_64" else ["rounding"]
+X86_MODES = ["rounding", "flush", "flush results", "flush operands", "traps", "x87"]
+MODES = X86_MODES if platform.machine() == "x86_64" else ["rounding"]
 PLACES = ["user_step", "user_init", "msg_rx_fn", "msg_tx_fn", "wait", "global_setup", "schema", "export", "global_step"]
 SCENE: dict[str, Any] = {
     "arena_surface": 2e6,

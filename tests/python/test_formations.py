@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
+import pyarrow as pa
 import pytest
 from running import Run, example, run
 
@@ -137,6 +138,28 @@ def test_file_of_poses_rules_and_clashes_are_one_warning(tmp_path: Path) -> None
     (warning,) = warnings(done)
     assert "poses.csv: 2 pairs of objects overlap: first robots 2 at (655, 420) and membranes 65535 at" in warning
     assert "; physics pushes them apart" in warning
+
+
+def test_table_with_a_column_twice_is_refused_and_degrees_are_told_once(tmp_path: Path) -> None:
+    settings: dict[str, object] = {"initial_formation": "imported", "formation_filename": "poses.feather"}
+    settings |= {"arena_file": "arenas/square.csv", "arena_surface": 1e6, "objects.robots.nb": 2}
+    names = ["x", "y", "angle"]
+    columns = [pa.array([100.0, 200.0]), pa.array([100.0, 100.0]), pa.array([90.0, 180.0])]
+    for twice in range(3):
+        table = pa.Table.from_arrays([*columns, columns[twice]], [*names, names[twice]])
+        write_table(tmp_path / "poses.feather", table)
+        done = run(example("helloworld"), tmp_path, settings)
+        assert done.code == 2
+        assert f"poses.feather': it has several columns '{names[twice]}'; rename or remove all but one" in done.errors
+    write_table(tmp_path / "poses.feather", pa.Table.from_arrays(columns, names))
+    done = run(example("helloworld"), tmp_path, settings)
+    assert done.code == 0
+    assert done.errors.count("poses.feather:0: the angle 90 rad is unusually large, like that of another row") == 1
+
+
+def write_table(path: Path, table: pa.Table) -> None:
+    with pa.ipc.new_file(str(path), table.schema) as file:
+        file.write_table(table)
 
 
 def test_fixed_objects_deep_in_each_other_or_in_a_wall_are_named(tmp_path: Path) -> None:

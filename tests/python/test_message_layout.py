@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 from running import ROOT, Run, compile_text, compiler, pkg_config
@@ -93,6 +94,128 @@ def test_warning_reads_like_a_compilers_and_can_be_an_error(tmp_path: Path) -> N
     result = check(program, "-Werror=message-layout")
     assert (result.code, "error: 'id'" in result.errors) == (1, True)
     assert check(program, "-Wno-message-layout", "-Werror").text == ""
+
+
+SENDER = """#include "pogobase.h"
+TYPES
+typedef struct { size_t length; long number; uint8_t buffer[40]; pair_t pair; long numbers[2]; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static void user_step(void) {
+    SENDING
+}
+static void user_init(void) {}
+int main(void) {
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    return 0;
+}
+"""
+PAIR = "typedef struct { uint32_t i; size_t z; } pair_t;"
+PACKED = "typedef struct __attribute__((packed)) { uint8_t i; long z; } pair_t;"
+GEN = "pogobot_infrared_sendLongMessage_omniGen"
+SENT = {
+    "structure": (PAIR, f"pair_t k = {{1, 2}}; {GEN}((uint8_t*)&k, sizeof k);", "'z' in the message 'pair_t'"),
+    "packed structure": (
+        PACKED,
+        f"pair_t k = {{1, 2}}; {GEN}((uint8_t*)&k, sizeof(k));",
+        "'z' in the message 'pair_t'",
+    ),
+    "structure without a name": (
+        PAIR,
+        f"struct {{ long z; }} k = {{1}}; {GEN}((uint8_t*)&k, sizeof(k));",
+        "'z' in the message 'k'",
+    ),
+    "structure of the user data": (
+        PAIR,
+        f"{GEN}((uint8_t*)&mydata->pair, sizeof(mydata->pair));",
+        "'z' in the message 'pair_t'",
+    ),
+    "pointer": (
+        PAIR,
+        f"pair_t const* k = &mydata->pair; {GEN}((uint8_t*)k, sizeof *k);",
+        "'z' in the message 'pair_t'",
+    ),
+    "size of a type": (
+        PAIR,
+        f"mydata->pair.i = 1; memcpy(mydata->buffer, &mydata->pair, 8); {GEN}(mydata->buffer, sizeof(pair_t));",
+        "'z' in the message 'pair_t'",
+    ),
+    "one of several": (
+        PAIR,
+        f"pair_t k[2] = {{{{1, 2}}, {{3, 4}}}}; {GEN}((uint8_t*)&k[mydata->length], sizeof(pair_t));",
+        "'z' in the message 'pair_t'",
+    ),
+    "array of long": (PAIR, f"long v[3] = {{1, 2, 3}}; {GEN}((uint8_t*)v, sizeof v);", "'v' is sent as a message"),
+    "row": (PAIR, f"long v[2][2] = {{{{1}}, {{2}}}}; {GEN}((uint8_t*)v[1], 4);", "'v' is sent as a message"),
+    "long": (PAIR, f"long k = 1; {GEN}((uint8_t*)&k, sizeof k);", "'k' is sent as a message"),
+    "long in a block": (
+        PAIR,
+        f"for (int i = 0; i < 2; i++) {{ long k = i; {GEN}((uint8_t*)(&k), sizeof(k)); }}",
+        "'k' is sent as a message",
+    ),
+    "long of the user data": (PAIR, f"{GEN}((uint8_t*)&mydata->number, 8);", "'number' is sent as a message"),
+    "static": (PAIR, f"static unsigned long k = 1; {GEN}((uint8_t*)&k, sizeof k);", "'k' is sent as a message"),
+    "address": (PAIR, f'char const* k = "a"; {GEN}((uint8_t*)&k, sizeof(k));', "'k' is sent as a message"),
+    "all emitters": (
+        PAIR,
+        "long k = 1; pogobot_infrared_sendLongMessage_omniSpe((uint8_t*)&k, 8);",
+        "'k' is sent as a message",
+    ),
+    "one emitter": (
+        PAIR,
+        "long k = 1; pogobot_infrared_sendLongMessage_uniSpe(ir_front, (uint8_t*)&k, 8);",
+        "'k' is sent as a message",
+    ),
+    "short": (
+        PAIR,
+        "long k = 1; pogobot_infrared_sendShortMessage_omni((uint8_t*)&k, 8);",
+        "'k' is sent as a message",
+    ),
+    "short through one": (
+        PAIR,
+        "long k = 1; pogobot_infrared_sendShortMessage_uni(ir_front, (uint8_t*)&k, 8);",
+        "'k' is sent as a message",
+    ),
+}
+
+
+def build_sender(folder: Path, types: str, sending: str, **how: Any) -> Path:
+    return compile_text(folder, SENDER.replace("TYPES", types).replace("SENDING", sending), **how)
+
+
+@pytest.mark.parametrize("what", SENT)
+@pytest.mark.parametrize("options", ["-O0", "-O2"])
+@pytest.mark.parametrize("name", COMPILERS)
+def test_what_is_sent_needs_no_name_of_a_message(name: str, options: str, what: str, tmp_path: Path) -> None:
+    types, sending, expected = SENT[what]
+    flags = ["-g", options, "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+    result = check(build_sender(tmp_path, types, sending, compiler=name, flags=flags))
+    assert result.errors.count("warning") == 1, result.errors
+    assert expected in result.errors
+
+
+UNSUSPICIOUS = [
+    "uint8_t text[4] = {1}; GEN(text, sizeof(text));",
+    "GEN(mydata->buffer + mydata->length, (uint16_t)mydata->length);",
+    "GEN(&mydata->buffer[mydata->number], (uint16_t)(sizeof(mydata->buffer) - mydata->length));",
+    'uint8_t byte = 1; GEN(&byte, 1); GEN((uint8_t*)"a, &number", 3);',
+    "uint8_t* parts[2] = {mydata->buffer, NULL}; GEN(parts[mydata->length], 3); GEN(*parts, 3);",
+    "int64_t k = 1; GEN((uint8_t*)&k, sizeof k);",
+    "uint8_t* at = mydata->buffer; GEN(at, (uint16_t)mydata->numbers[1]); GEN(NULL, 0);",
+    "message_t raw = {0}; GEN(raw.payload, raw.header.payload_length);",
+    "(GEN)((uint8_t*)mydata->buffer, 3); ::GEN(mydata->buffer, 3);",
+]
+
+
+@pytest.mark.parametrize("options", ["-O0", "-O2"])
+@pytest.mark.parametrize(
+    "name", [name for names in (("g++",), ("clang++", "clang++-14")) if (name := compiler(*names))]
+)
+def test_bytes_are_no_message_of_another_size(name: str, options: str, tmp_path: Path) -> None:
+    sending = "\n    ".join(f"{{ {line} }}" for line in UNSUSPICIOUS).replace("GEN", GEN)
+    program = build_sender(tmp_path, PAIR, sending, name="main.cpp", compiler=name, flags=["-g", options])
+    assert check(program).text == ""
 
 
 EXAMPLES = sorted(path.parent / path.parent.name for path in ROOT.glob("examples/*/main.c*"))

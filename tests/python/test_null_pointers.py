@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from conftest import Compile
-from running import ROOT, run
+from running import ROOT, compile_text, compiler, run
 
 # What the headers say that NULL does, besides an error.
 HARMLESS = {
@@ -36,10 +36,15 @@ HARMLESS = {
 NOT_FOR_PROGRAMS = {"host.h", "program.h"}
 
 # Behind macros and inline functions that name every argument.
-NOT_CALLED_BY_PROGRAMS = {"recover_next_message.message", "init_unsupported.variable", "init_unsupported.name"}
+NOT_CALLED_BY_PROGRAMS = {
+    "recover_next_message.message",
+    "init_unsupported.variable",
+    "init_unsupported.name",
+    "first.note",
+}
 
 # Type, name and arguments of a function, in one line.
-DECLARATION = re.compile(r"(?m)^(?:static inline )?[a-z]\w*(?: const)?[ *]+(\w+)\((.*)\)(?:;| \{)$")
+DECLARATION = re.compile(r"(?m)^(?:static POGO_INLINE )?[a-z]\w*(?: const)?[ *]+(\w+)\((.*)\)(?:;| \{)$")
 
 # How messages name arguments.
 WORDS = {
@@ -86,3 +91,29 @@ def test_list_of_pointer_arguments_is_that_of_the_headers() -> None:
     assert len(found) > 80
     assert {"pogobot_imu_read.gyro", "printf.format", "_pogobot_start.user_init"} <= set(found)
     assert set(found) >= HARMLESS
+
+
+PROGRAM = """#include "pogobase.h"
+typedef struct { int a; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static void user_step(void) {
+    pogobot_infrared_recover_next_message(NULL);
+    pogobot_led_setColor(1, 2, 3);
+}
+static void user_init(void) {}
+int main(void) {
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize("options", ["-O0", "-O2"])
+@pytest.mark.parametrize("name", [name for names in (("gcc",), ("clang", "clang-14")) if (name := compiler(*names))])
+def test_line_is_the_program_s_own_though_the_header_has_the_call(name: str, options: str, tmp_path: Path) -> None:
+    program = compile_text(tmp_path, PROGRAM, compiler=name, flags=["-g", options])
+    errors = run(program, tmp_path / "run", {"simulation_time": 0.1}).errors
+    assert "pogobot_infrared_recover_next_message(): message is NULL (called from user_step of robot #0" in errors
+    assert "main.c:6 in user_step())" in errors

@@ -196,6 +196,7 @@ def test_a_run_says_it_before_it_begins(tmp_path: Path) -> None:
         {"save_data_period": 5.0},
         {"boundary_condition": "solid"},
         {"enable_data_logging": False},
+        {"data_logger_fields": ["time"]},
         {"save_data_period": -1.0},
         {"objects.robots.max_linear_speed": 50.0},
         {"simulation_time": 5.0},

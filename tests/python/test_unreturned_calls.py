@@ -103,6 +103,27 @@ def test_it_is_told_early_in_a_long_run(tmp_path: Path, caplog: pytest.LogCaptur
     assert caplog.text.count("has not returned") == 1
 
 
+@pytest.mark.parametrize(
+    ("how", "count"), [("msg_rx_fn", "3 of 4 robots"), ("late", "3 of 4 robots"), ("msg_tx_fn", "all 4 robots")]
+)
+def test_it_is_told_early_though_a_few_robots_go_on(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, how: str, count: str
+) -> None:
+    # The robot far away hears no message.
+    near, far = ({"x": 300 + 60 * i, "y": 300} for i in range(3)), {"x": 900, "y": 900}
+    robots = {"objects.robots.nb": 4, "objects.robots.poses": [[p["x"], p["y"], 0] for p in (*near, far)]}
+    settings = {"parameters": {"how": how}, "simulation_time": 1e4, "arena_surface": 1e6, **robots}
+    configuration = write_scene(tmp_path, {**settings, "objects.robots.communication_radius": 200})
+    flags = ["-g", "-shared", "-fPIC"]
+    library = compile_program(tmp_path / "unreturned.so", PROGRAMS / "unreturned.c", flags=flags)
+    with Simulation(library, configuration) as simulation:
+        simulation.run(50.0)
+        assert "has not returned" not in caplog.text
+        simulation.run(80.0)
+        assert caplog.text.count("has not returned") == 1
+        assert f"{how if how != 'late' else 'user_step'} of {count} has not returned" in caplog.text
+
+
 @pytest.mark.parametrize("how", ["long sleep", "long steps", "now and then"])
 def test_robots_that_wait_for_long_and_return_are_not_told(program: Compile, tmp_path: Path, how: str) -> None:
     result = run_loop(program("unreturned.c"), tmp_path, how, simulation_time=65.0)
@@ -111,6 +132,13 @@ def test_robots_that_wait_for_long_and_return_are_not_told(program: Compile, tmp
 
 def test_end_of_the_run_during_a_few_long_sleeps_is_not_told(program: Compile, tmp_path: Path) -> None:
     assert run_loop(program("unreturned.c"), tmp_path, "now and then", simulation_time=3.5).errors == ""
+
+
+def test_call_that_lasts_less_than_ten_times_the_usual_is_not_told(program: Compile, tmp_path: Path) -> None:
+    # A call of 1 s, then one that has lasted 5 s, or 12 s, when the run ends.
+    prog = program("unreturned.c")
+    assert run_loop(prog, tmp_path / "5", "slower", simulation_time=6.0).errors == ""
+    assert "has not returned" in run_loop(prog, tmp_path / "12", "slower", simulation_time=13.5).errors
 
 
 def test_robot_that_is_switched_off_is_not_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

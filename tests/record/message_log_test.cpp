@@ -77,6 +77,16 @@ TEST_F(MessageLogFile, CellsComeBackAsTheyWereGiven) {
     EXPECT_EQ(data.table->schema()->metadata()->Get("configuration").ValueOrDie(), "a: 1");
 }
 
+TEST_F(MessageLogFile, TimesAreRoundedToNanoseconds) {
+    MessageLog log({.path = path("m.feather")});
+    MessageRow row = row_to_nobody(1);
+    row.time_s = 0.1 + 0.2;  // 0.30000000000000004
+    log.append(row);
+    log.close();
+    auto const time = read_back(path("m.feather")).cell("time", 0);
+    EXPECT_EQ(std::static_pointer_cast<arrow::DoubleScalar>(time)->value, 0.3);
+}
+
 TEST_F(MessageLogFile, MessageToNoRobotHasNullsForTheReceiver) {
     MessageLog log({.path = path("m.feather")});
     log.append(row_to_nobody(1));

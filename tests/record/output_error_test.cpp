@@ -233,6 +233,17 @@ TEST_F(OutputFailure, FileThatAnotherProgramPutThereIsLeftAlone) {
     EXPECT_EQ(read_back(path("a.feather.pogosim-kept")).table->num_rows(), 1);
 }
 
+TEST_F(OutputFailure, RowsOfACsvFileThatStandBesideItHaveTheirMetadata) {
+    DataFile file({.path = path("a.csv"), .metadata = {{"program_version", "1"}, {"configuration", "seed: 17"}}});
+    file.append({.category = "robots"}, {});
+    std::ofstream(path("b")) << "something else";
+    std::filesystem::rename(path("b"), path("a.csv"));
+    expect_says(output_error([&file] { file.close(); }), {"another program replaced it", "a.csv.pogosim-kept"});
+    EXPECT_EQ(files_in_folder(), (std::vector<std::string>{"a.csv", "a.csv.pogosim-kept", "a.csv.pogosim-kept.yaml"}));
+    EXPECT_NE(bytes_of(path("a.csv.pogosim-kept")).find("robots"), std::string::npos);
+    EXPECT_NE(bytes_of(path("a.csv.pogosim-kept.yaml")).find("seed: 17"), std::string::npos);
+}
+
 TEST_F(OutputFailure, FileThatAnotherRunWritesIsRefusedUntilThatOneHasEnded) {
     write_one_row(path("a.feather"));
     auto const before = bytes_of(path("a.feather"));

@@ -232,6 +232,16 @@ TEST_F(CompletedDataFile, IsWrittenWithoutHarmToFilesOfTheNameThatItHasOnItsWay)
     }
 }
 
+TEST_F(CompletedDataFile, IsWrittenWithoutHarmToACompleteParquetFileOfThatName) {
+    std::string const other = path("a.feather.pogosim-new");
+    std::ofstream(other, std::ios::binary) << "PAR1 rows PAR1";
+    write_rows(path("a.feather"));
+    EXPECT_EQ(bytes_of(other), "PAR1 rows PAR1");
+    std::ofstream(other, std::ios::binary) << "PAR1 rows";  // of a run that was killed
+    write_rows(path("a.feather"));
+    EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});
+}
+
 TEST_F(CompletedDataFile, IsWrittenWithoutHarmToTheFileOfAnotherRun) {
     DataFile other({.path = path("a.feather.pogosim-new"), .metadata = {{"program_version", "1"}}});
     write_rows(path("a.feather"));

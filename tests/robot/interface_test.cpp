@@ -288,6 +288,21 @@ TEST(Messages, DirectedOnesGoToTheirSideOnly) {
     }));
 }
 
+TEST(Messages, ThroughEachEmitterSayWhichOneHasPower) {
+    auto const heard = heard_by_the_right_one([] {
+        pogobot_infrared_set_power(2);
+        pogobot_infrared_sendLongMessage_omniSpe(payload, 1);
+        pogobot_infrared_sendLongMessage_omniGen(payload, 1);
+    });
+    ASSERT_GT(heard.size(), 1U);
+    for (message_t const& message : heard) {
+        unsigned const emitter = message.header._sender_ir_index;
+        EXPECT_EQ(message.header._emitting_power_list, emitter == ir_all ? 0b10101010U : 2U << (2 * emitter));
+    }
+    EXPECT_NE(heard.front().header._sender_ir_index, ir_all);
+    EXPECT_EQ(heard.back().header._sender_ir_index, ir_all);
+}
+
 TEST(Messages, RawOnesGoThroughTheEmittersOfTheirPowerList) {
     auto const right = heard_by_the_right_one([] {
         message_t message = {};

@@ -81,6 +81,13 @@ TEST_F(KeptFiles, FramesMoveToAFolderOfTheirOwnAndOtherFilesStay) {
     EXPECT_FALSE(fs::exists(at("frames/f00000.1000.png")));
 }
 
+TEST_F(KeptFiles, EmptyFileIsNothingToKeep) {
+    write(at("run.feather"), "");
+    EXPECT_TRUE(earlier_files(scenario_, "").empty());
+    EXPECT_TRUE(keep_earlier_files(scenario_, "").empty());
+    EXPECT_TRUE(fs::exists(at("run.feather")));
+}
+
 TEST_F(KeptFiles, WhatAnotherRunIsWritingStays) {
     write(at("run.feather"), "half");
     LockedFile const other(at("run.feather"));

@@ -289,6 +289,24 @@ TEST(ImportedObjects, ThatOverlapAFixedOneAreNamedWithIt) {
               "physics pushes them apart"});
 }
 
+TEST(ImportedObjects, ThatAreSmallMayOverlapByATenthOfTheirRadius) {
+    auto const warnings_of_two_beads = [](char const* x) {
+        Folder const folder;
+        Warnings const warnings;
+        Folder::write("arena.csv", kSquare);
+        Folder::write("poses.csv", fmt::format("500,500\n100,100\n{},100\n", x));
+        Folder::write("x.yaml", kImported +
+                                    "  it: {type: pogobot, geometry: disk, radius: 25, nb: 1}\n"
+                                    "  bead: {type: passive_object, geometry: disk, radius: 2, nb: 2}\n");
+        EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+        return warnings.lines();
+    };
+    EXPECT_EQ(warnings_of_two_beads("103.85"), Lines{});
+    Lines const warnings = warnings_of_two_beads("103.7");
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("mm by 0.3 mm; physics pushes them apart"), std::string::npos) << warnings[0];
+}
+
 TEST(Overlaps, AcrossTheSeamOfAPeriodicArenaAreSeen) {
     std::string const periodic = "boundary_condition: periodic\n";
     EXPECT_EQ(build_imported("5,500\n990,500\n", periodic + kImported).warnings,
@@ -303,6 +321,16 @@ TEST(Overlaps, AcrossTheSeamOfAPeriodicArenaAreSeen) {
         "  b: {type: passive_object, geometry: disk, radius: 30, x: 980, y: 500}\n",
         kSquare, scene);
     EXPECT_EQ(fixed.warnings, Lines{"x.yaml:8: objects.b.x: 'b' at (980, 500) overlaps 'a' by 30.0 mm"});
+}
+
+TEST(Overlaps, AcrossTheSeamAreSeenWhicheverOfTheTwoCrossesIt) {
+    std::string const scene = "boundary_condition: periodic\n" + kScene;
+    std::string const crossing = ": {type: passive_object, geometry: disk, radius: 30, x: 10, y: 500}\n";
+    std::string const inside = ": {type: passive_object, geometry: disk, radius: 30, x: 960, y: 500}\n";
+    EXPECT_EQ(build("  a" + crossing + "  b" + inside, kSquare, scene).warnings,
+              Lines{"x.yaml:8: objects.b.x: 'b' at (960, 500) overlaps 'a' by 10.0 mm"});
+    EXPECT_EQ(build("  a" + inside + "  b" + crossing, kSquare, scene).warnings,
+              Lines{"x.yaml:8: objects.b.x: 'b' at (10, 500) overlaps 'a' by 10.0 mm"});
 }
 
 TEST(Overlaps, AcrossTheSeamAreAvoidedByEveryFormation) {

@@ -49,6 +49,21 @@ TEST(ObservedMotion, OfABodyMovedByHandIsZero) {
     EXPECT_EQ(observed_motion(world, robot).angular_velocity_rad_s, 0.0F);
 }
 
+TEST(ObservedMotion, OfAMembraneIsTheMeanOfItsBodies) {
+    World world = testing::square_world();
+    world.time_step_s = 0.5;
+    for (float const x : {200.0F, 300.0F, 400.0F}) {
+        testing::add_body(world, {x, 200}, 0.0F, testing::pogobot_spec());
+    }
+    for (std::uint32_t body = 0; body < 3; ++body) {
+        world.bodies.position_mm[body] = world.bodies.position_mm[body] + Vec2{2, static_cast<float>(body)};
+    }
+    ObservedMotion const motion = observed_motion(world, Object{.body = 0, .body_count = 3});
+    EXPECT_NEAR(motion.velocity_mm_s.x, 4.0F, 1e-3F);
+    EXPECT_NEAR(motion.velocity_mm_s.y, 2.0F, 1e-3F);
+    EXPECT_EQ(motion.angular_velocity_rad_s, 0.0F);
+}
+
 TEST(ObservedMotion, ObjectWithoutABodyStands) {
     World const world = testing::square_world();
     EXPECT_EQ(observed_motion(world, Object{}).velocity_mm_s, Vec2{});

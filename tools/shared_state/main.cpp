@@ -110,9 +110,10 @@ void print(OddMember const& member, Check const& check) {
                                  : "is of type '" + member.type + "' (" + std::to_string(member.bytes) +
                                        " bytes), which has another size on a real robot: take uint32_t or "
                                        "another type of fixed size";
-    std::fprintf(stderr, "%s: '%s' in the message '%s' %s %s\n",
-                 beginning(member.file, member.line, member.column, check).c_str(), member.name.c_str(),
-                 member.message.c_str(), what.c_str(), end(check).c_str());
+    std::string const where =
+        member.message.empty() ? "is sent as a message and" : "in the message '" + member.message + "'";
+    std::fprintf(stderr, "%s: '%s' %s %s %s\n", beginning(member.file, member.line, member.column, check).c_str(),
+                 member.name.c_str(), where.c_str(), what.c_str(), end(check).c_str());
 }
 
 // Whether what it finds is an error.

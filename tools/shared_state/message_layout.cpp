@@ -5,70 +5,17 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <optional>
 #include <set>
 #include <string_view>
 #include <tuple>
 
 #include "debug_info/debug_info.hpp"
+#include "sent_objects.hpp"
+#include "types.hpp"
 
 namespace shared_state {
 
 namespace {
-
-std::string name_of(Dwarf_Die* entry) {
-    char const* const name = dwarf_diename(entry);
-    return name ? name : "";
-}
-
-std::optional<Dwarf_Die> type_of(Dwarf_Die* entry) {
-    Dwarf_Attribute attribute;
-    Dwarf_Die type;
-    bool const has_type = dwarf_attr_integrate(entry, DW_AT_type, &attribute) && dwarf_formref_die(&attribute, &type);
-    return has_type ? std::optional(type) : std::nullopt;
-}
-
-bool is_structure(Dwarf_Die* type) {
-    int const tag = dwarf_tag(type);
-    return tag == DW_TAG_structure_type || tag == DW_TAG_class_type || tag == DW_TAG_union_type;
-}
-
-bool is_pointer(Dwarf_Die* type) {
-    int const tag = dwarf_tag(type);
-    return tag == DW_TAG_pointer_type || tag == DW_TAG_reference_type || tag == DW_TAG_rvalue_reference_type;
-}
-
-// What a type is in the end, without names, const, arrays and the like; with pointers or through them.
-struct Basic {
-    Dwarf_Die type;
-    std::vector<std::string> names;  // of typedefs, the outermost first
-};
-
-std::optional<Basic> basic_type(std::optional<Dwarf_Die> type, bool through_pointers) {
-    Basic found{};
-    while (type) {
-        found.type = *type;
-        bool const is_base = dwarf_tag(&*type) == DW_TAG_base_type || is_structure(&*type);
-        if (is_base || (is_pointer(&*type) && !through_pointers)) {
-            return found;
-        }
-        if (dwarf_tag(&*type) == DW_TAG_typedef) {
-            found.names.push_back(name_of(&*type));
-        }
-        type = type_of(&*type);
-    }
-    return std::nullopt;
-}
-
-template <class See>
-void for_each_child(Dwarf_Die* parent, See const& see) {
-    Dwarf_Die child;
-    if (dwarf_child(parent, &child) == 0) {
-        do {
-            see(child);
-        } while (dwarf_siblingof(&child, &child) == 0);
-    }
-}
 
 bool sounds_like_a_message(std::string name) {
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -88,9 +35,13 @@ bool is_long(Basic& basic) {
     return is_of_long && std::none_of(basic.names.begin(), basic.names.end(), has_64_bits);
 }
 
+bool is_odd(Basic& basic) {
+    return is_pointer(&basic.type) || is_long(basic);
+}
+
 class Finder {
 public:
-    explicit Finder(ProgramFile const& program) {
+    explicit Finder(ProgramFile const& program) : program_(program) {
         Dwarf_CU* unit = nullptr;
         Dwarf_CU* next = nullptr;
         Dwarf_Die entry;
@@ -156,6 +107,12 @@ private:
     }
 
     void look_at_variable(Dwarf_Die& variable, bool receives) {
+        if (is_note_of_sending(&variable)) {
+            for (auto& sent : sent_objects(&variable, program_)) {
+                look_at_sent(sent);
+            }
+            return;
+        }
         auto basic = basic_type(type_of(&variable), /*through_pointers=*/true);
         if (!basic || !is_structure(&basic->type)) {
             return;
@@ -163,8 +120,17 @@ private:
         if (name_of(&variable) == "mydata") {
             note_user_data(basic->type);
         } else if (receives) {
-            std::string const name = basic->names.empty() ? name_of(&basic->type) : basic->names.front();
-            received_.emplace(dwarf_dieoffset(&basic->type), Message{name, basic->type});
+            received_.emplace(dwarf_dieoffset(&basic->type), Message{name_of(*basic), basic->type});
+        }
+    }
+
+    void look_at_sent(SentObject& sent) {
+        std::string const name = name_of(sent.type);
+        if (is_structure(&sent.type.type)) {
+            messages_.emplace(dwarf_dieoffset(&sent.type.type),
+                              Message{name.empty() ? sent.name : name, sent.type.type});
+        } else if (is_odd(sent.type)) {
+            note("", sent.declaration, sent.type);
         }
     }
 
@@ -199,7 +165,7 @@ private:
             }
             if (is_structure(&basic->type)) {
                 look_at_members(message, basic->type);
-            } else if (is_pointer(&basic->type) || is_long(*basic)) {
+            } else if (is_odd(*basic)) {
                 note(message, member, *basic);
             }
         });
@@ -208,7 +174,7 @@ private:
     void note(std::string const& message, Dwarf_Die& member, Basic& basic) {
         OddMember odd{.message = message, .name = name_of(&member), .file = file_of(&member)};
         if (!is_pointer(&basic.type)) {
-            odd.type = basic.names.empty() ? name_of(&basic.type) : basic.names.front();
+            odd.type = name_of(basic);
         }
         odd.bytes = static_cast<uint64_t>(std::max(0, dwarf_bytesize(&basic.type)));
         dwarf_decl_line(&member, &odd.line);
@@ -216,6 +182,7 @@ private:
         found_.push_back(odd);
     }
 
+    ProgramFile const& program_;
     std::map<Dwarf_Off, Message> messages_;
     std::map<Dwarf_Off, Message> received_;
     std::set<Dwarf_Off> of_user_data_;

@@ -177,9 +177,35 @@ POGO_END_API
 
 /// Removes the oldest message from the queue; bytes beyond its payload are zero. If no message is waiting, warns once
 /// and leaves the argument unchanged.
-static inline void pogobot_infrared_recover_next_message(message_t* message) {
+static POGO_INLINE void pogobot_infrared_recover_next_message(message_t* message) {
     pogosim_recover_next_message(message, MAX_PAYLOAD_SIZE_BYTES);
 }
+
+// Records in the program what a call sends, for pogosim-shared-state: a constant with the text of its arguments, in the
+// scope in which that text is valid. (Inside a macro, its own name is the function's.)
+#ifndef POGOSIM_INSIDE
+static POGO_INLINE uint32_t pogosim_first(uint32_t result, char const* note) {
+    (void)note;
+    return result;
+}
+#define POGO_NOTE_SENT(...)                                                                      \
+    __extension__({                                                                              \
+        static char const pogosim_sent_arguments[] __attribute__((used, unused)) = #__VA_ARGS__; \
+        &pogosim_sent_arguments[0];                                                              \
+    })
+// clang-format off
+#define pogobot_infrared_sendLongMessage_omniGen(...) \
+    pogosim_first(pogobot_infrared_sendLongMessage_omniGen(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+#define pogobot_infrared_sendLongMessage_omniSpe(...) \
+    pogosim_first(pogobot_infrared_sendLongMessage_omniSpe(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+#define pogobot_infrared_sendLongMessage_uniSpe(...) \
+    pogosim_first(pogobot_infrared_sendLongMessage_uniSpe(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+#define pogobot_infrared_sendShortMessage_omni(...) \
+    pogosim_first(pogobot_infrared_sendShortMessage_omni(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+#define pogobot_infrared_sendShortMessage_uni(...) \
+    pogosim_first(pogobot_infrared_sendShortMessage_uni(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+// clang-format on
+#endif
 
 #ifdef __cplusplus
 }

@@ -67,7 +67,11 @@ def single_value(node: Any) -> Any:
 def listed(options: Any) -> list[Any]:
     """Return the values of `batch_options`."""
     if not isinstance(options, list):
-        raise OptionsError(f"{LIST}: expected a list of values, found {shown(options)}; write [{shown(options)}]")
+        is_value = options is not None and not isinstance(options, dict)
+        found = "a map" if isinstance(options, dict) else shown(options)
+        raise OptionsError(
+            f"{LIST}: expected a list of values, found {found}" + (f"; write [{shown(options)}]" if is_value else "")
+        )
     if not options:
         raise OptionsError(f"{LIST}: expected at least one value, found an empty list")
     return list(options)

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,18 +34,24 @@ struct Columns {
     std::size_t count = 2;  // fields that a line must have at least
 };
 
-std::optional<std::size_t> find_column(std::vector<std::string_view> const& names, std::string_view name) {
+std::optional<std::size_t> find_column(std::vector<std::string> const& names, std::string_view name,
+                                       std::string const& where) {
+    if (std::ranges::count(names, name) > 1) {
+        throw ConfigError(
+            fmt::format("{}: the header has several columns '{}'; rename or remove all but one", where, name));
+    }
     auto const found = std::ranges::find(names, name);
     return found == names.end() ? std::nullopt : std::optional<std::size_t>(found - names.begin());
 }
 
-bool is_header(std::vector<std::string_view> const& fields) {
+bool is_header(std::vector<std::string> const& fields) {
     return std::ranges::any_of(fields, [](std::string_view f) { return !f.empty() && !parse_number(f); });
 }
 
-Columns columns_of_header(std::vector<std::string_view> const& names, std::string const& where) {
-    auto const x = find_column(names, "x");
-    auto const y = find_column(names, "y");
+Columns columns_of_header(std::vector<std::string> const& names, std::string const& where) {
+    auto const find = [&](std::string_view name) { return find_column(names, name, where); };
+    auto const x = find("x");
+    auto const y = find("y");
     if (!x || !y) {
         throw ConfigError(
             fmt::format("{}: expected a header with the columns x and y (and theta or angle, and time, if "
@@ -52,12 +59,12 @@ Columns columns_of_header(std::vector<std::string_view> const& names, std::strin
                         where, in_quotes(fmt::format("{}", fmt::join(names, ",")))));
     }
     // In a data file of ours, theta is a column of the program: a phase, for instance.
-    auto const theta = find_column(names, "robot_category") ? std::nullopt : find_column(names, "theta");
-    auto const angle = theta ? theta : find_column(names, "angle");
-    return {*x, *y, angle, find_column(names, "time"), names.size()};
+    auto const theta = find("robot_category") ? std::nullopt : find("theta");
+    auto const angle = theta ? theta : find("angle");
+    return {*x, *y, angle, find("time"), names.size()};
 }
 
-double number_in(std::vector<std::string_view> const& fields, std::size_t column, std::string const& where) {
+double number_in(std::vector<std::string> const& fields, std::size_t column, std::string const& where) {
     auto const number = parse_number(fields[column]);
     if (!number) {
         throw ConfigError(fmt::format("{}: expected a finite number in column {}, found {}", where, column + 1,
@@ -66,7 +73,7 @@ double number_in(std::vector<std::string_view> const& fields, std::size_t column
     return *number;
 }
 
-ImportedPose parse_pose(std::vector<std::string_view> const& fields, Columns const& columns, std::size_t row,
+ImportedPose parse_pose(std::vector<std::string> const& fields, Columns const& columns, std::size_t row,
                         std::string const& where) {
     if (fields.size() < columns.count) {
         throw ConfigError(
@@ -93,7 +100,7 @@ std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
             continue;
         }
         std::string const where = fmt::format("{}:{}", path.string(), line.number);
-        std::vector<std::string_view> const fields = split_fields(line.text);
+        std::vector<std::string> const fields = split_fields(line.text);
         bool const header = !columns && is_header(fields);
         if (!columns) {
             columns = header ? columns_of_header(fields, where) : Columns{};
@@ -171,11 +178,14 @@ public:
 
     bool is_given() const { return is_given_; }
 
+    double x_mm(ImportedPose const& pose) const {
+        return target_.min.x + (pose.x - source_.min.x) / source_.size().x * target_.size().x;
+    }
+    double y_mm(ImportedPose const& pose) const {
+        return target_.min.y + (pose.y - source_.min.y) / source_.size().y * target_.size().y;
+    }
     Vec2 to_mm(ImportedPose const& pose) const {
-        Vec2 const from = source_.size();
-        Vec2 const to = target_.size();
-        return {static_cast<float>(target_.min.x + (pose.x - source_.min.x) / from.x * to.x),
-                static_cast<float>(target_.min.y + (pose.y - source_.min.y) / from.y * to.y)};
+        return {static_cast<float>(x_mm(pose)), static_cast<float>(y_mm(pose))};
     }
 
 private:
@@ -212,7 +222,8 @@ std::string remedy(PlacementTask const& task, std::vector<Vec2> const& places) {
 
 /// Throws when a place is outside, or when all are so near to each other that the unit must be a wrong one.
 void check_places(PlacementTask const& task, std::vector<ImportedPose> const& poses, std::vector<Vec2> const& places,
-                  bool has_frame) {
+                  ImportedFrame const& frame) {
+    bool const has_frame = frame.is_given();
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (std::isnan(places[i].x) || std::isnan(places[i].y)) {
             throw ConfigError(fmt::format("{}:{}: the row has no position (x {:g}, y {:g})", task.spec.filename,
@@ -222,9 +233,10 @@ void check_places(PlacementTask const& task, std::vector<ImportedPose> const& po
     auto const outside = [&](Vec2 place) { return !is_inside(task, place); };
     if (auto const first = std::ranges::find_if(places, outside); first != places.end()) {
         auto const count = std::ranges::count_if(places, outside);
+        ImportedPose const& pose = poses[static_cast<std::size_t>(first - places.begin())];
         throw ConfigError(fmt::format("{}:{}: the position ({:g}, {:g}) mm is outside the walls of {}{}{}",
-                                      task.spec.filename, poses[static_cast<std::size_t>(first - places.begin())].row,
-                                      first->x, first->y, arena_text(task.domain),
+                                      task.spec.filename, pose.row, frame.x_mm(pose), frame.y_mm(pose),
+                                      arena_text(task.domain),
                                       count > 1 ? fmt::format(", and {} of {} are", count, places.size()) : "",
                                       has_frame ? "" : "; " + remedy(task, places)));
     }
@@ -236,6 +248,22 @@ void check_places(PlacementTask const& task, std::vector<ImportedPose> const& po
             fmt::format("{}: all {} positions are within {:.3g} x {:.3g} mm, less than an object is wide "
                         "({:.4g} mm); {}",
                         task.spec.filename, places.size(), extent.x, extent.y, smallest_mm, remedy(task, places)));
+    }
+}
+
+/// Headings are in radians: more than a full turn looks like degrees, as it does in a configuration.
+void warn_of_degrees(PlacementTask const& task, std::vector<ImportedPose> const& poses) {
+    constexpr double usual_max_rad = 6.3;
+    auto const is_large = [](ImportedPose const& pose) { return std::abs(pose.heading_rad) > usual_max_rad; };
+    auto const first = std::ranges::find_if(poses, is_large);
+    if (first != poses.end()) {
+        auto const others = std::ranges::count_if(poses, is_large) - 1;
+        log().warn("{}:{}: the angle {:g} rad is unusually large{}; if you meant degrees, write {:.6g}",
+                   task.spec.filename, first->row, first->heading_rad,
+                   others == 0   ? ""
+                   : others == 1 ? ", like that of another row"
+                                 : fmt::format(", like those of {} other rows", others),
+                   first->heading_rad * std::numbers::pi / 180.0);
     }
 }
 
@@ -258,6 +286,9 @@ std::vector<Placement> place_imported(PlacementTask const& task) {
                    task.spec.filename, poses.size(), needed, poses.size() - needed,
                    poses.size() - needed == 1 ? "is" : "are");
     }
+    if (others.count == 0 || others.may_follow) {  // for a file of several tasks, once
+        warn_of_degrees(task, poses);
+    }
     auto const first_of_others = poses.begin() + static_cast<std::ptrdiff_t>(others.first);
     poses.erase(first_of_others, first_of_others + static_cast<std::ptrdiff_t>(others.count));
     poses.resize(count);
@@ -266,7 +297,7 @@ std::vector<Placement> place_imported(PlacementTask const& task) {
     std::vector<Vec2> places;
     std::ranges::transform(poses, std::back_inserter(places),
                            [&](ImportedPose const& pose) { return frame.to_mm(pose); });
-    check_places(task, poses, places, frame.is_given());
+    check_places(task, poses, places, frame);
     std::vector<Placement> placements;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         // A heading that the file does not give stays NaN.
