@@ -159,22 +159,24 @@ class OpenRun:
         pointer: NULL until it is open.
     """
 
+    pointer: c_void_p | None = None  # until all that is needed to free it is known
+
     def __init__(self) -> None:
-        self.pointer = c_void_p()
         self._process = os.getpid()
         self._close = library().pogosim_run_close
+        self.pointer = c_void_p()
 
     def __del__(self, process_now: Callable[[], int] = os.getpid) -> None:  # modules may be gone at the end of Python
-        if process_now() == self._process:  # in a forked child, the files are those of its parent
+        if self.pointer and process_now() == self._process:  # in a forked child, the files are those of its parent
             self._close(self.pointer)
 
 
-def open_run(program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool) -> OpenRun:
-    """Build a run and start its program."""
+def open_run(
+    run: OpenRun, program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool
+) -> None:
+    """Build a run and start its program. The caller keeps `run`: Ctrl-C may come as soon as it is open."""
     texts = (c_char_p * len(settings))(*(text.encode() for text in settings))
     options = RunOptions(
         os.fsencode(program), os.fsencode(configuration), texts, len(settings), -1 if seed is None else seed, strict
     )
-    run = OpenRun()
     check(library().pogosim_run_open(byref(options), byref(run.pointer)))
-    return run

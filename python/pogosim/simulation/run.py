@@ -21,9 +21,9 @@ from pogosim.arguments import shown
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import NO_BODY, RunState, check_process
 from pogosim.simulation.columns import Columns
-from pogosim.simulation.current_run import CurrentRun, own_folder
+from pogosim.simulation.current_run import CurrentRun
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
-from pogosim.simulation.library import OVER, check, library, open_run
+from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
@@ -152,28 +152,28 @@ class Simulation:
         seed = checked_seed(seed)
         if data_file is None and "data_filename" in settings:
             data_file = settings["data_filename"]
-        folder = own_folder() if data_file is None else None
-        self.data_file = folder / "data.feather" if folder else given.path("data_file", data_file)
-        self._settings: dict[str, Any] = {
-            "enable_console_logging": False,
-            "save_video_period": -1,
-            "data_filename": str(self.data_file),
-            **settings,
-        }
-        self._current = CurrentRun(folder)
+        self._current = CurrentRun()
         self._lock = self._current.lock
         self._is_closed = False
         self._finish = Finalize(self, self._current.finish, exitpriority=0)
         try:
+            is_temporary = data_file is None
+            self.data_file = (
+                self._current.make_folder() / "data.feather" if is_temporary else given.path("data_file", data_file)
+            )
+            self._settings: dict[str, Any] = {
+                "enable_console_logging": False,
+                "save_video_period": -1,
+                "data_filename": str(self.data_file),
+                **settings,
+            }
             self._open(seed)
         except BaseException:
             self._finish()
             raise
 
     def _open(self, seed: int | None) -> None:
-        self._current.run = RunState(
-            open_run(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
-        )
+        self._current.open(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
         self._seed = self.seed
         self._user_data: tuple[RunState, npt.NDArray[Any]] | None = None
         self._parameter_values = {
@@ -250,7 +250,7 @@ class Simulation:
                     self._end()
                 self._open(self._seed if seed is None else seed)
             except BaseException:
-                self._current.run = None
+                self._current.abandon()
                 raise
 
     def close(self) -> None:
@@ -264,9 +264,8 @@ class Simulation:
                 if self._current.run is not None:
                     self._end()
             finally:
-                self._current.run = None
                 self._user_data = None
-                self._current.remove_folder()
+                self._current.clean_up()
                 self._finish.cancel()
 
     def __enter__(self) -> Simulation:
