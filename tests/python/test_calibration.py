@@ -181,6 +181,14 @@ def test_one_robot_and_a_data_file_will_do(
     assert float(line.split()[1]) == pytest.approx(TRUE["max_angular_speed"], rel=0.1)
 
 
+@pytest.mark.parametrize("name", ["tracks.arrow", "tracks.ipc", "tracks", "tracks.txt"])
+def test_data_file_of_a_run_is_read_whatever_its_name(name: str, tmp_path: Path) -> None:
+    rows = pd.DataFrame({"time": [0.0, 0.1], "robot_id": [0, 0], "x": [1.0, 2.0], "y": 3.0, "angle": 0.5})
+    rows.assign(robot_category="robots").to_feather(tmp_path / name)
+    table, said = read_spots(tmp_path / name)
+    assert (table.rows["x"].tolist(), table.units["x"], said) == ([1.0, 2.0], "mm", [])
+
+
 def test_protocol_is_written_once(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--protocol", "main.c"]) == 0
     assert (here / "main.c").read_text() == PROTOCOL.read_text()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import math
 import os
-import shutil
 import threading
 from collections.abc import Iterator, Mapping, MutableMapping
 from ctypes import byref, c_int64
@@ -18,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
+from pogosim.lines import printable
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import NO_BODY, RunState, check_process
 from pogosim.simulation.columns import Columns
@@ -25,6 +25,7 @@ from pogosim.simulation.current_run import CurrentRun
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
 from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
+from pogosim.simulation.saved_rows import write_copy
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
 
@@ -113,10 +114,6 @@ class Simulation:
             print(sim.time, sim.positions.mean(axis=0))
 
     Messages of the simulator go to the logger "pogosim", lines that robots print to "pogosim.robots".
-
-    Attributes:
-        program: The shared object.
-        configuration: The YAML file.
     """
 
     def __init__(
@@ -145,8 +142,8 @@ class Simulation:
             ProgramFailedError: The program crashed at its start.
             SimulationError: There is no simulator, or one of another version.
         """
-        self.program = shared_object(given.path("program", program))
-        self.configuration = given.path("configuration", configuration)
+        self._program = shared_object(given.path("program", program))
+        self._configuration = given.path("configuration", configuration)
         self._strict = given.boolean("strict", strict)
         settings = checked_settings(set)
         seed = checked_seed(seed)
@@ -158,7 +155,7 @@ class Simulation:
         self._finish = Finalize(self, self._current.finish, exitpriority=0)
         try:
             is_temporary = data_file is None
-            self.data_file = (
+            self._data_file = (
                 self._current.make_folder() / "data.feather" if is_temporary else given.path("data_file", data_file)
             )
             self._settings: dict[str, Any] = {
@@ -173,7 +170,7 @@ class Simulation:
             raise
 
     def _open(self, seed: int | None) -> None:
-        self._current.open(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
+        self._current.open(self._program, self._configuration, settings_of(self._settings), seed, self._strict)
         self._seed = self.seed
         self._user_data: tuple[RunState, npt.NDArray[Any]] | None = None
         self._parameter_values = {
@@ -288,6 +285,21 @@ class Simulation:
         return f"<pogosim.Simulation of {self.program.name}, {self.configuration.name}: {state}>"
 
     # ---- What it is like now
+
+    @property
+    def program(self) -> Path:
+        """The shared object."""
+        return self._program
+
+    @property
+    def configuration(self) -> Path:
+        """The YAML file."""
+        return self._configuration
+
+    @property
+    def data_file(self) -> Path:
+        """Where the rows go."""
+        return self._data_file
 
     @property
     def time(self) -> float:
@@ -516,20 +528,37 @@ class Simulation:
 
         with self._busy():
             check(library().pogosim_run_save(self._run.pointer))
-            if not self.data_file.exists():
-                raise SimulationError("the run records no rows (enable_data_logging: false)")
+            self._check_data_file()
             rows, metadata = utils.load_file(self.data_file, warns=False)  # the run goes on
         rows.attrs = utils.attributes(metadata)
         return rows
 
     def save_data(self, file: PathLike) -> None:
-        """Copy the complete data file of a run that is over."""
+        """End the run, and write its rows and metadata to another file.
+
+        Args:
+            file: Its ending says the format, as that of `data_file`: .feather, .arrow, .ipc, .parquet or .csv, which
+                has its metadata beside it. An existing file is replaced.
+
+        Raises:
+            ConfigurationError: It has another ending, is the data file itself, or cannot be written.
+            SimulationError: There are no rows.
+        """
         path = given.path("file", file)
-        self.end()
-        try:
-            shutil.copyfile(self.data_file, path)
-        except OSError as error:
-            raise ConfigurationError(f"the data file cannot be copied to {path}: {error.strerror or error}") from None
+        with self._busy():
+            self._end()
+            self._check_data_file()
+            write_copy(self.data_file, path)
+
+    def _check_data_file(self) -> None:
+        if self.data_file.exists():
+            return
+        if math.isnan(self._run.number("save_time")):
+            raise SimulationError("the run records no rows (enable_data_logging: false)")
+        raise SimulationError(
+            f"the data file {printable(self.data_file)} is not there any more: another program has removed or renamed "
+            "it, or this one has changed its folder (os.chdir)"
+        )
 
     # ---- Inside
 
