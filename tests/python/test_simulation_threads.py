@@ -33,13 +33,14 @@ ARGUMENTS: dict[str, Any] = {
     "name": "steps_of_all",
     "value": 1.0,
     "obj": 0,
-    "file": "/dev/null",
+    "file": "copy.feather",
 }
 
 
 @pytest.fixture(autouse=True)
-def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
+    monkeypatch.chdir(tmp_path)
 
 
 @pytest.fixture(scope="module")
