@@ -166,7 +166,8 @@ print(interrupts)
 """
     command = [sys.executable, "-c", script, str(program), str(scene)]
     result = subprocess.run(command, capture_output=True, text=True, timeout=300)
-    assert (result.stdout, result.stderr, result.returncode) == ("100\n", "", 0)
+    assert result.returncode == 0, result.stderr
+    assert int(result.stdout) > 50  # Python ignores those in finalisers, and says so
     assert not left_over()
 
 

@@ -84,7 +84,12 @@ class Parameters(MutableMapping[str, Any]):
         self._simulation = simulation
 
     def __getitem__(self, name: str) -> Any:
-        return self._simulation._parameter_values[name]
+        known = self._simulation._parameter_values
+        if not isinstance(name, str) or name not in known:
+            raise KeyError(
+                f"no value was given for the parameter {shown(name)}; there are {', '.join(known) or 'none'}"
+            )
+        return known[name]
 
     def __setitem__(self, name: str, value: Any) -> None:
         self._simulation._set_parameter(name, value)
@@ -114,7 +119,19 @@ class Simulation:
             print(sim.time, sim.positions.mean(axis=0))
 
     Messages of the simulator go to the logger "pogosim", lines that robots print to "pogosim.robots".
+
+    Attributes:
+        program: The shared object.
+        configuration: The YAML file.
+        data_file: Where the rows go. None of the three can be set.
     """
+
+    _FIXED = frozenset({"program", "configuration", "data_file"})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self._FIXED and name in vars(self):
+            raise AttributeError(f"{name} of a simulation cannot be set: make another simulation")
+        super().__setattr__(name, value)
 
     def __init__(
         self,
@@ -142,8 +159,8 @@ class Simulation:
             ProgramFailedError: The program crashed at its start.
             SimulationError: There is no simulator, or one of another version.
         """
-        self._program = shared_object(given.path("program", program))
-        self._configuration = given.path("configuration", configuration)
+        self.program = shared_object(given.path("program", program))
+        self.configuration = given.path("configuration", configuration)
         self._strict = given.boolean("strict", strict)
         settings = checked_settings(set)
         seed = checked_seed(seed)
@@ -155,7 +172,7 @@ class Simulation:
         self._finish = Finalize(self, self._current.finish, exitpriority=0)
         try:
             is_temporary = data_file is None
-            self._data_file = (
+            self.data_file = (
                 self._current.make_folder() / "data.feather" if is_temporary else given.path("data_file", data_file)
             )
             self._settings: dict[str, Any] = {
@@ -170,7 +187,7 @@ class Simulation:
             raise
 
     def _open(self, seed: int | None) -> None:
-        self._current.open(self._program, self._configuration, settings_of(self._settings), seed, self._strict)
+        self._current.open(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
         self._seed = self.seed
         self._user_data: tuple[RunState, npt.NDArray[Any]] | None = None
         self._parameter_values = {
@@ -285,21 +302,6 @@ class Simulation:
         return f"<pogosim.Simulation of {self.program.name}, {self.configuration.name}: {state}>"
 
     # ---- What it is like now
-
-    @property
-    def program(self) -> Path:
-        """The shared object."""
-        return self._program
-
-    @property
-    def configuration(self) -> Path:
-        """The YAML file."""
-        return self._configuration
-
-    @property
-    def data_file(self) -> Path:
-        """Where the rows go."""
-        return self._data_file
 
     @property
     def time(self) -> float:
@@ -511,7 +513,8 @@ class Simulation:
             check(library().pogosim_run_set_column(self._run.pointer, index, column.encode(), number))
 
     def _set_parameter(self, name: str, value: Any) -> None:
-        key = f"parameters.{given.text('a parameter', name)}"
+        name = given.text("a parameter", name)
+        key = f"parameters.{name}"
         plain = given.value(key, value)
         with self._busy():
             if self._current.run is not None or self._is_closed:  # else the last reset failed, perhaps because of this
@@ -612,5 +615,10 @@ def checked_seed(seed: Any) -> int | None:
 
 def shared_object(program: Path) -> Path:
     """Return the shared object of a program: itself, or the one beside an executable."""
+    if program.suffix == ".so" or not program.name:  # as of "." and "/"
+        return program
     beside = program.with_name(program.name + ".so")
-    return beside if program.suffix != ".so" and beside.is_file() else program
+    try:
+        return beside if beside.is_file() else program
+    except OSError:  # a name that is too long, which is refused later
+        return program

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
@@ -19,6 +20,7 @@ from pogosim.simulation.objects import chosen_index
 from pogosim.simulation.run import CLOSED, Simulation, checked_seed
 
 MOST_THREADS = 1024
+MOST_RUNS = 100_000
 
 T = TypeVar("T")
 
@@ -33,9 +35,11 @@ def checked_seeds(seeds: Any) -> list[int | None]:
         ConfigurationError: They are none.
     """
     try:
-        found = list(seeds)
+        found = list(itertools.islice(iter(seeds), MOST_RUNS + 1))
     except TypeError:
         raise given.refused("seeds", "a list of integers, one for each run", seeds) from None
+    if len(found) > MOST_RUNS:
+        raise ConfigurationError(f"seeds: expected {MOST_RUNS} runs at most, found more")
     return [checked_seed(seed) for seed in found]
 
 
