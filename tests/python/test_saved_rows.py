@@ -78,6 +78,8 @@ def test_name_that_says_no_format_or_is_taken_is_refused_in_a_line(program: Path
         (tmp_path / "folder.csv").mkdir()
         assert "is a folder" in refusal(sim, tmp_path / "folder.csv")
         sim.save_data(tmp_path / "copy.feather")
+        sim.save_data("/dev/null")
+    assert Path("/dev/null").is_char_device()
     assert (tmp_path / "notes.csv.yaml").read_text(encoding="utf-8") == "mine: 1\n"
     assert not (tmp_path / "notes.csv").exists()
     assert not list(tmp_path.glob("*.pogosim-new"))

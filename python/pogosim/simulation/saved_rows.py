@@ -24,11 +24,12 @@ def write_copy(data_file: Path, path: Path) -> None:
     if leads_to(path, data_file):
         raise ConfigurationError(f"file: {printable(path)} is the data file itself; choose another name")
     try:
-        real = real_output(path)
+        to_device = path.is_char_device()  # as /dev/null
+        real = path if to_device else real_output(path)
         beside = metadata_path(path)
         if kind == CSV and beside.exists() and not is_our_metadata(beside):
             raise OutputError(f"{beside} is no file of the simulator and is not overwritten; choose another name")
-        with partial_output(real) as partial:
+        with contextlib.nullcontext(real) if to_device else partial_output(real) as partial:
             if kind != format_of(data_file):
                 convert(data_file, kind, partial, real)
                 return
