@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import numbers
 import operator
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
 DEEPEST = 200  # of maps and lists in each other
+MOST_VALUES = 1_000_000  # in all maps and lists of an argument
+MOST_BITS = 1024  # of an integer: no larger one is a floating-point number
 SHOWN_CHARACTERS = 60
 
 
 def shown(value: Any) -> str:
     """Return a value as errors show it, in a line."""
+    if isinstance(value, str) and len(value) > SHOWN_CHARACTERS:
+        begin = str.__str__(value)[: SHOWN_CHARACTERS // 2]
+        return f"{begin!r}... ({len(value)} characters)"
     try:
         text = repr(value)
     except Exception:  # of a class of the caller
@@ -27,9 +33,18 @@ def shown(value: Any) -> str:
 
 
 def without_numpy(value: Any) -> Any:
-    """Return a scalar or array of NumPy, pandas or PyTorch as numbers and lists of Python; other values as they are."""
+    """Return a scalar or array of NumPy, pandas or PyTorch as numbers and lists of Python; other values as they are.
+
+    Arrays with too many elements, which may be more than memory has, stay as they are.
+    """
     as_python = getattr(value, "tolist", None)
-    return as_python() if callable(as_python) and not isinstance(value, type) else value
+    return as_python() if callable(as_python) and not isinstance(value, type) and not is_too_large(value) else value
+
+
+def is_too_large(value: Any) -> bool:
+    """Tell whether a value is an array with too many elements."""
+    size = getattr(value, "size", None)
+    return isinstance(size, int) and size > MOST_VALUES
 
 
 def is_text(value: Any) -> bool:
@@ -128,11 +143,14 @@ class Arguments:
             raise self.refused(name, "the path of a file (str or pathlib.Path)", value)
         return Path(found)
 
-    def value(self, name: str, value: Any, depth: int = 0) -> Any:
+    def value(self, name: str, value: Any, depth: int = 0, count: Iterator[int] | None = None) -> Any:
         """Return a value for YAML: text, numbers, True, False, None, and lists and maps of them.
 
         Enums are their values; paths, text; tuples, ranges and arrays, lists.
         """
+        count = itertools.count() if count is None else count
+        if next(count) > MOST_VALUES or is_too_large(value):
+            raise self.error(f"{name.partition('[')[0]}: expected {MOST_VALUES} values at most, found more")
         if depth > DEEPEST:
             raise self.error(f"{name.partition('[')[0]}: maps and lists are nested too deeply, or contain themselves")
         found = without_numpy(value.value if isinstance(value, Enum) else value)
@@ -143,14 +161,18 @@ class Arguments:
         if is_text(found):
             return str.__str__(found)
         if isinstance(found, int):
+            if found.bit_length() > MOST_BITS:
+                raise self.error(f"{name}: expected a number of at most {MOST_BITS} bits, found an integer of more")
             return int(found)
         if isinstance(found, float):
             return float(found)
         if isinstance(found, (list, tuple, range)):
-            return [self.value(f"{name}[{index}]", item, depth + 1) for index, item in enumerate(found)]
+            return [self.value(f"{name}[{index}]", item, depth + 1, count) for index, item in enumerate(found)]
         if isinstance(found, Mapping):
             return {
-                self.value(f"a key of {name}", key, depth + 1): self.value(f"{name}.{key}", item, depth + 1)
+                self.value(f"a key of {name}", key, depth + 1, count): self.value(
+                    f"{name}.{key}", item, depth + 1, count
+                )
                 for key, item in found.items()
             }
         raise self.refused(name, "text, a number, True, False, None, a list or a map", value)

@@ -41,6 +41,17 @@ def format_in(path: Path) -> str:
     return CSV if format_of(path) == CSV and not begin.startswith(ARROW_MAGIC) else FEATHER
 
 
+def is_binary(path: Path) -> bool:
+    """Tell whether a file is an Arrow or Parquet one: by its first bytes or, if it is damaged, the ending of its name.
+
+    Raises:
+        OSError: It cannot be read.
+    """
+    with path.open("rb") as file:
+        begin = file.read(len(ARROW_MAGIC))
+    return begin.startswith((PARQUET_MAGIC, ARROW_MAGIC)) or ENDINGS.get(path.suffix.lower(), CSV) != CSV
+
+
 def metadata_path(table: Path) -> Path:
     """Return where the metadata of a CSV file are."""
     beside = Path(f"{table}{BESIDE}")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import decimal
 import enum
 import fractions
+import functools
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -346,3 +348,70 @@ def test_functions_of_the_package_refuse_by_name(name: str, tmp_path: Path) -> N
         text = str(caught.value)
         assert text.startswith(f"{name}: expected"), (kind, text)
         assert text.isprintable() and len(text) < 250
+
+
+NO_NAMES: dict[str, Any] = {
+    "array": np.arange(3),
+    "array of objects": np.array([None, 1], dtype=object),
+    "Series": pd.Series([1, 2]),
+    "DataFrame": pd.DataFrame({"a": [1]}),
+    "NA": pd.NA,
+    "list": ["age"],
+    "None": None,
+    "two lines": "a\nb",
+    "long": "x" * 100_000,
+    "bytes": b"x" * 100_000,
+    "large integer": 10**5000,
+}
+
+
+@pytest.mark.parametrize("kind", NO_NAMES)
+def test_what_is_no_name_of_a_column_category_or_parameter_is_told_in_a_short_line(
+    kind: str, sim: pogosim.Simulation
+) -> None:
+    value = NO_NAMES[kind]
+    calls: list[Callable[[], object]] = [
+        lambda: sim.columns[value],
+        lambda: sim.parameters[value],
+        lambda: sim.objects.of(value),
+    ]
+    with many_like(sim, [1, 2]) as runs:
+        calls.append(lambda: runs.column(value))
+        for call in calls:
+            with pytest.raises((KeyError, pogosim.ConfigurationError)) as caught:
+                call()
+            text = caught.value.args[0]
+            assert text.isprintable()
+            assert len(text) < 500
+    assert value not in sim.columns
+    assert value not in sim.objects
+    assert value not in sim.lamps
+
+
+@pytest.mark.parametrize("name", [".", "..", "/", Path(), "two\nlines", "x" * 100_000, "x" * 300])
+def test_name_that_no_file_can_have_is_refused_in_a_line(name: str | Path, sim: pogosim.Simulation) -> None:
+    calls: list[Callable[[], object]] = [
+        lambda: pogosim.Simulation(name, sim.configuration),
+        lambda: pogosim.Simulation(sim.program, name),
+        lambda: like(sim, set={"arena_file": str(name)}),
+    ]
+    if len(str(name)) > 255:
+        calls += [lambda: like(sim, data_file=name), lambda: sim.save_data(name)]
+    for call in calls:
+        with pytest.raises(pogosim.ConfigurationError) as caught:
+            call()
+        assert str(caught.value).isprintable()
+        assert len(str(caught.value)) < 11_000
+
+
+def test_more_values_than_a_configuration_can_have_are_refused_at_once(sim: pogosim.Simulation) -> None:
+    doubled: list[Any] = [1]
+    for _ in range(60):
+        doubled = [doubled, doubled]
+    values: list[Any] = [range(10**12), np.broadcast_to(0, 10**12), doubled, [range(10**5)] * 20]
+    for value in values:
+        settings = {"parameters.z": value}
+        assert "expected 1000000 values at most" in refusal(functools.partial(like, sim, set=settings))
+    assert "at most 1024 bits" in refusal(lambda: like(sim, set={"parameters.z": 10**5000}))
+    assert "seeds: expected 100000 runs at most" in refusal(lambda: many_like(sim, itertools.count()))
+    assert "steps: expected an integer" in refusal(lambda: sim.step(np.broadcast_to(0, 10**12)))  # type: ignore[arg-type]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -179,6 +180,38 @@ def test_one_robot_and_a_data_file_will_do(
     assert main(options) == 0
     line = next(line for line in capsys.readouterr().out.splitlines() if "max_angular_speed" in line)
     assert float(line.split()[1]) == pytest.approx(TRUE["max_angular_speed"], rel=0.1)
+
+
+@pytest.mark.parametrize("noise_of_the_start", [0.0, 0.3])
+@pytest.mark.parametrize("kind", ["spots", "data file"])
+def test_film_without_any_noise_gives_the_parameters_of_its_run(
+    kind: str, noise_of_the_start: float, here: Path, protocol: Path
+) -> None:
+    true = {"max_linear_speed": 100.0, "max_angular_speed": 2.0}
+    robots = {**SCENE["objects"]["robots"], **true, "nb": 12}
+    settings = {**ARENA, "objects.robots": robots, "simulation_time": 33.0, "save_data_period": PERIOD_S}
+    film = run(protocol, here, settings)
+    if kind == "spots":
+        write_spots(film.frame().rename(columns={"robot_id": "id"}), here / "film", "mm")
+        shutil.move(here / "film", here / "tracks.csv")
+    else:
+        shutil.copy(film.folder / "data.feather", here / "tracks.csv")
+    noises = {"linear_noise_stddev": noise_of_the_start, "angular_noise_stddev": noise_of_the_start}
+    objects = {"robots": {"type": "pogobot", "nb": 3, **START, **noises}}
+    write_configuration(here / "conf.yaml", objects=objects)
+    found = calibrated(here)["parameters"]
+    for key, value in true.items():
+        assert found[key]["value"] == pytest.approx(value, rel=0.03), key
+    for key in noises.keys() & found.keys():
+        assert found[key]["value"] == 0.0, key
+
+
+@pytest.mark.parametrize("name", ["tracks.arrow", "tracks.ipc", "tracks", "tracks.txt"])
+def test_data_file_of_a_run_is_read_whatever_its_name(name: str, tmp_path: Path) -> None:
+    rows = pd.DataFrame({"time": [0.0, 0.1], "robot_id": [0, 0], "x": [1.0, 2.0], "y": 3.0, "angle": 0.5})
+    rows.assign(robot_category="robots").to_feather(tmp_path / name)
+    table, said = read_spots(tmp_path / name)
+    assert (table.rows["x"].tolist(), table.units["x"], said) == ([1.0, 2.0], "mm", [])
 
 
 def test_protocol_is_written_once(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -357,3 +359,26 @@ def test_default_objective_comes_with_a_warning(tmp_path: Path) -> None:
     result = run_main(tmp_path, arguments, main)
     assert result.code == 0
     assert "[WARNING] No objective script provided; DEFAULT fitness = mean MSD" in result.errors
+
+
+@pytest.mark.parametrize(
+    ("changes", "more", "message"),
+    [
+        ({"parameters": {"a": {"optimization_domain": {"typ": "float", "max": 1}}}}, [], "unknown key 'typ'"),
+        ({}, ["--optimizer", "mapelites"], "needs the Python package 'ribs'"),
+        ({}, ["--optimizer", "tpe"], "needs the Python package 'optuna'"),
+    ],
+)
+def test_wrong_domain_and_missing_package_are_told_before_pandas_is_imported(
+    changes: dict[str, object], more: list[str], message: str, tmp_path: Path
+) -> None:
+    write_search(tmp_path, changes)
+    for package in ("ribs", "optuna"):
+        (tmp_path / f"{package}.py").write_text("raise ImportError\n")
+    code = "import sys; sys.path.insert(0, '.'); from pogosim.optimize.command import main; "
+    code += f"assert main({options(*more)!r}) == 2; print('pandas' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.stdout == "False\n", done.stderr
+    assert message in done.stderr

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -464,6 +464,26 @@ def test_simulation_in_use_cannot_be_ended_by_another_thread(program: Path, scen
         thread.join()
         if refused == 100:
             assert simulation.steps == 20000
+
+
+def test_each_inside_of_each_is_refused_instead_of_waiting_for_ever(program: Path, scene: Path) -> None:
+    with (
+        pogosim.VectorSimulation(program, scene, seeds=range(2), threads=1) as runs,
+        pogosim.VectorSimulation(program, scene, seeds=range(2), threads=2) as others,
+    ):
+        inner: list[Callable[[pogosim.Simulation], Any]] = [
+            lambda _: runs.step(1),
+            lambda _: runs.reset(),
+            lambda _: runs.close(),
+            lambda _: runs.each(lambda sim: sim.time),
+            lambda _: others.each(lambda _: runs.step(1)),
+        ]
+        for function in inner:
+            with pytest.raises(pogosim.SimulationError, match=r"run 0: .*cannot be called by a function") as caught:
+                runs.each(function)
+            assert "\n" not in str(caught.value)
+        assert runs.each(lambda _: len(others.step(1))) == [2, 2]
+        assert runs.step(1) == [1, 1]
 
 
 def test_failure_of_one_of_many_comes_when_all_are_ready(program: Path, scene: Path) -> None:

@@ -11,6 +11,7 @@ import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import pogosim
@@ -20,6 +21,7 @@ from pogosim.utils import load_dataframe
 from running import PROGRAMS, ROOT, compile_program, write_scene
 from threads_of_a_run import SPECIAL, names_of
 
+FOLDER = Path(pogosim.simulation.__file__).parent
 SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 
 
@@ -79,6 +81,94 @@ def test_reset_that_ctrl_c_interrupted_can_be_done_again(
                 simulation.reset()
         simulation.reset()
         assert (simulation.seed, simulation.steps, simulation.step(5)) == (4, 0, 5)
+
+
+def interrupted_at(moment: int, what: Callable[[], Any]) -> bool:
+    """Let Ctrl-C come when a function of pogosim.simulation begins or returns.
+
+    Args:
+        moment: Which one of these moments, from 1.
+        what: What is interrupted.
+
+    Returns:
+        Whether there are so many.
+    """
+    left = moment
+
+    def tracer(frame: FrameType, event: str, _argument: Any) -> Any:
+        nonlocal left
+        if Path(frame.f_code.co_filename).parent != FOLDER:
+            return None
+        frame.f_trace_lines = False
+        left -= event in ("call", "return")
+        if left == 0:
+            sys.settrace(None)
+            raise KeyboardInterrupt
+        return tracer
+
+    sys.settrace(tracer)
+    try:
+        what()
+    except KeyboardInterrupt:
+        return True
+    finally:
+        sys.settrace(None)
+    return False
+
+
+def left_over() -> list[str]:
+    """What runs have left in the folder for temporary files."""
+    folder = Path(os.environ["TMPDIR"])
+    if any(folder.glob("pogosim*")):
+        gc.collect()
+    return sorted(path.name for path in folder.glob("pogosim*"))
+
+
+def test_ctrl_c_at_any_moment_of_the_construction_leaves_no_file(program: Path, scene: Path) -> None:
+    pogosim.Simulation(program, scene).close()  # has imported and loaded everything
+    moment, made = 1, list[pogosim.Simulation]()
+    while interrupted_at(moment, lambda: made.append(pogosim.Simulation(program, scene))):
+        assert not left_over(), f"moment {moment}"
+        moment += 1
+    assert moment > 40
+    made.pop().close()
+    assert not left_over()
+
+
+@pytest.mark.parametrize("action", ["reset", "close"])
+def test_ctrl_c_at_any_moment_of_reset_or_close_leaves_no_file(action: str, program: Path, scene: Path) -> None:
+    moment, is_interrupted = 1, True
+    while is_interrupted:
+        simulation = pogosim.Simulation(program, scene)
+        positions = simulation.positions  # keeps the memory of the run
+        is_interrupted = interrupted_at(moment, getattr(simulation, action))
+        simulation.close()
+        assert positions.shape == (3, 2)
+        del simulation, positions
+        assert not left_over(), f"moment {moment}"
+        moment += 1
+    assert moment > 10
+
+
+def test_ctrl_c_at_random_moments_of_the_construction_leaves_no_file(program: Path, scene: Path) -> None:
+    script = """
+import os, random, signal, sys, threading, time, pogosim
+pogosim.Simulation(*sys.argv[1:]).close()
+draw, interrupts = random.Random(1), 0
+for round in range(100):
+    try:
+        threading.Timer(draw.uniform(0, 0.02), os.kill, (os.getpid(), signal.SIGINT)).start()
+        for _ in range(200):
+            pogosim.Simulation(*sys.argv[1:])
+    except KeyboardInterrupt:
+        interrupts += 1
+print(interrupts)
+"""
+    command = [sys.executable, "-c", script, str(program), str(scene)]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert result.returncode == 0, result.stderr
+    assert int(result.stdout) > 50  # Python ignores those in finalisers, and says so
+    assert not left_over()
 
 
 HEAD = """

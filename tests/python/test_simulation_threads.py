@@ -33,13 +33,14 @@ ARGUMENTS: dict[str, Any] = {
     "name": "steps_of_all",
     "value": 1.0,
     "obj": 0,
-    "file": "/dev/null",
+    "file": "copy.feather",
 }
 
 
 @pytest.fixture(autouse=True)
-def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
+    monkeypatch.chdir(tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +112,7 @@ def test_run_is_kept_until_the_last_call_that_uses_it_returns(
     for function in PROTOTYPES:
         if function.startswith("pogosim_run") and not function.endswith(("open", "close")):
             monkeypatch.setattr(library(), function, watched(getattr(library(), function)))
-    simulation._run._run._close = lambda pointer: freed.add(pointer.value)  # type: ignore[assignment]
+    simulation._run._run._close = lambda pointer: freed.add(pointer.value or 0)
     try:
         use(simulation, name)
     except (pogosim.SimulationError, FileNotFoundError) as error:

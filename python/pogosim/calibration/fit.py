@@ -47,6 +47,7 @@ class Settings:
         bias: Range of the bias at the start.
         seed: Seed of the first simulated run.
         runs: Simulated runs whose statistics are averaged.
+        most: Values that the fit does not start above, by key.
     """
 
     free: Sequence[str]
@@ -54,6 +55,7 @@ class Settings:
     bias: Bias = (0, 0)
     seed: int = 42
     runs: int = 3
+    most: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -214,6 +216,8 @@ def first_values(settings: Settings, noise: tuple[float, float]) -> dict[str, fl
     for key in settings.free:
         if key in PARAMETERS and PARAMETERS[key].is_logarithmic and values[key] <= PARAMETERS[key].least:
             values[key] = PARAMETERS[key].start
+        if key in settings.most:
+            values[key] = max(min(values[key], settings.most[key]), PARAMETERS[key].least)
     guesses = dict(zip(TRACKER, noise, strict=True))
     return values | {
         key: max(guesses[key], TRACKER[key].least) if np.isfinite(guesses[key]) else 0.0 for key in TRACKER

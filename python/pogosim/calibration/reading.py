@@ -14,7 +14,7 @@ import pandas as pd
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.trackmate import MARK, encoding_of, spots
 from pogosim.run_columns import RUN, is_one_run
-from pogosim.table_formats import is_our_metadata, metadata_path
+from pogosim.table_formats import is_binary, is_our_metadata, metadata_path
 from pogosim.utils import load_dataframe
 
 SYNONYMS = {
@@ -75,8 +75,7 @@ def read_track_table(path: Path, category: str, warn: Warn) -> TrackTable:
     """
     if path.exists() and not path.is_file():
         raise CalibrationError(f"{path} is not a file; expected a CSV file of tracks, or the data file of a run")
-    is_of_run = path.suffix.lower() in (".feather", ".arrow", ".parquet") or is_our_metadata(metadata_path(path))
-    if is_of_run:
+    if is_binary(path) or is_our_metadata(metadata_path(path)):
         return numbers_only(read_run(path, category, warn), warn)
     try:
         encoding = encoding_of(path)

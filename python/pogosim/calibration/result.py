@@ -20,6 +20,9 @@ from pogosim.yaml_1_2 import dump_yaml
 MISFIT_ERRORS, MISFIT_SHARE = 4.0, 0.1
 
 
+TOO_SMALL = "too small to be seen beside the noise of the tracker"
+
+
 @dataclass(frozen=True)
 class Found:
     """A parameter of the result.
@@ -59,11 +62,13 @@ def found_parameters(fitted: Fit, start: Mapping[str, float]) -> list[Found]:
 def found_parameter(key: str, fitted: Fit, start: Mapping[str, float], verdict: Verdict) -> Found:
     """Return what was found of one parameter."""
     value = fitted.values[key]
+    if key in NOISES and value <= 1.5 * ALL[key].least:
+        return Found(key, 0.0, math.inf, False, TOO_SMALL)
     if key in fitted.unfitted:
         return Found(key, start[key], math.inf, False, unfitted_words(key, verdict))
     error = verdict.error * (value if ALL[key].is_logarithmic else ALL[key].value(1.0))
-    if key in NOISES and (not verdict.has_effect or value <= 1.5 * ALL[key].least):
-        return Found(key, 0.0, math.inf, False, "too small to be seen beside the noise of the tracker")
+    if key in NOISES and not verdict.has_effect:
+        return Found(key, 0.0, math.inf, False, TOO_SMALL)
     if not verdict.has_effect:
         return Found(key, start[key], math.inf, False, "has no effect on these tracks; as it was")
     remark = ""

@@ -28,6 +28,11 @@ TURNS = (0.05, 0.95)  # quantiles of the turn rate
 # Relative errors of a statistic that its scatter does not show. MIXED: it depends on how often robots do what, and
 # tracks may begin and end in the middle of a phase.
 CERTAIN, MIXED = 0.005, 0.03
+MOTOR_HZ = 60.0
+MM_S_OF_LINEAR_NOISE = 100.0  # linear_noise_stddev is in units of it
+# What jitter cannot be below, nearly that of the least noise that is fitted. Without noise and errors of a tracker,
+# second differences are those of the last digits of the numbers, and their logarithms would outweigh all speeds.
+RESOLUTION_MM, RESOLUTION_RAD = 0.02, 2e-4
 LEAST_SAMPLES = 10
 LEAST_MOTION_MM = 0.5
 LEAST_MOTION_ERRORS = 4.0  # of the tracker; robots that stand seem to cover three at times
@@ -128,6 +133,12 @@ def angle_jitter(tracks: Tracks, lag: int) -> Floats:
     return quantile(np.abs(second_difference(tracks.angle_rad, tracks.piece, lag)), ANGLE_JITTER)
 
 
+def jitter_error(jitter: Floats, resolution: float) -> float:
+    """Return the relative error of jitter that its scatter does not show: large where it is hardly resolved."""
+    known = jitter[np.isfinite(jitter)]
+    return CERTAIN + float((resolution / known.mean()) ** 2) if len(known) else CERTAIN
+
+
 def statistics_of(tracks: Tracks) -> Statistics:
     """Return the statistics of tracks, with headings where there are any."""
     speed, turning = speeds(tracks), turn_rates(tracks)
@@ -147,9 +158,11 @@ def statistics_of(tracks: Tracks) -> Statistics:
         # From frame to frame, jitter is that of the tracker.
         linear, angular = NOISES if number else ("", "")
         over = f"over {lag * tracks.frame_s:.2g} s"
-        found.append((f"jitter of the position {over} (mm)", linear, CERTAIN, position_jitter(tracks, lag)))
+        jitter = np.hypot(position_jitter(tracks, lag), RESOLUTION_MM)
+        found.append((f"jitter of the position {over} (mm)", linear, jitter_error(jitter, RESOLUTION_MM), jitter))
         if tracks.has_angles:
-            found.append((f"jitter of the heading {over} (rad)", angular, CERTAIN, angle_jitter(tracks, lag)))
+            jitter = np.hypot(angle_jitter(tracks, lag), RESOLUTION_RAD)
+            found.append((f"jitter of the heading {over} (rad)", angular, jitter_error(jitter, RESOLUTION_RAD), jitter))
     return Statistics(
         names=tuple(item[0] for item in found),
         about=tuple(item[1] for item in found),
@@ -175,6 +188,26 @@ def tracker_noise(tracks: Tracks) -> tuple[float, float]:
     if tracks.has_angles and np.isfinite(own := angle_jitter(tracks, 1)).any():
         angle = float(np.nanmean(own)) / (HALF_NORMAL_QUANTILE * SECOND_DIFFERENCE)
     return position, angle
+
+
+def noise_bounds(tracks: Tracks) -> dict[str, float]:
+    """Return upper bounds of the noise of the motors, by key: with more, jitter over short lags would be larger.
+
+    Noise of the velocity that is drawn anew MOTOR_HZ times a second makes a random walk.
+    """
+    jitters = [(NOISES[0], position_jitter, RAYLEIGH_QUANTILE * MM_S_OF_LINEAR_NOISE)]
+    if tracks.has_angles:
+        jitters.append((NOISES[1], angle_jitter, HALF_NORMAL_QUANTILE))
+    bounds = {}
+    for key, jitter_over, per_unit in jitters:
+        walks = [
+            float(np.mean(jitter[known])) / (per_unit * math.sqrt(2.0 * lag * tracks.frame_s / MOTOR_HZ))
+            for lag in lags(tracks)
+            if lag * tracks.frame_s <= WINDOW_S and (known := np.isfinite(jitter := jitter_over(tracks, lag))).any()
+        ]
+        if walks:
+            bounds[key] = max(walks)
+    return bounds
 
 
 def check_motion(tracks: Tracks, noise_mm: float) -> None:

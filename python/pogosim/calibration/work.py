@@ -20,7 +20,7 @@ from pogosim.calibration.result import as_json, bias_is_known, configuration_blo
 from pogosim.calibration.results import LINES, PICTURE, PROTOCOL, RESULT, check_outputs
 from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses
 from pogosim.calibration.simulation import Simulator
-from pogosim.calibration.statistics import check_motion, statistics_of, tracker_noise
+from pogosim.calibration.statistics import check_motion, noise_bounds, statistics_of, tracker_noise
 from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
 from pogosim.calibration.units import (
     UnitOptions,
@@ -121,7 +121,8 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
         if not prepared.tracks.has_angles and options.parameters is None:
             free = [name for name in free if name not in NEED_HEADINGS]
             warn(prog, f"without angles, {' and '.join(NEED_HEADINGS)} are not fitted (--parameters to try)")
-        settings = Settings(free, start_values(scene.settings), start_bias(scene.settings), options.seed, options.runs)
+        start, bias = start_values(scene.settings), start_bias(scene.settings)
+        settings = Settings(free, start, bias, options.seed, options.runs, noise_bounds(prepared.tracks))
         matcher = Matcher(simulator, statistics_of(prepared.tracks), settings)
         progress = say if sys.stdout is not None and sys.stdout.isatty() else (lambda _text: None)
         with runs.opened():

@@ -6,6 +6,7 @@ import argparse
 import logging
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import pogosim
 from pogosim.ambiguity import AmbiguousStepsWarning
@@ -13,13 +14,17 @@ from pogosim.batch.command_line import catch_signals
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
+from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warnings_told
 from pogosim.lines import LineFormatter
 from pogosim.optimize.errors import OptimizeError
-from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, check_optimizer
+from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, check_optimizer, optimizer_for
 from pogosim.optimize.settings import SECTION, Settings, settings_from
 from pogosim.outputs import OutputError
+
+if TYPE_CHECKING:
+    from pogosim.optimize.variables import Space
 
 WRONG = 2
 INTERRUPTED = 130
@@ -113,6 +118,20 @@ def check_names(arguments: argparse.Namespace) -> None:
             raise OptimizeError(f"{flag}: the name {name!a} has a line break or bytes that are not UTF-8; rename it")
 
 
+def space_of(configuration: Configuration) -> Space:
+    """Return the variables of a configuration.
+
+    Raises:
+        BatchError: A domain is wrong, or there is none.
+    """
+    from pogosim.optimize.variables import Space  # imports NumPy
+
+    try:
+        return Space(configuration.entries)
+    except CombinationsError as error:
+        raise configuration.error(error) from None
+
+
 def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
     """Run the command. Returns its exit code, see its help."""
     parsed = parser(prog).parse_args(arguments)
@@ -124,10 +143,12 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
         section = configuration.entries.get(SECTION)
         settings = settings_from(section, vars(parsed), configuration.where, lambda text: log.warning("%s", text))
         check_optimizer(settings.optimizer)
+        space = space_of(configuration)
+        optimizer = optimizer_for(space, settings)
         from pogosim.optimize.execution import optimize  # takes a while
 
         with warnings_told(prog, AmbiguousStepsWarning):
-            return optimize(parsed, configuration, settings)
+            return optimize(parsed, configuration, settings, space, optimizer)
     except (OptimizeError, BatchError, OutputError, NamesError) as error:
         log.error("%s", error)
     except OSError as error:

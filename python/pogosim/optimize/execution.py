@@ -10,7 +10,6 @@ from pathlib import Path
 
 from pogosim.batch.backends import Workers
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
 from pogosim.batch.slurm_options import slurm_jobs
@@ -18,7 +17,8 @@ from pogosim.batch.tasks import check_logs_data
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
-from pogosim.optimize.optimizers.table import WITH_FEATURES, optimizer_for
+from pogosim.optimize.optimizers.base import Optimizer
+from pogosim.optimize.optimizers.table import WITH_FEATURES
 from pogosim.optimize.outcome import finish, refresh
 from pogosim.optimize.results import check_outputs, remove_stale
 from pogosim.optimize.search import Search, description_of
@@ -59,21 +59,21 @@ def say_where_it_starts(space: Space) -> None:
         )
 
 
-def optimize(arguments: argparse.Namespace, configuration: Configuration, settings: Settings) -> int:
+def optimize(
+    arguments: argparse.Namespace, configuration: Configuration, settings: Settings, space: Space, optimizer: Optimizer
+) -> int:
     """Do what the command line says; returns the exit code.
 
     Args:
         arguments: The command line.
         configuration: In which the search begins.
         settings: Those of the command line and of the configuration together.
+        space: Variables of the configuration.
+        optimizer: Searches in this space.
 
     Raises:
         OptimizeError, BatchError, OutputError: It cannot be done.
     """
-    try:
-        space = Space(configuration.entries)
-    except CombinationsError as error:
-        raise configuration.error(error) from None
     objective = objective_of(settings)
     with_features = settings.optimizer in WITH_FEATURES
     if with_features and settings.qd_init_samples + 1 >= settings.max_evals:
@@ -85,7 +85,6 @@ def optimize(arguments: argparse.Namespace, configuration: Configuration, settin
     folder = Path(settings.output_dir)
     check_outputs(folder, [arguments.config, arguments.simulator_binary, *filter(None, [settings.objective])])
     check_logs_data(configuration.entries, configuration)
-    optimizer = optimizer_for(space, settings)
     workers = Workers(settings.backend, arguments.workers, arguments.scheduler, slurm_jobs(arguments))
     runs = Runs(
         configuration,

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pogosim.arguments import shown
 from pogosim.simulation.arrays import RunState
 
 
@@ -33,12 +34,15 @@ class Columns(Mapping[str, Any]):
         return self._run.number("save_time")
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self._names:
-            raise KeyError(f"the program has added no column '{name}' to the data file; {self._what_there_is()}")
+        if name not in self:
+            raise KeyError(f"the program has added no column {shown(name)} to the data file; {self._what_there_is()}")
         absent = self._run.array(f"columns_absent.{name}")
         if (texts := self._run.texts(f"columns.{name}")) is not None:
             return [None if is_absent else text for text, is_absent in zip(texts, absent.tolist(), strict=True)]
         return np.ma.MaskedArray(self._run.array(f"columns.{name}"), absent)
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name in self._names
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

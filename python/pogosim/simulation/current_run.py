@@ -3,31 +3,17 @@
 from __future__ import annotations
 
 import os
+import secrets
 import shutil
 import tempfile
 import threading
-from contextlib import suppress
 from pathlib import Path
 
 from pogosim.simulation.arrays import RunState
-from pogosim.simulation.errors import ConfigurationError, SimulationError
-from pogosim.simulation.library import check, library
+from pogosim.simulation.errors import ConfigurationError
+from pogosim.simulation.library import OpenRun, library, open_run
 
 LONGEST_WAIT_S = 10.0  # at the end of Python, for a thread that still steps
-
-
-def own_folder() -> Path:
-    """Make a folder for the rows of a run whose file has no other place.
-
-    Raises:
-        ConfigurationError: It cannot be made.
-    """
-    try:
-        return Path(tempfile.mkdtemp(prefix="pogosim-"))
-    except OSError as error:
-        raise ConfigurationError(
-            f"no temporary folder for the rows can be made ({error}); give a data_file, or set TMPDIR"
-        ) from None
 
 
 class CurrentRun:
@@ -35,29 +21,65 @@ class CurrentRun:
 
     Attributes:
         run: None: it is closed, or its last reset failed.
+        opened: The newest run, also while it is being opened: Ctrl-C may come before it is `run`.
         lock: Lock of the thread that steps, resets, changes or closes it.
         should_pause: Makes `step` return after the present slice.
         process: Id of the process that created it.
     """
 
-    def __init__(self, folder: Path | None) -> None:
+    def __init__(self) -> None:
         self.run: RunState | None = None
+        self.opened: OpenRun | None = None
         self.lock = threading.Lock()
         self.should_pause = False
         self.process = os.getpid()
-        self._folder = folder
+        self._folder: Path | None = None
+
+    def make_folder(self) -> Path:
+        """Make a temporary folder for the rows of a run whose file has no other place.
+
+        Raises:
+            ConfigurationError: It cannot be made.
+        """
+        try:
+            # Its name is kept before it is made: Ctrl-C between the two leaves nothing.
+            self._folder = folder = Path(tempfile.gettempdir(), f"pogosim-{secrets.token_hex(8)}")
+            folder.mkdir(mode=0o700)
+        except OSError as error:
+            self._folder = None
+            raise ConfigurationError(
+                f"no temporary folder for the rows can be made ({error}); give a data_file, or set TMPDIR"
+            ) from None
+        return folder
+
+    def open(self, program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool) -> RunState:
+        """Build a run and start its program."""
+        self.opened = OpenRun()
+        open_run(self.opened, program, configuration, settings, seed, strict)
+        self.run = RunState(self.opened)
+        return self.run
+
+    def abandon(self) -> None:
+        """End the run, if there is one, even if it has been opened only in part."""
+        if self.opened is not None and self.opened.pointer:
+            library().pogosim_run_end(self.opened.pointer)  # what goes wrong at its end is of no interest any more
+        self.run = self.opened = None
 
     def finish(self) -> None:
         """End a run that was not closed, when its simulation is collected or Python ends: its file is complete then."""
         self.should_pause = True
         self.lock.acquire(timeout=LONGEST_WAIT_S)
-        run, self.run = self.run, None
-        with suppress(SimulationError):
-            if run is not None:
-                check(library().pogosim_run_end(run.pointer))
-        self.remove_folder()
+        self.clean_up()
 
-    def remove_folder(self) -> None:
-        """Remove the temporary folder, if it has one."""
+    def clean_up(self) -> None:
+        """End the run, then remove the temporary folder, if it has one: without it, the rows would be rescued."""
+        try:
+            self._clean_up()
+        except BaseException:  # Ctrl-C
+            self._clean_up()
+            raise
+
+    def _clean_up(self) -> None:
+        self.abandon()
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)

@@ -30,6 +30,7 @@ from typing import Any
 
 from pogosim import __version__
 from pogosim.installation import InstallationError, find_installation
+from pogosim.lines import printable
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
 
 OK, OVER, USAGE, PROGRAM_FAILED = range(4)
@@ -148,7 +149,7 @@ def check(status: int) -> int:
     """
     if status in (OK, OVER):
         return status
-    message = library().pogosim_host_error().decode("utf-8", "replace")
+    message = printable(library().pogosim_host_error().decode("utf-8", "replace"))
     raise (ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError)(message)
 
 
@@ -159,22 +160,26 @@ class OpenRun:
         pointer: NULL until it is open.
     """
 
+    _close: Callable[[c_void_p], None] | None = None  # until all that it needs is known
+
     def __init__(self) -> None:
         self.pointer = c_void_p()
         self._process = os.getpid()
         self._close = library().pogosim_run_close
 
     def __del__(self, process_now: Callable[[], int] = os.getpid) -> None:  # modules may be gone at the end of Python
-        if process_now() == self._process:  # in a forked child, the files are those of its parent
+        if (
+            self._close is not None and process_now() == self._process
+        ):  # in a forked child, the files are those of its parent
             self._close(self.pointer)
 
 
-def open_run(program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool) -> OpenRun:
-    """Build a run and start its program."""
+def open_run(
+    run: OpenRun, program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool
+) -> None:
+    """Build a run and start its program. The caller keeps `run`: Ctrl-C may come as soon as it is open."""
     texts = (c_char_p * len(settings))(*(text.encode() for text in settings))
     options = RunOptions(
         os.fsencode(program), os.fsencode(configuration), texts, len(settings), -1 if seed is None else seed, strict
     )
-    run = OpenRun()
     check(library().pogosim_run_open(byref(options), byref(run.pointer)))
-    return run

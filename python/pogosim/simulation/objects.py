@@ -164,9 +164,12 @@ class Objects(Sequence[WorldObject]):
             ConfigurationError: The configuration has no objects of this category.
         """
         known = self._simulation.categories
-        if category not in known:
-            raise ConfigurationError(f"no objects have the category {category!r}; there are {', '.join(known)}")
+        if not isinstance(category, str) or category not in known:
+            raise ConfigurationError(f"no objects have the category {shown(category)}; there are {', '.join(known)}")
         return [found for found in self if found.category == category]
+
+    def __contains__(self, value: object) -> bool:
+        return isinstance(value, WorldObject) and super().__contains__(value)
 
 
 class Lamp:
@@ -256,3 +259,6 @@ class Lamps(Sequence[Lamp]):
         if isinstance(index, slice):
             return [Lamp(self._simulation, number) for number in range(len(self))[index]]
         return Lamp(self._simulation, chosen_index(index, len(self), "lamp"))
+
+    def __contains__(self, value: object) -> bool:
+        return isinstance(value, Lamp) and super().__contains__(value)

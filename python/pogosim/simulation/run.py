@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import math
 import os
-import shutil
 import threading
 from collections.abc import Iterator, Mapping, MutableMapping
 from ctypes import byref, c_int64
@@ -18,13 +17,15 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
+from pogosim.lines import printable
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import NO_BODY, RunState, check_process
 from pogosim.simulation.columns import Columns
-from pogosim.simulation.current_run import CurrentRun, own_folder
+from pogosim.simulation.current_run import CurrentRun
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
-from pogosim.simulation.library import OVER, check, library, open_run
+from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
+from pogosim.simulation.saved_rows import write_copy
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
 
@@ -83,7 +84,12 @@ class Parameters(MutableMapping[str, Any]):
         self._simulation = simulation
 
     def __getitem__(self, name: str) -> Any:
-        return self._simulation._parameter_values[name]
+        known = self._simulation._parameter_values
+        if not isinstance(name, str) or name not in known:
+            raise KeyError(
+                f"no value was given for the parameter {shown(name)}; there are {', '.join(known) or 'none'}"
+            )
+        return known[name]
 
     def __setitem__(self, name: str, value: Any) -> None:
         self._simulation._set_parameter(name, value)
@@ -117,7 +123,15 @@ class Simulation:
     Attributes:
         program: The shared object.
         configuration: The YAML file.
+        data_file: Where the rows go. None of the three can be set.
     """
+
+    _FIXED = frozenset({"program", "configuration", "data_file"})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self._FIXED and name in vars(self):
+            raise AttributeError(f"{name} of a simulation cannot be set: make another simulation")
+        super().__setattr__(name, value)
 
     def __init__(
         self,
@@ -152,28 +166,28 @@ class Simulation:
         seed = checked_seed(seed)
         if data_file is None and "data_filename" in settings:
             data_file = settings["data_filename"]
-        folder = own_folder() if data_file is None else None
-        self.data_file = folder / "data.feather" if folder else given.path("data_file", data_file)
-        self._settings: dict[str, Any] = {
-            "enable_console_logging": False,
-            "save_video_period": -1,
-            "data_filename": str(self.data_file),
-            **settings,
-        }
-        self._current = CurrentRun(folder)
+        self._current = CurrentRun()
         self._lock = self._current.lock
         self._is_closed = False
         self._finish = Finalize(self, self._current.finish, exitpriority=0)
         try:
+            is_temporary = data_file is None
+            self.data_file = (
+                self._current.make_folder() / "data.feather" if is_temporary else given.path("data_file", data_file)
+            )
+            self._settings: dict[str, Any] = {
+                "enable_console_logging": False,
+                "save_video_period": -1,
+                "data_filename": str(self.data_file),
+                **settings,
+            }
             self._open(seed)
         except BaseException:
             self._finish()
             raise
 
     def _open(self, seed: int | None) -> None:
-        self._current.run = RunState(
-            open_run(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
-        )
+        self._current.open(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
         self._seed = self.seed
         self._user_data: tuple[RunState, npt.NDArray[Any]] | None = None
         self._parameter_values = {
@@ -250,7 +264,7 @@ class Simulation:
                     self._end()
                 self._open(self._seed if seed is None else seed)
             except BaseException:
-                self._current.run = None
+                self._current.abandon()
                 raise
 
     def close(self) -> None:
@@ -264,9 +278,8 @@ class Simulation:
                 if self._current.run is not None:
                     self._end()
             finally:
-                self._current.run = None
                 self._user_data = None
-                self._current.remove_folder()
+                self._current.clean_up()
                 self._finish.cancel()
 
     def __enter__(self) -> Simulation:
@@ -500,7 +513,8 @@ class Simulation:
             check(library().pogosim_run_set_column(self._run.pointer, index, column.encode(), number))
 
     def _set_parameter(self, name: str, value: Any) -> None:
-        key = f"parameters.{given.text('a parameter', name)}"
+        name = given.text("a parameter", name)
+        key = f"parameters.{name}"
         plain = given.value(key, value)
         with self._busy():
             if self._current.run is not None or self._is_closed:  # else the last reset failed, perhaps because of this
@@ -517,20 +531,37 @@ class Simulation:
 
         with self._busy():
             check(library().pogosim_run_save(self._run.pointer))
-            if not self.data_file.exists():
-                raise SimulationError("the run records no rows (enable_data_logging: false)")
+            self._check_data_file()
             rows, metadata = utils.load_file(self.data_file, warns=False)  # the run goes on
         rows.attrs = utils.attributes(metadata)
         return rows
 
     def save_data(self, file: PathLike) -> None:
-        """Copy the complete data file of a run that is over."""
+        """End the run, and write its rows and metadata to another file.
+
+        Args:
+            file: Its ending says the format, as that of `data_file`: .feather, .arrow, .ipc, .parquet or .csv, which
+                has its metadata beside it. An existing file is replaced.
+
+        Raises:
+            ConfigurationError: It has another ending, is the data file itself, or cannot be written.
+            SimulationError: There are no rows.
+        """
         path = given.path("file", file)
-        self.end()
-        try:
-            shutil.copyfile(self.data_file, path)
-        except OSError as error:
-            raise ConfigurationError(f"the data file cannot be copied to {path}: {error.strerror or error}") from None
+        with self._busy():
+            self._end()
+            self._check_data_file()
+            write_copy(self.data_file, path)
+
+    def _check_data_file(self) -> None:
+        if self.data_file.exists():
+            return
+        if math.isnan(self._run.number("save_time")):
+            raise SimulationError("the run records no rows (enable_data_logging: false)")
+        raise SimulationError(
+            f"the data file {printable(self.data_file)} is not there any more: another program has removed or renamed "
+            "it, or this one has changed its folder (os.chdir)"
+        )
 
     # ---- Inside
 
@@ -584,5 +615,10 @@ def checked_seed(seed: Any) -> int | None:
 
 def shared_object(program: Path) -> Path:
     """Return the shared object of a program: itself, or the one beside an executable."""
+    if program.suffix == ".so" or not program.name:  # as of "." and "/"
+        return program
     beside = program.with_name(program.name + ".so")
-    return beside if program.suffix != ".so" and beside.is_file() else program
+    try:
+        return beside if beside.is_file() else program
+    except OSError:  # a name that is too long, which is refused later
+        return program

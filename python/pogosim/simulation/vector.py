@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextvars import ContextVar, copy_context
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -18,8 +20,12 @@ from pogosim.simulation.objects import chosen_index
 from pogosim.simulation.run import CLOSED, Simulation, checked_seed
 
 MOST_THREADS = 1024
+MOST_RUNS = 100_000
 
 T = TypeVar("T")
+
+# The vectors whose `each` has called the code of this thread, which must not wait for their threads again.
+callers: ContextVar[tuple[VectorSimulation, ...]] = ContextVar("callers", default=())
 
 
 def checked_seeds(seeds: Any) -> list[int | None]:
@@ -29,9 +35,11 @@ def checked_seeds(seeds: Any) -> list[int | None]:
         ConfigurationError: They are none.
     """
     try:
-        found = list(seeds)
+        found = list(itertools.islice(iter(seeds), MOST_RUNS + 1))
     except TypeError:
         raise given.refused("seeds", "a list of integers, one for each run", seeds) from None
+    if len(found) > MOST_RUNS:
+        raise ConfigurationError(f"seeds: expected {MOST_RUNS} runs at most, found more")
     return [checked_seed(seed) for seed in found]
 
 
@@ -109,8 +117,14 @@ class VectorSimulation:
             raise SimulationError(CLOSED)
         if not callable(function):
             raise given.refused("function", "a function of a Simulation", function)
+        self._check_outside("each, step and reset")
+        context = copy_context()
+        context.run(callers.set, (*callers.get(), self))
         runs = enumerate(self.simulations)
-        calls = [self._threads.submit(call_with_run, function, simulation, index) for index, simulation in runs]
+        calls = [
+            self._threads.submit(context.copy().run, call_with_run, function, simulation, index)
+            for index, simulation in runs
+        ]
         try:
             wait(calls)
         except BaseException:
@@ -119,6 +133,13 @@ class VectorSimulation:
             self._pause(calls)
             raise
         return [call.result() for call in calls]
+
+    def _check_outside(self, what: str) -> None:
+        if self in callers.get():
+            raise SimulationError(
+                f"{what} of a VectorSimulation cannot be called by a function that its each calls: it would wait for "
+                "itself; use the simulation that the function is given"
+            )
 
     def _pause(self, calls: list[Future[T]]) -> None:
         """Let runs stop between two time steps; none is in use afterwards."""
@@ -169,6 +190,7 @@ class VectorSimulation:
 
     def close(self) -> None:
         """End all runs."""
+        self._check_outside("close")
         self._is_closed = True
         for simulation in self.simulations:
             simulation.close()

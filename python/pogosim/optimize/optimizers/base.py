@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.optimize.objective import Judgement
 from pogosim.optimize.settings import Settings
 from pogosim.optimize.variables import Space
+
+if TYPE_CHECKING:
+    from pogosim.optimize.objective import Judgement  # which imports pandas
 
 Floats = npt.NDArray[np.float64]
 
