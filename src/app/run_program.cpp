@@ -80,8 +80,8 @@ void tell_of(std::vector<KeptFile> const& files) {
     }
 }
 
-/// Whether the program can be started again as it was in `folder`. Once it has left that, the new run will see, and keep
-/// all files.
+/// Whether the program can be started again as it was in `folder`. Once it has left that, the new run will see, and
+/// keep all files.
 RestartCheck check_restart(CommandLine const& options, std::filesystem::path const& folder) {
     RestartCheck check;
     std::error_code error;
