@@ -115,8 +115,7 @@ void data_set_value_bool(char const* name, bool value);
 void data_set_value_float16(char const* name, float value);
 ///@}
 
-/// What data_set_value_int8() and the others call, with the `bits` of their type.
-/// @range bits: 8, 16 or 32
+// What data_set_value_int8() and the others call, with the `bits` of their type: 8, 16 or 32.
 void pogosim_data_set_value_int(char const* name, int64_t value, int bits);
 #ifndef POGOSIM_INSIDE
 // So that a value beyond the range is told: as an argument of these functions, it would have been wrapped already.
