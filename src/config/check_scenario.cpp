@@ -49,14 +49,6 @@ void check_counts(Scenario const& scenario) {
                                                          number_text(scenario.simulation_time_s / kMaxCount)));
         }
     }
-    double const save_period_s = periods[1].period_s;
-    if (save_period_s > scenario.simulation_time_s && scenario.simulation_time_s > 0.0) {
-        log().warn(
-            "{}: save_data_period: {} s is longer than simulation_time ({} s): the data file has only the rows "
-            "of t = 0 (0 asks for that without this warning)",
-            place_of(scenario, "save_data_period").node.where(), number_text(save_period_s),
-            number_text(scenario.simulation_time_s));
-    }
 }
 
 void check_object_count(Scenario const& scenario) {

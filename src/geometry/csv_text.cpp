@@ -28,8 +28,8 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// Where the field that begins at `start` ends: at one of the characters `ends` outside double quotes, or with the text.
-/// npos: its quotes are not closed.
+/// Where the field that begins at `start` ends: at one of the characters `ends` outside double quotes, or with the
+/// text. npos: its quotes are not closed.
 std::size_t end_of_field(std::string_view text, std::size_t start, std::string_view ends) {
     std::size_t next = text.find_first_not_of(kBlanks, start);
     if (next < text.size() && text[next] == '"') {

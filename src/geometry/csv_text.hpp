@@ -20,8 +20,8 @@ struct CsvText {
 };
 
 /// All lines of a text file. Accepts a UTF-8 byte order mark and line ends of every kind; a field in double quotes may
-/// have line ends (RFC 4180). Throws ConfigError when it is not a regular file that can be read, is larger than 256 MiB,
-/// or does not close its quotes.
+/// have line ends (RFC 4180). Throws ConfigError when it is not a regular file that can be read, is larger than
+/// 256 MiB, or does not close its quotes.
 CsvText read_csv(std::filesystem::path const& path);
 
 /// Fields between commas, without spaces and tabs at either end, nor one pair of double quotes around them. In these,

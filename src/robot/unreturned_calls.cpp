@@ -94,7 +94,7 @@ void Controllers::warn_of_unreturned_calls_at_end() {
 }
 
 /// `least_us`: shorter calls do not count. `most`: warns only about categories half of whose robots are in such a call,
-/// or more. (Rarely all of them: a robot that hears nobody any more is not called back with messages.)
+/// or more. (Rarely all of them: a robot that hears no other robot is not called back with messages.)
 void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool most) {
     if (!has_waited_ || image_.is_for_sdk) {
         return;
