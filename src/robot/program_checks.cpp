@@ -217,12 +217,6 @@ void warn_of_send_results(std::span<Controller const> controllers) {
             "when a message was sent (the send functions return 0 then)",
             all.sent);
     }
-    if (all.sent == 0 && all.said > 0) {
-        log().warn(
-            "msg_tx_fn has returned true in {} calls and sent nothing in any, but nb_msgs_sent counts them: return "
-            "false when no message was sent",
-            all.said);
-    }
 }
 
 void warn_of_undecoded_messages(std::span<Controller const> controllers) {

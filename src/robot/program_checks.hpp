@@ -41,7 +41,7 @@ void warn_of_missing_init(std::span<Controller const> controllers);
 /// Robots that have all called srand() with the same seed, and so draw the same random numbers.
 void warn_of_equal_seeds(std::span<Controller const> controllers);
 
-/// A program whose msg_tx_fn never says what it does.
+/// A msg_tx_fn that sends, and always says that it has not.
 void warn_of_send_results(std::span<Controller const> controllers);
 
 /// Columns of the data file that cannot be filled.

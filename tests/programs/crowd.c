@@ -15,7 +15,7 @@ static uint16_t either(uint16_t power) {
 
 static bool send(void) {
     uint8_t payload[4] = {1, 2, 3, 4};
-    return pogobot_infrared_sendShortMessage_omni(payload, sizeof payload);
+    return pogobot_infrared_sendShortMessage_omni(payload, sizeof payload) == 0;
 }
 
 static void receive(message_t* message) {

@@ -298,7 +298,7 @@ def test_earlier_results_stay_until_a_run_has_ended_well(tmp_path: Path) -> None
     write_options(tmp_path, {"arena_file": "arenas/dsik.csv"})
     result = batch(tmp_path, "-R", "0")
     assert result.code == 3
-    assert result.output.endswith("Generated output files:\n")
+    assert result.output.endswith("Batch run ended without an output file.\n")
     assert (tmp_path / "results" / "result.feather").read_bytes() == before
     write_options(tmp_path, {"simulation_time": 0.5})
     assert batch(tmp_path).output.count("results/result.feather") == 1

@@ -37,7 +37,7 @@ NOT_FOR_PROGRAMS = {"host.h", "program.h"}
 
 # Behind macros and inline functions that name every argument.
 NOT_CALLED_BY_PROGRAMS = {
-    \"data_set_value_int.name\",  # data_set_value_int8() and others call it
+    "data_set_value_int.name",  # data_set_value_int8() and others call it
     "recover_next_message.message",
     "init_unsupported.variable",
     "init_unsupported.name",

@@ -453,7 +453,7 @@ def test_robots_of_the_same_seed_are_told(tmp_path: Path, init: str, robots: int
             "return pogobot_infrared_sendShortMessage_omni(data, 1);",
             r"msg_tx_fn has sent messages in \d+ calls and ret",
         ),
-        ("return true;", r"msg_tx_fn has returned true in \d+ calls and sent nothing in any, but nb_msgs_sent counts"),
+        ("return true;", ""),
         ("return pogobot_infrared_sendShortMessage_omni(data, 1) == 0;", ""),
         ("(void)data; return false;", ""),
     ],

@@ -141,7 +141,7 @@ def test_puck_is_moved_and_a_wall_is_no_place(sim: pogosim.Simulation) -> None:
     assert puck.heading == pytest.approx(1.5)
     puck.move(610, 300)
     assert puck.heading == pytest.approx(1.5)
-    with pytest.raises(pogosim.ConfigurationError, match="it is in a wall or outside of the arena"):
+    with pytest.raises(pogosim.ConfigurationError, match="is inside a wall or outside the arena"):
         puck.move(1, 1)
     with pytest.raises(pogosim.ConfigurationError, match="expected a finite number"):
         puck.move(math.nan, 300)
