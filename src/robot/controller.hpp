@@ -12,6 +12,7 @@
 #include "base/random.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "robot/phase.hpp"
+#include "world/observed_motion.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -67,10 +68,10 @@ struct Motors {
 
 inline constexpr int kPhotosensorCount = 3;  // back, front left, front right
 
-/// Velocity of the body at the last two ticks, for the accelerometer.
+/// How the body moved at the last two ticks, for the accelerometer.
 struct Accelerometer {
-    Vec2 previous_mm_s;
-    Vec2 current_mm_s;
+    BodyStep previous;
+    BodyStep current;
     float interval_s = 0.0F;  // between the two; 0 before the second tick
     bool has_measured = false;
     std::int64_t current_us = 0;  // the robot's clock at the last tick

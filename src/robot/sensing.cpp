@@ -43,8 +43,8 @@ void measure_velocity(World const& world, std::uint32_t robot, Controller& self)
         return;
     }
     Accelerometer& meter = self.accelerometer;
-    meter.previous_mm_s = meter.current_mm_s;
-    meter.current_mm_s = observed_motion(world, body).velocity_mm_s;
+    meter.previous = meter.current;
+    meter.current = last_step(world, body);
     bool const first = !std::exchange(meter.has_measured, true);
     meter.interval_s = first ? 0.0F : static_cast<float>(self.clock_us - meter.current_us) * seconds_per_us;
     meter.current_us = self.clock_us;
@@ -54,7 +54,7 @@ Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer con
     if (meter.interval_s <= 0.0F) {
         return {};
     }
-    Vec2 const change = meter.current_mm_s - meter.previous_mm_s;
+    Vec2 const change = observed_velocity_mm_s(world, meter.current) - observed_velocity_mm_s(world, meter.previous);
     Vec2 const axis = world.bodies.heading_dir[body];
     return (1.0F / (meter.interval_s * kMmPerM)) * Vec2{dot(change, axis), cross(axis, change)};
 }

@@ -17,25 +17,36 @@ float rate(float change, float duration_s, float largest, float of_engine) {
     return is_as_asked ? of_engine : change / duration_s;
 }
 
-}  // namespace
+float larger(float a, float b) {
+    return std::max(std::abs(a), std::abs(b));
+}
 
-ObservedMotion observed_motion(World const& world, std::uint32_t body) {
+float observed_angular_velocity_rad_s(World const& world, std::uint32_t body) {
     Bodies const& bodies = world.bodies;
-    auto const step_s = static_cast<float>(world.time_step_s);
-    Vec2 const start_mm = bodies.start_mm[body];
-    Vec2 const end_mm = bodies.position_mm[body];
-    Vec2 const moved_mm = minimum_image(world, start_mm, end_mm);
     float const start_rad = bodies.start_rad[body];
     float const end_rad = bodies.heading_rad[body];
-    Vec2 const velocity_mm_s = bodies.velocity_mm_s[body];
-    auto const larger = [](float a, float b) { return std::max(std::abs(a), std::abs(b)); };
-    if (moved_mm == Vec2{} && start_rad == end_rad) {
+    if (start_rad == end_rad) {
+        return 0.0F;
+    }
+    return rate(end_rad - start_rad, static_cast<float>(world.time_step_s), larger(start_rad, end_rad),
+                bodies.angular_velocity_rad_s[body]);
+}
+
+}  // namespace
+
+Vec2 observed_velocity_mm_s(World const& world, BodyStep const& step) {
+    Vec2 const moved_mm = minimum_image(world, step.start_mm, step.end_mm);
+    if (moved_mm == Vec2{}) {
         return {};
     }
-    return {.velocity_mm_s = {rate(moved_mm.x, step_s, larger(start_mm.x, end_mm.x), velocity_mm_s.x),
-                              rate(moved_mm.y, step_s, larger(start_mm.y, end_mm.y), velocity_mm_s.y)},
-            .angular_velocity_rad_s =
-                rate(end_rad - start_rad, step_s, larger(start_rad, end_rad), bodies.angular_velocity_rad_s[body])};
+    auto const step_s = static_cast<float>(world.time_step_s);
+    return {rate(moved_mm.x, step_s, larger(step.start_mm.x, step.end_mm.x), step.engine_mm_s.x),
+            rate(moved_mm.y, step_s, larger(step.start_mm.y, step.end_mm.y), step.engine_mm_s.y)};
+}
+
+ObservedMotion observed_motion(World const& world, std::uint32_t body) {
+    return {.velocity_mm_s = observed_velocity_mm_s(world, last_step(world, body)),
+            .angular_velocity_rad_s = observed_angular_velocity_rad_s(world, body)};
 }
 
 ObservedMotion observed_motion(World const& world, Object const& object) {
@@ -47,7 +58,7 @@ ObservedMotion observed_motion(World const& world, Object const& object) {
     }
     ObservedMotion mean;
     for (std::uint32_t i = object.body; i < object.body + object.body_count; ++i) {
-        mean.velocity_mm_s = mean.velocity_mm_s + observed_motion(world, i).velocity_mm_s;
+        mean.velocity_mm_s = mean.velocity_mm_s + observed_velocity_mm_s(world, last_step(world, i));
     }
     mean.velocity_mm_s = (1.0F / static_cast<float>(object.body_count)) * mean.velocity_mm_s;
     return mean;

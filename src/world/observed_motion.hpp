@@ -8,6 +8,22 @@
 
 namespace pogosim {
 
+/// A step of a body. Accelerometers note one for every robot and tick; its velocity is computed only when it is read.
+struct BodyStep {
+    Vec2 start_mm;
+    Vec2 end_mm;
+    Vec2 engine_mm_s;  // the engine's velocity after it
+};
+
+inline BodyStep last_step(World const& world, std::uint32_t body) {
+    Bodies const& bodies = world.bodies;
+    return {.start_mm = bodies.start_mm[body],
+            .end_mm = bodies.position_mm[body],
+            .engine_mm_s = bodies.velocity_mm_s[body]};
+}
+
+Vec2 observed_velocity_mm_s(World const& world, BodyStep const& step);
+
 struct ObservedMotion {
     Vec2 velocity_mm_s;
     float angular_velocity_rad_s = 0.0F;  // clockwise on the screen
