@@ -301,6 +301,16 @@ def test_messages_and_lines_of_robots_go_to_the_loggers(
     assert "parameters never read by the program: gian" in caplog.text
 
 
+def test_warning_is_not_repeated_after_each_reset(program: Path, scene: Path, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.INFO)
+    with pogosim.Simulation(program, scene, set={"parameters.gian": 3}) as simulation:
+        for seed in range(3):
+            simulation.reset(seed=seed)
+    lines = [message for name, _, message in caplog.record_tuples if name == "pogosim"]
+    assert sum("parameters never read" in line for line in lines) == 1
+    assert caplog.text.count("hello from 2") == 4
+
+
 def test_what_cannot_be_run_is_one_clear_message(program: Path, scene: Path, tmp_path: Path) -> None:
     text = tmp_path / "text.so"
     text.write_text("text")

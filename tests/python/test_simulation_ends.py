@@ -309,3 +309,15 @@ def test_many_runs_in_a_forked_child_do_not_wait_for_threads_that_it_lacks(progr
             assert "belongs to process" in in_a_child(lambda use=use: str(use()))  # type: ignore[misc]
         assert in_a_child(lambda: closed_quietly(runs)) == "quiet"
         assert runs.step(5) == [5, 5]
+
+
+def test_interrupted_reset_can_be_repeated(program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pogosim.Simulation(program, scene, seed=1) as sim:
+        with monkeypatch.context() as patch:
+            interrupt_in("pogosim_run_open", 1, patch)
+            with pytest.raises(KeyboardInterrupt):
+                sim.reset()
+        with pytest.raises(pogosim.SimulationError, match="the last reset failed or was interrupted: reset again"):
+            sim.step()
+        sim.reset()
+        assert sim.step(10) == 10

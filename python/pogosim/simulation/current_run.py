@@ -25,6 +25,7 @@ class CurrentRun:
         lock: Lock of the thread that steps, resets, changes or closes it.
         should_pause: Makes `step` return after the present slice.
         process: Id of the process that created it.
+        warnings: Those of this run and of earlier ones that were passed on.
     """
 
     def __init__(self) -> None:
@@ -33,6 +34,7 @@ class CurrentRun:
         self.lock = threading.Lock()
         self.should_pause = False
         self.process = os.getpid()
+        self.warnings: set[str] = set()
         self._folder: Path | None = None
 
     def make_folder(self) -> Path:

@@ -118,7 +118,8 @@ class Simulation:
             sim.step(100)
             print(sim.time, sim.positions.mean(axis=0))
 
-    Messages of the simulator go to the logger "pogosim", lines that robots print to "pogosim.robots".
+    Messages of the simulator go to the logger "pogosim", lines that robots print to "pogosim.robots". A warning that
+    comes again after a reset is not repeated.
 
     Attributes:
         program: The shared object.
@@ -571,7 +572,7 @@ class Simulation:
         if run is None:
             check_process(self._current.process)
             raise SimulationError(
-                CLOSED if self._is_closed else "the last reset failed: mend what it said, and reset again"
+                CLOSED if self._is_closed else "the last reset failed or was interrupted: reset again"
             )
         return run
 
@@ -591,8 +592,10 @@ class Simulation:
         for line in text.decode("utf-8", "replace").split("\n") if text else ():
             if line[:1] == "P":
                 robot_logger.info("%s", line[1:])
-            else:
+            elif line not in self._current.warnings:
                 logger.log(LEVELS.get(line[:1], logging.INFO), "%s", line[1:])
+            if line[:1] == "W":
+                self._current.warnings.add(line)
 
 
 def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
