@@ -436,7 +436,7 @@ private:
     }
 
     void read_back(Bodies& bodies, std::size_t i) {
-        b2Body const& body = *bodies_[i];
+        b2Body& body = *bodies_[i];
         if (bodies.spec[i].fixed) {
             return;
         }
@@ -448,8 +448,11 @@ private:
         any_awake_ = true;
         b2Transform const& pose = body.GetTransform();
         bodies.position_mm[i] = from_box2d(pose.p);
+        bodies.heading_rad[i] = wrap_angle(body.GetAngle());
+        if (bodies.heading_rad[i] != body.GetAngle()) {
+            body.SetTransform(pose.p, bodies.heading_rad[i]);
+        }
         bodies.heading_dir[i] = {pose.q.c, pose.q.s};
-        bodies.heading_rad[i] = body.GetAngle();
         bodies.velocity_mm_s[i] = from_box2d(body.GetLinearVelocity());
         bodies.angular_velocity_rad_s[i] = body.GetAngularVelocity();
     }

@@ -177,6 +177,7 @@ private:
             place_mm = place_mm + dt_s * velocity_mm_s;
             bodies.heading_rad[i] += dt_s * spin_rad_s;
         }
+        bodies.heading_rad[i] = wrap_angle(bodies.heading_rad[i]);
         if (bodies.heading_rad[i] != known_.heading_rad(i)) {
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
         }

@@ -28,8 +28,12 @@ float observed_angular_velocity_rad_s(World const& world, std::uint32_t body) {
     if (start_rad == end_rad) {
         return 0.0F;
     }
-    return rate(end_rad - start_rad, static_cast<float>(world.time_step_s), larger(start_rad, end_rad),
-                bodies.angular_velocity_rad_s[body]);
+    auto const step_s = static_cast<float>(world.time_step_s);
+    float const velocity_rad_s = bodies.angular_velocity_rad_s[body];
+    float const expected_rad = step_s * velocity_rad_s;
+    // Headings are wrapped: of the turns that lead from one to the other, the one nearest to the engine's.
+    float const turned_rad = expected_rad + wrap_angle(end_rad - start_rad - expected_rad);
+    return rate(turned_rad, step_s, larger(start_rad, end_rad), velocity_rad_s);
 }
 
 }  // namespace

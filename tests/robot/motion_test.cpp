@@ -49,11 +49,11 @@ TEST(Motion, PowerSetOnceDrivesAgainstDampingUntilItIsChanged) {
 TEST(Motion, OneMotorAloneTurnsAtTwiceTheMaximalAngularSpeed) {
     auto const left_alone = run_alone(
         testing::article_robot(), [] { pogobot_motor_set(motorL, motorFull); }, nullptr, 5.0);
-    EXPECT_NEAR(left_alone->world().bodies.heading_rad[0], 4.0F * 5.0F, 0.01F);
+    EXPECT_NEAR(left_alone->world().bodies.heading_rad[0], wrap_angle(4.0F * 5.0F), 0.01F);
     EXPECT_NEAR(length(left_alone->world().bodies.velocity_mm_s[0]), 50.0F, 0.1F);
     auto const right_alone = run_alone(
         testing::article_robot(), [] { pogobot_motor_set(motorR, motorFull); }, nullptr, 5.0);
-    EXPECT_NEAR(right_alone->world().bodies.heading_rad[0], -4.0F * 5.0F, 0.01F);
+    EXPECT_NEAR(right_alone->world().bodies.heading_rad[0], wrap_angle(-4.0F * 5.0F), 0.01F);
 }
 
 TEST(Motion, TurningRobotRunsACircleOfRadiusSpeedOverTurnRate) {
@@ -116,7 +116,8 @@ TEST(Motion, AngularNoiseOfStddevSSpreadsHeadingsAsARandomWalk) {
     ASSERT_FALSE(testing::run_for(simulation, 4.0));
     double squares = 0.0;
     for (std::size_t i = 0; i < start.size(); ++i) {
-        squares += std::pow(simulation.world().bodies.heading_rad[i] - start[i], 2) / static_cast<double>(start.size());
+        float const turned_rad = wrap_angle(simulation.world().bodies.heading_rad[i] - start[i]);
+        squares += std::pow(turned_rad, 2) / static_cast<double>(start.size());
     }
     // A new turn rate of standard deviation 1 every 16 ms for 250 ticks: variance 250 * 0.016^2. Ticks fall on steps of
     // 10 ms, so a rate lasts 10 or 20 ms, whose mean square is (3 * 20^2 + 2 * 10^2) / 5 = 280 instead of 256.

@@ -40,6 +40,18 @@ TEST(ObservedMotion, CrossesTheSeamOfAPeriodicWorldTheShortWay) {
     EXPECT_NEAR(observed_motion(world, robot).velocity_mm_s.x, 6.0F, 1e-3F);
 }
 
+/// Headings are wrapped at half a turn; a body may turn by more than that in a step.
+TEST(ObservedMotion, CountsTheTurnsOfAWrappedHeading) {
+    for (float const velocity_rad_s : {2.0F, -2.0F, 20.0F, -50.0F}) {
+        World world = testing::square_world();
+        world.time_step_s = 0.5;
+        std::uint32_t const robot = testing::add_robot(world, {200, 200}, 3.0F);
+        world.bodies.angular_velocity_rad_s[robot] = 1.1F * velocity_rad_s;  // a contact has braked it a little
+        world.bodies.heading_rad[robot] = wrap_angle(3.0F + 0.5F * velocity_rad_s);
+        EXPECT_NEAR(observed_motion(world, robot).angular_velocity_rad_s, velocity_rad_s, 1e-4F);
+    }
+}
+
 TEST(ObservedMotion, OfABodyMovedByHandIsZero) {
     World world = testing::square_world();
     std::uint32_t const robot = testing::add_robot(world, {200, 200});
