@@ -8,7 +8,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -17,6 +16,7 @@
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/log.hpp"
+#include "base/number_from.hpp"
 #include "config/option_keys.hpp"
 
 namespace pogosim {
@@ -69,7 +69,7 @@ std::optional<double> unsigned_number(std::string const& text) {
     if (text == ".inf" || text == ".Inf" || text == ".INF") {
         return std::numeric_limits<double>::infinity();
     }
-    return is_decimal(text) ? std::optional(std::strtod(text.c_str(), nullptr)) : std::nullopt;
+    return is_decimal(text) ? std::optional(number_from(text)) : std::nullopt;
 }
 
 std::string with_unit(std::string text, std::string_view unit) {
@@ -328,7 +328,7 @@ void UnitSlips::warn() const {
                                    : slip.count == 2
                                        ? ", like another number of this list"
                                        : fmt::format(", like {} other numbers of this list", slip.count - 1);
-        double const meant = std::stod(fmt::format("{:.6g}", slip.number * similar->factor));
+        double const meant = number_from(fmt::format("{:.6g}", slip.number * similar->factor));
         log().warn("{}: {} {} is unusually {}{}; if you meant {}, write {}", slip.where, slip.text, slip.unit,
                    similar->factor > 1.0 ? "small" : "large", others, similar->taken, number_text(meant));
     }

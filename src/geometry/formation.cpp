@@ -11,6 +11,7 @@
 #include <string>
 
 #include "base/nearest_name.hpp"
+#include "base/number_from.hpp"
 #include "geometry/formations/task.hpp"
 
 namespace pogosim {
@@ -96,7 +97,7 @@ std::string area_text(double area_mm2) {
 
 /// The two digits that an estimate is good for.
 double estimated(double value) {
-    return std::stod(fmt::format("{:.2g}", value));
+    return number_from(fmt::format("{:.2g}", value));
 }
 
 /// No arrangement of disks covers more than all that is free.

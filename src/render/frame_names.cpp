@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 #include "base/locked_file.hpp"
+#include "base/number_from.hpp"
 #include "base/rounded_time.hpp"
 
 namespace pogosim {
@@ -46,10 +46,8 @@ bool FrameNames::may_be(std::filesystem::path const& path) const {
             continue;
         }
         std::string const field = name.substr(before.size(), name.size() - before.size() - after_.size());
-        char* end = nullptr;
-        double const time_s = std::strtod(field.c_str(), &end);
-        bool const is_number = *end == '\0' && std::isfinite(time_s);
-        if (is_number && at(time_s).native() == before_ + field + after_) {
+        double const time_s = number_from(field);
+        if (std::isfinite(time_s) && at(time_s).native() == before_ + field + after_) {
             return true;
         }
     }

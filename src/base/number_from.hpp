@@ -1,0 +1,12 @@
+// Reading a number from text, always with a decimal point: std::strtod() expects a comma once a program, or the Python
+// that runs it, has called setlocale() in a country that writes numbers so.
+#pragma once
+
+#include <string>
+
+namespace pogosim {
+
+/// The number that the whole text is. Infinite if it is too large; not a number if it is none.
+double number_from(std::string const& text);
+
+}  // namespace pogosim
