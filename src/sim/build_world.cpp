@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -16,6 +19,7 @@
 #include "config/range.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
+#include "physics/coinciding_centres.hpp"
 #include "sim/find_file.hpp"
 #include "sim/imported_objects.hpp"
 #include "sim/make_membrane.hpp"
@@ -252,6 +256,29 @@ void make_mailboxes(World& world) {
                  [&] { world.mailboxes = Mailboxes(sizes, MAX_PAYLOAD_SIZE_BYTES); });
 }
 
+/// Bodies that a file puts at the same place would stay on top of each other: nothing says where to push them.
+void part_bodies(Bodies& bodies) {
+    std::vector<std::uint32_t> by_place(bodies.size());
+    std::iota(by_place.begin(), by_place.end(), 0U);
+    auto const place = [&](std::uint32_t body) {
+        return std::pair(bodies.position_mm[body].x, bodies.position_mm[body].y);
+    };
+    std::ranges::sort(by_place, {}, place);
+    std::vector<std::uint32_t> to_move;
+    for (auto same = by_place.begin(); same != by_place.end();) {
+        auto const next =
+            std::ranges::find_if(same, by_place.end(), [&](std::uint32_t i) { return place(i) != place(*same); });
+        if (next - same > 1) {
+            std::copy_if(same, next, std::back_inserter(to_move),
+                         [&](std::uint32_t i) { return !bodies.spec[i].fixed; });
+        }
+        same = next;
+    }
+    std::ranges::sort(to_move);
+    part_coinciding_centres(bodies.position_mm, to_move);
+    bodies.start_mm = bodies.position_mm;
+}
+
 }  // namespace
 
 World build_world(Scenario const& scenario, std::uint32_t seed) {
@@ -262,6 +289,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     build_arena(scenario, world);
     warn_of_gaps(scenario);
     allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });
+    part_bodies(world.bodies);
     warn_of_repeated_ids(world);
     make_mailboxes(world);
     world.light = make_light_map(world.arena, world.periodic, scenario.light_map_columns, scenario.light_map_rows);

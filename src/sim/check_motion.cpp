@@ -49,6 +49,12 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
                     text(rounded_down(motion.most / motion.per_speed / motion.speed))));
 }
 
+/// 0 for an object that does not drive.
+double top_speed_mm_s(ObjectConfig const& object) {
+    bool const drives = object.nb > 0 && object.spec.body && object.spec.robot && object.spec.robot->has_wheels;
+    return drives ? static_cast<double>(object.spec.robot->max_linear_speed_mm_s) : 0.0;
+}
+
 }  // namespace
 
 void warn_of_ambiguous_rows(Scenario const& scenario, World const& world) {
@@ -60,16 +66,10 @@ void warn_of_ambiguous_rows(Scenario const& scenario, World const& world) {
     if (!world.periodic || !has_steps || !has_positions) {
         return;
     }
-    auto const drives = [](ObjectConfig const& object) {
-        return object.nb > 0 && object.spec.body && object.spec.robot && object.spec.robot->has_wheels;
-    };
-    auto const speed = [&](ObjectConfig const& object) {
-        return drives(object) ? static_cast<double>(object.spec.robot->max_linear_speed_mm_s) : 0.0;
-    };
-    auto const fastest = std::ranges::max_element(scenario.objects, {}, speed);
+    auto const fastest = std::ranges::max_element(scenario.objects, {}, top_speed_mm_s);
     Vec2 const size_mm = world.arena.bounds.size();
     double const half_mm = 0.5 * static_cast<double>(std::min(size_mm.x, size_mm.y));
-    if (fastest == scenario.objects.end() || speed(*fastest) * period_s <= half_mm) {
+    if (fastest == scenario.objects.end() || top_speed_mm_s(*fastest) * period_s <= half_mm) {
         return;
     }
     log().warn(
@@ -77,7 +77,26 @@ void warn_of_ambiguous_rows(Scenario const& scenario, World const& world) {
         "shortest way between two rows need not be theirs, and speeds and displacements from the data file may be "
         "wrong. Use less than {} s",
         place_of(scenario, Setting::save_data_period), text(period_s), fastest->category, text(half_mm),
-        text(speed(*fastest)), text(rounded_down(half_mm / speed(*fastest))));
+        text(top_speed_mm_s(*fastest)), text(rounded_down(half_mm / top_speed_mm_s(*fastest))));
+}
+
+void warn_of_rounded_speeds(Scenario const& scenario, World const& world) {
+    constexpr double most = 0.005;  // of a speed
+    float const farthest_mm = std::max(world.arena.bounds.max.x, world.arena.bounds.max.y);
+    double const unit_mm = static_cast<double>(farthest_mm - std::nextafter(farthest_mm, 0.0F));
+    double const unit_mm_s = unit_mm / world.time_step_s;
+    for (ObjectConfig const& object : scenario.objects) {
+        double const speed_mm_s = top_speed_mm_s(object);
+        if (speed_mm_s > 0.0 && unit_mm_s > most * speed_mm_s) {
+            log().warn(
+                "time_step: in an arena of {} mm, positions are rounded to {} mm, so that in steps of {} s all speeds "
+                "are rounded to multiples of {} mm/s; '{}' drive at up to {} mm/s (max_linear_speed). Use a longer "
+                "time_step, or a smaller arena",
+                text(static_cast<double>(farthest_mm)), text(unit_mm), text(world.time_step_s), text(unit_mm_s),
+                object.category, text(speed_mm_s));
+            return;
+        }
+    }
 }
 
 void check_motion(Scenario const& scenario, MotionLimits const& limits, double time_step_s) {

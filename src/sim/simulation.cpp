@@ -330,6 +330,7 @@ std::optional<UserFailure> Simulation::start() {
     fit_time_step();
     check_motion(scenario_, physics_->motion_limits(), world_.time_step_s);
     warn_of_ambiguous_rows(scenario_, world_);
+    warn_of_rounded_speeds(scenario_, world_);
     if (auto failure = recorder_.open()) {
         return failure;
     }

@@ -238,3 +238,18 @@ def test_messages_pass_the_seam_of_a_periodic_arena_only(tmp_path: Path, boundar
     sent, received = last["sent"].tolist(), last["received"].tolist()
     assert sent[0] == 625
     assert received[1] == (pytest.approx(sent[0], abs=2) if heard else 0)
+
+
+def test_speeds_that_rounding_changes_are_told(tmp_path: Path) -> None:
+    """Coordinates have 24 binary digits: up to 2^20 mm, neighbouring ones are 2^-4 mm apart."""
+    settings = {"arena_file": "arenas/square.csv", "arena_surface": 1e12, "simulation_time": 0.1}
+    result = run(example("helloworld"), tmp_path, settings)
+    assert result.errors.splitlines()[0].endswith(
+        "time_step: in an arena of 1000000 mm, positions are rounded to 0.0625 mm, so that in steps of 0.01 s all "
+        "speeds are rounded to multiples of 6.25 mm/s; 'robots' drive at up to 100 mm/s (max_linear_speed). Use a "
+        "longer time_step, or a smaller arena"
+    )
+    for change in ({"arena_surface": 1e8}, {"objects.robots.max_linear_speed": 2000}, {"objects.robots.nb": 0}):
+        assert "rounded" not in run(example("helloworld"), tmp_path, {**settings, **change}).errors, change
+    short = {**settings, "arena_surface": 1e6, "time_step": 1e-4, "simulation_time": 0.01}
+    assert "multiples of 0.61 mm/s" in run(example("helloworld"), tmp_path, short).errors

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -178,3 +179,22 @@ def test_fixed_objects_that_touch_are_no_mistake(tmp_path: Path) -> None:
     beside = {**BOX, "x": 1080 + 0.5, "y": 200}  # into the wall by half a millimetre
     below = {**BOX, "y": 800 + 139.5}  # and into the other box
     assert warnings(simulate(tmp_path, **{"objects.beside": beside, "objects.below": below})) == []
+
+
+@pytest.mark.parametrize("engine", ["disk", "box2d"])
+def test_objects_at_the_same_place_part(tmp_path: Path, engine: str) -> None:
+    (tmp_path / "poses.csv").write_text("x,y\n300,500\n700,500\n700,500\n700,500\n")
+    settings = {
+        "initial_formation": "imported",
+        "formation_filename": "poses.csv",
+        "physics_engine": engine,
+        "objects.robots.nb": 4,
+        "simulation_time": 20.0,
+        "save_data_period": 20.0,
+    }
+    result = run(example("helloworld"), tmp_path, settings)
+    assert result.code == 0
+    assert "3 pairs of objects overlap" in result.errors
+    last = result.frame().groupby("robot_id").last()[["x", "y"]].to_numpy()
+    apart = [math.dist(a, b) for i, a in enumerate(last) for b in last[:i]]
+    assert min(apart) > 2 * 26.0
