@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -53,6 +54,10 @@ std::string text_of(arrow::Schema const& schema) {
     return text + fmt::format("column_types: [{}]\n", fmt::join(types, ", "));
 }
 
+std::filesystem::path unfinished_path_of(std::filesystem::path const& table) {
+    return MetadataBeside::path_of(table).native() + kUnfinishedSuffix;
+}
+
 }  // namespace
 
 std::filesystem::path MetadataBeside::path_of(std::filesystem::path const& table) {
@@ -74,9 +79,15 @@ bool MetadataBeside::is_taken(std::filesystem::path const& table) {
     return line != kBegin;
 }
 
+bool MetadataBeside::has_short_name(std::filesystem::path const& table) {
+    std::filesystem::path const path = unfinished_path_of(table);
+    long const most_bytes = pathconf(path.parent_path().c_str(), _PC_NAME_MAX);
+    return most_bytes < 0 || path.filename().native().size() <= static_cast<std::size_t>(most_bytes);
+}
+
 arrow::Result<std::unique_ptr<MetadataBeside>> MetadataBeside::write(std::filesystem::path const& table,
                                                                      arrow::Schema const& schema, bool sync) {
-    std::filesystem::path const path = path_of(table).native() + kUnfinishedSuffix;
+    std::filesystem::path const path = unfinished_path_of(table);
     int const descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kNewFile);
     if (descriptor < 0) {
         return system_error(errno);

@@ -21,6 +21,9 @@ public:
     /// True if another program's file is there, which must not be overwritten.
     static bool is_taken(std::filesystem::path const& table);
 
+    /// False if the name of the metadata, or that until they are complete, is longer than the file system allows.
+    static bool has_short_name(std::filesystem::path const& table);
+
     /// Writes the metadata of a schema to a file of another name beside the table. `sync`: waits for the disk.
     static arrow::Result<std::unique_ptr<MetadataBeside>> write(std::filesystem::path const& table,
                                                                 arrow::Schema const& schema, bool sync);

@@ -91,6 +91,9 @@ void check_format(TableKind const& kind, std::string const& path) {
                  "choose another name",
                  MetadataBeside::path_of(path).string()));
     }
+    if (format == TableFormat::csv && !MetadataBeside::has_short_name(path)) {
+        fail(kind, path, "the name is too long for the file of metadata beside it; choose a shorter one");
+    }
 }
 
 std::shared_ptr<arrow::KeyValueMetadata> make_metadata(TableFileOptions const& options) {

@@ -197,6 +197,18 @@ def test_file_of_a_user_in_the_place_of_the_metadata_is_refused(tmp_path: Path, 
     assert "(the metadata of the " in refused.errors
 
 
+@pytest.mark.parametrize("key", ["data_filename", "message_log"])
+def test_name_too_long_for_the_file_beside_it_is_refused_before_the_run(tmp_path: Path, key: str) -> None:
+    longest = 255 - len(".csv.yaml.pogosim-new")
+    for length, code in ((longest, 0), (longest + 1, 2)):
+        result = run(example("helloworld"), tmp_path, {key: "d" * length + ".csv", "simulation_time": 1.0})
+        assert result.code == code, result.text
+        assert ("the name is too long for the file of metadata beside it; choose a shorter one" in result.text) == (
+            code == 2
+        )
+        assert (tmp_path / ("d" * length + ".csv.yaml")).exists() == (code == 0)
+
+
 def test_csv_without_its_metadata_is_read_with_a_warning(runs: Path, tmp_path: Path) -> None:
     path = tmp_path / "d.csv"
     path.write_bytes((runs / "d.csv").read_bytes())
