@@ -115,8 +115,8 @@ public:
 private:
     struct Watched {
         CrashHandlerState* handler = nullptr;
-        unsigned long calls = 0;  // of user code, at the last look
-        int blocked_looks = 0;    // looks that found the present call asleep
+        unsigned long calls = 0;  // of user code, when it was first found asleep
+        int blocked_looks = 0;    // looks in a row that found it asleep, in one call or in many short ones
     };
 
     void serve() {
@@ -136,45 +136,47 @@ private:
     static void look(Watched& watched) {
         CrashHandlerState const& handler = *watched.handler;
         unsigned long const calls = handler.calls.load(std::memory_order_acquire);
-        if (!handler.inside || calls != watched.calls) {
-            watched.calls = calls;
-            watched.blocked_looks = 0;
-            return;
-        }
         CrashHandlerState& run = handler.helped != nullptr ? *handler.helped : *watched.handler;
         if (run.is_told_of_blocked) {
             return;
         }
-        bool const sleeps = is_sleeping(handler.thread_id);
+        bool const sleeps = handler.inside && is_sleeping(handler.thread_id);
         std::optional<SystemCall> const call = sleeps ? system_call_of(handler.thread_id) : std::nullopt;
         if (!call || writes(*call)) {
             watched.blocked_looks = 0;
             return;
         }
-        if (++watched.blocked_looks < kBlockedLooks) {
-            return;
+        if (watched.blocked_looks++ == 0) {
+            watched.calls = calls;
         }
-        run.is_told_of_blocked = true;
-        tell(handler, *call, calls);
+        if (watched.blocked_looks >= kBlockedLooks) {
+            char const* const how = calls == watched.calls
+                                        ? "has blocked for 2 s of wall-clock time"
+                                        : "blocks again and again: for 2 s of wall-clock time by now";
+            run.is_told_of_blocked = tell(handler, *call, calls, how);
+        }
     }
 
-    /// The watched thread may continue meanwhile, but its run cannot end before this returns (mutex_).
-    static void tell(CrashHandlerState const& handler, SystemCall const& call, unsigned long calls) {
+    /// The watched thread may continue meanwhile, but its run cannot end before this returns (mutex_). False if the
+    /// call has returned by now.
+    static bool tell(CrashHandlerState const& handler, SystemCall const& call, unsigned long calls, char const* how) {
         void const* const place =
             place_in_stack({call.stack_pointer, call.program_counter, handler.thread_id}, handler.program_base);
         RunningRobot const robot{.its_context = *handler.context, .ticks = *handler.ticks};
         if (!handler.inside || handler.calls.load(std::memory_order_acquire) != calls ||
             robot.its_context.world == nullptr) {
-            return;
+            return false;
         }
         set_running_robot(robot);
         std::string const source = place_in_source(context.services->access.controllers->image(), place);
         SignalText<1024> text;
         text << "pogosim: warning: " << running_place().c_str() << (source.empty() ? "" : ", ") << source.c_str()
-             << ", has blocked for 2 s of wall-clock time, and the run with it. Robots wait in simulated time, "
+             << ", " << how
+             << ", and the run with it. Robots wait in simulated time, "
                 "with msleep(), usleep() or sleep() (docs/porting.md)\n";
         text.write_to_stderr();
         context = {};
+        return true;
     }
 
     pid_t process_;

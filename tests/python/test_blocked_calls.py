@@ -72,9 +72,20 @@ def test_it_is_told_while_the_call_blocks(blocks: Path, tmp_path: Path) -> None:
     assert "result 1" in done.output
 
 
+def test_calls_that_block_in_each_step_are_told(blocks: Path, tmp_path: Path) -> None:
+    done = end(start(blocks, tmp_path, "in many steps", 6.0))
+    assert done.code == 0
+    assert re.fullmatch(
+        r"pogosim: warning: user_step of robot #\d of category 'robots', tick \d+, t = [\d.]+ s, at \S*blocks\.c:"
+        rf"{line_of('nanosleep')} in \w+\(\), blocks again and again: for 2 s of wall-clock time by now, and the "
+        r"run with it\. Robots wait .*\n",
+        done.errors,
+    ), done.errors
+
+
 def test_short_calls_and_computing_are_not_told(blocks: Path, tmp_path: Path) -> None:
-    calls = {"nanosleep": 1.0, "in many steps": 6.0, "compute": 4.0}
-    for process in [start(blocks, tmp_path / str(s), how, s) for how, s in calls.items()]:
+    calls = {"nanosleep": 1.0, "in many steps": 1.0, "compute": 4.0}
+    for process in [start(blocks, tmp_path / how, how, s) for how, s in calls.items()]:
         done = end(process)
         assert (done.code, done.errors) == (0, "")
 
