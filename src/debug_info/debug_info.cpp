@@ -2,9 +2,9 @@
 
 #include <dwarf.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <memory>
+
+#include "debug_info/entries.hpp"
 
 namespace shared_state {
 
@@ -72,30 +72,6 @@ void read_type(Dwarf_Die* variable, Object& object) {
     }
 }
 
-// "outer::inner::" for what is declared in there. An unnamed namespace is none.
-std::string qualifier_of(Dwarf_Die entry) {
-    Dwarf_Die origin = origin_of(entry);
-    Dwarf_Die* scopes = nullptr;
-    int const count = dwarf_getscopes_die(&origin, &scopes);
-    std::unique_ptr<Dwarf_Die, decltype(&std::free)> const owner(scopes, &std::free);
-    std::string qualifier;
-    for (int i = 1; i < count; i++) {  // from the entry itself outwards
-        switch (dwarf_tag(&scopes[i])) {
-            case DW_TAG_namespace:
-            case DW_TAG_class_type:
-            case DW_TAG_structure_type:
-            case DW_TAG_union_type:
-                if (char const* name = dwarf_diename(&scopes[i])) {
-                    qualifier.insert(0, std::string(name) + "::");
-                }
-                break;
-            default:
-                break;
-        }
-    }
-    return qualifier;
-}
-
 // The compiled file in which something was written. After link-time optimisation, that is where its origin is.
 Scope unit_of(Dwarf_Die entry) {
     Dwarf_Die origin = origin_of(entry);
@@ -108,13 +84,7 @@ public:
     explicit Reader(ProgramFile const& program) : program_(program) {}
 
     DebugInfo read() {
-        Dwarf_CU* unit = nullptr;
-        Dwarf_CU* next = nullptr;
-        Dwarf_Die entry;
-        while (dwarf_get_units(program_.debug_info(), unit, &next, nullptr, nullptr, &entry, nullptr) == 0) {
-            read_children(entry, {});
-            unit = next;
-        }
+        for_each_unit(program_.debug_info(), [&](Dwarf_Die& unit) { read_children(unit, nullptr); });
         for (auto& [address, object] : objects_) {
             info_.objects.push_back(std::move(object));
         }
@@ -122,32 +92,23 @@ public:
     }
 
 private:
-    struct Function {
-        std::string name;
-        std::string qualifier;
-        Scope scope = 0;
-    };
-
-    void read_children(Dwarf_Die parent, Function const& function) {
-        Dwarf_Die entry;
-        if (dwarf_child(&parent, &entry) != 0) {
-            return;
-        }
-        do {
-            read_entry(entry, function);
-        } while (dwarf_siblingof(&entry, &entry) == 0);
+    // `function`: the one that contains an entry, by its origin; null outside of functions.
+    void read_children(Dwarf_Die& parent, Dwarf_Die* function) {
+        for_each_child(&parent, [&](Dwarf_Die& entry) { read_entry(entry, function); });
     }
 
-    void read_entry(Dwarf_Die& entry, Function const& function) {
+    void read_entry(Dwarf_Die& entry, Dwarf_Die* function) {
         switch (dwarf_tag(&entry)) {
             case DW_TAG_variable:
-            case DW_TAG_formal_parameter:
                 read_variable(entry, function);
+                break;
+            case DW_TAG_formal_parameter:
+                note_local(entry, function);
                 break;
             case DW_TAG_subprogram:
             case DW_TAG_inlined_subroutine: {
                 Dwarf_Die origin = origin_of(entry);
-                read_children(entry, {text_of(dwarf_diename(&origin)), qualifier_of(origin), dwarf_dieoffset(&origin)});
+                read_children(entry, &origin);
                 break;
             }
             default:
@@ -155,28 +116,34 @@ private:
         }
     }
 
-    void read_variable(Dwarf_Die& entry, Function const& function) {
-        std::string const name = text_of(dwarf_diename(&entry));
+    void note_local(Dwarf_Die& entry, Dwarf_Die* function) {
+        if (function != nullptr && !flag(&entry, DW_AT_external)) {
+            info_.local_to_a_call[dwarf_dieoffset(function)].insert(name_of(&entry));
+        }
+    }
+
+    void read_variable(Dwarf_Die& entry, Dwarf_Die* function) {
         auto const address = address_of(&entry);
         if (!address) {
             // Without an address: automatic, or a declaration of what is elsewhere, or never needed by the program.
-            if (function.scope && !flag(&entry, DW_AT_external)) {
-                info_.local_to_a_call[function.scope].insert(name);
-            }
+            note_local(entry, function);
             return;
         }
+        std::string const name = name_of(&entry);
+        Scope const function_scope = function != nullptr ? dwarf_dieoffset(function) : 0;
         if (name == note_name) {
-            info_.notes.push_back({program_.text_at(*address), function.qualifier, function.scope, unit_of(entry)});
+            std::string const qualifier = function != nullptr ? qualifier_of(*function) : "";
+            info_.notes.push_back({program_.text_at(*address), qualifier, function_scope, unit_of(entry)});
             return;
         }
-        if (flag(&entry, DW_AT_artificial) || objects_.contains(*address)) {
+        if (flag(&entry, DW_AT_artificial) || objects_.contains(*address) || !program_.section_at(*address).writable) {
             return;
         }
         Object object;
         object.name = name;
         object.qualifier = qualifier_of(entry);
-        object.function = function.name;
-        object.function_scope = function.scope;
+        object.function = function != nullptr ? name_of(function) : "";
+        object.function_scope = function_scope;
         object.unit = unit_of(entry);
         object.external = flag(&entry, DW_AT_external);
         object.file = file_of(&entry);
@@ -187,7 +154,28 @@ private:
         objects_.emplace(*address, std::move(object));
     }
 
+    // "outer::inner::" for what is declared in there. An unnamed namespace is none.
+    std::string qualifier_of(Dwarf_Die const& entry) {
+        std::string qualifier;
+        for (Dwarf_Die& scope : scope_finder_.scopes_around(origin_of(entry))) {
+            switch (dwarf_tag(&scope)) {
+                case DW_TAG_namespace:
+                case DW_TAG_class_type:
+                case DW_TAG_structure_type:
+                case DW_TAG_union_type:
+                    if (char const* name = dwarf_diename(&scope)) {
+                        qualifier += std::string(name) + "::";
+                    }
+                    break;
+                default:
+                    break;
+            }
+        }
+        return qualifier;
+    }
+
     ProgramFile const& program_;
+    ScopeFinder scope_finder_;
     DebugInfo info_;
     std::map<uint64_t, Object> objects_;
 };

@@ -4,18 +4,6 @@
 
 namespace shared_state {
 
-std::string name_of(Dwarf_Die* entry) {
-    char const* const name = dwarf_diename(entry);
-    return name ? name : "";
-}
-
-std::optional<Dwarf_Die> type_of(Dwarf_Die* entry) {
-    Dwarf_Attribute attribute;
-    Dwarf_Die type;
-    bool const has_type = dwarf_attr_integrate(entry, DW_AT_type, &attribute) && dwarf_formref_die(&attribute, &type);
-    return has_type ? std::optional(type) : std::nullopt;
-}
-
 bool is_structure(Dwarf_Die* type) {
     int const tag = dwarf_tag(type);
     return tag == DW_TAG_structure_type || tag == DW_TAG_class_type || tag == DW_TAG_union_type;

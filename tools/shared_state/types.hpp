@@ -1,18 +1,13 @@
 // Types in a program's debug information.
 #pragma once
 
-#include <elfutils/libdw.h>
-
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "debug_info/entries.hpp"
+
 namespace shared_state {
-
-std::string name_of(Dwarf_Die* entry);
-
-/// The type of a variable or member; what a typedef, an array or a pointer is made of.
-std::optional<Dwarf_Die> type_of(Dwarf_Die* entry);
 
 bool is_structure(Dwarf_Die* type);
 
@@ -29,15 +24,5 @@ std::optional<Basic> basic_type(std::optional<Dwarf_Die> type, bool through_poin
 
 /// The name that a program uses for it.
 std::string name_of(Basic& basic);
-
-template <class See>
-void for_each_child(Dwarf_Die* parent, See const& see) {
-    Dwarf_Die child;
-    if (dwarf_child(parent, &child) == 0) {
-        do {
-            see(child);
-        } while (dwarf_siblingof(&child, &child) == 0);
-    }
-}
 
 }  // namespace shared_state
