@@ -217,19 +217,20 @@ std::optional<uint64_t> address_of(Dwarf_Die* variable) {
     return is_value && !is_read ? std::nullopt : address;
 }
 
+std::string path_in(Dwarf_Die* unit, char const* file) {
+    Dwarf_Attribute folder;
+    std::filesystem::path const compiled_in =
+        dwarf_attr(unit, DW_AT_comp_dir, &folder) ? text_of(dwarf_formstring(&folder)) : "";
+    return (compiled_in / text_of(file)).lexically_normal().string();
+}
+
 std::string file_of(Dwarf_Die* entry) {
     Dwarf_Die unit;
-    Dwarf_Attribute folder;
-    std::string file = text_of(dwarf_decl_file(entry));
+    char const* const file = dwarf_decl_file(entry);
     if (!dwarf_diecu(entry, &unit, nullptr, nullptr)) {
-        return file;
+        return text_of(file);
     }
-    if (file.empty()) {
-        file = text_of(dwarf_diename(&unit));
-    }
-    std::filesystem::path const compiled_in =
-        dwarf_attr(&unit, DW_AT_comp_dir, &folder) ? text_of(dwarf_formstring(&folder)) : "";
-    return (compiled_in / file).lexically_normal().string();
+    return path_in(&unit, file ? file : dwarf_diename(&unit));
 }
 
 DebugInfo read_debug_info(ProgramFile const& program) {

@@ -47,6 +47,9 @@ struct DebugInfo {
     std::map<Scope, std::set<std::string>> local_to_a_call;  ///< parameters and automatic variables of functions
 };
 
+/// The path of a file that was compiled with a unit.
+std::string path_in(Dwarf_Die* unit, char const* file);
+
 /// The path of the file in which something is declared. Tables of files begin with the compiled file, which libdw does
 /// not count as one.
 std::string file_of(Dwarf_Die* entry);

@@ -104,16 +104,39 @@ void print(Object const& object, Check const& check) {
                  static_cast<unsigned long long>(object.bytes), object.bytes == 1 ? "" : "s", what, end(check).c_str());
 }
 
+// What is odd about a member: "is an address, which means nothing to another robot".
+std::string oddity(OddMember const& member) {
+    std::string const bytes = std::to_string(member.bytes);
+    std::string const is_type = (member.is_inside ? "contains '" : "is of type '") + member.type + "'";
+    switch (member.oddity) {
+        case OddMember::Oddity::other_size:
+            return is_type + " (" + bytes +
+                   " bytes), which has another size on a real robot: take uint32_t or another type of fixed size";
+        case OddMember::Oddity::other_format:
+            return is_type + ", whose bytes mean another number on a real robot: take float or double";
+        case OddMember::Oddity::address:
+            return (member.is_inside ? "contains" : "is") +
+                   std::string(" an address, which means nothing to another robot");
+        case OddMember::Oddity::virtual_functions:
+            return "has virtual functions, so it contains an address, which means nothing to another robot";
+        case OddMember::Oddity::size_of_address:
+            break;
+    }
+    return "";
+}
+
 void print(OddMember const& member, Check const& check) {
-    std::string const what = member.type.empty()
-                                 ? "is an address, which means nothing to another robot"
-                                 : "is of type '" + member.type + "' (" + std::to_string(member.bytes) +
-                                       " bytes), which has another size on a real robot: take uint32_t or "
-                                       "another type of fixed size";
-    std::string const where =
-        member.message.empty() ? "is sent as a message and" : "in the message '" + member.message + "'";
-    std::fprintf(stderr, "%s: '%s' %s %s %s\n", beginning(member.file, member.line, member.column, check).c_str(),
-                 member.name.c_str(), where.c_str(), what.c_str(), end(check).c_str());
+    std::string text =
+        "'" + member.name + "' " +
+        (member.message.empty() ? "is sent as a message and " : "in the message '" + member.message + "' ") +
+        oddity(member);
+    if (member.oddity == OddMember::Oddity::size_of_address) {
+        text = "'sizeof(" + member.name +
+               ")' is the size of an address, 8 bytes here and 4 on a real robot: take the size " +
+               "of what it points to";
+    }
+    std::fprintf(stderr, "%s: %s %s\n", beginning(member.file, member.line, member.column, check).c_str(), text.c_str(),
+                 end(check).c_str());
 }
 
 // Whether what it finds is an error.
@@ -138,14 +161,11 @@ bool check_message_layout(ProgramFile const& program, Options const& options) {
     if (options.message_layout.off) {
         return false;
     }
-    bool is_found = false;
-    for (auto const& member : odd_members_of_messages(program)) {
-        if (!is_in_folders(member.file, options.ignored_folders)) {
-            print(member, options.message_layout);
-            is_found = true;
-        }
+    auto const found = odd_members_of_messages(program, options.ignored_folders);
+    for (auto const& member : found) {
+        print(member, options.message_layout);
     }
-    return options.message_layout.errors && is_found;
+    return options.message_layout.errors && !found.empty();
 }
 
 int check(Options const& options) {

@@ -1,4 +1,4 @@
-// Members of messages that have another size on a real robot, whose addresses and `long` have 32 bits.
+// Members of messages that differ on a real robot, whose addresses and `long` have 32 bits.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,24 @@
 namespace shared_state {
 
 struct OddMember {
-    std::string message;  // "heartbeat_t"; empty: a whole variable is sent
-    std::string name;
-    std::string type{};  // "size_t"; empty: a pointer
+    enum class Oddity { other_size, other_format, address, virtual_functions, size_of_address };
+
+    std::string message{};  ///< "heartbeat_t"; empty: a whole variable is sent
+    std::string name{};     ///< of the member, the variable, or the class with virtual functions
+    Oddity oddity = Oddity::other_size;
+    std::string type{};      ///< "size_t"
+    bool is_inside = false;  ///< of a class of a library: std::array<long, 2>
     uint64_t bytes = 0;
-    std::string file;
+    std::string file{};
     int line = 0;
     int column = 0;
 };
 
-/// In source order. Messages are what a call of a sending function names; and, as debug information does not tell what
-/// else is sent, structures whose name contains "message", "msg", "packet" or "payload", and those of which a function
-/// that takes a message_t* has a variable or a pointer, unless USERDATA contains them (clang does not tell the type of
-/// `mydata`: there, only names count).
-std::vector<OddMember> odd_members_of_messages(ProgramFile const& program);
+/// In source order. Messages are the objects that calls of sending functions name; what the source copies to or from
+/// the payload of a message, or takes it for; and, if no call names more than bytes, structures whose name contains
+/// "message", "msg", "packet" or "payload" and which are no part of USERDATA. Files in the ignored folders are not
+/// looked at.
+std::vector<OddMember> odd_members_of_messages(ProgramFile const& program,
+                                               std::vector<std::string> const& ignored_folders);
 
 }  // namespace shared_state

@@ -1,11 +1,10 @@
-// Objects whose address is given to the functions that send messages.
+// Objects whose bytes are sent, or received: those that the arguments of a call name.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "debug_info/program_file.hpp"
+#include "declarations.hpp"
 #include "types.hpp"
 
 namespace shared_state {
@@ -13,13 +12,13 @@ namespace shared_state {
 struct SentObject {
     std::string name;  ///< as in the call: "k", "mydata->state"
     Dwarf_Die declaration;
-    Basic type;  ///< of an array, that of its elements
+    Basic type{};                     ///< of an array, that of its elements
+    bool is_buffer = false;           ///< bytes, whose meaning the call does not tell
+    bool is_size_of_address = false;  ///< the number of bytes is sizeof(pointer)
 };
 
-/// Whether this variable is a note that a call of a sending function left behind: POGO_NOTE_SENT in infrared.h.
-bool is_note_of_sending(Dwarf_Die* variable);
-
-/// The objects that the arguments in the note mean, by the rules of C for names.
-std::vector<SentObject> sent_objects(Dwarf_Die* note, ProgramFile const& program);
+/// What arguments such as "(uint8_t*)&k, sizeof k" mean at a place, by the rules of C for names. The last one is the
+/// number of bytes.
+std::vector<SentObject> sent_objects(std::string const& arguments, Place const& place, Declarations& declarations);
 
 }  // namespace shared_state

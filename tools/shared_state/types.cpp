@@ -14,6 +14,37 @@ bool is_pointer(Dwarf_Die* type) {
     return tag == DW_TAG_pointer_type || tag == DW_TAG_reference_type || tag == DW_TAG_rvalue_reference_type;
 }
 
+std::optional<Dwarf_Die> unnamed(std::optional<Dwarf_Die> type) {
+    while (type) {
+        switch (dwarf_tag(&*type)) {
+            case DW_TAG_typedef:
+            case DW_TAG_const_type:
+            case DW_TAG_volatile_type:
+            case DW_TAG_reference_type:
+            case DW_TAG_rvalue_reference_type:
+                type = type_of(&*type);
+                break;
+            default:
+                return type;
+        }
+    }
+    return type;
+}
+
+bool is_array(Dwarf_Die* type) {
+    return dwarf_tag(type) == DW_TAG_array_type;
+}
+
+std::optional<Dwarf_Die> element(std::optional<Dwarf_Die> type) {
+    auto bare = unnamed(type);
+    if (!bare || (!is_array(&*bare) && !is_pointer(&*bare))) {
+        return std::nullopt;
+    }
+    int dimensions = 0;
+    for_each_child(&*bare, [&](Dwarf_Die child) { dimensions += dwarf_tag(&child) == DW_TAG_subrange_type; });
+    return dimensions > 1 ? bare : type_of(&*bare);
+}
+
 std::optional<Basic> basic_type(std::optional<Dwarf_Die> type, bool through_pointers) {
     Basic found{};
     while (type) {

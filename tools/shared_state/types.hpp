@@ -14,6 +14,14 @@ bool is_structure(Dwarf_Die* type);
 /// Also a reference.
 bool is_pointer(Dwarf_Die* type);
 
+/// What `[i]` and `*` make of a type. Rows of an array stay an array.
+std::optional<Dwarf_Die> element(std::optional<Dwarf_Die> type);
+
+/// Without typedef, const and references.
+std::optional<Dwarf_Die> unnamed(std::optional<Dwarf_Die> type);
+
+bool is_array(Dwarf_Die* type);
+
 /// What a type is in the end, without names, const, arrays and the like; with pointers or through them.
 struct Basic {
     Dwarf_Die type;
