@@ -1,11 +1,24 @@
 #include "debug_info/entries.hpp"
 
 #include <dwarf.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <iterator>
 
 namespace shared_state {
+
+DebugFile::DebugFile(std::string const& path)
+    : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)),
+      dwarf_(descriptor_ >= 0 ? dwarf_begin(descriptor_, DWARF_C_READ) : nullptr) {}
+
+DebugFile::~DebugFile() {
+    dwarf_end(dwarf_);
+    if (descriptor_ >= 0) {
+        close(descriptor_);
+    }
+}
 
 std::string name_of(Dwarf_Die* entry) {
     char const* const name = dwarf_diename(entry);

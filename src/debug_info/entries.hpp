@@ -10,6 +10,22 @@
 
 namespace shared_state {
 
+/// A file while its debug information is read.
+class DebugFile {
+public:
+    explicit DebugFile(std::string const& path);
+    ~DebugFile();
+    DebugFile(DebugFile const&) = delete;
+    DebugFile& operator=(DebugFile const&) = delete;
+
+    /// Null if the file cannot be opened, or has none.
+    Dwarf* debug_info() const { return dwarf_; }
+
+private:
+    int descriptor_;
+    Dwarf* dwarf_;
+};
+
 /// Empty if it has none.
 std::string name_of(Dwarf_Die* entry);
 
@@ -37,12 +53,12 @@ void for_each_child(Dwarf_Die* parent, See const& see) {
     }
 }
 
-/// Units are what was compiled at a time: a source file with all it includes.
+/// Units are what was compiled at a time: a source file with all it includes. Without debug information, there is none.
 template <class See>
 void for_each_unit(Dwarf* debug_info, See const& see) {
     Dwarf_CU* unit = nullptr;
     Dwarf_Die entry;
-    while (dwarf_get_units(debug_info, unit, &unit, nullptr, nullptr, &entry, nullptr) == 0) {
+    while (debug_info && dwarf_get_units(debug_info, unit, &unit, nullptr, nullptr, &entry, nullptr) == 0) {
         see(entry);
     }
 }

@@ -3,8 +3,8 @@
 #ifdef POGOSIM_HAS_LIBDW
 #include <dwarf.h>
 #include <elfutils/libdw.h>
-#include <fcntl.h>
-#include <unistd.h>
+
+#include "debug_info/entries.hpp"
 #endif
 
 #include <algorithm>
@@ -25,38 +25,10 @@ using Kind = VariableType::Kind;
 
 constexpr int kDeepest = 16;  // levels of types within types
 
-class File {
-public:
-    explicit File(std::string const& file)
-        : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC)),
-          dwarf_(descriptor_ >= 0 ? dwarf_begin(descriptor_, DWARF_C_READ) : nullptr) {}
-    ~File() {
-        dwarf_end(dwarf_);
-        if (descriptor_ >= 0) {
-            close(descriptor_);
-        }
-    }
-    File(File const&) = delete;
-    File& operator=(File const&) = delete;
-
-    Dwarf* debug_info() const { return dwarf_; }
-
-private:
-    int descriptor_;
-    Dwarf* dwarf_;
-};
-
-template <class Visit>
-void for_each_child(Dwarf_Die& entry, Visit const& visit) {
-    Dwarf_Die child;
-    for (bool found = dwarf_child(&entry, &child) == 0; found; found = dwarf_siblingof(&child, &child) == 0) {
-        visit(child);
-    }
-}
+using shared_state::for_each_child;
 
 std::string name_of(Dwarf_Die& entry) {
-    char const* const name = dwarf_diename(&entry);
-    return name != nullptr ? escaped(name) : "";
+    return escaped(shared_state::name_of(&entry));
 }
 
 std::optional<std::uint64_t> number(Dwarf_Die& entry, unsigned name) {
@@ -123,10 +95,12 @@ void place_bits(Dwarf_Die& entry, VariableType::Member& member) {
 }
 
 void add_members(Dwarf_Die& structure, std::size_t offset, int depth, std::vector<VariableType::Member>& members) {
-    for_each_child(structure, [&](Dwarf_Die& child) {
+    for_each_child(&structure, [&](Dwarf_Die& child) {
         int const tag = dwarf_tag(&child);
         bool const is_shared = number(child, DW_AT_declaration) || number(child, DW_AT_external);  // static in C++
-        if ((tag != DW_TAG_member && tag != DW_TAG_inheritance) || is_shared) {
+        bool const has_no_place = tag == DW_TAG_inheritance && number(child, DW_AT_virtuality);    // known when it runs
+        bool const is_hidden = dwarf_hasattr(&child, DW_AT_artificial) != 0;  // the address of virtual functions
+        if ((tag != DW_TAG_member && tag != DW_TAG_inheritance) || is_shared || has_no_place || is_hidden) {
             return;
         }
         VariableType::Member member{.name = name_of(child),
@@ -163,7 +137,7 @@ VariableTypePointer as_read(VariableType type) {
 
 VariableTypePointer array_of(Dwarf_Die& type, int depth) {
     std::vector<std::size_t> counts;
-    for_each_child(type, [&](Dwarf_Die& child) {
+    for_each_child(&type, [&](Dwarf_Die& child) {
         if (dwarf_tag(&child) == DW_TAG_subrange_type) {
             auto const count = number(child, DW_AT_count);
             auto const last = number(child, DW_AT_upper_bound);
@@ -186,7 +160,7 @@ VariableTypePointer read_type(Dwarf_Die& type, int depth) {
             break;
         case DW_TAG_enumeration_type:
             read.kind = Kind::enumeration;
-            for_each_child(type, [&](Dwarf_Die& child) {
+            for_each_child(&type, [&](Dwarf_Die& child) {
                 Dwarf_Attribute attribute;
                 Dwarf_Sword value = 0;
                 if (dwarf_tag(&child) == DW_TAG_enumerator &&
@@ -240,15 +214,12 @@ public:
     explicit Reader(ProgramImage const& image) : image_(image), pieces_(image.memory_of_robots()) {}
 
     ProgramVariables read() {
-        File const file(image_.file.string());
-        Dwarf_CU* unit = nullptr;
-        Dwarf_Die entry;
-        while (file.debug_info() != nullptr &&
-               dwarf_get_units(file.debug_info(), unit, &unit, nullptr, nullptr, &entry, nullptr) == 0) {
+        shared_state::DebugFile const file(image_.file.string());
+        shared_state::for_each_unit(file.debug_info(), [&](Dwarf_Die& entry) {
             unit_ = name_of(entry);
             unit_ = unit_.substr(unit_.find_last_of('/') + 1);
             look_into(entry, "");
-        }
+        });
         tell_apart();
         if (read_.user_data == nullptr && (read_.own.empty() || image_.user_data_bytes > 0)) {
             read_.why_unknown = "compile the program with -g to see its variables";
@@ -264,7 +235,7 @@ private:
     };
 
     void look_into(Dwarf_Die& entry, std::string const& function) {
-        for_each_child(entry, [&](Dwarf_Die& child) {
+        for_each_child(&entry, [&](Dwarf_Die& child) {
             switch (dwarf_tag(&child)) {
                 case DW_TAG_variable:
                     add(child, function);

@@ -6,8 +6,8 @@
 #ifdef POGOSIM_HAS_LIBDW
 #include <dwarf.h>
 #include <elfutils/libdw.h>
-#include <fcntl.h>
-#include <unistd.h>
+
+#include "debug_info/entries.hpp"
 #endif
 
 #include <cstdint>
@@ -47,36 +47,16 @@ std::string written_name(std::string const& symbol) {
 
 #ifdef POGOSIM_HAS_LIBDW
 
-class DebugInfo {
-public:
-    explicit DebugInfo(std::string const& file)
-        : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC)),
-          dwarf_(descriptor_ >= 0 ? dwarf_begin(descriptor_, DWARF_C_READ) : nullptr) {}
-    ~DebugInfo() {
-        dwarf_end(dwarf_);
-        if (descriptor_ >= 0) {
-            close(descriptor_);
+/// The unit of compilation with this address. Not all compilers make a table of them.
+std::optional<Dwarf_Die> unit_at(Dwarf* debug_info, Dwarf_Addr address) {
+    std::optional<Dwarf_Die> found;
+    shared_state::for_each_unit(debug_info, [&](Dwarf_Die& unit) {
+        if (!found && dwarf_haspc(&unit, address) > 0) {
+            found = unit;
         }
-    }
-    DebugInfo(DebugInfo const&) = delete;
-    DebugInfo& operator=(DebugInfo const&) = delete;
-
-    /// The unit of compilation with this address. Not all compilers make a table of them.
-    std::optional<Dwarf_Die> unit_at(Dwarf_Addr address) const {
-        Dwarf_CU* unit = nullptr;
-        Dwarf_Die entry;
-        while (dwarf_ != nullptr && dwarf_get_units(dwarf_, unit, &unit, nullptr, nullptr, &entry, nullptr) == 0) {
-            if (dwarf_haspc(&entry, address) > 0) {
-                return entry;
-            }
-        }
-        return std::nullopt;
-    }
-
-private:
-    int descriptor_;
-    Dwarf* dwarf_;
-};
+    });
+    return found;
+}
 
 /// As it was given to the compiler.
 std::string_view without_folder(char const* file, Dwarf_Die* unit) {
@@ -150,8 +130,8 @@ SourceLine own_line_at(Dwarf_Die* unit, Dwarf_Addr address) {
 }
 
 std::string place_by_debug_information(std::string const& file, std::uintptr_t address) {
-    DebugInfo const info(file);
-    std::optional<Dwarf_Die> unit = info.unit_at(address);
+    shared_state::DebugFile const info(file);
+    std::optional<Dwarf_Die> unit = unit_at(info.debug_info(), address);
     SourceLine const line = unit ? own_line_at(&*unit, address) : SourceLine{};
     if (line.number == 0 || is_start_of_process(line.function)) {
         return "";

@@ -379,6 +379,79 @@ def test_each_compiler_tells_the_type_of_user_data(name: str, scene: Path, tmp_p
         assert simulation.user_data.dtype["gain"] == np.float32
 
 
+CLASSES = """#include "pogobase.h"
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+struct Origin { float depth; };
+struct Base : Origin { int32_t id; };
+struct Tag { uint8_t id; };
+struct Root { int32_t root; };
+struct Part : virtual Root { virtual ~Part() = default; int32_t own = 12; };
+struct USERDATA : Base, Tag {
+    uint32_t count;
+    std::array<std::array<int16_t, 2>, 3> numbers;
+    std::vector<int> list;
+    std::string name;
+    std::map<int, int> seen;
+    unsigned low : 3, high : 5;
+    union { uint32_t word; uint8_t bytes[4]; };
+    struct { int16_t x, y; };
+    Part part;
+    static inline int total = 3;
+    bool known;
+};
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static void user_init() {
+    mydata->depth = 0.5f;
+    mydata->Base::id = -3;
+    mydata->Tag::id = 200;
+    mydata->numbers = {{{1, 2}, {3, 4}, {5, -6}}};
+    mydata->word = 0x01020304;
+    mydata->y = -4;
+    mydata->low = 5;
+    mydata->known = true;
+}
+static void user_step() { mydata->count = uint32_t(mydata->Base::id) + mydata->low; }
+int main() { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+"""
+
+
+@pytest.mark.parametrize("version", [4, 5])
+@pytest.mark.parametrize(
+    "name", [name for names in (("g++",), ("clang++", "clang++-14")) if (name := compiler(*names)) is not None]
+)
+def test_user_data_of_classes_have_the_members_of_their_base_classes(
+    name: str, version: int, scene: Path, tmp_path: Path
+) -> None:
+    source = tmp_path / "classes.cpp"
+    source.write_text(CLASSES)
+    flags = ["-std=gnu++20", *SHARED, f"-gdwarf-{version}"]
+    with pogosim.Simulation(
+        compile_program(tmp_path / "it.so", source, compiler=name, flags=flags), scene
+    ) as simulation:
+        data = simulation.user_data
+        # Without bit-fields, static members and the address of virtual functions.
+        assert data.dtype.names == (
+            *("depth", "id", "Tag::id", "count", "numbers", "list", "name", "seen"),
+            *("word", "bytes", "x", "y", "part", "known"),
+        )
+        assert data["depth"].tolist() == [0.5] * 3
+        assert data["id"].tolist() == [-3] * 3
+        assert data["Tag::id"].tolist() == [200] * 3
+        assert data["numbers"][0].tolist() == [[1, 2], [3, 4], [5, -6]]
+        assert [data.dtype[member].kind for member in ("list", "name", "seen")] == ["V"] * 3
+        assert data["bytes"][0].tolist() == [4, 3, 2, 1]
+        assert data["y"].tolist() == [-4] * 3
+        assert data["part"]["own"].tolist() == [12] * 3
+        assert data["known"].all()
+        data["id"][1] = 100
+        simulation.step(10)
+        assert data["count"].tolist() == [2, 105, 2]
+
+
 def test_program_without_debug_information_has_no_user_data_type(scene: Path, tmp_path: Path) -> None:
     plain = compile_program(tmp_path / "plain.so", PROGRAMS / "hosted.c", flags=("-shared", "-fPIC"))
     with (

@@ -13,7 +13,7 @@
 namespace pogosim {
 namespace {
 
-/// tests/programs/variables.c in memory.
+/// tests/programs/variables.c or class_variables.cpp in memory.
 class Program {
 public:
     explicit Program(char const* file) : library_(dlopen(file, RTLD_NOW | RTLD_LOCAL)) {
@@ -92,6 +92,18 @@ TEST_P(Variables, UserDataOfAnotherSizeAreOfAnotherProgram) {
     Program program(GetParam());
     program.image.user_data_bytes += 1;
     EXPECT_EQ(variables_of(program.image).user_data, nullptr);
+}
+
+TEST(Variables, MembersOfBaseClassesCountAndLibraryClassesAreOpaque) {
+    Program const program(POGOSIM_TEST_CLASS_VARIABLES);
+    ProgramVariables const variables = variables_of(program.image);
+    ASSERT_NE(variables.user_data, nullptr) << variables.why_unknown;
+    NamedTexts texts;
+    add_texts("", *variables.user_data, program.example(), texts);
+    // Where a virtual base class is, is only known at run time.
+    NamedTexts const expected{{"depth", "0.5"},       {"id", "3"},        {"count", "9"}, {"numbers", "4, 5"},
+                              {"list", "(24 bytes)"}, {"part.own", "12"}, {"low", "5"}};
+    EXPECT_EQ(texts, expected);
 }
 
 TEST(Variables, ProgramWithoutDebugInformationSaysHowToGetSome) {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from elftools.common.exceptions import ELFError
@@ -44,18 +44,62 @@ def array_type(entry: DIE) -> np.dtype[Any]:
     return np.dtype((numpy_type(type_behind(entry)), tuple(shape)))
 
 
+class Member(NamedTuple):
+    """A member of a structure."""
+
+    name: str
+    type: np.dtype[Any]
+    offset: int
+
+
+def is_part(entry: DIE) -> bool:
+    """Return whether an entry is a member in the memory of an object, or a base class."""
+    is_data = entry.tag in ("DW_TAG_member", "DW_TAG_inheritance")
+    return is_data and not any(attribute(entry, name) for name in ("external", "declaration", "artificial", "bit_size"))
+
+
+def members_of(entry: DIE) -> list[Member]:
+    """Return the members of a struct, class or union, except bit-fields.
+
+    Those of base classes and of structures without a name count as its own. One of a base class with the name of
+    another member begins with the name of its class, "Base::id".
+    """
+    parts = [child for child in entry.iter_children() if is_part(child)]
+    names = {attribute(part, "name") for part in parts}
+    members: list[Member] = []
+    for part in parts:
+        offset = attribute(part, "data_member_location")
+        if offset is None and entry.tag == "DW_TAG_union_type":
+            offset = 0
+        if not isinstance(offset, int):
+            continue  # a virtual base class: its place is known at run time
+        kind = type_behind(part)
+        if name := attribute(part, "name"):
+            members.append(Member(name.decode(), numpy_type(kind), offset))
+            continue
+        for inner in members_of(kind):
+            is_hidden = inner.name.encode() in names
+            full_name = f"{(attribute(kind, 'name') or b'').decode()}::{inner.name}" if is_hidden else inner.name
+            names.add(inner.name.encode())
+            members.append(Member(full_name, inner.type, offset + inner.offset))
+    return members
+
+
 def structure_type(entry: DIE) -> np.dtype[Any]:
-    """Return the type of a struct. Bit fields, and members of types unknown to NumPy, are left out."""
-    names, formats, offsets = [], [], []
-    for child in entry.iter_children():
-        offset = attribute(child, "data_member_location")
-        is_member = child.tag == "DW_TAG_member" and attribute(child, "bit_size") is None
-        if is_member and isinstance(offset, int) and (name := attribute(child, "name")):
-            names.append(name.decode())
-            formats.append(numpy_type(type_behind(child)))
-            offsets.append(offset)
+    """Return the type of a struct or class: of std::array that of its only member, of other library classes bytes."""
+    members = members_of(entry)
     size = attribute(entry, "byte_size")
-    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
+    if any(member.name.startswith(("_M_", "__")) for member in members):
+        is_array = len(members) == 1 and members[0].type.subdtype is not None
+        return members[0].type if is_array else np.dtype(f"V{size}")
+    return np.dtype(
+        {
+            "names": [member.name for member in members],
+            "formats": [member.type for member in members],
+            "offsets": [member.offset for member in members],
+            "itemsize": size,
+        }
+    )
 
 
 def numpy_type(entry: DIE) -> np.dtype[Any]:
