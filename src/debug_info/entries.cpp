@@ -53,10 +53,11 @@ std::vector<Dwarf_Die> ScopeFinder::scopes_around(Dwarf_Die entry) {
 
 std::vector<Dwarf_Die> const& ScopeFinder::children_of(Dwarf_Die* scope) {
     auto const [place, is_new] = children_.try_emplace(dwarf_dieoffset(scope));
+    std::vector<Dwarf_Die>& children = place->second;
     if (is_new) {
-        for_each_child(scope, [&](Dwarf_Die const& child) { place->second.push_back(child); });
+        for_each_child(scope, [&](Dwarf_Die const& child) { children.push_back(child); });
     }
-    return place->second;
+    return children;
 }
 
 }  // namespace shared_state

@@ -55,8 +55,9 @@ std::size_t closing(std::string const& text, std::size_t open) {
 std::string const message =
     R"(((?:\(\s*\*\s*)?[A-Za-z_]\w*(?:\s*(?:\[[^\[\]]*\]|(?:\.|->)\s*[A-Za-z_]\w*))*?\)?)\s*(?:->|\.)\s*payload\b)";
 // "(beacon_t const*)" or "reinterpret_cast<beacon_t const*>(", and the type in it.
+std::string const words = R"((?:(?:const|volatile|struct|union|class)\b\s*)*)";
 std::string const cast =
-    R"([(<]\s*(?:(?:const|volatile|struct|union|class)\b\s*)*([A-Za-z_][\w:]*)\s*(?:const\s*)?[*&][\s*&]*(?:const\s*)?(?:\)|>\s*\())";
+    R"([(<]\s*)" + words + R"(([A-Za-z_][\w:]*)\s*)" + words + R"([*&][\s*&]*)" + words + R"((?:\)|>\s*\())";
 std::string const brackets_and_casts = R"((?:[\s(&*]|\([^()]*\*\s*\)|\w+_cast\s*<[^<>]*>)*)";
 
 void find_copies(std::string const& statement, std::vector<PayloadUse>& found) {
