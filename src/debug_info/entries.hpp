@@ -39,9 +39,9 @@ public:
     /// The scopes around an entry, from the unit inwards.
     std::vector<Dwarf_Die> scopes_around(Dwarf_Die entry);
 
-private:
     std::vector<Dwarf_Die> const& children_of(Dwarf_Die* scope);
 
+private:
     std::map<Dwarf_Off, std::vector<Dwarf_Die>> children_;  // by the offset of the scope
 };
 

@@ -2,7 +2,6 @@
 
 #include <dwarf.h>
 
-#include <functional>
 #include <regex>
 
 #include "debug_info/debug_info.hpp"
@@ -12,73 +11,24 @@ namespace shared_state {
 
 namespace {
 
-std::optional<Dwarf_Die> declared_in(Dwarf_Die* scope, std::string const& name) {
-    std::optional<Dwarf_Die> found;
-    for_each_child(scope, [&](Dwarf_Die child) {
-        int const tag = dwarf_tag(&child);
-        bool const is_wanted = tag == DW_TAG_variable || tag == DW_TAG_formal_parameter || tag == DW_TAG_member ||
-                               tag == DW_TAG_typedef || is_structure(&child);
-        if (is_wanted && name_of(&child) == name && (!found || dwarf_tag(&*found) != DW_TAG_variable)) {
-            found = child;
-        }
-    });
-    return found;
+bool is_variable_or_parameter(Dwarf_Die* entry) {
+    return dwarf_tag(entry) == DW_TAG_variable || dwarf_tag(entry) == DW_TAG_formal_parameter;
 }
 
-// The last variable of this name above a place in its file: clang puts a note into its function, not into the block,
-// and optimised code may not tell the function either.
-std::optional<Dwarf_Die> declared_above(Place place, std::string const& name) {
-    Dwarf_Die unit;
-    if (!dwarf_diecu(&place.entry, &unit, nullptr, nullptr)) {
-        return std::nullopt;
-    }
+// What a name can stand for. Of entries with the same name, variables are meant.
+bool is_declaration(Dwarf_Die* entry) {
+    int const tag = dwarf_tag(entry);
+    return is_variable_or_parameter(entry) || tag == DW_TAG_member || tag == DW_TAG_typedef || is_structure(entry);
+}
+
+std::optional<Dwarf_Die> declared_among(std::vector<Dwarf_Die> const& entries, std::string const& name) {
     std::optional<Dwarf_Die> found;
-    int found_line = 0;
-    std::function<void(Dwarf_Die)> const look_at = [&](Dwarf_Die entry) {
-        int const tag = dwarf_tag(&entry);
-        int line = 0;
-        if ((tag == DW_TAG_variable || tag == DW_TAG_formal_parameter) && name_of(&entry) == name &&
-            dwarf_decl_line(&entry, &line) == 0 && line <= place.line && line > found_line &&
-            file_of(&entry) == place.file) {
+    for (Dwarf_Die entry : entries) {
+        bool const is_meant = is_declaration(&entry) && name_of(&entry) == name;
+        if (is_meant && (!found || dwarf_tag(&*found) != DW_TAG_variable)) {
             found = entry;
-            found_line = line;
         }
-        for_each_child(&entry, look_at);
-    };
-    look_at(unit);
-    return found;
-}
-
-// clang does not tell what is declared in one file and defined in another.
-std::optional<Dwarf_Die> declared_anywhere(ProgramFile const& program, std::string const& name) {
-    std::optional<Dwarf_Die> found;
-    std::function<void(Dwarf_Die)> const look_in = [&](Dwarf_Die scope) {
-        if (found) {
-            return;
-        }
-        found = declared_in(&scope, name);
-        for_each_child(&scope, [&](Dwarf_Die child) {
-            if (dwarf_tag(&child) == DW_TAG_namespace) {
-                look_in(child);
-            }
-        });
-    };
-    for_each_unit(program.debug_info(), look_in);
-    return found;
-}
-
-std::optional<Dwarf_Die> member_of(std::optional<Dwarf_Die> type, std::string const& name) {
-    auto basic = basic_type(type, /*through_pointers=*/true);
-    if (!basic || !is_structure(&basic->type)) {
-        return std::nullopt;
     }
-    auto found = declared_in(&basic->type, name);
-    for_each_child(&basic->type, [&](Dwarf_Die child) {
-        bool const is_unnamed = dwarf_tag(&child) == DW_TAG_member && name_of(&child).empty();
-        if (!found && (is_unnamed || dwarf_tag(&child) == DW_TAG_inheritance)) {
-            found = member_of(type_of(&child), name);
-        }
-    });
     return found;
 }
 
@@ -86,6 +36,10 @@ std::optional<Dwarf_Die> member_of(std::optional<Dwarf_Die> type, std::string co
 
 bool is_variable(Dwarf_Die* declaration) {
     return dwarf_tag(declaration) != DW_TAG_typedef && !is_structure(declaration);
+}
+
+Declarations::Declarations(ProgramFile const& program) {
+    for_each_unit(program.debug_info(), [&](Dwarf_Die& unit) { read(&unit, /*is_inside=*/false); });
 }
 
 Place place_of(Dwarf_Die variable) {
@@ -98,7 +52,7 @@ std::optional<Dwarf_Die> Declarations::around(Dwarf_Die entry, std::string const
     auto scopes = scope_finder_.scopes_around(entry);
     scopes.push_back(entry);
     for (std::size_t i = scopes.size(); i-- > 0;) {
-        if (auto found = declared_in(&scopes[i], name)) {
+        if (auto found = declared_among(scope_finder_.children_of(&scopes[i]), name)) {
             return found;
         }
         Dwarf_Attribute attribute;
@@ -114,13 +68,66 @@ std::optional<Dwarf_Die> Declarations::around(Dwarf_Die entry, std::string const
     return std::nullopt;
 }
 
+void Declarations::read(Dwarf_Die* scope, bool is_inside) {
+    for_each_child(scope, [&](Dwarf_Die& child) {
+        int const tag = dwarf_tag(&child);
+        if (is_variable_or_parameter(&child)) {
+            variables_[name_of(&child)].push_back(child);
+        }
+        if (!is_inside && is_declaration(&child)) {
+            auto const [place, is_new] = outside_functions_.try_emplace(name_of(&child), child);
+            if (!is_new && tag == DW_TAG_variable && dwarf_tag(&place->second) != DW_TAG_variable) {
+                place->second = child;
+            }
+        }
+        read(&child, is_inside || tag != DW_TAG_namespace);
+    });
+}
+
+// The last variable of this name above a place in its file: clang puts a note into its function, not into the block, and
+// optimised code may not tell the function either.
+std::optional<Dwarf_Die> Declarations::above(Place const& place, std::string const& name) {
+    std::optional<Dwarf_Die> found;
+    int found_line = 0;
+    for (Dwarf_Die& variable : variables_[name]) {
+        int line = 0;
+        if (dwarf_decl_line(&variable, &line) == 0 && line <= place.line && line > found_line &&
+            file_of(&variable) == place.file) {
+            found = variable;
+            found_line = line;
+        }
+    }
+    return found;
+}
+
+// clang does not tell what is declared in one file and defined in another.
+std::optional<Dwarf_Die> Declarations::anywhere(std::string const& name) {
+    auto const found = outside_functions_.find(name);
+    return found != outside_functions_.end() ? std::optional(found->second) : std::nullopt;
+}
+
 std::optional<Dwarf_Die> Declarations::first(std::string const& name, Place const& place) {
     if (name == "mydata") {
-        return declared_anywhere(program_, "pogo_user_data_type");
+        return anywhere("pogo_user_data_type");
     }
     auto found = around(place.entry, name);
-    found = found ? found : declared_above(place, name);
-    return found ? found : declared_anywhere(program_, name);
+    found = found ? found : above(place, name);
+    return found ? found : anywhere(name);
+}
+
+std::optional<Dwarf_Die> Declarations::member_of(std::optional<Dwarf_Die> type, std::string const& name) {
+    auto basic = basic_type(type, /*through_pointers=*/true);
+    if (!basic || !is_structure(&basic->type)) {
+        return std::nullopt;
+    }
+    auto found = declared_among(scope_finder_.children_of(&basic->type), name);
+    for_each_child(&basic->type, [&](Dwarf_Die child) {
+        bool const is_unnamed = dwarf_tag(&child) == DW_TAG_member && name_of(&child).empty();
+        if (!found && (is_unnamed || dwarf_tag(&child) == DW_TAG_inheritance)) {
+            found = member_of(type_of(&child), name);
+        }
+    });
+    return found;
 }
 
 std::optional<Declaration> Declarations::meant_by(std::string const& expression, Place const& place) {
