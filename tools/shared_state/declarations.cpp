@@ -15,12 +15,13 @@ bool is_variable_or_parameter(Dwarf_Die* entry) {
     return dwarf_tag(entry) == DW_TAG_variable || dwarf_tag(entry) == DW_TAG_formal_parameter;
 }
 
-// What a name can stand for. Of entries with the same name, variables are meant.
+// What a name can stand for.
 bool is_declaration(Dwarf_Die* entry) {
     int const tag = dwarf_tag(entry);
     return is_variable_or_parameter(entry) || tag == DW_TAG_member || tag == DW_TAG_typedef || is_structure(entry);
 }
 
+// A variable hides a type of the same name.
 std::optional<Dwarf_Die> declared_among(std::vector<Dwarf_Die> const& entries, std::string const& name) {
     std::optional<Dwarf_Die> found;
     for (Dwarf_Die entry : entries) {
@@ -84,8 +85,8 @@ void Declarations::read(Dwarf_Die* scope, bool is_inside) {
     });
 }
 
-// The last variable of this name above a place in its file: clang puts a note into its function, not into the block, and
-// optimised code may not tell the function either.
+// The last variable of this name above a place in its file: clang puts a note into its function, not into the block,
+// and optimised code may not tell the function either.
 std::optional<Dwarf_Die> Declarations::above(Place const& place, std::string const& name) {
     std::optional<Dwarf_Die> found;
     int found_line = 0;
