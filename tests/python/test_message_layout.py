@@ -265,6 +265,8 @@ PAYLOADS = {
     "cast in an argument": "use(take((pair_t *) &m->payload[0]));",
     "cast to an address of a constant": "const pair_t k = *(const pair_t*)m->payload; use(k.i);",
     "through void": "pair_t* k = (void*)m->payload; use(k->i);",
+    "through a pointer to bytes": "uint8_t const* p = m->payload; pair_t const* k = (pair_t const*)p; use(k->i);",
+    "from such a pointer": "uint8_t* p = (void*)m->payload; p = p + 1; pair_t k; memcpy(&k, p, sizeof k); use(k.i);",
     "written": "message_t raw; pair_t k = {1, 2}; memcpy(raw.payload, &k, sizeof k); raw.header.payload_length = 16;"
     "pogobot_infrared_sendRawLongMessage(&raw);",
     "of a short message": "short_message_t raw; pair_t k = {1, 2}; memcpy(raw.payload, &k, sizeof k);"
@@ -273,6 +275,8 @@ PAYLOADS = {
     "in a second line": "pair_t k;\n    memcpy(&k,  // where; it (goes)\n        m->payload, sizeof(k)); use(k.i);",
 }
 NO_PAYLOADS = [
+    "uint8_t id = m->payload[0]; pair_t k; memcpy(&k, &id, 1); use(k.i);",
+    "uint8_t const id = *m->payload; pair_t k; memcpy(&k, &id, 1); use(k.i);",
     "// (pair_t*)m->payload\n use(m->payload[0]);",
     'pair_t k = {1, 2}; k.i = m->payload[0]; use(k.i); use((uint32_t)sizeof "(pair_t*)m->payload");',
     "uint32_t k; memcpy(&k, m->payload, sizeof k); pair_t other = {k, 2}; use(other.i);",

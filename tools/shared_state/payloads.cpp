@@ -88,6 +88,18 @@ void find_pointers(std::string const& statement, std::vector<PayloadUse>& found)
     }
 }
 
+// After "bytes = message->payload;", "bytes" is a payload to the end of the function.
+void replace_name_of_payload(std::string const& statement, std::string& text, std::size_t end) {
+    static std::regex const naming(R"(\b(?!payload\b)([A-Za-z_]\w*)\s*=\s*(?:\([^()]*\*[^()]*\)\s*)?()" + message +
+                                   R"()\s*(?:\+.*)?$)");
+    std::smatch match;
+    if (std::regex_search(statement, match, naming)) {
+        std::size_t const length = std::min(text.find("\n}", end), text.size()) - end;
+        std::regex const name("\\b" + match.str(1) + "\\b");
+        text.replace(end, length, std::regex_replace(text.substr(end, length), name, match.str(2)));
+    }
+}
+
 }  // namespace
 
 std::vector<PayloadUse> payload_uses(std::string text) {
@@ -108,6 +120,7 @@ std::vector<PayloadUse> payload_uses(std::string text) {
                 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
             all.push_back(use);
         }
+        replace_name_of_payload(statement, text, end);
         at = end;
     }
     return all;
