@@ -156,6 +156,19 @@ def test_times_that_are_missing_count_as_such() -> None:
     np.testing.assert_allclose(msd[1:20], every_msd[1:20], rtol=0.05)
 
 
+@pytest.mark.parametrize("count", [5, 8, 40, 101])
+def test_lag_without_a_pair_has_no_mean(count: int) -> None:
+    # Robot 0 is there in the first third, robot 1 in the last tenth.
+    time = np.arange(float(count))
+    seen = np.stack([time < count / 3, time > 0.9 * (count - 1)], axis=1)
+    has_pair = np.array([(seen[lag:] & seen[: count - lag]).any() for lag in range(count)])
+    assert not has_pair.all()
+    run = run_of(rows_of(brownian_walk(count, 2, 50.0) + 1e4)[seen.ravel()])
+    for mean in (mean_squared_displacement(run)[1], heading_autocorrelation(run)[1]):
+        assert np.isnan(mean[~has_pair]).all(), mean
+        assert np.isfinite(mean[has_pair]).all(), mean
+
+
 def test_heading_of_active_brownian_particles_persists_for_one_over_the_diffusion_constant() -> None:
     run = run_of(rows_of(*persistent_walk(2000, 100, diffusion_rad2_s=0.5), period_s=0.1))
     lags, heading = heading_autocorrelation(run)

@@ -81,12 +81,10 @@ def mean_squared_displacement(run: Trajectories) -> tuple[Floats, Floats]:
     weight = there[:, robots].astype(float)
     path -= weight[:, :, None] * (path.sum(axis=0) / weight.sum(axis=0)[:, None])
     square = (path**2).sum(axis=2)
-    pairs = correlation(weight, weight).round()
     total = correlation(weight, square) + correlation(square, weight)
     total -= 2.0 * (correlation(path[:, :, 0], path[:, :, 0]) + correlation(path[:, :, 1], path[:, :, 1]))
     lags: Floats = period_s * np.arange(len(path), dtype=float)
-    with np.errstate(invalid="ignore"):
-        mean: Floats = np.maximum(total, 0.0) / pairs
+    mean = mean_over_pairs(np.maximum(total, 0.0), weight)
     mean[:1] = 0.0  # without rounding errors
     return lags, mean
 
@@ -103,6 +101,20 @@ def correlation(a: Floats, b: Floats) -> Floats:
         other = one if b is a else fft.rfft(b[:, columns], size, axis=0)
         spectrum += (one.conj() * other).sum(axis=1)
     return np.asarray(fft.irfft(spectrum, size)[:length])
+
+
+def mean_over_pairs(total: Floats, known: Floats) -> Floats:
+    """Divide sums over pairs of times with the same lag, as of `correlation`, by the numbers of these pairs.
+
+    Args:
+        total: Sums, shape (T,).
+        known: 1 for values that are known, else 0, shape (T, N).
+
+    Returns:
+        Shape (T,); NaN for lags without a pair, where transforms leave numbers such as 1e-12, not 0.
+    """
+    pairs = correlation(known, known).round()
+    return np.where(pairs > 0.0, total / np.maximum(pairs, 1.0), np.nan)
 
 
 def at_regular_times(run: Trajectories) -> tuple[Trajectories, float]:

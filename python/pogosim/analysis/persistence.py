@@ -8,7 +8,7 @@ import numpy as np
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.averages import mean_and_variance
-from pogosim.analysis.displacement import at_regular_times, correlation
+from pogosim.analysis.displacement import at_regular_times, correlation, mean_over_pairs
 from pogosim.analysis.motion import speed, velocity
 from pogosim.analysis.trajectories import Trajectories
 
@@ -26,10 +26,8 @@ def vector_autocorrelation(vectors: Floats) -> Floats:
     """
     known = np.asarray(np.isfinite(vectors).all(axis=2))
     filled = np.where(known[:, :, None], vectors, 0.0)
-    pairs = correlation(known.astype(float), known.astype(float)).round()
     total = correlation(filled[:, :, 0], filled[:, :, 0]) + correlation(filled[:, :, 1], filled[:, :, 1])
-    with np.errstate(invalid="ignore"):
-        return np.where(pairs > 0, total / np.maximum(pairs, 1.0), np.nan)
+    return mean_over_pairs(total, known.astype(float))
 
 
 def heading_autocorrelation(run: Trajectories) -> tuple[Floats, Floats]:
