@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -58,6 +59,58 @@ void refuse_others(Node const& map, std::string const& path, Words words, std::s
 /// Messages are those of pogobatch (batch/options.py).
 [[noreturn]] void refuse(Node const& value, std::string const& path, std::string_view key, std::string const& message) {
     fail_at({value, path}, fmt::format("{}: {}", key, message));
+}
+
+/// A text so that several in a row are told apart.
+std::string with_length(std::string const& text) {
+    return fmt::format("{} {}", text.size(), text);
+}
+
+/// What a value is to the simulator; two values that share one of these are the same: 3, 3.0 and '3'.
+std::vector<std::string> identities(Node const& value) {
+    std::string all;
+    switch (value.kind) {
+        case Node::Kind::null:
+            return {"null"};
+        case Node::Kind::sequence:
+            for (Node const& item : value.items) {
+                all += with_length(identities(item).front());
+            }
+            return {"list " + all};
+        case Node::Kind::map:
+            for (auto const& [key, inner] : value.entries) {
+                all += with_length(key) + with_length(identities(inner).front());
+            }
+            return {"map " + all};
+        case Node::Kind::scalar:
+            break;
+    }
+    std::string const text = "text " + value.scalar;
+    std::string const word = lower_case(value.scalar);
+    if (value.quoted) {
+        return {text};
+    }
+    if (std::optional<double> const number = number_of(value)) {
+        return {fmt::format("number {}", *number + 0.0), text};  // -0 is 0
+    }
+    return {word == "true" || word == "false" ? word : text};
+}
+
+/// `path`: of the list.
+void refuse_twice(Node const& list, std::string const& path) {
+    std::map<std::string, Node const*> first;
+    for (Node const& item : list.items) {
+        for (std::string const& identity : identities(item)) {
+            auto const [before, is_new] = first.emplace(identity, &item);
+            if (!is_new && before->second != &item) {
+                std::string const was = found_text(*before->second);
+                std::string const is = found_text(item);
+                fail_at({item, path},
+                        fmt::format("expected different values, found {}; their runs would be the same: remove one",
+                                    was == is ? is + " twice" : fmt::format("{} and {}, which are the same", was, is)));
+            }
+        }
+    }
 }
 
 void check_list(Node const& options, std::string const& path) {
@@ -115,6 +168,11 @@ void check_range(Node const& range, std::string const& path) {
                fmt::format("there is no value from {} to {} in steps of {}; give another stop, a step of the other "
                            "sign, or inclusive: true",
                            range.find("start")->scalar, range.find("stop")->scalar, range.find("step")->scalar));
+    }
+    if (steps > 1.0 && (start + step == start || stop - step == stop)) {
+        refuse(range, path, kBatchRange,
+               fmt::format("a step of {} is too small to tell values apart; give a larger one",
+                           range.find("step")->scalar));
     }
     if (steps > kMostOptions) {
         refuse(range, path, kBatchRange,
@@ -183,6 +241,7 @@ private:
         }
         if (list != nullptr) {
             check_list(*list, path);
+            refuse_twice(*list, child(path, kBatchOptions));
         }
         if (range != nullptr) {
             check_range(*range, path);
@@ -192,6 +251,7 @@ private:
     void look_at_domain(Node const& domain, std::string const& path, Names names) const {
         refuse_others(domain, path, kDomainKeys, {});
         if (Node const* const choices = domain.find("choices")) {
+            refuse_twice(*choices, child(path, "choices"));
             look_at_each(*choices, child(path, "choices"), names);
         }
         if (Node const* const init = domain.find("init")) {

@@ -72,6 +72,29 @@ TEST(ValuesOfOptions, MustBeAListOfAtLeastOne) {
               "x.yaml:1: a: expected either batch_options or batch_options_range, found both; remove one");
 }
 
+TEST(ValuesOfOptions, AreAllDifferent) {
+    auto const twice = [](std::string const& found) {
+        return "x.yaml:1: a.batch_options: expected different values, found " + found +
+               "; their runs would be the same: remove one";
+    };
+    EXPECT_EQ(checked("a: {batch_options: [3, 4, 3]}\n"), twice("3 twice"));
+    EXPECT_EQ(checked("a: {batch_options: [3, 3.0]}\n"), twice("3 and 3.0, which are the same"));
+    EXPECT_EQ(checked("a: {batch_options: [0x10, 16]}\n"), twice("0x10 and 16, which are the same"));
+    EXPECT_EQ(checked("a: {batch_options: [true, TRUE]}\n"), twice("'true' and 'TRUE', which are the same"));
+    EXPECT_EQ(checked("a: {batch_options: [~, null]}\n"), twice("nothing twice"));
+    EXPECT_EQ(checked("a: {batch_options: [[1, [2]], [1.0, [2]]]}\n"), twice("a list twice"));
+    EXPECT_EQ(checked("a:\n  batch_options:\n    - disk\n    - disk\n"),
+              "x.yaml:4: a.batch_options: expected different values, found 'disk' twice; their runs would be the same: "
+              "remove one");
+    EXPECT_EQ(checked("a: {optimization_domain: {choices: [1, 1]}}\n"),
+              "x.yaml:1: a.optimization_domain.choices: expected different values, found 1 twice; their runs would be "
+              "the same: remove one");
+    EXPECT_EQ(checked("a: {batch_options: [1, true, '1.0', yes, [1], [[1]], {b: 1}, {c: 1}, ['1', '2'], ['1 2']]}\n"),
+              "no error");
+    EXPECT_EQ(checked("a: {batch_options_range: {start: 1, stop: 1.0000000000000004, step: 1e-17}}\n"),
+              "x.yaml:1: a: batch_options_range: a step of 1e-17 is too small to tell values apart; give a larger one");
+}
+
 TEST(ValuesOfOptions, OfARangeMustBeThere) {
     auto const range = [](std::string const& words) {
         std::string const message = checked("a: {batch_options_range: " + words + "}\n");

@@ -168,6 +168,71 @@ def test_slip_in_a_map_of_python_is_refused(key: str, changes: dict[str, Any], w
     assert error.value.key in (key, "")
 
 
+# Options with a value that is there twice, the path of their list, and what was found.
+SAME: list[tuple[str, dict[str, Any], str, str]] = [
+    ("- 3", {"objects.robots.nb": {"batch_options": [3, 4, 3], "default_option": 3}}, "batch_options", "3 twice"),
+    ("- 3.0", {"objects.robots.nb": {"batch_options": [3, 3.0]}}, "batch_options", "3 and 3.0, which are the same"),
+    ("- '3'", {"objects.robots.nb": {"batch_options": [3, "3"]}}, "batch_options", "3 "),
+    ("- -0.0", {"objects.robots.nb": {"batch_options": [0, -0.0]}}, "batch_options", "0 and -0.0, which are the same"),
+    ("- true", {"objects.robots.nb": {"batch_options": [True, True]}}, "batch_options", ""),
+    ("- null", {"objects.robots.nb": {"batch_options": [None, 3, None]}}, "batch_options", "nothing twice"),
+    ("- .nan", {"objects.robots.nb": {"batch_options": [float("nan")] * 2}}, "batch_options", ""),
+    ("- walk", {"objects.robots.nb": {"batch_options": ["walk", "run", "walk"]}}, "batch_options", "'walk' twice"),
+    ("- - 1", {"objects.robots.nb": {"batch_options": [[1, 2], [1, 2.0]]}}, "batch_options", ""),
+    ("- a: 1", {"objects.robots.nb": {"batch_options": [{"a": 1}, {"a": 1}]}}, "batch_options", ""),
+    (
+        "- 2",
+        {"objects.robots.nb": {"batch_options": [1, {"batch_options": [2, 2], "default_option": 1}]}},
+        "batch_options.1.batch_options",
+        "2 twice",
+    ),
+    (
+        "- 5",
+        {"objects.robots.nb": {"optimization_domain": {"choices": [4, 5, 5]}}},
+        "optimization_domain.choices",
+        "5 twice",
+    ),
+]
+
+
+@pytest.mark.parametrize(("item", "changes", "where", "found"), SAME, ids=[same[0] for same in SAME])
+def test_value_that_is_offered_twice_is_refused_by_everything(
+    item: str, changes: dict[str, Any], where: str, found: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path, changes)
+    lines = path.read_text().splitlines()
+    line = max(number for number, text in enumerate(lines, 1) if text.strip().removeprefix("- ").startswith(item[2:]))
+    said = f":{line}: objects.robots.nb.{where}: expected different values, found {found}"
+    refused(run_command(example("helloworld"), tmp_path, ["-c", "many.yaml", "-g"]), f"many.yaml{said}")
+    refused(batch(tmp_path), f"many.yaml{said}")
+    assert not (tmp_path / "results").exists()
+    path.rename(tmp_path / "space.yaml")
+    (tmp_path / "obj.py").write_text(OBJECTIVE)
+    refused(search(tmp_path), f"space.yaml{said}")
+
+
+DIFFERENT: list[list[Any]] = [[3, 3.5], [True, 1], [True, "true story"], ["a", "A"], [[1, 2], [2, 1]], [None, "None"]]
+
+
+@pytest.mark.parametrize(
+    "values", [*DIFFERENT, ["1.0", "1.00"], [{"a": 1}, {"b": 1}], [[1], [[1]]], [["1", "2"], ["1 2"]]]
+)
+def test_values_that_only_look_alike_are_different_options(values: list[Any], tmp_path: Path) -> None:
+    assert len(combinations_of({"parameters": {"p": {"batch_options": values}}})) == len(values)
+    written(tmp_path, {"simulation_time": 0.1, "parameters": {"p": {"batch_options": values, "default_option": 1}}})
+    result = run_command(example("helloworld"), tmp_path, ["-c", "many.yaml", "-g"])
+    assert result.code == 0, result.errors
+
+
+def test_range_in_steps_that_its_numbers_cannot_show_is_refused(tmp_path: Path) -> None:
+    many = {"start": 1.0, "stop": 1.00000000000000022, "step": 1e-17, "type": "float"}
+    path = written(tmp_path, {"simulation_time": {"batch_options_range": many, "default_option": 1.0}})
+    said = "batch_options_range: a step of 1"
+    for result in (run_command(example("helloworld"), tmp_path, ["-c", path.name, "-g"]), batch(tmp_path)):
+        refused(result, said)
+        assert "too small to tell values apart" in result.errors
+
+
 @pytest.mark.parametrize("key", ["result_new_column", "result_file_name_format", "optimisation"])
 def test_keys_of_the_tools_are_looked_at_too(key: str, tmp_path: Path) -> None:
     path = written(tmp_path, {key: {"budget": 3} if key == "optimisation" else "x"})

@@ -6,7 +6,7 @@ A misspelt key would silently leave out a part of a study. The simulator has the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
 from pogosim.nearest_name import advice, edit_distance
@@ -100,6 +100,32 @@ def refuse_other_keys(node: Mapping[Any, Any], path: Path) -> None:
     )
 
 
+def identities(value: Any) -> list[Hashable]:
+    """Return what a value is to the simulator; two values that share one of these are the same: 3, 3.0 and '3'."""
+    if isinstance(value, dict):
+        return [tuple((str(key), identities(inner)[0]) for key, inner in value.items())]
+    if isinstance(value, list):
+        return [tuple(identities(inner)[0] for inner in value)]
+    if value is None or isinstance(value, bool):
+        return [("word", value)]
+    if isinstance(value, (int, float)):
+        return [("number", value if value == value else "nan"), ("text", str(value))]
+    return [("text", str(value))]
+
+
+def refuse_twice(values: list[tuple[Path, Any]]) -> None:
+    """Raise CombinationsError for the first of the values, each with its path, that is the same as one before it."""
+    first: dict[Hashable, Any] = {}
+    for path, value in values:
+        known = identities(value)
+        if same := [identity for identity in known if identity in first]:
+            before, this = shown(first[same[0]]), shown(value)
+            twice = f"{this} twice" if before == this else f"{before} and {this}, which are the same"
+            message = f"expected different values, found {twice}; their runs would be the same: remove one"
+            raise CombinationsError(path[:-1], message, path[-1])
+        first.update(dict.fromkeys(known, value))
+
+
 def check_options(entries: dict[str, Any]) -> None:
     """Look for slips in all keys of options.
 
@@ -149,11 +175,15 @@ def look_at_options(node: dict[str, Any], path: Path, names: str) -> None:
     refuse_other_keys(node, path)
     if isinstance(node.get(RANGE), dict):
         refuse_unknown(node[RANGE], RANGE_WORDS, (*path, RANGE))
-    values = [((*path, DEFAULT), node.get(DEFAULT)), *listed(node.get(LIST), (*path, LIST))]
+    options, choices = listed(node.get(LIST), (*path, LIST)), []
+    values = [((*path, DEFAULT), node.get(DEFAULT))]
     if isinstance(domain := node.get(DOMAIN), dict):
         refuse_unknown(domain, DOMAIN_WORDS, (*path, DOMAIN))
         values += [((*path, DOMAIN, "init"), domain.get("init"))]
-        values += listed(domain.get("choices"), (*path, DOMAIN, "choices"))
+        choices = listed(domain.get("choices"), (*path, DOMAIN, "choices"))
+    refuse_twice(options)
+    refuse_twice(choices)
+    values += [*options, *choices]
     for where, value in values:
         look_at(value, where, names)
 

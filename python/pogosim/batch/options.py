@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from decimal import Decimal
 from typing import Any
@@ -104,7 +105,10 @@ def expand_range(options: Any) -> list[Any]:
         raise OptionsError(f"{RANGE}: type: expected int or float, found {shown(kind)}")
     if kind == "int" and not integers:
         raise OptionsError(f"{RANGE}: type is int, but start {start} or step {step} is not a whole number")
-    return [int(value) if kind == "int" else float(value) for value in values]
+    numbers = [int(value) if kind == "int" else float(value) for value in values]
+    if any(number == following for number, following in itertools.pairwise(numbers)):
+        raise OptionsError(f"{RANGE}: a step of {step} is too small to tell values apart; give a larger one")
+    return numbers
 
 
 def number_in(options: dict[str, Any], key: str) -> Decimal:
