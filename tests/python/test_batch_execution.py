@@ -42,12 +42,21 @@ def take(execution: Execution, *outcomes: Outcome) -> None:
     execution.take(ended(), len(outcomes))
 
 
+def execution_of(folder: Path, combinations: list[Combination]) -> Execution:
+    """Return the execution of combinations of an empty configuration."""
+    path = folder / "many.yaml"
+    path.write_text("{}")
+    return Execution(combinations, "program", Configuration(path))
+
+
 # ---- Runs ----
 
 
 def test_failures_are_in_order_and_a_shared_run_is_one_of_the_first_combination(tmp_path: Path) -> None:
     shared, second, third = (task(tmp_path, key, run) for key, run in (("s", 0), ("b", 2), ("a", 1)))
-    execution = Execution([Combination("x", {}, [shared]), Combination("y", {}, [shared, third, second])], "program")
+    execution = execution_of(
+        tmp_path, [Combination("x", {}, {}, [shared]), Combination("y", {}, {}, [shared, third, second])]
+    )
     assert list(execution.tasks) == ["s", "a", "b"]
     take(execution, *(Outcome(key, "exit code 3", simulator_s=2.0) for key in ("b", "a", "s")))
     found = [(failure.output, failure.task.key) for failure in execution.failures]
@@ -61,13 +70,13 @@ def test_warnings_of_runs_are_shown_once_and_those_of_failed_ones_are_in_their_l
     tasks = [task(tmp_path, key) for key in "abc"]
     for key in "ab":
         write_data(tmp_path / f"{key}.feather")
-    execution = Execution([Combination("x", {}, tasks)], "program")
+    execution = execution_of(tmp_path, [Combination("x", {}, {}, tasks)])
     take(execution, Outcome("a", log="w\nv"), Outcome("b", log="v"), Outcome("c", "exit code 3", log="other"))
     assert caplog.messages == ["warning of a run: w", "warning of a run: v"]
 
 
 def test_failure_that_all_runs_would_have_ends_the_batch(tmp_path: Path) -> None:
-    execution = Execution([Combination("x", {}, [task(tmp_path, "a", 4)])], "program")
+    execution = execution_of(tmp_path, [Combination("x", {}, {}, [task(tmp_path, "a", 4)])])
     with pytest.raises(BatchError, match="run 4 with seed 4: full"):
         take(execution, Outcome("a", "full", is_fatal=True))
 
@@ -79,14 +88,14 @@ def test_columns_are_checked_of_runs_that_are_done_and_of_those_that_end(
     temporary = TemporaryFolder(tmp_path, "b", is_kept=False)
     temporary.done.mkdir()
     runs = [task(temporary.done, key) for key in "ab"]
-    execution = Execution([Combination("x", {constant: 1}, runs)], "program")
+    execution = execution_of(tmp_path, [Combination("x", {constant: 1}, {}, runs)])
     write_data(runs[0].result)
     assert execution.waiting(temporary) == [runs[1]]
     write_data(runs[1].result, column)
     with pytest.raises(BatchError, match=f"program writes a column '{column}'"):
         take(execution, Outcome("b"))
     with pytest.raises(BatchError, match=f"program writes a column '{column}'"):
-        Execution([Combination("x", {constant: 1}, runs)], "program").waiting(temporary)
+        execution_of(tmp_path, [Combination("x", {constant: 1}, {}, runs)]).waiting(temporary)
 
 
 # ---- Results ----

@@ -122,11 +122,12 @@ def test_seeds_from_the_configuration_are_all_different_and_others_than_the_numb
 
 
 def test_warnings_of_runs_are_shown_once(tmp_path: Path) -> None:
-    write_options(tmp_path, {"parameters": {"never_read": 1}})
+    path = write_options(tmp_path, {"parameters": {"never_read": 1}})
+    line = 1 + path.read_text().splitlines().index("  never_read: 1")
     result = batch(tmp_path, "-r", "3")
     assert result.code == 0
     assert result.errors == (
-        "pogobatch: warning of a run: parameters never read by the program: never_read (the configuration)\n"
+        f"pogobatch: warning of a run: parameters never read by the program: never_read (many.yaml:{line})\n"
     )
 
 

@@ -28,7 +28,7 @@ def test_warnings_of_a_log_have_no_dates_no_temporary_names_and_nothing_twice(tm
     place = f"{tmp_path}/test.yaml"
     lines = ["[1] [warning] a", "other", f"[2] [warning] b ({place}:3)", "[3] [warning] a", "[4] [warning] \x1b[1mc"]
     write_log(tmp_path, lines)
-    assert warnings_in(tmp_path).splitlines() == ["a", "b (the configuration)", "\\x1b[1mc"]
+    assert warnings_in(tmp_path).splitlines() == ["a", "b (<configuration>:3)", "\\x1b[1mc"]
 
 
 def test_endless_log_is_read_in_pieces_and_only_so_many_warnings_are_kept(tmp_path: Path) -> None:

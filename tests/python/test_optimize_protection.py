@@ -122,7 +122,7 @@ def test_failures_of_runs_that_differ_in_values_only_are_said_once(tmp_path: Pat
     result = search(tmp_path, "--max-evals", "8", "--optimizer", "random", "-R", "0")
     assert result.code == 3
     assert result.errors.count("a candidate has failed") == 1
-    assert "the configuration" in result.errors
+    assert "space.yaml:" in result.errors
     assert "/sim_" not in result.errors
 
 

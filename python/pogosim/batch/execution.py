@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Generator, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
+from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, tell
+from pogosim.batch.option_words import CHOICES
+from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import Failure, Progress, report_warnings
 from pogosim.batch.results import check_columns, schema_of
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.tasks import Combination
 from pogosim.batch.temporary import TemporaryFolder
+from pogosim.varied import varied_parameters
 
 log = logging.getLogger("pogobatch")
 
@@ -23,7 +30,9 @@ class Execution:
         simulator_s: Wall-clock time of simulators, in s, added up.
     """
 
-    def __init__(self, combinations: Sequence[Combination], program: str) -> None:
+    def __init__(self, combinations: Sequence[Combination], program: str, configuration: Configuration) -> None:
+        self.combinations = combinations
+        self.configuration = configuration
         self.tasks = {task.key: task for combination in combinations for task in combination.tasks}
         self.first_of = {task.key: combination for combination in reversed(combinations) for task in combination.tasks}
         self.program = program  # its name in messages
@@ -57,12 +66,12 @@ class Execution:
                 task = self.tasks[outcome.key]
                 self.simulator_s += outcome.simulator_s
                 if not outcome.problem:
-                    warnings.update(dict.fromkeys(outcome.log.splitlines()))
+                    warnings.update(dict.fromkeys(self.messages(outcome, task).splitlines()))
                     self.check_run(task)
                 elif outcome.is_fatal:
                     raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
                 else:
-                    self.failures.append(Failure(task, outcome, self.first_of[task.key].output))
+                    self.failures.append(self.failure(outcome, task))
                     log.debug("run %d failed: %s", task.run, outcome.problem)
                 bar.update()
         finally:
@@ -70,6 +79,22 @@ class Execution:
             outcomes.close()
             report_warnings(warnings)
         self.failures.sort(key=lambda failure: (failure.output, failure.task.run, failure.task.key))
+
+    def messages(self, outcome: Outcome, task: Task) -> str:
+        """Return what a run has said, with places in the file of the user."""
+        return in_the_users_file(outcome.log, task, self.first_of[task.key].entries, self.configuration)
+
+    def failure(self, outcome: Outcome, task: Task) -> Failure:
+        """Return what is said of a run that has failed."""
+        combination = self.first_of[task.key]
+        number = next(i for i, one in enumerate(self.combinations) if one is combination)
+        options = {key.removeprefix(f"{CHOICES}."): values[number] for key, values in self.varied.items()}
+        return Failure(task, replace(outcome, log=self.messages(outcome, task)), combination.output, options)
+
+    @cached_property
+    def varied(self) -> dict[str, list[Any]]:
+        """What differs between the combinations: keys, with a value for each."""
+        return varied_parameters([combination.entries for combination in self.combinations])
 
     def check_run(self, task: Task) -> None:
         """Check the columns of a finished run; those that many runs have are checked once."""

@@ -9,12 +9,14 @@ import sys
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from tqdm import tqdm
 from tqdm.contrib.logging import logging_redirect_tqdm
 
+from pogosim.batch.option_words import shown
 from pogosim.batch.run import Outcome, Task
+from pogosim.lines import printable
 
 log = logging.getLogger("pogobatch")
 
@@ -25,11 +27,12 @@ LINE_EVERY_S = 60.0
 
 @dataclass(frozen=True)
 class Failure:
-    """A run that failed, again and again."""
+    """A run that failed, again and again; `options` are what tells its combination from others."""
 
     task: Task
     outcome: Outcome
     output: str
+    options: dict[str, Any]
 
 
 class Progress:
@@ -88,6 +91,9 @@ def report_failures(failures: Sequence[Failure]) -> None:
         task, outcome = failure.task, failure.outcome
         times = f"{outcome.attempts} time{'s' if outcome.attempts > 1 else ''}"
         log.error("run %d of %s, seed %d, failed %s: %s", task.run, failure.output, task.seed, times, outcome.problem)
+        if failure.options:
+            options = ", ".join(f"{key}: {shown(value)}" for key, value in failure.options.items())
+            log.error("  options: %s", printable(options))
         if outcome.command:
             log.error("  command: %s", outcome.command)
         for line in outcome.log.splitlines():

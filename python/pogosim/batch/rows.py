@@ -6,7 +6,7 @@ import contextlib
 import logging
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +19,10 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import find_program, program_digest, world_digest
 from pogosim.batch.names import new_columns, value_at
 from pogosim.batch.option_words import CombinationsError
+from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import Part, RunFile, check_columns, schema_of, write_results
-from pogosim.batch.run import Outcome, Task, place_in
+from pogosim.batch.run import Outcome, Task
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.utils import load_dataframe
@@ -143,6 +144,7 @@ class Runs:
         assert self.do is not None  # within opened()
         wanted = [self.wanted(number, entries, seeds[number]) for number, entries in enumerate(configurations)]
         tasks = {task.key: task for one in wanted for part in one.combinations for task in part.tasks}
+        entries = {task.key: part.entries for one in wanted for part in one.combinations for task in part.tasks}
         uses = {key: [one for one in wanted if key in one.waiting] for key in tasks}
         left = {key: len(ones) for key, ones in uses.items()}
 
@@ -162,7 +164,9 @@ class Runs:
         waiting = [task for key, task in tasks.items() if any(key in one.waiting for one in uses[key])]
         with contextlib.closing(self.do(waiting)) as outcomes:
             for outcome in outcomes:
-                yield from take(outcome.key, self.problem_of(outcome, tasks[outcome.key]))
+                task = tasks[outcome.key]
+                said = in_the_users_file(outcome.log, task, entries[outcome.key], self.configuration)
+                yield from take(outcome.key, self.problem_of(replace(outcome, log=said), task))
 
     def wanted(self, number: int, entries: dict[str, Any], seeds: Sequence[int]) -> Wanted:
         """Return the runs of a configuration."""
@@ -175,7 +179,7 @@ class Runs:
             check_logs_data(combination, self.configuration)
             columns = new_columns(combination)
             columns.setdefault(ARENA, value_at(combination, ARENA) if ARENA in combination else None)
-            combinations.append(Combination("", columns, tasks_of(combination, seeds, self.settings)))
+            combinations.append(Combination("", columns, combination, tasks_of(combination, seeds, self.settings)))
         keys = {task.key for part in combinations for task in part.tasks}
         return Wanted(number, self.configuration.text, combinations, keys)
 
@@ -191,7 +195,7 @@ class Runs:
         if outcome.problem:
             log.debug("run %d failed: %s", task.run, outcome.problem)
             lines = [line for line in outcome.log.splitlines() if line.strip()]
-            said = place_in(Path(outcome.folder)).sub("the configuration", WHEN.sub("", lines[-1])) if lines else ""
+            said = WHEN.sub("", lines[-1]) if lines else ""
             return f"{RUN_FAILED}: {outcome.problem}{': ' if said else ''}{said}"
         new = {kind_of(line): line for line in outcome.log.splitlines() if kind_of(line) not in self.warned}
         self.warned.update(new)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import re
 import shlex
 import shutil
 import signal
@@ -23,6 +22,8 @@ from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
 
 LOG = "log.txt"
+CONFIGURATION = "test.yaml"
+OWN = "<configuration>"  # in messages of a run: its own configuration, a temporary file
 REFUSED = 2  # exit code of a program that refuses its configuration, or cannot write its files
 LOG_LINES = 10
 MAX_WARNINGS = 1000  # of one run
@@ -169,23 +170,22 @@ def tail(path: Path) -> str:
             lines = file.read().decode(errors="replace").splitlines()
     except OSError:
         return ""
-    return "\n".join(printable(line) for line in lines[-LOG_LINES:])
+    return "\n".join(without_folder(line, path.parent) for line in lines[-LOG_LINES:])
 
 
-def place_in(folder: Path) -> re.Pattern[str]:
-    """Return what finds places in the configuration of a run, which is a temporary file, in a text."""
-    return re.compile(re.escape(str(folder)) + r"/test\.yaml(:\d+)?")
+def without_folder(line: str, folder: Path) -> str:
+    """Return a line of a log with its control characters shown, and the run's own configuration as OWN."""
+    return printable(line.replace(str(folder / CONFIGURATION), OWN))
 
 
 def warnings_in(folder: Path) -> str:
-    """Return the warnings in the log of a run, each once, without dates and places in its configuration."""
-    place = place_in(folder)
+    """Return the warnings in the log of a run, each once, without dates."""
     found: dict[str, None] = {}
     with contextlib.suppress(OSError), (folder / LOG).open("rb") as file:
         while len(found) < MAX_WARNINGS and (line := file.readline(LONGEST_LINE)):
             _, mark, text = line.decode(errors="replace").rstrip("\r\n").partition("[warning] ")
             if mark:
-                found[printable(place.sub("the configuration", text))] = None
+                found[without_folder(text, folder)] = None
     return "\n".join(found)
 
 
@@ -202,7 +202,7 @@ def ending(code: int) -> str:
 def write_configuration(task: Task, folder: Path) -> Path:
     """Write the configuration of a run, whose outputs go to `frames` in its folder."""
     lines = "".join(f"{key}: {quoted(folder / 'frames' / name)}\n" for key, name in task.outputs)
-    path = folder / "test.yaml"
+    path = folder / CONFIGURATION
     path.write_text(task.text + lines)
     return path
 
@@ -233,7 +233,7 @@ def attempt(task: Task, number: int) -> Outcome:
         if code != 0:
             log = tail(folder / LOG)
             problem = ending(code)
-            is_certain = code == REFUSED and f"Error: {arguments[1]}:" in log
+            is_certain = code == REFUSED and f"Error: {OWN}:" in log
             is_fatal = any(words in log for words in DISK_FULL)
             if is_fatal:
                 problem = disk_full(task)

@@ -230,7 +230,7 @@ class PogobotBatchRunner:
 
     def do_all(self, combinations: Sequence[Combination]) -> None:
         """Do the runs that are not done yet, and write the results."""
-        execution = Execution(combinations, self.simulator_binary)
+        execution = Execution(combinations, self.simulator_binary, self.configuration)
         self.failures, self.simulator_s, self.generated = execution.failures, 0.0, []
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
         waiting = execution.waiting(self.temporary)
@@ -302,7 +302,7 @@ class PogobotBatchRunner:
         assert self.run_settings is not None  # within prepared()
         columns = self.compute_new_columns(entries)
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
-        return Combination(output, columns, tasks_of(entries, seeds, self.run_settings))
+        return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings))
 
     def names_error(self, error: NamesError) -> BatchError:
         """Return the error of a wrong name, with its place."""

@@ -25,6 +25,7 @@ class Combination:
 
     output: str
     columns: dict[str, Any]
+    entries: dict[str, Any]
     tasks: list[Task] = field(default_factory=list)
 
 
