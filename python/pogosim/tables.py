@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import functools
 import warnings
 from pathlib import Path
 from typing import IO, Any, Protocol
@@ -15,6 +17,8 @@ from pyarrow import ipc
 from pogosim.outputs import PARTIAL
 from pogosim.table_formats import BEGIN, BESIDE, CSV, PARQUET, format_in, is_our_metadata, metadata_path
 
+# In the metadata of a CSV file: the names of its columns, and their types in the same order.
+NAMES = "column_names"
 TYPES = "column_types"
 
 
@@ -55,31 +59,100 @@ def metadata_beside(table: Path) -> dict[str, Any]:
 
 
 def read_csv(path: Path) -> pa.Table:
-    """Read a CSV file that the simulator wrote, or any other one."""
+    """Read a CSV file that the simulator wrote, perhaps changed by another program since, or any other one.
+
+    Columns of the simulator have their types, wherever they are; others those that pandas finds.
+    """
     metadata = metadata_beside(path)
-    types = metadata.pop(TYPES, [])
-    with path.open(newline="", encoding="utf-8", errors="replace") as file:
-        names = next(csv.reader(file), [])
-    known = dict(zip(names, types, strict=False))
+    with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
+        header = next(csv.reader(file), [])
+    types = known_types(header, metadata.pop(NAMES, None), metadata.pop(TYPES, []))
+    try:
+        table = read_cells(path, {name: as_read(kind) for name, kind in types.items()})
+    except pa.ArrowInvalid:  # or it is damaged, which is found again
+        text = read_cells(path, dict.fromkeys(types, pa.string()))
+        table = with_columns(text, {name: converted(text.column(name), name, as_read(types[name])) for name in types})
+    special = {name: kind for name, kind in types.items() if kind in ("halffloat", "binary")}
+    table = with_columns(table, {name: exact(table.column(name), kind) for name, kind in special.items()})
+    if types and (others := [place for place, name in enumerate(header) if name not in types]):
+        table = with_inferred(table, path, others)
+    return table.replace_schema_metadata({str(key): str(value) for key, value in metadata.items()})
+
+
+def known_types(header: list[str], names: list[str] | None, types: list[str]) -> dict[str, str]:
+    """Return the types of the columns in a header that metadata tell, by name.
+
+    Those of older files have no names: they are in the order of the columns.
+
+    Raises:
+        ValueError: The header has none of the columns.
+    """
+    known = header if names is None else names
+    if len(known) != len(types):
+        return {}
+    if known and not set(known) & set(header):
+        raise ValueError(f"its first line names no column of the run, such as '{known[0]}'; separate cells by commas")
+    return {name: kind for name, kind in zip(known, types, strict=True) if header.count(name) == 1}
+
+
+def read_cells(path: Path, types: dict[str, pa.DataType]) -> pa.Table:
+    """Read the cells of a CSV file; columns without a type have the one that fits."""
     options = arrow_csv.ConvertOptions(
-        column_types={name: as_read(kind) for name, kind in known.items()},
-        null_values=[""],
-        strings_can_be_null=True,
-        quoted_strings_can_be_null=False,
+        column_types=types, null_values=[""], strings_can_be_null=True, quoted_strings_can_be_null=False
     )
     parsing = arrow_csv.ParseOptions(newlines_in_values=True)
-    table = arrow_csv.read_csv(path, convert_options=options, parse_options=parsing)
-    for place, name in enumerate(table.column_names):
-        if known.get(name) in ("halffloat", "binary"):
-            column = table.column(place)
-            exact = column.cast(pa.float16()) if known[name] == "halffloat" else from_hexadecimal(column)
-            table = table.set_column(place, name, exact)
-    return table.replace_schema_metadata({str(key): str(value) for key, value in metadata.items()})
+    return arrow_csv.read_csv(path, convert_options=options, parse_options=parsing)
+
+
+def with_columns(table: pa.Table, columns: dict[str, pa.ChunkedArray]) -> pa.Table:
+    """Return a table with other columns in place of those of the same names."""
+    for name, column in columns.items():
+        table = table.set_column(table.column_names.index(name), name, column)
+    return table
+
+
+def with_inferred(table: pa.Table, path: Path, places: list[int]) -> pa.Table:
+    """Return a table with some columns as pandas reads them, also their names: that of an index is "Unnamed: 0"."""
+    import pandas as pd  # takes a while
+
+    found = pa.Table.from_pandas(pd.read_csv(path, usecols=places), preserve_index=False)
+    for place, name, column in zip(places, found.column_names, found.columns, strict=True):
+        table = table.set_column(place, name, column)
+    return table
+
+
+def converted(text: pa.ChunkedArray, name: str, kind: pa.DataType) -> pa.ChunkedArray:
+    """Convert cells to a type. Integers that pandas has written with a point are those, others are kept as they are.
+
+    Raises:
+        ValueError: They do not fit; names the first one.
+    """
+    real, whole = pa.float64(), pa.int64()
+    ways = [[kind], [whole], [real, kind], [real, whole], [real]] if pa.types.is_integer(kind) else [[kind]]
+    for way in ways:
+        with contextlib.suppress(pa.ArrowInvalid):
+            return functools.reduce(pa.ChunkedArray.cast, way, text)
+    row, cell = next((row, cell) for row, cell in enumerate(text, 1) if not fits(cell, ways[-1][0]))
+    raise ValueError(f"row {row}, column '{name}': expected {kind}, found '{cell}'")
+
+
+def fits(cell: pa.Scalar, kind: pa.DataType) -> bool:
+    """Tell whether a cell can be converted."""
+    try:
+        cell.cast(kind)
+    except pa.ArrowInvalid:
+        return False
+    return True
 
 
 def as_read(kind: str) -> pa.DataType:
     """Return the type with which a column is read from text; it is converted afterwards."""
     return pa.type_for_alias({"halffloat": "float", "binary": "string"}.get(kind, kind))
+
+
+def exact(column: pa.ChunkedArray, kind: str) -> pa.Array:
+    """Return a column that was read with another type in its own."""
+    return column.cast(pa.float16()) if kind == "halffloat" else from_hexadecimal(column)
 
 
 def from_hexadecimal(column: pa.ChunkedArray) -> pa.Array:
@@ -143,11 +216,17 @@ def write_metadata_beside(table: Path, kind: str, schema: pa.Schema) -> None:
     text = BEGIN + "\n"
     for key, value in (schema.metadata or {}).items():
         text += f"{key.decode('utf-8', 'replace')}: {block(value.decode('utf-8', 'replace'))}"
+    text += f"{NAMES}: [{', '.join(map(quoted, schema.names))}]\n"
     text += f"{TYPES}: [{', '.join(str(kind) for kind in schema.types)}]\n"
     path = Path(f"{table}{BESIDE}")
     partial = Path(f"{path}{PARTIAL}")
     partial.write_text(text, encoding="utf-8")
     partial.replace(path)
+
+
+def quoted(name: str) -> str:
+    """Return a name in quotation marks, in one line of YAML."""
+    return '"' + "".join(f"\\x{ord(c):02x}" if c < " " or c in '"\\\x7f' else c for c in name) + '"'
 
 
 def block(text: str) -> str:

@@ -40,6 +40,16 @@ std::string block(std::string_view text) {
     return lines;
 }
 
+/// A name in quotation marks, in one line.
+std::string in_quotes(std::string_view name) {
+    std::string text = "\"";
+    for (char const c : name) {
+        bool const is_plain = (static_cast<unsigned char>(c) >= ' ' && c != '\x7f') && c != '"' && c != '\\';
+        text += is_plain ? std::string(1, c) : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+    return text + '"';
+}
+
 std::string text_of(arrow::Schema const& schema) {
     std::string text = fmt::format("{}\n", kBegin);
     if (auto const metadata = schema.metadata()) {
@@ -47,10 +57,13 @@ std::string text_of(arrow::Schema const& schema) {
             text += fmt::format("{}: {}", metadata->key(i), block(metadata->value(i)));
         }
     }
+    std::vector<std::string> names;
     std::vector<std::string> types;
     for (auto const& field : schema.fields()) {
+        names.push_back(in_quotes(field->name()));
         types.push_back(field->type()->ToString());
     }
+    text += fmt::format("column_names: [{}]\n", fmt::join(names, ", "));
     return text + fmt::format("column_types: [{}]\n", fmt::join(types, ", "));
 }
 

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
+import pyarrow as pa
 import pytest
 from batches import batch, write_options
 from pogosim import recover, swarm_picture
 from pogosim.command.recover import main as recover_command
-from pogosim.table_formats import format_of
+from pogosim.table_formats import CSV, format_of
+from pogosim.tables import table_writer, write_metadata_beside
 from pogosim.utils import load_dataframe, read_table
 from running import PROGRAMS, Run, compile_program, example, run, start
 
@@ -73,6 +78,105 @@ def test_csv_is_what_other_readers_expect(runs: Path) -> None:
 
 def test_parquet_is_what_other_readers_expect(runs: Path) -> None:
     pd.testing.assert_frame_equal(pd.read_parquet(runs / "d.parquet"), pd.read_feather(runs / "d.feather"))
+
+
+# ---- CSV files that another program has changed ----
+
+
+def changed(runs: Path, folder: Path, change: Callable[[pd.DataFrame], pd.DataFrame], **options: Any) -> Path:
+    """Read the CSV file of the run with pandas, change it, and write it with pandas; returns the path."""
+    path = folder / "d.csv"
+    shutil.copy(runs / "d.csv.yaml", folder)
+    change(pd.read_csv(runs / "d.csv")).to_csv(path, **{"index": False, **options})
+    return path
+
+
+def without_empty_texts(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return rows as pandas writes them to CSV: it does not tell an empty text from a missing one."""
+    return rows.assign(word=rows["word"].where(rows["word"] != "", None))
+
+
+CHANGES: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
+    "nothing": lambda rows: rows,
+    "order": lambda rows: rows[["x", *sorted(set(rows.columns) - {"x"})]],
+    "column less": lambda rows: rows.drop(columns="pogobot_ticks"),
+    "first column less": lambda rows: rows.drop(columns="time"),
+    "column more": lambda rows: rows.assign(extra=1.5, own="2026-01-01", count=3)[
+        ["extra", *rows.columns, "own", "count"]
+    ],
+    "rows less": lambda rows: rows[rows["time"] > 0.2].drop(columns="y"),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_columns_of_a_changed_csv_have_their_types_by_name(runs: Path, tmp_path: Path, change: str) -> None:
+    original = without_empty_texts(load_dataframe(runs / "d.csv")[0])
+    rows = load_dataframe(changed(runs, tmp_path, CHANGES[change]))[0]
+    expected = CHANGES[change](original).reset_index(drop=True)
+    pd.testing.assert_frame_equal(rows, expected)
+
+
+def test_index_that_pandas_writes_is_a_column_of_its_own(runs: Path, tmp_path: Path) -> None:
+    rows = load_dataframe(changed(runs, tmp_path, CHANGES["nothing"], index=True))[0]
+    assert rows.pop("Unnamed: 0").tolist() == list(range(len(rows)))
+    pd.testing.assert_frame_equal(rows, without_empty_texts(load_dataframe(runs / "d.csv")[0]))
+    picture = tmp_path / "d.png"
+    assert swarm_picture.main([str(tmp_path / "d.csv"), str(picture), "--dpi", "20", "-q"]) == 0
+
+
+def test_cells_of_integers_may_be_missing_and_integers_written_with_a_point(runs: Path, tmp_path: Path) -> None:
+    path = changed(runs, tmp_path, lambda rows: rows.assign(robot_id=rows["robot_id"].where(rows.index != 3)))
+    assert ",1.0," in path.read_text()
+    table = read_table(path)
+    assert str(table.schema.field("robot_id").type) == "int32"
+    assert str(table.schema.field("even").type) == "bool"
+    assert table.column("robot_id").to_pylist()[:5] == [0, 1, 2, None, 0]
+    rows = load_dataframe(path)[0]
+    assert rows["robot_id"].isna().tolist()[:5] == [False, False, False, True, False]
+    assert str(rows["time"].dtype) == "float64"
+
+
+def test_integers_that_another_program_made_larger_or_broken_are_kept(runs: Path, tmp_path: Path) -> None:
+    path = changed(runs, tmp_path, lambda rows: rows.assign(robot_id=3_000_000_000, pogobot_ticks=0.5))
+    rows = load_dataframe(path)[0]
+    assert (rows["robot_id"].iloc[0], rows["pogobot_ticks"].iloc[0]) == (3_000_000_000, 0.5)
+
+
+def test_cell_that_is_no_number_is_named(runs: Path, tmp_path: Path) -> None:
+    path = changed(runs, tmp_path, lambda rows: rows.assign(x=rows["x"].astype(object).where(rows.index != 2, "a bit")))
+    with pytest.raises(ValueError, match="row 3, column 'x': expected float, found 'a bit'"):
+        load_dataframe(path)
+
+
+def test_cells_that_are_not_separated_by_commas_are_told(runs: Path, tmp_path: Path) -> None:
+    path = changed(runs, tmp_path, lambda rows: rows, sep=";", decimal=",")
+    with pytest.raises(ValueError, match="names no column of the run, such as 'time'; separate cells by commas"):
+        load_dataframe(path)
+
+
+def test_csv_of_an_earlier_version_has_types_in_the_order_of_its_columns(runs: Path, tmp_path: Path) -> None:
+    path = changed(runs, tmp_path, CHANGES["nothing"])
+    shutil.copy(runs / "d.csv", path)
+    beside = tmp_path / "d.csv.yaml"
+    lines = beside.read_text().splitlines(keepends=True)
+    kept = [line for line in lines if not line.startswith("column_names")]
+    assert len(kept) == len(lines) - 1
+    beside.write_text("".join(kept))
+    pd.testing.assert_frame_equal(load_dataframe(path)[0], load_dataframe(runs / "d.feather")[0])
+
+
+def test_name_of_a_column_may_have_any_character(tmp_path: Path) -> None:
+    schema = pa.schema(
+        [("a, b]", pa.int8()), ('"', pa.float32()), ("back\\slash", pa.int16()), ("two\nlines\x07", pa.int32())]
+    )
+    table = pa.Table.from_pylist([dict.fromkeys(schema.names, 1)], schema=schema)
+    path = tmp_path / "d.csv"
+    with path.open("wb") as file:
+        writer = table_writer(file, CSV, schema)
+        writer.write_table(table)
+        writer.close()
+    write_metadata_beside(path, CSV, schema)
+    assert read_table(path).schema.remove_metadata() == schema
 
 
 @pytest.mark.parametrize("ending", FORMATS)
