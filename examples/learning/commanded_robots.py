@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,15 @@ CONFIGURATION = ROOT / "conf" / "learning.yaml"
 DECISION_STEPS = 20  # time steps of 0.01 s from one action to the next
 OBSERVATIONS = ("light", "light ahead", "light to the right", "heard in front", "right", "back", "left")
 ACTIONS = ("left motor", "right motor")
+
+
+def are_actions(actions: Sequence[npt.ArrayLike]) -> bool:
+    """Tell whether each of the actions is as many finite numbers as it has to be."""
+    try:
+        numbers = np.asarray(actions, np.float64)
+    except (TypeError, ValueError):
+        return False
+    return numbers.shape == (len(actions), len(ACTIONS)) and bool((np.abs(numbers) <= np.finfo(np.float32).max).all())
 
 
 class CommandedRobots:
@@ -52,10 +62,20 @@ class CommandedRobots:
         self._observation = self.simulation.user_data["observation"]
         return self._observation.copy()
 
-    def act(self, actions: npt.ArrayLike) -> Array:
-        """Do what the actions say, shape (robots, 2). Returns the observations."""
+    def act(self, actions: Sequence[npt.ArrayLike]) -> Array:
+        """Do what the actions say, one for each robot. Returns the observations.
+
+        Raises:
+            ValueError: An action is not two finite numbers.
+        """
         if self.simulation is None:
             raise RuntimeError("reset the environment before its first step")
+        if not are_actions(actions):
+            wrong = next(number for number, action in enumerate(actions) if not are_actions([action]))
+            raise ValueError(
+                f"the action of robot {wrong}: expected the powers of the {' and of the '.join(ACTIONS)}, finite "
+                f"numbers from -1 to 1, found {actions[wrong]!r}"
+            )
         self._action[:] = actions
         self.simulation.step(DECISION_STEPS)
         return self._observation.copy()

@@ -45,8 +45,8 @@ class LightSeeker(gymnasium.Env[Array, Array]):
         return self._robots.reset(int(self.np_random.integers(2**32)))[0], {}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
-        """Drive for 0.2 s."""
-        (observation,) = self._robots.act(action)
+        """Drive for 0.2 s. Powers beyond -1 and 1 count as these; what is no two finite numbers raises ValueError."""
+        (observation,) = self._robots.act([action])
         self._step += 1
         return observation, self._light(), False, self._step >= self.episode_steps, {}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -67,9 +68,12 @@ class Gathering(ParallelEnv[str, Array, Array]):
     def step(
         self, actions: dict[str, Array]
     ) -> tuple[dict[str, Array], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
-        """Drive for 0.2 s."""
+        """Drive for 0.2 s. Actions that are not two finite numbers for each agent raise ValueError."""
         if not self.agents:
             return {}, {}, {}, {}, {}
+        if not isinstance(actions, Mapping) or actions.keys() != set(self.agents):
+            found = ", ".join(map(str, actions)) if isinstance(actions, Mapping) else repr(actions)
+            raise ValueError(f"actions: expected a map from each of the agents {', '.join(self.agents)}, found {found}")
         observations = self._robots.act([actions[agent] for agent in self.agents])
         self._step += 1
         agents, is_over = self.agents, self._step >= self.episode_steps

@@ -7,6 +7,7 @@ import sys
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pogosim
@@ -77,6 +78,56 @@ def test_actions_are_motor_powers(seeker: LightSeeker) -> None:
         assert float(simulation.headings[0]) == pytest.approx(turned_rad, abs=0.4)
         if ahead_mm is not None:
             assert float(simulation.positions[0, 0]) == pytest.approx(400.0 + ahead_mm, abs=10.0)
+
+
+WRONG = [
+    None,
+    0.5,
+    [0],
+    [1, 2, 3],
+    [[1, 2]],
+    [np.nan, 0],
+    [0, np.inf],
+    [1e300, 0],
+    "ab",
+    ["a", "b"],
+    [None, 1],
+    [1j, 0],
+    {},
+]
+
+
+@pytest.mark.parametrize("action", WRONG, ids=repr)
+def test_action_that_is_no_two_numbers_is_refused_and_nothing_moves(seeker: LightSeeker, action: Any) -> None:
+    seeker.reset(seed=1)
+    simulation = seeker._robots.simulation
+    assert simulation is not None
+    message = "the action of robot 0: expected the powers of the left motor and of the right motor, finite numbers from"
+    with pytest.raises(ValueError, match=message):
+        seeker.step(action)
+    assert simulation.steps == 0
+    seeker.step([1, -1])
+    assert simulation.steps == 20
+
+
+def test_actions_of_a_swarm_are_those_of_its_agents() -> None:
+    env = Gathering(robots=2)
+    env.reset(seed=1)
+    wrong: list[tuple[Any, str]] = [
+        ({"robot_0": [1, 0], "robot_1": [np.nan, 0]}, "the action of robot 1: .*found \\[nan, 0]"),
+        ({"robot_0": [1, 0], "robot_1": [1]}, "the action of robot 1: .*found \\[1]"),
+        ({"robot_0": None, "robot_1": [1, 0]}, "the action of robot 0: .*found None"),
+        ({"robot_0": [1, 0]}, "from each of the agents robot_0, robot_1, found robot_0"),
+        ({"robot_0": [1, 0], "robot_1": [1, 0], "robot_2": [1, 0]}, "found robot_0, robot_1, robot_2"),
+        ([[1, 0], [1, 0]], "found \\[\\["),
+        (None, "found None"),
+    ]
+    for actions, message in wrong:
+        with pytest.raises(ValueError, match=message):
+            env.step(actions)
+    assert env._robots.simulation is not None
+    assert env._robots.simulation.steps == 0
+    env.close()
 
 
 def test_robots_see_where_the_lamp_is(seeker: LightSeeker) -> None:
