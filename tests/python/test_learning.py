@@ -80,7 +80,7 @@ def test_actions_are_motor_powers(seeker: LightSeeker) -> None:
             assert float(simulation.positions[0, 0]) == pytest.approx(400.0 + ahead_mm, abs=10.0)
 
 
-WRONG = [
+WRONG: list[Any] = [
     None,
     0.5,
     [0],
@@ -106,7 +106,7 @@ def test_action_that_is_no_two_numbers_is_refused_and_nothing_moves(seeker: Ligh
     with pytest.raises(ValueError, match=message):
         seeker.step(action)
     assert simulation.steps == 0
-    seeker.step([1, -1])
+    seeker.step(RIGHT)
     assert simulation.steps == 20
 
 
