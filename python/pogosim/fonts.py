@@ -6,6 +6,15 @@ import contextlib
 import warnings
 from collections.abc import Iterator
 
+HIDES = "_"  # at the beginning, a label that legends leave out
+NOTHING = "\u200b"  # of no width
+
+
+def literal(text: object) -> str:
+    """Return a name so that matplotlib draws it as it is: nothing in it is a formula, and legends have it."""
+    shown = str(text).replace("$", r"\$")
+    return NOTHING + shown if shown.startswith(HIDES) else shown
+
 
 @contextlib.contextmanager
 def any_characters() -> Iterator[None]:

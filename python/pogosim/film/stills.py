@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from pogosim.film.brush import Brush
 from pogosim.film.moving import Moving
 from pogosim.film.timeline import timeline_of
-from pogosim.fonts import any_characters
+from pogosim.fonts import any_characters, literal
 from pogosim.picture import layers
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw_key, draw_notes, draw_scale_bar, notes, title, width_of_key
@@ -110,7 +110,7 @@ class Stills:
         heading = title(self.recording.last, 1000.0).rsplit(" after ", 1)[0]
         room = int((width - beside) * 9.0) - 12  # characters
         heading = heading if len(heading) <= room else heading[: max(room - 1, 0)] + "\u2026"
-        figure.text(0.15 / width, y, heading, color=INK, fontsize=11, va="center")
+        figure.text(0.15 / width, y, literal(heading), color=INK, fontsize=11, va="center")
         if swarm.colouring:
             draw_key(figure, swarm.colouring, share, beside)
         with any_characters():

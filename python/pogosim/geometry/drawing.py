@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Curve
 
+from pogosim.fonts import literal
 from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.validity import Room
 
@@ -52,7 +53,7 @@ def draw(outline: Outline, room: Room | None, title: str, figure: Figure | None 
     margin = 0.03 * float(size.max())
     axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin, low[1] - margin))  # y runs downwards
     axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
-    axes.set_title(title, fontsize=10)
+    axes.set_title(literal(title), fontsize=10)
     if axes.get_legend_handles_labels()[0]:
         figure.legend(loc="outside lower right", fontsize=8, frameon=False)
     return figure

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.fonts import literal
 from pogosim.optimize.history import Evaluation
 from pogosim.optimize.results import FreshRuns, best_so_far
 from pogosim.picture.palette import INK
@@ -62,7 +63,7 @@ def draw_archive(
         bottom, top = others[0]
         extent = (left, right, bottom, top)
         image = axes.imshow(fitness.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
-        axes.set_ylabel(names[1])
+        axes.set_ylabel(literal(names[1]))
         figure.colorbar(image, ax=axes, label="fitness")
     else:
         edges = np.linspace(left, right, len(fitness) + 1)
@@ -70,5 +71,5 @@ def draw_archive(
         axes.set_ylabel("fitness")
     filled = np.count_nonzero(np.isfinite(fitness))
     axes.set_title(f"{filled} of {fitness.size} cells", color=INK, fontsize="medium")
-    axes.set_xlabel(names[0])
+    axes.set_xlabel(literal(names[0]))
     save(figure, path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -12,6 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from pogosim.fonts import literal
 from pogosim.picture import layers
 from pogosim.picture.colouring import MAX_LABELS, Colouring, Legend, Scale
 from pogosim.picture.palette import EDGE, INK, PAPER
@@ -64,7 +66,7 @@ def notes(swarm: Swarm) -> str:
 def draw_notes(axes: Axes, text: str, low: Floats, high: Floats) -> None:
     """Write the notes under the lower right corner of the arena."""
     y = high[1] + 0.03 * (high[1] - low[1])
-    axes.text(high[0], y, text, color=INK, ha="right", va="top", fontsize=9)
+    axes.text(high[0], y, literal(text), color=INK, ha="right", va="top", fontsize=9)
 
 
 def counted(category: str, count: int) -> str:
@@ -106,7 +108,7 @@ def draw(swarm: Swarm, tail_s: float | None = None, links: bool = False) -> Figu
     layers.draw_scene(axes, swarm, tail_s, links)
     draw_scale_bar(axes, low, high)
     draw_notes(axes, below, low, high)
-    axes.set_title(heading, color=INK, fontsize=13, pad=8)
+    axes.set_title(literal(heading), color=INK, fontsize=13, pad=8)
     if swarm.colouring:
         draw_key(figure, swarm.colouring, share, beside)
     return figure
@@ -141,9 +143,11 @@ def draw_series(swarms: Sequence[Swarm], tail_s: float | None = None, links: boo
         if i % columns == 0 and i // columns == lines - 1:
             draw_scale_bar(axes, low, high)
     middle = (width - beside) / 2 / width
-    figure.text(middle, 1.0 - 0.15 / height, heading, color=INK, fontsize=13, ha="center", va="top")
+    figure.text(middle, 1.0 - 0.15 / height, literal(heading), color=INK, fontsize=13, ha="center", va="top")
     if below:
-        figure.text(1.0 - (beside + 0.1) / width, 0.1 / height, below, color=INK, fontsize=9, ha="right", va="bottom")
+        figure.text(
+            1.0 - (beside + 0.1) / width, 0.1 / height, literal(below), color=INK, fontsize=9, ha="right", va="bottom"
+        )
     if last.colouring:
         draw_key(figure, last.colouring, 1.0 - beside / width, beside)
     return figure
@@ -185,16 +189,17 @@ def draw_key(figure: Figure, colouring: Colouring, left: float, inches: float) -
         bar = figure.colorbar(ScalarMappable(span, colouring.colour_map), cax=axes)
         if colouring.low >= colouring.high:
             bar.set_ticks([colouring.low])
-        bar.set_label(colouring.name, color=INK)
+        bar.set_label(literal(colouring.name), color=INK)
         bar.outline.set_edgecolor(INK)
         bar.ax.tick_params(color=INK, labelcolor=INK, labelsize=9)
         return
+    style: dict[str, Any] = {"marker": "o", "linestyle": "", "markersize": 8, "markeredgecolor": EDGE}
     marks = [
-        Line2D([], [], marker="o", linestyle="", markersize=8, color=tuple(colour), label=label, markeredgecolor=EDGE)
+        Line2D([], [], color=tuple(colour), label=literal(label), **style)
         for label, colour in zip(listed(colouring), colouring.swatches, strict=False)
     ]
     more = len(colouring.labels) - len(marks)
-    name = shortened(colouring.name) + (f"\n({more} more)" if more else "")
+    name = literal(shortened(colouring.name)) + (f"\n({more} more)" if more else "")
     figure.legend(
         handles=marks, title=name, loc="center left", bbox_to_anchor=(left, 0.5), frameon=False, labelcolor=INK
     )

@@ -75,7 +75,7 @@ def row_of(run: Trajectories, room: Room | None) -> pd.DataFrame:
 def drawn(run: Trajectories, room: Room | None) -> Figure:
     """Draw the arena of a run with the places of its robots at the end."""
     outline = outline_of(run)
-    heading = f"{run.arena.name}: {run.arena.area_mm2:.6g} mm$^2$" + (", periodic" if outline.periodic else "")
+    heading = f"{run.arena.name}: {run.arena.area_mm2:.6g} mm²" + (", periodic" if outline.periodic else "")
     figure = draw(outline, room, heading)
     last = run.position_mm[-1][run.is_there[-1]]
     figure.axes[0].scatter(

@@ -13,6 +13,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from pogosim.analysis.floor import grid_of
 from pogosim.analysis.flow import flow_bounds
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.fonts import literal
 from pogosim.reports.collective_metrics import Metric
 from pogosim.reports.collective_swarm import Vortices
 from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
@@ -79,7 +80,7 @@ def draw_vorticity_fields(first: Mapping[str, Trajectories], fields: Mapping[str
         own.set_axis_off()
     for own, name in zip(axes.flat, names, strict=False):
         draw_field(own, first[name], known[name])
-        own.set_title(name, fontsize="medium")
+        own.set_title(literal(name), fontsize="medium")
     save(figure, folder / "vortex_field")
 
 

@@ -14,6 +14,7 @@ from pogosim.analysis.coverage import coverage_over_time
 from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.confidence import mean_over_runs
+from pogosim.fonts import literal
 from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
 from pogosim.reports.groups import by_arena, by_combination, draw_over_time, save_over_time
 from pogosim.reports.missing_arenas import with_arenas
@@ -86,7 +87,7 @@ def save_mean_of_arenas(
     figure, axes = new_figure()
     draw_bands(axes[0, 0], means)
     count = len({run.arena.name for run in runs})
-    over = f"mean over {count} arenas" if count > 1 else f"arena {runs[0].arena.name}"
+    over = f"mean over {count} arenas" if count > 1 else f"arena {literal(runs[0].arena.name)}"
     axes[0, 0].set(xlabel="time (s)", ylabel=f"coefficient of variation of areas\n({over})")
     axes[0, 0].set_ylim(bottom=0.0)
     save(figure, folder / "cv_mean_across_arenas_over_time")

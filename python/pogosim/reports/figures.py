@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.confidence import mean_over_runs
-from pogosim.fonts import any_characters
+from pogosim.fonts import any_characters, literal
 
 DPI = 150
 FORMATS = (".pdf", ".png")
@@ -75,7 +75,7 @@ def draw_bands(axes: Axes, curves: Mapping[str, Iterable[pd.Series[Any]]]) -> No
         together: dict[Hashable, pd.Series[Any]] = dict(enumerate(series))
         band = mean_over_runs(pd.DataFrame(together))
         x = band.index.to_numpy(dtype=float)
-        axes.plot(x, band["mean"], color=colour, label=name, marker="o" if len(x) == 1 else "")
+        axes.plot(x, band["mean"], color=colour, label=literal(name), marker="o" if len(x) == 1 else "")
         axes.fill_between(x, band["low"], band["high"], color=colour, alpha=0.25, linewidth=0)
     if len(curves) > 1:
         axes.legend(frameon=False, fontsize="small")

@@ -12,6 +12,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.fonts import literal
 from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
 
 T = TypeVar("T")
@@ -52,7 +53,7 @@ def draw_each_run(axes: Axes, groups: Mapping[str, Sequence[pd.Series[Any]]]) ->
     colours = colormaps["viridis"](np.linspace(0.0, 0.85, max(len(groups), 1)))
     for colour, (name, curves) in zip(colours, groups.items(), strict=True):
         for number, curve in enumerate(curves):
-            own = name if number == 0 else None
+            own = literal(name) if number == 0 else None
             x = curve.index.to_numpy(dtype=float)
             axes.plot(x, curve, color=colour, linewidth=0.8, alpha=0.8, label=own, marker="o" if len(x) == 1 else "")
     if len(groups) > 1:
@@ -74,7 +75,7 @@ def draw_violins(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], colum
         for part in ("cmedians", "cmins", "cmaxes", "cbars"):
             drawn[part].set(color="black", linewidth=1.0)
     names = list(samples)
-    axes.set_xticks(range(len(names)), names)
+    axes.set_xticks(range(len(names)), [literal(name) for name in names])
     if len(names) > 2:
         axes.tick_params(axis="x", rotation=30)
     axes.set_xlim(-0.7, len(names) - 0.3)

@@ -14,6 +14,7 @@ from matplotlib.path import Path as Outline
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.density import DensityGrid, count_density, kernel_density
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.fonts import literal
 from pogosim.reports.figures import new_figure, save
 
 WALL_COLOUR = "0.25"
@@ -76,7 +77,7 @@ def draw_density(axes: Axes, arena: Arena, grid: DensityGrid, title: str) -> Non
     )
     if floor is not None:
         image.set_clip_path(floor)
-    axes.set_title(title)
+    axes.set_title(literal(title))
     axes.figure.colorbar(image, ax=axes, label="probability density (1/m²)", shrink=0.8)
 
 

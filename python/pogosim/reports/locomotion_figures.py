@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.displacement import diffusion_exponent
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.fonts import literal
 from pogosim.reports.figures import draw_bands, group_of, new_figure, save
 from pogosim.reports.locomotion_tables import first_and_last_quarter
 
@@ -116,7 +117,8 @@ def draw_speed_boxes(tables: Sequence[RunTables], names: Sequence[str], folder: 
         medianprops={"color": COLOUR, "linewidth": 2},
         flierprops={"markersize": 3, "markeredgecolor": "0.4"},
     )
-    axes.set_yticks(range(1, len(values) + 1), list(values), fontsize="small" if longest > 12 else "medium")
+    names_of_boxes = [literal(name) for name in values]
+    axes.set_yticks(range(1, len(values) + 1), names_of_boxes, fontsize="small" if longest > 12 else "medium")
     axes.invert_yaxis()
     axes.set(xlabel="mean speed of a robot (mm/s)")
     axes.set_xlim(0.0, 1.05 * axes.get_xlim()[1])

@@ -19,6 +19,7 @@ from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.reception import attempts, outcomes, reception_rates
 from pogosim.analysis.trajectories import label_columns
 from pogosim.command.parser import warn
+from pogosim.fonts import literal
 from pogosim.reports.figures import new_figure, save
 from pogosim.reports.options import output_folder, write_table
 from pogosim.utils import load_dataframe
@@ -75,7 +76,14 @@ def draw(axes: Axes, table: pd.DataFrame, x: pd.Series[float], by: Sequence[str]
         around = np.stack([rows["rate"] - rows["rate_low"], rows["rate_high"] - rows["rate"]])
         axes.plot(place, rows["law"], color=colour, alpha=0.5, linewidth=1.2, marker="_", markersize=9)
         axes.errorbar(
-            place, rows["rate"], np.maximum(around, 0.0), color=colour, fmt="o", markersize=4, capsize=2, label=name
+            place,
+            rows["rate"],
+            np.maximum(around, 0.0),
+            color=colour,
+            fmt="o",
+            markersize=4,
+            capsize=2,
+            label=literal(name),
         )
     axes.set_ylabel("messages received (share)")
     axes.set_ylim(-0.03, 1.03)

@@ -26,6 +26,7 @@ from pogosim.analysis.neighbourhood import (
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.parser import warn
 from pogosim.confidence import mean_over_runs
+from pogosim.fonts import literal
 from pogosim.outputs import OutputError, leads_to
 from pogosim.reports.command_lines import NEIGHBOURS
 from pogosim.reports.figures import draw_bands, new_figure, save
@@ -209,6 +210,6 @@ def save_first_and_last(histograms: dict[str, list[pd.DataFrame]], path: Path) -
         panel.set(xlabel="degree (neighbours of a robot)", ylabel="share of robots")
         panel.xaxis.set_major_locator(MaxNLocator(integer=True))
         if len(histograms) > 1:
-            panel.set_title(name, fontsize="medium")
+            panel.set_title(literal(name), fontsize="medium")
         panel.legend(frameon=False, fontsize="small")
     save(figure, path)

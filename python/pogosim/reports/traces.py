@@ -15,6 +15,7 @@ from PIL import Image
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.motion import steps
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.fonts import literal
 from pogosim.reports.figures import group_of, new_figure, save
 from pogosim.reports.heat_maps import arenas_of, draw_arena, folder_name
 
@@ -109,7 +110,7 @@ class TraceFigure:
         circle = self.run.radius_mm * np.column_stack([np.cos(angle), np.sin(angle)])
         self.bodies.set_verts(list(self.run.position_mm[index][there][:, None, :] + circle))
         self.bodies.set_facecolor(list(map(tuple, self.colours[there])))
-        self.axes.set_title(f"{self.run.arena.name}, {self.run.time_s[index]:.1f} s")
+        self.axes.set_title(f"{literal(self.run.arena.name)}, {self.run.time_s[index]:.1f} s")
 
 
 def last_full_time(run: Trajectories) -> int:
