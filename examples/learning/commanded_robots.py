@@ -14,6 +14,7 @@ Array = npt.NDArray[np.float32]
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "examples" / "learning" / "learning.so"
 CONFIGURATION = ROOT / "conf" / "learning.yaml"
+WARNED: set[str] = set()  # by all environments: each warning is passed on once
 DECISION_STEPS = 20  # time steps of 0.01 s from one action to the next
 OBSERVATIONS = ("light", "light ahead", "light to the right", "heard in front", "right", "back", "left")
 ACTIONS = ("left motor", "right motor")
@@ -54,7 +55,7 @@ class CommandedRobots:
     def reset(self, seed: int) -> Array:
         """Begin a run. Returns the first observations, shape (robots, observations)."""
         if self.simulation is None:
-            self.simulation = pogosim.Simulation(PROGRAM, CONFIGURATION, seed=seed, set=self._settings)
+            self.simulation = pogosim.Simulation(PROGRAM, CONFIGURATION, seed=seed, set=self._settings, warned=WARNED)
         else:
             self.simulation.reset(seed)
         # Views of what the robots read and write.

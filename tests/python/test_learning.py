@@ -51,6 +51,15 @@ def test_gathering_is_an_environment_of_pettingzoo(capsys: pytest.CaptureFixture
     assert "Passed Parallel API test" in capsys.readouterr().out
 
 
+def test_warning_of_several_environments_is_passed_on_once(caplog: pytest.LogCaptureFixture) -> None:
+    envs = [LightSeeker() for _ in range(3)]
+    for env in envs:
+        env._robots._settings["parameters.never_there"] = 1
+        env.reset(seed=1)
+        env.close()
+    assert caplog.text.count("never_there") == 1
+
+
 def test_equal_seeds_give_equal_episodes_and_others_do_not(seeker: LightSeeker) -> None:
     def episode(seed: int) -> list[float]:
         first, _ = seeker.reset(seed=seed)

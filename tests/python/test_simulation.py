@@ -311,6 +311,23 @@ def test_warning_is_not_repeated_after_each_reset(program: Path, scene: Path, ca
     assert caplog.text.count("hello from 2") == 4
 
 
+def test_warning_of_many_runs_is_passed_on_once(program: Path, scene: Path, caplog: pytest.LogCaptureFixture) -> None:
+    settings = {"parameters.gian": 3}
+    with pogosim.VectorSimulation(program, scene, seeds=range(6), threads=3, set=settings) as runs:
+        runs.reset()
+    assert caplog.text.count("parameters never read by the program: gian") == 1
+    warned: set[str] = set()
+    for _ in range(3):
+        pogosim.Simulation(program, scene, set=settings, warned=warned).close()
+    assert caplog.text.count("parameters never read by the program: gian") == 2
+    assert "Wparameters never read by the program: gian (--set)" in warned
+    pogosim.Simulation(program, scene, set={"parameters.gain2": 3}, warned=warned).close()
+    assert caplog.text.count("parameters never read by the program: gain2") == 1
+    wrong: Any = ["gian"]
+    with pytest.raises(pogosim.ConfigurationError, match="warned: expected a set, which may be empty, found"):
+        pogosim.Simulation(program, scene, warned=wrong)
+
+
 def test_what_cannot_be_run_is_one_clear_message(program: Path, scene: Path, tmp_path: Path) -> None:
     text = tmp_path / "text.so"
     text.write_text("text")

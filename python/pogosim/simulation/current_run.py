@@ -13,6 +13,7 @@ from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import ConfigurationError
 from pogosim.simulation.library import OpenRun, library, open_run
 
+WARNING = threading.Lock()
 LONGEST_WAIT_S = 10.0  # at the end of Python, for a thread that still steps
 
 
@@ -25,17 +26,24 @@ class CurrentRun:
         lock: Lock of the thread that steps, resets, changes or closes it.
         should_pause: Makes `step` return after the present slice.
         process: Id of the process that created it.
-        warnings: Those of this run and of earlier ones that were passed on.
+        warned: Warnings that were passed on, of this run, of earlier ones, and of simulations that share them.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, warned: set[str]) -> None:
         self.run: RunState | None = None
         self.opened: OpenRun | None = None
         self.lock = threading.Lock()
         self.should_pause = False
         self.process = os.getpid()
-        self.warnings: set[str] = set()
+        self.warned = warned
         self._folder: Path | None = None
+
+    def is_new(self, warning: str) -> bool:
+        """Tell whether a warning was not passed on before; from now on it was."""
+        with WARNING:
+            is_new = warning not in self.warned
+            self.warned.add(warning)
+            return is_new
 
     def make_folder(self) -> Path:
         """Make a temporary folder for the rows of a run whose file has no other place.

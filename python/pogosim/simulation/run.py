@@ -143,6 +143,7 @@ class Simulation:
         set: Mapping[str, Any] | None = None,  # noqa: A002 -- the name of the option
         data_file: PathLike | None = None,
         strict: bool = False,
+        warned: set[str] | None = None,
     ) -> None:
         """Build the world and run the program up to time 0.
 
@@ -154,6 +155,8 @@ class Simulation:
             set: Values for keys of the configuration, such as {"objects.robots.nb": 50}.
             data_file: Where the rows go; None: to a temporary file, for `to_dataframe`.
             strict: Unknown keys are errors.
+            warned: Warnings that are not passed on again, and to which those that are passed on are added: simulations
+                that share a set pass each warning on once. None: a set of its own.
 
         Raises:
             ConfigurationError: The program or the configuration is missing or wrong.
@@ -167,7 +170,7 @@ class Simulation:
         seed = checked_seed(seed)
         if data_file is None and "data_filename" in settings:
             data_file = settings["data_filename"]
-        self._current = CurrentRun()
+        self._current = CurrentRun(checked_warned(warned))
         self._lock = self._current.lock
         self._is_closed = False
         self._finish = Finalize(self, self._current.finish, exitpriority=0)
@@ -592,10 +595,8 @@ class Simulation:
         for line in text.decode("utf-8", "replace").split("\n") if text else ():
             if line[:1] == "P":
                 robot_logger.info("%s", line[1:])
-            elif line not in self._current.warnings:
+            elif line[:1] != "W" or self._current.is_new(line):
                 logger.log(LEVELS.get(line[:1], logging.INFO), "%s", line[1:])
-            if line[:1] == "W":
-                self._current.warnings.add(line)
 
 
 def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
@@ -614,6 +615,17 @@ def checked_seed(seed: Any) -> int | None:
         ConfigurationError: It is none.
     """
     return None if seed is None else given.integer("seed", seed, least=0, most=MOST_SEED)
+
+
+def checked_warned(warned: Any) -> set[str]:
+    """Return a set of warnings.
+
+    Raises:
+        ConfigurationError: It is none.
+    """
+    if warned is not None and not isinstance(warned, set):
+        raise given.refused("warned", "a set, which may be empty", warned)
+    return set() if warned is None else warned
 
 
 def shared_object(program: Path) -> Path:

@@ -90,10 +90,11 @@ class VectorSimulation:
             configuration: As of `Simulation`.
             seeds: One for each run.
             threads: How many runs go on at a time; None: one for each processor.
-            **options: As of `Simulation`, the same for all.
+            **options: As of `Simulation`, the same for all. A warning of several runs is passed on once.
         """
         chosen_seeds = checked_seeds(seeds)
         count = os.cpu_count() or 1 if threads is None else given.integer("threads", threads, 1, MOST_THREADS)
+        options.setdefault("warned", set())
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="pogosim")
         self._process = os.getpid()
         self._is_closed = False
