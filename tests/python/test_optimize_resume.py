@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from batches import ENVIRONMENT, wait_until_gone
+from batches import ENVIRONMENT, ended, wait_until_gone
 from searches import COMMAND, OBJECTIVE, history, options, search, write_search
 
 QUALITY_DIVERSITY = ("--optimizer", "mapelites", "--qd-init-samples", "8", "--qd-batch", "5", "--qd-shape", "4,4")
@@ -153,6 +153,23 @@ def test_another_search_is_not_resumed(more: list[str], objective: str, message:
     result = search(tmp_path, "--max-evals", "6", "--resume", *more)
     assert result.code == 2
     assert f"--resume: opt_out has another search: {message}" in result.errors
+
+
+@pytest.mark.parametrize("module", ["helper.py", "lib/deep.py"])
+def test_search_is_not_resumed_when_a_module_of_the_objective_has_changed(module: str, tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "deep.py").write_text("WEIGHT = 1.0\n")
+    (tmp_path / "helper.py").write_text("from lib.deep import WEIGHT\n")
+    write_search(tmp_path, objective="import helper\n\ndef objective_fn(df): return helper.WEIGHT\n")
+    command = [*COMMAND, *options("--max-evals", "3", "--optimizer", "random", "--final-runs", "1")]
+    assert ended(command, tmp_path).code == 0
+    resumed = ended([*command, "--resume"], tmp_path)
+    assert resumed.code == 0, resumed.text
+    path = tmp_path / module
+    path.write_text(path.read_text() + "# changed\n")
+    result = ended([*command, "--resume"], tmp_path)
+    assert result.code == 2
+    assert f"--resume: opt_out has another search: the objective's module {module} has changed; " in result.errors
 
 
 @pytest.mark.parametrize("line", ["no json\n", "[1, 2]\n", '{"number": 1}\n', '{"version": 99}\n'])

@@ -182,8 +182,10 @@ class Journal:
         """
         own = json.loads(json.dumps(self.description))
         for key in dict.fromkeys([*own, *there]):
-            if key not in CHANGEABLE and there.get(key) != own.get(key):
-                name, is_digest = key.removesuffix(DIGEST), key.endswith(DIGEST)
+            name, is_digest = key.removesuffix(DIGEST), key.endswith(DIGEST)
+            # What imports another module now has changed itself.
+            is_known = not is_digest or (key in own and key in there)
+            if key not in CHANGEABLE and is_known and there.get(key) != own.get(key):
                 values = f"{name} was {there.get(key)}, and is {own.get(key)} now"
                 what = f"the {name} has changed" if is_digest else values
                 raise OptimizeError(

@@ -73,16 +73,22 @@ class Objective:
         fitness: From the rows of all runs to a number, or to a number and the features.
         features: From the rows to the features; None if there is no such function.
         path: The file they are in; None: those above.
+        modules: Files beside it, or in folders there, that it has imported.
     """
 
     fitness: Callable[[pd.DataFrame], Any] = objective_fn
     features: Callable[[pd.DataFrame], Any] | None = fd_fn
     path: Path | None = None
+    modules: tuple[Path, ...] = ()
 
     @property
     def digests(self) -> dict[str, str]:
-        """Digest of the file, or of there being none."""
-        return {"objective": "default" if self.path is None else file_digest(self.path)}
+        """Digests of the file, or of there being none, and of what it has imported."""
+        if self.path is None:
+            return {"objective": "default"}
+        folder = self.path.absolute().parent
+        modules = {f"objective's module {file.relative_to(folder)}": file_digest(file) for file in self.modules}
+        return {"objective": file_digest(self.path), **modules}
 
     def judge(self, rows: pd.DataFrame, with_features: bool = False) -> Judgement:
         """Return what the functions say of rows, as of `pogosim.utils.load_dataframe` for a batch.
@@ -174,7 +180,9 @@ def load_objective(path: str, objective_name: str | None, features_name: str | N
     Raises:
         OptimizeError: There is no such file or function, or it cannot be imported.
     """
+    before = set(sys.modules)
     module = imported(Path(path))
+    modules = own_modules(Path(path), set(sys.modules) - before)
     names = (objective_name,) if objective_name is not None else OBJECTIVE_NAMES
     fitness = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), None)
     if fitness is None:
@@ -185,7 +193,20 @@ def load_objective(path: str, objective_name: str | None, features_name: str | N
     features = getattr(module, features_name or FEATURES_NAME, None)
     if features_name is not None and not callable(features):
         raise OptimizeError(f"--features-func: {path} has no function {features_name}")
-    return Objective(fitness, features if callable(features) else None, Path(path))
+    return Objective(fitness, features if callable(features) else None, Path(path), modules)
+
+
+def own_modules(path: Path, names: set[str]) -> tuple[Path, ...]:
+    """Return the files of those modules that are the user's: in the folder of a file, and of no installed package."""
+    files = {Path(getattr(sys.modules[name], "__file__", None) or "/") for name in names if name != module_name(path)}
+    folder = path.absolute().parent
+    below = {file: file.relative_to(folder).parts for file in files if file.is_relative_to(folder)}
+    return tuple(sorted(file for file, parts in below.items() if not {"site-packages", "pogosim"} & set(parts)))
+
+
+def module_name(path: Path) -> str:
+    """Return the name under which the file of the objective is imported."""
+    return f"pogoptim_objective_{path.stem}"
 
 
 def imported(path: Path) -> ModuleType:
@@ -197,7 +218,7 @@ def imported(path: Path) -> ModuleType:
     if not path.is_file():
         what = "is a folder" if path.is_dir() else "does not exist"
         raise OptimizeError(f"--objective: {path} {what}; expected a Python file with a function objective_fn(df)")
-    specification = importlib.util.spec_from_file_location(f"pogoptim_objective_{path.stem}", path.absolute())
+    specification = importlib.util.spec_from_file_location(module_name(path), path.absolute())
     if specification is None or specification.loader is None:
         raise OptimizeError(f"--objective: {path} is not a Python file: its name does not end with .py")
     module = importlib.util.module_from_spec(specification)
