@@ -191,6 +191,52 @@ def test_combinations_that_no_column_tells_apart_are_warned_of(tmp_path: Path) -
     )
 
 
+@pytest.mark.parametrize(
+    ("values", "cells"),
+    [
+        (["m/s", "rad/s"], ["m/s", "rad/s"]),
+        (["a/net.json", "b/net.json"], ["a/net.json", "b/net.json"]),
+        (["a/net.json", "b/other.json"], ["net", "other"]),
+        (["./x/one", "./y/two"], ["one", "two"]),
+    ],
+)
+def test_values_that_differ_are_told_apart_by_their_column(values: list[str], cells: list[str], tmp_path: Path) -> None:
+    options = {"parameters": {"p": {"batch_options": values}}, "objects.robots.nb": 1, "simulation_time": 0.1}
+    write_options(
+        tmp_path, {**options, "result_new_columns": ["parameters.p"], "result_filename_format": "all.feather"}
+    )
+    result = batch(tmp_path, "-r", "1")
+    assert result.code == 0
+    assert "no column tells" not in result.errors, result.errors
+    rows = load_dataframe(tmp_path / "results" / "all.feather")[0]
+    assert list(dict.fromkeys(rows["parameters.p"])) == cells
+
+
+def test_value_with_a_slash_makes_no_folder(tmp_path: Path) -> None:
+    write_options(
+        tmp_path,
+        {
+            "parameters": {"p": {"batch_options": ["m/s", "rad/s"]}},
+            "result_filename_format": "r_{parameters.p}.feather",
+        },
+    )
+    listed = batch(tmp_path, "--list-outputs")
+    assert listed.output.split() == ["results/r_m_s.feather", "results/r_rad_s.feather"]
+
+
+def test_column_of_an_alternative_is_proposed_as_it_has_to_be_written(tmp_path: Path) -> None:
+    alternatives = {"few": {"type": "pogobot", "nb": 2}, "one": {"type": "pogobot", "nb": 2, "radius": 20}}
+    changes = {"objects.robots": {"batch_hierarchical_options": alternatives}, "result_filename_format": "all.feather"}
+    write_options(tmp_path, {**changes, "result_new_columns": ["arena_file"], "objects.robots.nb": None})
+    result = batch(tmp_path, "-r", "1")
+    assert "no column tells its combinations apart; add to result_new_columns: " in result.errors
+    proposed = result.errors.split("add to result_new_columns: ")[1].splitlines()[0].split(", ")
+    assert "objects.robots" in proposed
+    for column in proposed:
+        write_options(tmp_path, {**changes, "result_new_columns": [column], "objects.robots.nb": None})
+        assert "no column" not in batch(tmp_path, "-r", "1").errors, column
+
+
 def test_outputs_are_listed_and_chosen_by_name_or_path(tmp_path: Path) -> None:
     write_options(tmp_path, {"result_filename_format": "r{objects.robots.nb}.feather"})
     listed = batch(tmp_path, "--list-outputs")

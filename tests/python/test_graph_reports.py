@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
 from pogosim.analysis.trajectories import trajectories_of
 from pogosim.reports.command import main as analyze
+from pogosim.reports.figures import endings
 from swarms import Floats, brownian_walk, metadata_of, rows_of, write_rows
 
 COMMANDS = ("neighbors", "network", "coverage")
@@ -309,3 +310,9 @@ def test_links_to_an_input_are_not_written_over(
     assert runs_of("neighbors", tmp_path) == 2
     assert f"{other} leads to an input, which might be overwritten" in capsys.readouterr().err
     assert path.read_bytes() == before
+
+
+def test_curves_are_called_by_the_shortest_names_that_tell_parameters_apart() -> None:
+    assert endings(["objects.robots.nb", "arena_file"]) == ["nb", "arena_file"]
+    assert endings(["parameters.a.speed", "parameters.b.speed", "nb"]) == ["a.speed", "b.speed", "nb"]
+    assert endings(["speed", "a.speed", "b.a.speed"]) == ["speed", "a.speed", "b.a.speed"]

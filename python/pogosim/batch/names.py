@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import string
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any
 
@@ -37,16 +37,21 @@ class NamesError(ValueError):
 
 
 def without_folder(value: Any) -> Any:
-    """Return the stem of a path, "disk" of "arenas/disk.csv"; any other value as it is."""
+    """Return the stem of a path, "disk" of "arenas/disk.csv"; any other value, as "m/s", as it is."""
     if not isinstance(value, str):
         return value
     path = PurePath(value)
-    is_path = "/" in value or path.suffix.lower() in FILE_SUFFIXES
+    is_path = path.suffix.lower() in FILE_SUFFIXES or value.startswith(("/", "./", "../"))
     return path.stem if is_path and path.stem else value
 
 
-def value_at(combination: dict[str, Any], path: str) -> Any:
+def value_at(combination: dict[str, Any], path: str, is_whole: bool = False) -> Any:
     """Return what stands for a key in results: the name of the chosen alternative, the stem of a path, or the value.
+
+    Args:
+        combination: Its configuration.
+        path: The key.
+        is_whole: A path is not reduced to its stem.
 
     Raises:
         KeyError: There is no such key.
@@ -54,7 +59,8 @@ def value_at(combination: dict[str, Any], path: str) -> Any:
     choices = combination.get(CHOICES)
     if isinstance(choices, dict) and path in choices:
         return choices[path]
-    return without_folder(get_by_dotted_path(combination, path))
+    value = get_by_dotted_path(combination, path)
+    return value if is_whole else without_folder(value)
 
 
 class DottedFormatter(string.Formatter):
@@ -72,6 +78,8 @@ class DottedFormatter(string.Formatter):
                 f"there is no key '{field_name}' in the configuration; expected the dotted path of a key, "
                 "such as {objects.robots.nb}",
             ) from None
+        if isinstance(value, str) and field_name not in kwargs.get(CHOICES, {}):
+            value = value.replace("/", "_")  # "m/s" makes no folder
         if isinstance(value, (dict, list)):
             raise NamesError(FORMAT, f"'{field_name}' is not a single value but {shown(value)}; choose a key below it")
         return value, field_name
@@ -120,8 +128,28 @@ def is_linked_out(path: str, folder: str) -> bool:
     return not Path(path).resolve().is_relative_to(real)
 
 
-def new_columns(combination: dict[str, Any]) -> dict[str, Any]:
+def ambiguous(combinations: Sequence[dict[str, Any]]) -> frozenset[str]:
+    """Return the keys among the new columns whose paths have the same stem in some combinations without being the same.
+
+    Raises:
+        NamesError: `result_new_columns` is wrong.
+    """
+    found = set()
+    paths: dict[tuple[str, str], str] = {}  # by key and stem
+    for combination in combinations:
+        for name, stem in new_columns(combination).items():
+            whole = cell(combination, name, is_whole=True)
+            if isinstance(whole, str) and paths.setdefault((name, stem), whole) != whole:
+                found.add(name)
+    return frozenset(found)
+
+
+def new_columns(combination: dict[str, Any], whole: Container[str] = ()) -> dict[str, Any]:
     """Return the constant columns of a combination: names (dotted paths), and values (None: it has no such key).
+
+    Args:
+        combination: Its configuration.
+        whole: Keys whose paths are not reduced to their stems.
 
     Raises:
         NamesError: `result_new_columns` is wrong.
@@ -133,13 +161,13 @@ def new_columns(combination: dict[str, Any]) -> dict[str, Any]:
         names = [names]
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise NamesError(COLUMNS, f"expected a list of keys, such as [arena_file], found {shown(names)}")
-    return {name: cell(combination, name) for name in names}
+    return {name: cell(combination, name, name in whole) for name in names}
 
 
-def cell(combination: dict[str, Any], path: str) -> Any:
+def cell(combination: dict[str, Any], path: str, is_whole: bool = False) -> Any:
     """Return what a column has for a key: a single value, lists and maps as YAML, or None if there is no such key."""
     try:
-        value = value_at(combination, path)
+        value = value_at(combination, path, is_whole)
     except KeyError:
         return None
     return dump_yaml(value, is_flow=True).strip() if isinstance(value, (dict, list)) else value

@@ -17,7 +17,7 @@ from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import find_program, program_digest, world_digest
-from pogosim.batch.names import new_columns, value_at
+from pogosim.batch.names import ambiguous, new_columns, value_at
 from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import report_warnings
@@ -174,10 +174,10 @@ class Runs:
             combined = combinations_of(entries)
         except CombinationsError as error:
             raise self.configuration.error(error) from None
-        combinations = []
+        combinations, whole = [], ambiguous(combined)
         for combination in combined:
             check_logs_data(combination, self.configuration)
-            columns = new_columns(combination)
+            columns = new_columns(combination, whole)
             columns.setdefault(ARENA, value_at(combination, ARENA) if ARENA in combination else None)
             combinations.append(Combination("", columns, combination, tasks_of(combination, seeds, self.settings)))
         keys = {task.key for part in combinations for task in part.tasks}

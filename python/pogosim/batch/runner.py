@@ -16,7 +16,7 @@ from pogosim.batch.errors import BatchError, at_least, cannot, given, one_line, 
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
-from pogosim.batch.names import NamesError, file_name, is_linked_out, new_columns
+from pogosim.batch.names import NamesError, ambiguous, file_name, is_linked_out, new_columns
 from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
@@ -99,6 +99,7 @@ class PogobotBatchRunner:
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
         self.generated: list[str] = []
+        self.whole: frozenset[str] = frozenset()  # columns whose paths are not reduced to their stems
         self.queue: list[Combination] | None = None
         self.run_settings: RunSettings | None = None
         # Configurations of combinations that were written: their text and entries by path.
@@ -136,7 +137,7 @@ class PogobotBatchRunner:
     def compute_new_columns(self, comb_config: dict[str, Any]) -> dict[str, Any]:
         """Return names and values of the constant columns of a combination."""
         try:
-            return new_columns(comb_config)
+            return new_columns(comb_config, self.whole)
         except NamesError as error:
             raise self.names_error(error) from None
 
@@ -286,6 +287,10 @@ class PogobotBatchRunner:
             NothingSelectedError: None has the output that was asked for.
         """
         combinations = self.get_combinations(self.configuration.entries)
+        try:
+            self.whole = ambiguous(combinations)
+        except NamesError as error:
+            raise self.names_error(error) from None
         return with_output(
             [(config, self.compute_output_filename(config)) for config in combinations], self.only_output
         )

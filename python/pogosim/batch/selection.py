@@ -8,6 +8,7 @@ from typing import Any
 
 from pogosim.batch.errors import NothingSelectedError
 from pogosim.batch.names import COLUMNS, NamesError, has_key, new_columns
+from pogosim.batch.option_words import CHOICES
 from pogosim.varied import varied_parameters
 
 
@@ -61,5 +62,6 @@ def indistinguishable(selected: Sequence[tuple[dict[str, Any], str, dict[str, An
         alike.setdefault((output, repr(columns)), []).append(config)
     keys: dict[str, list[str]] = {}
     for (output, _), configs in alike.items():
-        keys[output] = list(dict.fromkeys([*keys.get(output, []), *varied_parameters(configs)]))
+        varied = [key.removeprefix(f"{CHOICES}.") for key in varied_parameters(configs)]
+        keys[output] = list(dict.fromkeys([*keys.get(output, []), *varied]))
     return {output: varied for output, varied in keys.items() if varied}

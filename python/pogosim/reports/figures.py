@@ -51,7 +51,23 @@ def group_of(run: Trajectories, names: Sequence[str]) -> str:
     """Return what a curve of this run's combination is called: its values of these labels; the arena if none differ."""
     if not names:
         return run.arena.name
-    return ", ".join(f"{name.rpartition('.')[2]} {run.labels.get(name)}" for name in names)
+    return ", ".join(f"{short} {run.labels.get(name)}" for name, short in zip(names, endings(names), strict=True))
+
+
+def endings(names: Sequence[str]) -> list[str]:
+    """Return the shortest ends of dotted names that tell them apart: "speed", but "a.speed" beside "b.speed"."""
+    return [next(end for end in ends_of(name) if is_alone(end, names) or end == name) for name in names]
+
+
+def ends_of(name: str) -> list[str]:
+    """Return "c", "b.c" and "a.b.c" of "a.b.c"."""
+    parts = name.split(".")
+    return [".".join(parts[-count:]) for count in range(1, len(parts) + 1)]
+
+
+def is_alone(end: str, names: Sequence[str]) -> bool:
+    """Tell whether only one of the names ends like that."""
+    return sum(end in ends_of(name) for name in names) == 1
 
 
 def groups_of(runs: Sequence[Trajectories]) -> dict[str, list[Trajectories]]:
