@@ -141,6 +141,41 @@ class ConfigurationDumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # typ
         return True
 
 
+class WrittenInt(int):
+    """An integer that knows how it was written: a program may read 0777 as a text."""
+
+    text = ""
+
+
+class WrittenFloat(float):
+    """A number that knows how it was written, as 1.10 was."""
+
+    text = ""
+
+
+def plain(value: Any) -> Any:
+    """Return a number that does not know how it was written; any other value as it is."""
+    return int(value) if isinstance(value, WrittenInt) else float(value) if isinstance(value, WrittenFloat) else value
+
+
+def as_written(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> WrittenInt | WrittenFloat:
+    """Construct a number that knows how it was written."""
+    is_whole = node.tag == INTEGER
+    value = WrittenInt(construct_integer(loader, node)) if is_whole else WrittenFloat(loader.construct_yaml_float(node))
+    value.text = str(node.value)
+    return value
+
+
+def represent_written(dumper: Any, value: WrittenInt | WrittenFloat) -> yaml.ScalarNode:
+    """Represent a number as it was written."""
+    node: yaml.ScalarNode = dumper.represent_scalar(INTEGER if isinstance(value, int) else FLOAT, value.text)
+    return node
+
+
+for written in (WrittenInt, WrittenFloat):
+    ConfigurationDumper.add_representer(written, represent_written)
+
+
 def dump_yaml(value: Any, is_flow: bool = False, dumper: Any = ConfigurationDumper) -> str:
     """Write a value as YAML, in the order of its keys; a single value on one line, and with `is_flow` any value."""
     text: str = yaml.dump(

@@ -7,6 +7,7 @@ import itertools
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -195,8 +196,24 @@ def test_categories_of_the_same_name_stay_as_many_and_words_stay_as_written(tmp_
     assert configuration.entries["objects"]["lamp"] == [{"x": 1}, {"x": 2}]
     text = dump_configuration(configuration.entries)
     assert "mode: on\n" in text
-    assert "n: 1000.0\n" in text
+    assert "n: 1e3\n" in text
     assert "s: '1e3'\n" in text
+
+
+WRITTEN = ["0777", "1.10", "1e3", "+5", "0x1F", "0o17", ".5", "-0", "1.0E+2", "12345678901234567890123", "3", ".inf"]
+
+
+def test_numbers_reach_a_run_as_they_are_written(tmp_path: Path) -> None:
+    path = tmp_path / "many.yaml"
+    path.write_text(f"parameters: {{p: {{batch_options: [{', '.join(WRITTEN)}]}}, list: [007, {{a: 1.50}}]}}\n")
+    combinations = combinations_of(Configuration(path).entries)
+    texts = [dump_configuration(combination) for combination in combinations]
+    assert [text.splitlines()[1].strip() for text in texts] == [f"p: {text}" for text in WRITTEN]
+    assert texts[0].splitlines()[3:] == ["  - 007", "  - a: 1.50"]
+    assert [combination["parameters"]["p"] for combination in combinations][:5] == [777, 1.1, 1000.0, 5, 31]
+    assert pa.array([combination["parameters"]["p"] for combination in combinations][4:6]).to_pylist() == [31, 15]
+    assert str(combinations[0]["parameters"]["p"]) == "777"
+    assert dump_yaml([combinations[0]["parameters"]["p"]], is_flow=True).strip() == "[0777]"
 
 
 def test_key_that_is_repeated_has_its_last_value(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

@@ -13,10 +13,13 @@ import yaml
 from pogosim.batch.errors import BatchError, cannot, one_line
 from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError, check_options
 from pogosim.yaml_1_2 import (
+    FLOAT,
+    INTEGER,
     WRONG_VALUES,
     ConfigurationDumper,
     ConfigurationLoader,
     StructureError,
+    as_written,
     dump_yaml,
     problem_of,
 )
@@ -36,6 +39,8 @@ class BatchLoader(ConfigurationLoader):
     }
 
 
+BatchLoader.add_constructor(INTEGER, as_written)
+BatchLoader.add_constructor(FLOAT, as_written)
 BatchLoader.add_implicit_resolver(
     "tag:yaml.org,2002:bool", re.compile(r"(true|True|TRUE|false|False|FALSE)$"), list("tTfF")
 )

@@ -13,7 +13,7 @@ from pogosim.batch.errors import is_text
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.table_formats import EXPECTED, format_of
-from pogosim.yaml_1_2 import dump_yaml
+from pogosim.yaml_1_2 import dump_yaml, plain
 
 FORMAT = "result_filename_format"
 COLUMNS = "result_new_columns"
@@ -170,7 +170,7 @@ def cell(combination: dict[str, Any], path: str, is_whole: bool = False) -> Any:
         value = value_at(combination, path, is_whole)
     except KeyError:
         return None
-    return dump_yaml(value, is_flow=True).strip() if isinstance(value, (dict, list)) else value
+    return dump_yaml(value, is_flow=True).strip() if isinstance(value, (dict, list)) else plain(value)
 
 
 def has_key(combination: dict[str, Any], path: str) -> bool:

@@ -109,7 +109,7 @@ def identities(value: Any) -> list[Hashable]:
     if value is None or isinstance(value, bool):
         return [("word", value)]
     if isinstance(value, (int, float)):
-        return [("number", value if value == value else "nan"), ("text", str(value))]
+        return [("number", value if value == value else "nan"), ("text", getattr(value, "text", str(value)))]
     return [("text", str(value))]
 
 

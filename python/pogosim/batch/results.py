@@ -24,7 +24,7 @@ from pogosim.run_columns import RUN, tells_runs_apart
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.tables import TableWriter, table_writer, write_metadata_beside
 from pogosim.times import as_float64
-from pogosim.yaml_1_2 import dump_yaml, parse_yaml
+from pogosim.yaml_1_2 import dump_yaml, parse_yaml, plain
 
 ROWS_PER_BATCH = 65536
 RESOLVED = "resolved_configuration"
@@ -107,7 +107,7 @@ def check_columns(schema: pa.Schema, columns: Sequence[str], program: str) -> No
 
 def column_type(values: Sequence[Any]) -> pa.DataType:
     """Return the type of a column with these values: bool, int64, float64, or string if they are of several kinds."""
-    kinds = {type(value) for value in values if value is not None}
+    kinds = {type(plain(value)) for value in values if value is not None}
     if kinds == {bool}:
         return pa.bool_()
     if kinds == {int} and all(abs(value) < 2**63 for value in values if value is not None):

@@ -23,6 +23,7 @@ from pogosim.optimize.history import JOURNAL, Evaluation
 from pogosim.optimize.settings import SECTION
 from pogosim.optimize.variables import Space, Values, as_json
 from pogosim.outputs import leads_to, partial_output, real_output
+from pogosim.yaml_1_2 import plain
 
 HISTORY = "opt_history.csv"
 HISTORY_TABLE = "opt_history.feather"
@@ -129,7 +130,7 @@ def free_name(name: str, taken: Collection[str]) -> str:
 
 def plain_column(values: Sequence[Any]) -> Sequence[Any]:
     """Return values that have one type as they are, and others as text."""
-    kinds = {type(value) for value in values if value is not None}
+    kinds = {type(plain(value)) for value in values if value is not None}
     if int in kinds and any(isinstance(value, int) and abs(value) >= 2**63 for value in values):
         kinds = {list}  # too large for a column of numbers
     if len(kinds) <= 1 and not kinds & {list, dict}:
