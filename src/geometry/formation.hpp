@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,6 +28,12 @@ struct RowsOfOthers {
     bool may_follow = false;  // those after the rows used may be of others, too, so too many are no warning
 };
 
+/// How many objects of a category a formation places.
+struct CategoryCount {
+    std::string category;
+    std::size_t count = 0;
+};
+
 /// The keys `initial_formation*`, `formation_*`, `chessboard_*` and `imported_*` of a configuration.
 struct FormationSpec {
     std::string name = "power_lloyd";
@@ -39,6 +47,8 @@ struct FormationSpec {
     bool cluster_at_centre = true;  // chessboard: rings around the centre; false: spread over the bounding box
     std::string filename;           // imported: csv or feather
     RowsOfOthers rows_of_others{};  // imported
+    std::vector<CategoryCount> categories{};  // imported: of all objects that get a row, in their order
+    std::vector<std::string> placed_apart{};  // imported: categories that get none
     Vec2 imported_min{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
     Vec2 imported_max{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
 };
@@ -64,6 +74,28 @@ struct ImportedPose {
     double heading_rad = std::numeric_limits<double>::quiet_NaN();  // NaN: not given, drawn at random
     double time_s = 0.0;                                            // only the rows of the smallest time count
     std::size_t row = 0;                                            // line of a csv file, row of a table; for messages
+    std::shared_ptr<std::string const> category{};                  // in a data file of a run; its rows share it
+    bool is_part = false;                                           // a dot of a membrane
+};
+
+/// Names that many rows share.
+class SharedNames {
+public:
+    /// The name, the same object for equal ones.
+    std::shared_ptr<std::string const> shared(std::string const& name) {
+        if (!last_ || *last_ != name) {
+            auto& known = names_[name];
+            if (!known) {
+                known = std::make_shared<std::string const>(name);
+            }
+            last_ = known;
+        }
+        return last_;
+    }
+
+private:
+    std::map<std::string, std::shared_ptr<std::string const>> names_;
+    std::shared_ptr<std::string const> last_;
 };
 
 /// Objects do not fit, or a value of the spec makes no sense. The message starts with the key of the configuration.

@@ -76,8 +76,22 @@ std::vector<double> numbers_of(std::filesystem::path const& path, arrow::Array c
     return numbers;
 }
 
-void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& batch,
-                  std::vector<ImportedPose>& poses) {
+/// The categories of the rows, in a data file of a run; empty in other files.
+std::vector<std::shared_ptr<std::string const>> categories_of(std::filesystem::path const& path,
+                                                              arrow::RecordBatch const& batch, SharedNames& names) {
+    auto const column = batch.GetColumnByName("robot_category");
+    std::vector<std::shared_ptr<std::string const>> categories;
+    if (column && arrow::is_base_binary_like(column->type_id())) {
+        for (std::int64_t i = 0; i < column->length(); ++i) {
+            auto const cell = value_or_fail(path, column->GetScalar(i));
+            categories.push_back(cell->is_valid ? names.shared(cell->ToString()) : nullptr);
+        }
+    }
+    return categories;
+}
+
+void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& batch, std::vector<ImportedPose>& poses,
+                  SharedNames& names) {
     auto const x = find_column(path, batch, {"x"});
     auto const y = find_column(path, batch, {"y"});
     if (!x || !y) {
@@ -92,6 +106,9 @@ void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& b
     auto const angles = angle ? numbers_of(path, *angle, "angle") : std::vector<double>();
     auto const time = find_column(path, batch, {"time"});
     auto const times = time ? numbers_of(path, *time, "time") : std::vector<double>();
+    auto const categories = categories_of(path, batch, names);
+    auto const part = batch.GetColumnByName("subpart_id");
+    auto const parts = part ? numbers_of(path, *part, "subpart_id") : std::vector<double>();
     for (std::size_t i = 0; i < xs.size(); ++i) {
         ImportedPose pose;
         pose.x = xs[i];
@@ -103,6 +120,10 @@ void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& b
         if (!times.empty()) {
             pose.time_s = times[i];
         }
+        if (!categories.empty()) {
+            pose.category = categories[i];
+            pose.is_part = !parts.empty() && parts[i] >= 0.0;
+        }
         poses.push_back(pose);
     }
 }
@@ -113,8 +134,9 @@ std::vector<ImportedPose> read_imported_feather(std::filesystem::path const& pat
     auto const file = open_file(path);
     auto const reader = value_or_fail(path, arrow::ipc::RecordBatchFileReader::Open(file));
     std::vector<ImportedPose> poses;
+    SharedNames names;
     for (int i = 0; i < reader->num_record_batches(); ++i) {
-        append_poses(path, *value_or_fail(path, reader->ReadRecordBatch(i)), poses);
+        append_poses(path, *value_or_fail(path, reader->ReadRecordBatch(i)), poses, names);
     }
     return poses;
 }

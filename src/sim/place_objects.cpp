@@ -247,6 +247,16 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
             }
         }
     }
+    if (formation.name == kImportedFormation) {
+        for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
+            ObjectConfig const& object = scenario.objects[i];
+            if (std::ranges::find(entries, i) == entries.end()) {
+                formation.placed_apart.push_back(object.category);
+            } else {
+                formation.categories.push_back({object.category, static_cast<std::size_t>(object.nb)});
+            }
+        }
+    }
     warn_of_overlaps(scenario, world);
     for (std::size_t const i : own_entries) {
         poses[i] = place_apart(scenario, world, scenario.objects[i], obstacles, random);

@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 import yaml
 from matplotlib.path import Path as Outline
+from pogosim.utils import load_dataframe
 from running import ROOT, Run, example, run, run_command
 
 Floats = npt.NDArray[np.float64]
@@ -193,6 +194,54 @@ def test_more_rows_than_objects_is_one_warning_and_rows_go_by_category(tmp_path:
     assert "poses.csv: has 4 poses (rows with the first time value) for 3 objects" in warning
     changes["objects.others"] = {**ROBOT, "nb": 3}
     assert warnings(simulate(tmp_path, **changes)) == []
+
+
+LEADER = {"objects.leader": {**ROBOT, "x": 800, "y": 800}}
+SWARM = {"objects.robots": {**ROBOT, "nb": 4}}
+WALL = {"objects.walls": {"type": "pogowall", "geometry": "arena"}}
+RING = {"type": "membrane", "geometry": "disk", "radius": 100, "num_dots": 20, "dot_radius": 8, "x": 800, "y": 300}
+OF_THEIR_OWN = {
+    "leader first": {**LEADER, **SWARM},
+    "leader behind": {**SWARM, **LEADER},
+    "walls first": {**WALL, **SWARM},
+    "walls and leader between": {"objects.a": {**ROBOT, "nb": 2}, **WALL, **LEADER, **SWARM},
+    "dots of a membrane": {"objects.ring": {**RING, "serialize_dot_pose": True}, **SWARM},
+    "bars with a formation of their own": {
+        "objects.bars": {**BAR, "body_height": 60, "nb": 2, "initial_formation": "random"},
+        **SWARM,
+    },
+    "other order": {**SWARM, "objects.a": {**ROBOT, "nb": 2, "radius": 20}, "objects.b": {**ROBOT, "nb": 3}},
+}
+
+
+@pytest.mark.parametrize("ending", ["feather", "csv"])
+@pytest.mark.parametrize("name", OF_THEIR_OWN)
+def test_rows_of_a_run_go_to_the_objects_of_their_categories(name: str, ending: str, tmp_path: Path) -> None:
+    scene = OF_THEIR_OWN[name]
+    simulate(tmp_path / "first", **{"initial_formation": "random", "data_filename": f"d.{ending}"}, **scene)
+    again = dict(reversed(scene.items())) if name == "other order" else scene
+    file = str(tmp_path / "first" / f"d.{ending}")
+    second = simulate(tmp_path / "second", initial_formation="imported", formation_filename=file, **again)
+    assert [line for line in warnings(second) if "rows" in line or "row" in line] == []
+    rows = load_dataframe(file)[0]
+    for category in ("robots", "a", "b"):
+        start = rows[(rows["time"] == 0.0) & (rows["robot_category"] == category)]
+        own = at_start(second, category)
+        np.testing.assert_allclose(points(own), points(start), atol=1e-3)
+        np.testing.assert_allclose(own["angle"], start["angle"], atol=1e-3)
+
+
+def test_rows_of_other_categories_are_taken_in_their_order_with_a_warning(tmp_path: Path) -> None:
+    header = "time,robot_category,x,y\n"
+    tmp_path.joinpath("poses.csv").write_text(header + "0,robots,100,100\n0,robots,200,100\n0,b,300,100\n0,b,400,100\n")
+    scene = {"initial_formation": "imported", "formation_filename": "poses.csv"}
+    done = simulate(tmp_path, **scene, **{"objects.robots": {**ROBOT, "nb": 3}, "objects.b": {**ROBOT, "nb": 1}})
+    np.testing.assert_allclose(points(at_start(done, "robots")), [[100, 100], [200, 100], [300, 100]])
+    (warning,) = warnings(done)
+    assert "poses.csv:4: this position of 'b' is taken for an object of 'robots': the file has too few rows" in warning
+    tmp_path.joinpath("poses.csv").write_text(header + "0,a,100,100\n0,a,200,100\n0,a,300,100\n0,a,400,100\n")
+    one = simulate(tmp_path / "one", **{**scene, "formation_filename": str(tmp_path / "poses.csv")}, **SWARM)
+    assert warnings(one) == []
 
 
 def test_run_starts_where_another_one_with_a_root_object_did(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "geometry/csv_text.hpp"
+#include "geometry/formations/rows_by_category.hpp"
 #include "geometry/formations/task.hpp"
 
 namespace pogosim {
@@ -32,6 +33,8 @@ struct Columns {
     std::optional<std::size_t> angle;
     std::optional<std::size_t> time;
     std::size_t count = 2;  // fields that a line must have at least
+    std::optional<std::size_t> category{};
+    std::optional<std::size_t> part{};
 };
 
 std::optional<std::size_t> find_column(std::vector<std::string> const& names, std::string_view name,
@@ -74,7 +77,7 @@ double number_in(std::vector<std::string> const& fields, std::size_t column, std
 }
 
 ImportedPose parse_pose(std::vector<std::string> const& fields, Columns const& columns, std::size_t row,
-                        std::string const& where) {
+                        std::string const& where, SharedNames& categories) {
     if (fields.size() < columns.count) {
         throw ConfigError(
             fmt::format("{}: expected {} fields between commas, found {}", where, columns.count, fields.size()));
@@ -83,11 +86,16 @@ ImportedPose parse_pose(std::vector<std::string> const& fields, Columns const& c
     pose.x = number_in(fields, columns.x, where);
     pose.y = number_in(fields, columns.y, where);
     pose.row = row;
-    if (columns.angle && !fields[*columns.angle].empty()) {
+    bool const is_undirected = columns.category && columns.angle && fields[*columns.angle] == "nan";  // a membrane
+    if (columns.angle && !fields[*columns.angle].empty() && !is_undirected) {
         pose.heading_rad = number_in(fields, *columns.angle, where);
     }
     if (columns.time) {
         pose.time_s = number_in(fields, *columns.time, where);
+    }
+    if (columns.category) {
+        pose.category = categories.shared(fields[*columns.category]);
+        pose.is_part = columns.part && parse_number(fields[*columns.part]).value_or(-1.0) >= 0.0;
     }
     return pose;
 }
@@ -95,6 +103,7 @@ ImportedPose parse_pose(std::vector<std::string> const& fields, Columns const& c
 std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
     std::vector<ImportedPose> poses;
     std::optional<Columns> columns;
+    SharedNames categories;
     for (CsvLine const& line : read_csv(path).lines) {
         if (line.text.empty()) {
             continue;
@@ -105,8 +114,11 @@ std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
         if (!columns) {
             columns = header ? columns_of_header(fields, where) : Columns{};
         }
-        if (!header) {
-            poses.push_back(parse_pose(fields, *columns, line.number, where));
+        if (header) {
+            columns->category = find_column(fields, "robot_category", where);
+            columns->part = find_column(fields, "subpart_id", where);
+        } else {
+            poses.push_back(parse_pose(fields, *columns, line.number, where, categories));
         }
     }
     return poses;
@@ -272,6 +284,7 @@ void warn_of_degrees(PlacementTask const& task, std::vector<ImportedPose> const&
 std::vector<Placement> place_imported(PlacementTask const& task) {
     std::vector<ImportedPose> poses = read_poses(task);
     keep_first_instant(poses);
+    sort_by_category(task.spec, poses);
     std::size_t const count = task.radii_mm.size();
     RowsOfOthers const& others = task.spec.rows_of_others;
     std::size_t const needed = count + others.count;
