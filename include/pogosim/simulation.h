@@ -102,7 +102,8 @@ void data_add_column_float16(char const* name);
 /// Sets the value of a column in this object's row; only in callback_export_data. Elsewhere, it does nothing, with a
 /// warning. A column that is not set is null, and so is a NULL string. An unknown column, or a type other than
 /// declared, is an error; columns omitted from `data_logger_fields` are ignored. float has 24 significant bits, float16
-/// has 11 and is at most 65504. Integers beyond the range of the type wrap around, with a warning.
+/// has 11 and is at most 65504. Integers beyond the range of the type wrap around, with a warning (without one for an
+/// unsigned int in a column of 32 bits, as -8 is one).
 /// @range the range of the type
 void data_set_value_int8(char const* name, int8_t value);
 void data_set_value_int16(char const* name, int16_t value);
@@ -115,13 +116,39 @@ void data_set_value_bool(char const* name, bool value);
 void data_set_value_float16(char const* name, float value);
 ///@}
 
-// What data_set_value_int8() and the others call, with the `bits` of their type: 8, 16 or 32.
-void pogosim_data_set_value_int(char const* name, int64_t value, int bits);
+// The value of a column of integers, as these functions take it. One beyond the range is told here: as an argument of
+// data_set_value_int8(), it would already have been wrapped. An unsigned int for a column of 32 bits is not: a
+// difference of two, such as -8, is far beyond the range until it is wrapped.
+int8_t pogosim_int8_value(int64_t value);
+int16_t pogosim_int16_value(int64_t value);
+int32_t pogosim_int32_value(int64_t value);
+int32_t pogosim_int32_of_unsigned(unsigned int value);
 #ifndef POGOSIM_INSIDE
-// So that a value beyond the range is told: as an argument of these functions, it would have been wrapped already.
-#define data_set_value_int8(name, value) pogosim_data_set_value_int((name), (value), 8)
-#define data_set_value_int16(name, value) pogosim_data_set_value_int((name), (value), 16)
-#define data_set_value_int32(name, value) pogosim_data_set_value_int((name), (value), 32)
+// Each begins with the name of its function, so that a member of this name can be called, too. (Inside a macro, its own
+// name is the function's.)
+#define data_set_value_int8(name, ...) data_set_value_int8(name, pogosim_int8_value((__VA_ARGS__)))
+#define data_set_value_int16(name, ...) data_set_value_int16(name, pogosim_int16_value((__VA_ARGS__)))
+#ifdef __cplusplus
+extern "C++" {
+template <class T>
+struct PogosimIfUnsignedInt {};
+template <>
+struct PogosimIfUnsignedInt<unsigned int> {
+    using Column = int32_t;
+};
+template <class T>
+POGO_INLINE typename PogosimIfUnsignedInt<T>::Column pogosim_int32_value(T value) {
+    return pogosim_int32_of_unsigned(value);
+}
+}
+#define data_set_value_int32(name, ...) data_set_value_int32(name, pogosim_int32_value((__VA_ARGS__)))
+#else
+// clang-format off
+#define data_set_value_int32(name, ...)                                                                               \
+    data_set_value_int32(name, __extension__ _Generic((__VA_ARGS__), unsigned int: pogosim_int32_of_unsigned,         \
+                                                      default: pogosim_int32_value)((__VA_ARGS__)))
+// clang-format on
+#endif
 #endif
 
 ///@{

@@ -113,16 +113,17 @@ void set_value(char const* function, char const* name, ColumnType type, CellValu
     });
 }
 
+/// `function`: the one that the value is for.
 template <class Integer>
-void set_integer(char const* function, char const* name, ColumnType type, std::int64_t value) {
+Integer as_column(char const* function, std::int64_t value) {
     auto const recorded = static_cast<Integer>(value);
-    set_value(function, name, type, std::int64_t{recorded});
     if (recorded != value) [[unlikely]] {
         constexpr std::string_view expected = sizeof(Integer) == 1   ? "-128 to 127"
                                               : sizeof(Integer) == 2 ? "-32768 to 32767"
                                                                      : "-2147483648 to 2147483647";
         pogosim::note_slip({function, "value", expected, "its lowest bits are recorded; take a larger type"}, value);
     }
+    return recorded;
 }
 
 void set_exported(char const* function, bool exported) {
@@ -165,17 +166,17 @@ void data_add_column_float(char const* name) {
     add_column(__func__, name, ColumnType::float32);
 }
 
-void pogosim_data_set_value_int(char const* name, int64_t value, int bits) {
-    switch (bits) {
-        case 8:
-            set_integer<std::int8_t>("data_set_value_int8", name, ColumnType::int8, value);
-            break;
-        case 16:
-            set_integer<std::int16_t>("data_set_value_int16", name, ColumnType::int16, value);
-            break;
-        default:
-            set_integer<std::int32_t>("data_set_value_int32", name, ColumnType::int32, value);
-    }
+int8_t pogosim_int8_value(int64_t value) {
+    return as_column<std::int8_t>("data_set_value_int8", value);
+}
+int16_t pogosim_int16_value(int64_t value) {
+    return as_column<std::int16_t>("data_set_value_int16", value);
+}
+int32_t pogosim_int32_value(int64_t value) {
+    return as_column<std::int32_t>("data_set_value_int32", value);
+}
+int32_t pogosim_int32_of_unsigned(unsigned int value) {
+    return static_cast<int32_t>(value);
 }
 void data_set_value_int8(char const* name, int8_t value) {
     set_value(__func__, name, ColumnType::int8, std::int64_t{value});

@@ -87,6 +87,91 @@ def test_sample_compiles_as_c_with_pedantic_warnings(name: str, std: str, semico
     compile_program(tmp_path / "sample", PROGRAMS / "sample.c", compiler=name, flags=flags)
 
 
+BYTES = "(uint8_t*)&m, sizeof(m)"
+SENDING_CALLS = [
+    f"pogobot_infrared_{function}({direction}{BYTES})"
+    for function, direction in [
+        ("sendLongMessage_omniGen", ""),
+        ("sendLongMessage_omniSpe", ""),
+        ("sendLongMessage_uniSpe", "ir_left, "),
+        ("sendShortMessage_omni", ""),
+        ("sendShortMessage_uni", "ir_all, "),
+    ]
+]
+# Calls as in tables of functions, in inline functions, and with commas that are in no parentheses.
+CALLS = """#include "pogobase.h"
+typedef struct { uint8_t a; uint16_t b; } msg_t;
+typedef struct {
+    uint32_t (*pogobot_infrared_sendShortMessage_omni)(uint8_t* const, uint16_t const);
+    uint32_t (*pogobot_infrared_sendLongMessage_uniSpe)(ir_direction, uint8_t* const, uint16_t const);
+    void (*data_set_value_int8)(char const*, int8_t);
+    void (*data_set_value_int32)(char const*, int32_t);
+} api_t;
+static api_t const table = {pogobot_infrared_sendShortMessage_omni, pogobot_infrared_sendLongMessage_uniSpe,
+                            data_set_value_int8, data_set_value_int32};
+static api_t const* api = &table;
+inline uint32_t send_all(msg_t m);
+inline uint32_t send_all(msg_t m) {
+    return SENDING_CALLS;
+}
+extern uint32_t send_all(msg_t m);
+static void add(void) {
+    data_add_column_int8("byte");
+    data_add_column_int32("word");
+    data_add_column_int32("sum");
+}
+static void step(void) {
+    msg_t m = {1, 2};
+    uint32_t failed = send_all(m) + api->pogobot_infrared_sendShortMessage_omni((uint8_t*)&m, sizeof(m));
+    failed += table.pogobot_infrared_sendLongMessage_uniSpe(ir_front, (uint8_t*)&m, sizeof(m));
+    LANGUAGE_SENDS
+    if (failed) { pogobot_infrared_sendShortMessage_omni(NULL, 0); }
+}
+static void set(void) {
+    uint32_t const difference = pogobot_ticks - pogobot_ticks - 8;
+    api->data_set_value_int8("byte", -3);
+    table.data_set_value_int32("word", INT32_MIN);
+    LANGUAGE_SETS
+}
+int main(void) {
+    pogobot_init();
+    pogobot_start(NULL, step);
+    SET_CALLBACK(callback_create_data_schema, add);
+    SET_CALLBACK(callback_export_data, set);
+    return 0;
+}
+""".replace("SENDING_CALLS", " + ".join(SENDING_CALLS))
+C_CALLS = {
+    "LANGUAGE_SENDS": "failed += pogobot_infrared_sendShortMessage_omni((uint8_t*)&(msg_t){1, 2}, sizeof(msg_t));",
+    "LANGUAGE_SETS": 'data_set_value_int32("sum", difference + (struct { unsigned c, d; }){1, 2}.d);',
+}
+CPP_CALLS = {
+    "LANGUAGE_SENDS": "failed += pogobot_infrared_sendShortMessage_omni(std::array<uint8_t, 2>{1, 2}.data(), 2);",
+    "LANGUAGE_SETS": """enum Two : uint8_t { two = 2 };
+    auto const two_of = [](auto, auto) { return std::map<int, uint32_t>{{1, 2u}}.at(1); };
+    data_set_value_int32("sum", [&, d = difference] { return d + two_of(two, std::max<int>(1, 2)); }());""",
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "standard"),
+    [(name, standard) for name in C_COMPILERS for standard in C_STANDARDS]
+    + [(name, standard) for name in CPP_COMPILERS for standard in CPP_STANDARDS],
+)
+def test_functions_that_are_macros_too_are_called_as_functions(name: str, standard: str, tmp_path: Path) -> None:
+    is_cpp = "++" in standard
+    text = "#include <algorithm>\n#include <array>\n#include <map>\n" * is_cpp + CALLS
+    for key, calls in (CPP_CALLS if is_cpp else C_CALLS).items():
+        text = text.replace(key, calls)
+    source = tmp_path / ("main.cpp" if is_cpp else "main.c")
+    source.write_text(text)
+    flags = [f"-std={standard}", *STRICT, "-Wpedantic", "-Wconversion"]
+    result = run(compile_program(tmp_path / "main", source, compiler=name, flags=flags), tmp_path)
+    assert (result.code, [line for line in result.errors.splitlines() if "arrived" not in line]) == (0, [])
+    row = result.frame().iloc[-1]
+    assert [int(row[column]) for column in ("byte", "word", "sum")] == [-3, -(2**31), -6]
+
+
 STANDARD_HEADERS = "".join(f"#include <{name}>\n" for name in ("algorithm", "cstdio", "iostream", "map", "random"))
 
 

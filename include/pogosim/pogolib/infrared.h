@@ -153,7 +153,7 @@ void pogobot_infrared_set_power(uint8_t power);
 // Receiving, without msg_rx_fn. When the queue is full, new messages are dropped.
 
 /// Decodes received data on a real robot, which gets no messages without it; does nothing in the simulator. The main
-/// loop of pogobase.h calls it.
+/// loop of pogobase.h calls it if msg_rx_fn is set: a user_step that reads messages itself calls it first.
 void pogobot_infrared_update(void);
 /// Non-zero if a message is waiting. A loop that waits for it goes on when a message comes; call
 /// pogobot_infrared_update() and msleep() in it.
@@ -182,28 +182,34 @@ static POGO_INLINE void pogobot_infrared_recover_next_message(message_t* message
 }
 
 // Records in the program what a call sends, for pogosim-shared-state: a constant with the text of its arguments, in the
-// scope in which that text is valid. (Inside a macro, its own name is the function's.)
+// scope in which that text is valid. A call begins with the name of its function, so that a member of this name can be
+// called, too. (Inside a macro, its own name is the function's.)
 #ifndef POGOSIM_INSIDE
-static POGO_INLINE uint32_t pogosim_first(uint32_t result, char const* note) {
-    (void)note;
-    return result;
-}
+#ifdef __cplusplus
+#define POGO_NO_MESSAGE static_cast<uint8_t*>(nullptr)
+#define POGO_NO_DIRECTION ir_front
+#else
+#define POGO_NO_MESSAGE NULL
+#define POGO_NO_DIRECTION 0
+#endif
+// Is false: `POGO_NOTE_SENT(message, size) ? NULL : message, size` are the same arguments, however many commas there
+// are in braces.
 #define POGO_NOTE_SENT(...)                                                                      \
     __extension__({                                                                              \
         static char const pogosim_sent_arguments[] __attribute__((used, unused)) = #__VA_ARGS__; \
-        &pogosim_sent_arguments[0];                                                              \
+        0;                                                                                       \
     })
 // clang-format off
 #define pogobot_infrared_sendLongMessage_omniGen(...) \
-    pogosim_first(pogobot_infrared_sendLongMessage_omniGen(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+    pogobot_infrared_sendLongMessage_omniGen(POGO_NOTE_SENT(__VA_ARGS__) ? POGO_NO_MESSAGE : __VA_ARGS__)
 #define pogobot_infrared_sendLongMessage_omniSpe(...) \
-    pogosim_first(pogobot_infrared_sendLongMessage_omniSpe(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+    pogobot_infrared_sendLongMessage_omniSpe(POGO_NOTE_SENT(__VA_ARGS__) ? POGO_NO_MESSAGE : __VA_ARGS__)
 #define pogobot_infrared_sendLongMessage_uniSpe(...) \
-    pogosim_first(pogobot_infrared_sendLongMessage_uniSpe(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+    pogobot_infrared_sendLongMessage_uniSpe(POGO_NOTE_SENT(__VA_ARGS__) ? POGO_NO_DIRECTION : __VA_ARGS__)
 #define pogobot_infrared_sendShortMessage_omni(...) \
-    pogosim_first(pogobot_infrared_sendShortMessage_omni(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+    pogobot_infrared_sendShortMessage_omni(POGO_NOTE_SENT(__VA_ARGS__) ? POGO_NO_MESSAGE : __VA_ARGS__)
 #define pogobot_infrared_sendShortMessage_uni(...) \
-    pogosim_first(pogobot_infrared_sendShortMessage_uni(__VA_ARGS__), POGO_NOTE_SENT(__VA_ARGS__))
+    pogobot_infrared_sendShortMessage_uni(POGO_NOTE_SENT(__VA_ARGS__) ? POGO_NO_DIRECTION : __VA_ARGS__)
 // clang-format on
 #endif
 
