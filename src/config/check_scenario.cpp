@@ -79,7 +79,9 @@ void require_name(Scenario const& scenario, char const* key, std::string const& 
     Node const* node = source_of(scenario).tree.find(key);
     if (name.empty() || (node != nullptr && node->kind == Node::Kind::null)) {
         Node const& cause = node == nullptr ? place_of(scenario, needed_by).node : *node;
-        fail_at({cause, key}, fmt::format("expected a file name, found nothing; '{}' needs it", needed_by));
+        bool const has_options = node != nullptr && !node->scalar.empty();  // of a batch
+        fail_at({cause, key}, fmt::format("expected a file name, found {}; '{}' needs it",
+                                          has_options ? node->scalar : "nothing", needed_by));
     }
 }
 

@@ -84,6 +84,7 @@ struct Key {
     bool required = false;
     bool (*is_used)(T const&) = nullptr;  // absent: always; asked when the keys above it in the table have been read
     std::string_view same_as{};           // the key that this is an alias of; only one of them may be set
+    bool refuses_blank = false;           // check_scenario() does, so no warning says that the default is used
 
     bool has_effect(T const& values) const { return is_used == nullptr || is_used(values); }
 
@@ -92,6 +93,13 @@ struct Key {
     Key only_if(bool (*condition)(T const&)) const {
         Key key = *this;
         key.is_used = condition;
+        return key;
+    }
+
+    /// The same key, whose value check_scenario() asks for.
+    Key needing_a_name() const {
+        Key key = *this;
+        key.refuses_blank = true;
         return key;
     }
 
@@ -111,6 +119,7 @@ struct KeyDescription {
     std::string unit;
     std::string doc;
     bool required = false;
+    bool refuses_blank = false;
 };
 
 /// One function object out of several, for std::visit.
@@ -131,6 +140,7 @@ KeyDescription describe(Key<T> const& key, T const& defaults) {
     description.unit = key.unit;
     description.doc = key.doc;
     description.required = key.required;
+    description.refuses_blank = key.refuses_blank;
     std::visit(Overloaded{
                    [&](Choice<T> const& choice) {
                        description.expected = names_text(choice.names);

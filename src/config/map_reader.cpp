@@ -186,7 +186,7 @@ void MapReader::finish(std::vector<std::string> const& ignored) const {
     for (auto const& [key, value] : map_.entries) {
         auto const known = std::ranges::find(known_, key, &KeyDescription::name);
         if (known != known_.end()) {
-            if (value.blank && !known->default_text.empty()) {
+            if (value.blank && !known->default_text.empty() && !known->refuses_blank) {
                 report_blank(*known, value);
             }
         } else if (key != kBatchChoices && std::ranges::find(ignored, key) == ignored.end()) {

@@ -23,7 +23,8 @@ std::span<Key<Scenario> const> scenario_keys() {
         // Space.
         K{"arena_file", &Scenario::arena_file, any(), "",
           "Required. Outline of the arena (CSV); searched in the working folder, next to the configuration file, then "
-          "in Pogosim's own folder."},
+          "in Pogosim's own folder."}
+            .needing_a_name(),
         K{"arena_surface", NumberOr<Scenario>{&Scenario::arena_surface_mm2, "file"},
           above(0).up_to(kMaxLength * kMaxLength).usually_from(100), "mm2",
           "Area inside the outer wall minus the holes; the outline is scaled to match it. file: the arena file is in "
@@ -133,7 +134,8 @@ std::span<Key<FormationSpec> const> formation_keys() {
         K{"formation_cluster_at_center", &FormationSpec::cluster_at_centre, any(), "",
           "chessboard: place objects around the centre; false: spread them over the arena."},
         K{"formation_filename", &FormationSpec::filename, any(), "",
-          "imported: CSV or Feather file with columns x, y and optionally angle; searched like arena_file."},
+          "imported: CSV or Feather file with columns x, y and optionally angle; searched like arena_file."}
+            .needing_a_name(),
         K{"imported_formation_min_coords", &FormationSpec::imported_min, any().or_nan(), "unit of the file",
           "imported: corner of the file's box that is mapped onto the arena's bounding box; .nan: no mapping."}
             .only_if(is_imported),
@@ -150,7 +152,8 @@ std::span<Key<OutputConfig> const> output_keys() {
     static std::array const keys{
         K{"enable_data_logging", &OutputConfig::enable_data_logging, any(), "", "Write the data file."},
         K{"data_filename", &OutputConfig::data_filename, any(), "",
-          "Data file; the ending says the format: .feather, .parquet or .csv. Missing folders are created."},
+          "Data file; the ending says the format: .feather, .parquet or .csv. Missing folders are created."}
+            .needing_a_name(),
         K{"save_data_period", &OutputConfig::save_data_period_s, between(-1e9, 1e9), "s",
           "Time between records; shorter than time_step: a record at every step; 0 or less: only record time 0."}
             .only_if(has_data),
@@ -166,7 +169,8 @@ std::span<Key<OutputConfig> const> output_keys() {
           "Message log, a row for each message and robot in reach; format as that of the data file. Empty: none."}
             .only_if([](OutputConfig const& output) { return !output.message_log.empty(); }),
         K{"enable_console_logging", &OutputConfig::enable_console_logging, any(), "", "Write the console file."},
-        K{"console_filename", &OutputConfig::console_filename, any(), "", "Console file; missing folders are created."},
+        K{"console_filename", &OutputConfig::console_filename, any(), "", "Console file; missing folders are created."}
+            .needing_a_name(),
         K{"log_format",
           one_of(&OutputConfig::log_format,
                  {{"default", LogFormat::dated}, {"date", LogFormat::dated}, {"minimal", LogFormat::minimal}}),

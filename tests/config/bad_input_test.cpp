@@ -128,6 +128,20 @@ TEST(BadInput, FileNamesCountOnlyWhenTheFileIsWritten) {
               "x.yaml:6: console_filename: expected a file name, found nothing; 'enable_console_logging' needs it");
 }
 
+TEST(BadInput, FileNameThatIsMissingIsToldOnce) {
+    std::string const settings = kRobots + "enable_console_logging: true\ninitial_formation: imported\n";
+    for (std::string const key : {"arena_file", "data_filename", "console_filename", "formation_filename"}) {
+        Warnings const warnings;
+        std::string const message = load_error(settings + key + ":\n");
+        EXPECT_NE(message.find(key + ": expected a file name, found nothing; '"), std::string::npos) << message;
+        EXPECT_EQ(warnings.text(), "") << key;
+        std::string const options = load_error(settings + key + ": {batch_options: [a, b]}\n");
+        EXPECT_NE(options.find(key + ": expected a file name, found options without default_option; '"),
+                  std::string::npos)
+            << options;
+    }
+}
+
 TEST(BadInput, FrameNamesHoldOneNumber) {
     for (char const* name : {"f.png", "f{}{}.png", "f{:s}.png", "f{0}.png", "f{", "f}", "f{:{}}.png", "f{:d}.png",
                              "f{:0999999999f}.png", "f{{}}.png", ""}) {
