@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "geometry/arena.hpp"
+#include "geometry/formations/heading_column.hpp"
 #include "geometry/obstacle.hpp"
 
 namespace pogosim {
@@ -98,6 +99,12 @@ private:
     std::shared_ptr<std::string const> last_;
 };
 
+/// A file for the formation `imported`.
+struct ImportedPoses {
+    std::vector<ImportedPose> rows;
+    ImportRemark remark{};
+};
+
 /// Objects do not fit, or a value of the spec makes no sense. The message starts with the key of the configuration.
 class FormationError : public ConfigError {
 public:
@@ -116,7 +123,7 @@ constexpr char const* kFormationKey = "initial_formation";
 constexpr char const* kImportedFormation = "imported";
 
 /// Reads all poses of a file that is not text. Its mistakes are ConfigErrors.
-using PoseReader = std::function<std::vector<ImportedPose>(std::filesystem::path const&)>;
+using PoseReader = std::function<ImportedPoses(std::filesystem::path const&)>;
 
 /// Names of all formations, in the table's order.
 std::span<std::string const> formation_names();

@@ -9,7 +9,6 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <string>
@@ -44,18 +43,13 @@ std::shared_ptr<arrow::io::ReadableFile> open_file(std::filesystem::path const& 
     return value_or_fail(path, arrow::io::ReadableFile::Open(descriptor));
 }
 
-/// One of the names' columns, or nullptr.
+/// The column of this name, or nullptr.
 std::shared_ptr<arrow::Array> find_column(std::filesystem::path const& path, arrow::RecordBatch const& batch,
-                                          std::initializer_list<char const*> names) {
-    for (char const* const name : names) {
-        if (batch.schema()->GetAllFieldIndices(name).size() > 1) {
-            fail(path, fmt::format("it has several columns '{}'; rename or remove all but one", name));
-        }
-        if (auto column = batch.GetColumnByName(name)) {
-            return column;
-        }
+                                          std::string const& name) {
+    if (batch.schema()->GetAllFieldIndices(name).size() > 1) {
+        fail(path, fmt::format("it has several columns '{}'; rename or remove all but one", name));
     }
-    return nullptr;
+    return batch.GetColumnByName(name);
 }
 
 /// The numbers of a column; NaN where it is null.
@@ -90,21 +84,22 @@ std::vector<std::shared_ptr<std::string const>> categories_of(std::filesystem::p
     return categories;
 }
 
-void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& batch, std::vector<ImportedPose>& poses,
+void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& batch, ImportedPoses& poses,
                   SharedNames& names) {
-    auto const x = find_column(path, batch, {"x"});
-    auto const y = find_column(path, batch, {"y"});
+    auto const x = find_column(path, batch, "x");
+    auto const y = find_column(path, batch, "y");
     if (!x || !y) {
         fail(path, "it has no columns 'x' and 'y'");
     }
     auto const xs = numbers_of(path, *x, "x");
     auto const ys = numbers_of(path, *y, "y");
-    // In a data file of ours, theta is a column of the program: a phase, for instance.
     auto const metadata = batch.schema()->metadata();
-    bool const is_ours = metadata && metadata->Contains("program_version");
-    auto const angle = is_ours ? find_column(path, batch, {"angle"}) : find_column(path, batch, {"theta", "angle"});
+    HeadingColumn const heading =
+        heading_column(batch.schema()->field_names(), metadata && metadata->Contains("program_version"));
+    poses.remark = heading.remark;
+    auto const angle = heading.name.empty() ? nullptr : find_column(path, batch, std::string(heading.name));
     auto const angles = angle ? numbers_of(path, *angle, "angle") : std::vector<double>();
-    auto const time = find_column(path, batch, {"time"});
+    auto const time = find_column(path, batch, "time");
     auto const times = time ? numbers_of(path, *time, "time") : std::vector<double>();
     auto const categories = categories_of(path, batch, names);
     auto const part = batch.GetColumnByName("subpart_id");
@@ -113,7 +108,7 @@ void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& b
         ImportedPose pose;
         pose.x = xs[i];
         pose.y = ys[i];
-        pose.row = poses.size();
+        pose.row = poses.rows.size();
         if (!angles.empty()) {
             pose.heading_rad = angles[i];
         }
@@ -124,16 +119,16 @@ void append_poses(std::filesystem::path const& path, arrow::RecordBatch const& b
             pose.category = categories[i];
             pose.is_part = !parts.empty() && parts[i] >= 0.0;
         }
-        poses.push_back(pose);
+        poses.rows.push_back(pose);
     }
 }
 
 }  // namespace
 
-std::vector<ImportedPose> read_imported_feather(std::filesystem::path const& path) {
+ImportedPoses read_imported_feather(std::filesystem::path const& path) {
     auto const file = open_file(path);
     auto const reader = value_or_fail(path, arrow::ipc::RecordBatchFileReader::Open(file));
-    std::vector<ImportedPose> poses;
+    ImportedPoses poses;
     SharedNames names;
     for (int i = 0; i < reader->num_record_batches(); ++i) {
         append_poses(path, *value_or_fail(path, reader->ReadRecordBatch(i)), poses, names);

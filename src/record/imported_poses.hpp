@@ -2,15 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "geometry/formation.hpp"
 
 namespace pogosim {
 
 /// All rows of a Feather V2 file with columns x and y, optionally angle (rad) and time (s); theta is the angle in files
-/// of other programs. Throws ConfigError
-/// when the file cannot be read or a column is missing or not numeric.
-std::vector<ImportedPose> read_imported_feather(std::filesystem::path const& path);
+/// of other programs. Throws ConfigError when the file cannot be read or a column is missing or not numeric.
+ImportedPoses read_imported_feather(std::filesystem::path const& path);
 
 }  // namespace pogosim

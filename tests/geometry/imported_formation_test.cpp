@@ -146,7 +146,7 @@ TEST_F(ImportedFormation, FewMillimetresApartIsNoFileInMetres) {
 
 TEST_F(ImportedFormation, RowWithoutAPositionIsRefused) {
     reader_ = [](fs::path const&) {
-        return std::vector<ImportedPose>{{.x = 10, .y = 20}, {.x = std::nan(""), .y = 20, .row = 1}};
+        return ImportedPoses{{{.x = 10, .y = 20}, {.x = std::nan(""), .y = 20, .row = 1}}};
     };
     spec_.filename = folder_ / "poses.feather";
     EXPECT_TRUE(error_of("", 2).starts_with("poses.feather:1: the row has no position (x nan, y 20)"))
@@ -238,6 +238,48 @@ TEST_F(AnglesOfAFile, UpToAFullTurnAreUsual) {
     EXPECT_EQ(messages_.str(), "");
 }
 
+TEST_F(AnglesOfAFile, ThatAreNotReadAreToldOnce) {
+    struct Case {
+        std::string header;
+        std::string told;
+    };
+    std::string const random = "headings are random, since no column is named 'angle' or 'theta'; ";
+    for (auto const& [header, told] :
+         {Case{"x,y,heading", random + "'heading' is ignored. If 'heading' is the heading in radians, name it 'angle'"},
+          Case{"x,y,angel", random + "'angel' is ignored. If 'angel' is the heading in radians, name it 'angle'"},
+          Case{"x,y,Angle", random + "'Angle' is ignored. If 'Angle' is"},
+          Case{"x,y,orientation", random + "'orientation' is ignored. If"},
+          Case{"id,x,y,yaw_deg", random + "'id', 'yaw_deg' are ignored. If 'yaw_deg' is"},
+          Case{"x,y,theta (rad),note", random + "'theta (rad)', 'note' are ignored. If 'theta (rad)' is"},
+          Case{"angle,x,y,theta", "headings are those of 'theta'; 'angle' is ignored"},
+          Case{"id,x,y,note", random + "'id', 'note' are ignored"},
+          Case{"x,y,robot_category", "headings are random: the data file has no column 'angle'"}}) {
+        messages_.str("");
+        place_from(header + "\n10,20,30,40\n50,60,70,80\n", 2);
+        std::string const text = messages_.str();
+        EXPECT_NE(text.find("poses.csv: " + told), std::string::npos) << text;
+        EXPECT_EQ(text.find("poses.csv: "), text.rfind("poses.csv: ")) << text;
+    }
+    for (char const* const header : {"x,y", "x,y,time", "theta,id,x,y", "x,y,angle,heading", ",x,y",
+                                     "x,y,angle,theta,robot_category"}) {
+        messages_.str("");
+        place_from(std::string(header) + "\n30,30,30,30,30\n", 1);
+        EXPECT_EQ(messages_.str().find("heading"), std::string::npos) << messages_.str();
+    }
+}
+
+TEST_F(AnglesOfAFile, WithoutAHeaderAreToldOnce) {
+    place_from("10,20,0\n30,40,1.5\n", 2);
+    EXPECT_NE(messages_.str().find("poses.csv: only the first two of 3 columns are read, as x and y, and headings are "
+                                   "random: the file has no header. For headings in radians, let it begin with the "
+                                   "line x,y,angle\n"),
+              std::string::npos)
+        << messages_.str();
+    messages_.str("");
+    place_from("10,20\n30,40\n", 2);
+    EXPECT_EQ(messages_.str(), "");
+}
+
 TEST_F(ImportedFormation, MissingFileOrNameIsRefused) {
     EXPECT_THROW(place_now(1), ConfigError);
     spec_.filename = folder_.path().string();
@@ -250,11 +292,11 @@ TEST_F(ImportedFormation, FeatherFilesGoToTheReaderThatIsGiven) {
     spec_.filename = "poses.feather";
     EXPECT_THROW(place_now(1), ConfigError);
     fs::path asked;
-    reader_ = [&](fs::path const& path) -> std::vector<ImportedPose> {
+    reader_ = [&](fs::path const& path) -> ImportedPoses {
         asked = path;
-        return {{.x = 700, .y = 20, .heading_rad = 1.0, .time_s = 2.0, .row = 1},
-                {.x = 10, .y = 20, .heading_rad = 0.25, .time_s = 1.0, .row = 2},
-                {.x = 30, .y = 40, .time_s = 1.0, .row = 3}};
+        return {{{.x = 700, .y = 20, .heading_rad = 1.0, .time_s = 2.0, .row = 1},
+                 {.x = 10, .y = 20, .heading_rad = 0.25, .time_s = 1.0, .row = 2},
+                 {.x = 30, .y = 40, .time_s = 1.0, .row = 3}}};
     };
     auto const placements = place_now(2);
     EXPECT_EQ(asked, "poses.feather");

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "geometry/csv_text.hpp"
@@ -51,7 +52,7 @@ bool is_header(std::vector<std::string> const& fields) {
     return std::ranges::any_of(fields, [](std::string_view f) { return !f.empty() && !parse_number(f); });
 }
 
-Columns columns_of_header(std::vector<std::string> const& names, std::string const& where) {
+Columns columns_of_header(std::vector<std::string> const& names, std::string const& where, ImportRemark& remark) {
     auto const find = [&](std::string_view name) { return find_column(names, name, where); };
     auto const x = find("x");
     auto const y = find("y");
@@ -61,10 +62,9 @@ Columns columns_of_header(std::vector<std::string> const& names, std::string con
                         "wanted), found {}",
                         where, in_quotes(fmt::format("{}", fmt::join(names, ",")))));
     }
-    // In a data file of ours, theta is a column of the program: a phase, for instance.
-    auto const theta = find("robot_category") ? std::nullopt : find("theta");
-    auto const angle = theta ? theta : find("angle");
-    return {*x, *y, angle, find("time"), names.size()};
+    HeadingColumn const heading = heading_column(names, /*is_data_file=*/find("robot_category").has_value());
+    remark = heading.remark;
+    return {*x, *y, heading.name.empty() ? std::nullopt : find(heading.name), find("time"), names.size()};
 }
 
 double number_in(std::vector<std::string> const& fields, std::size_t column, std::string const& where) {
@@ -100,8 +100,8 @@ ImportedPose parse_pose(std::vector<std::string> const& fields, Columns const& c
     return pose;
 }
 
-std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
-    std::vector<ImportedPose> poses;
+ImportedPoses read_csv_poses(std::filesystem::path const& path) {
+    ImportedPoses poses;
     std::optional<Columns> columns;
     SharedNames categories;
     for (CsvLine const& line : read_csv(path).lines) {
@@ -111,14 +111,17 @@ std::vector<ImportedPose> read_csv_poses(std::filesystem::path const& path) {
         std::string const where = fmt::format("{}:{}", path.string(), line.number);
         std::vector<std::string> const fields = split_fields(line.text);
         bool const header = !columns && is_header(fields);
-        if (!columns) {
-            columns = header ? columns_of_header(fields, where) : Columns{};
+        if (!columns && header) {
+            columns = columns_of_header(fields, where, poses.remark);
+        } else if (!columns) {
+            columns = Columns{};
+            poses.remark = remark_without_header(fields.size());
         }
         if (header) {
             columns->category = find_column(fields, "robot_category", where);
             columns->part = find_column(fields, "subpart_id", where);
         } else {
-            poses.push_back(parse_pose(fields, *columns, line.number, where, categories));
+            poses.rows.push_back(parse_pose(fields, *columns, line.number, where, categories));
         }
     }
     return poses;
@@ -137,7 +140,7 @@ std::string first_bytes(std::filesystem::path const& path, std::size_t count) {
     return bytes;
 }
 
-std::vector<ImportedPose> read_poses(PlacementTask const& task) {
+ImportedPoses read_poses(PlacementTask const& task) {
     std::filesystem::path const path = task.spec.filename;
     if (path.empty()) {
         throw FormationError(kFormationKey, "'imported' needs a file: set formation_filename");
@@ -263,6 +266,13 @@ void check_places(PlacementTask const& task, std::vector<ImportedPose> const& po
     }
 }
 
+void say(PlacementTask const& task, ImportRemark const& remark) {
+    if (!remark.text.empty()) {
+        log().log(remark.is_warning ? spdlog::level::warn : spdlog::level::info, "{}: {}", task.spec.filename,
+                  remark.text);
+    }
+}
+
 /// Headings are in radians: more than a full turn looks like degrees, as it does in a configuration.
 void warn_of_degrees(PlacementTask const& task, std::vector<ImportedPose> const& poses) {
     constexpr double usual_max_rad = 6.3;
@@ -282,7 +292,8 @@ void warn_of_degrees(PlacementTask const& task, std::vector<ImportedPose> const&
 }  // namespace
 
 std::vector<Placement> place_imported(PlacementTask const& task) {
-    std::vector<ImportedPose> poses = read_poses(task);
+    ImportedPoses file = read_poses(task);
+    std::vector<ImportedPose>& poses = file.rows;
     keep_first_instant(poses);
     sort_by_category(task.spec, poses);
     std::size_t const count = task.radii_mm.size();
@@ -290,16 +301,16 @@ std::vector<Placement> place_imported(PlacementTask const& task) {
     std::size_t const needed = count + others.count;
     if (poses.size() < needed) {
         throw ConfigError(
-            fmt::format("{}: expected at least {} pose{} (rows with the first time value), one for each "
-                        "object, found {}",
-                        task.spec.filename, needed, needed == 1 ? "" : "s", poses.size()));
+            fmt::format("{}: expected at least {} (rows with the first time value), one for each object, found {}",
+                        task.spec.filename, counted(needed, "pose"), poses.size()));
     }
     if (poses.size() > needed && !others.may_follow) {
-        log().warn("{}: has {} poses (rows with the first time value) for {} objects; the last {} {} ignored",
-                   task.spec.filename, poses.size(), needed, poses.size() - needed,
+        log().warn("{}: has {} poses (rows with the first time value) for {}; the last {} {} ignored",
+                   task.spec.filename, poses.size(), counted(needed, "object"), poses.size() - needed,
                    poses.size() - needed == 1 ? "is" : "are");
     }
     if (others.count == 0 || others.may_follow) {  // for a file of several tasks, once
+        say(task, file.remark);
         warn_of_degrees(task, poses);
     }
     auto const first_of_others = poses.begin() + static_cast<std::ptrdiff_t>(others.first);
