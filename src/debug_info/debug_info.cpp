@@ -63,6 +63,11 @@ void read_type(Dwarf_Die* variable, Object& object) {
             case DW_TAG_pointer_type:
                 object.pointer = true;
                 return;
+            case DW_TAG_structure_type:
+            case DW_TAG_class_type:
+            case DW_TAG_union_type:
+                object.structure = true;
+                return;
             default:
                 return;
         }

@@ -31,6 +31,7 @@ struct Object {
     uint64_t bytes = 0;
     bool constant = false;  ///< its type is const, or a reference
     bool pointer = false;
+    bool structure = false;  ///< or a class, or an array of them
 };
 
 /// What a call of init_from_configuration(variable) and the like left behind.

@@ -10,13 +10,14 @@ namespace shared_state {
 
 namespace {
 
-// Shared unintentionally: writable, or set by the first robot that ran the line.
+// Shared unintentionally: writable, or set by the first robot that ran the line. (What is outside of functions is set
+// before main().)
 bool is_suspect(Object const& object, ProgramFile const& program) {
     auto const section = program.section_at(object.address);
     if (!section.writable || section.name.starts_with("pogo_shared")) {
         return false;
     }
-    return !object.constant || program.has_guard(program.symbol_at(object.address));
+    return !object.constant || (object.function_scope != 0 && program.has_guard(program.symbol_at(object.address)));
 }
 
 }  // namespace

@@ -1,14 +1,41 @@
 #include "robot/program_symbols.hpp"
 
+#include <cxxabi.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <string_view>
 #include <utility>
 
 #include "robot/elf_file.hpp"
 
 namespace pogosim {
+
+bool ProgramSymbols::has_guard(std::string const& symbol) const {
+    // _ZGVZ4namevE1n for _ZZ4namevE1n (Itanium C++ ABI, 5.1.5.1)
+    return symbol.starts_with("_Z") &&
+           std::ranges::find(variables, "_ZGV" + symbol.substr(2), &Variable::name) != variables.end();
+}
+
+std::string name_by_symbol(std::string const& symbol) {
+    int status = 0;
+    std::unique_ptr<char, void (*)(void*)> const demangled(
+        abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), std::free);
+    if (demangled != nullptr) {
+        return demangled.get();
+    }
+    std::size_t const dot = symbol.find('.');
+    bool const is_numbered =
+        dot != std::string::npos && symbol.find_first_not_of("0123456789.", dot) == std::string::npos;
+    std::string name = is_numbered ? symbol.substr(0, dot) : symbol;
+    if (std::size_t const inner = name.find('.'); inner != std::string::npos) {
+        name.replace(inner, 1, "::");
+    }
+    return name;
+}
 
 #ifdef __linux__
 

@@ -28,7 +28,15 @@ struct ProgramSymbols {
     std::vector<Variable> variables{};
     std::vector<Piece> memory{};  // of which robots may have their own: not POGO_SHARED, nor what is of libraries
     std::vector<std::string> imports{};  // names of functions and variables of libraries
+
+    /// Whether a C++ object with this symbol is initialised at most once, when the program gets there for the first
+    /// time.
+    bool has_guard(std::string const& symbol) const;
 };
+
+/// "steps" for the symbol "steps.0" of a variable in a function (gcc), "user_step::steps" for "user_step.steps" (clang),
+/// "name()::n" for "_ZZ4namevE1n" (C++).
+std::string name_by_symbol(std::string const& symbol);
 
 /// `file`: the bytes of an executable or a shared object, which need not be well-formed.
 ProgramSymbols symbols_of(std::span<char const> file);

@@ -152,9 +152,10 @@ bool is_of_simulator_or_mathematical(std::string const& name) {
 }
 
 bool is_own(std::string_view name) {
-    // completed.0: of the C compiler, set when the program ends. DW.ref: where C++ finds its own functions.
+    // completed.0: of the C compiler, set when the program ends. DW.ref: where C++ finds its own functions. _ZGV: guards
+    // of static variables, which stand in the table beside these.
     return std::ranges::find(kOwnVariables, name) != kOwnVariables.end() || name.starts_with("completed.") ||
-           name.starts_with("DW.ref.") || name.starts_with("pogo_user_data_");
+           name.starts_with("DW.ref.") || name.starts_with("pogo_user_data_") || name.starts_with("_ZGV");
 }
 
 std::byte* address_in(ProgramImage const& image, ProgramSymbols::Variable const& variable) {
@@ -189,8 +190,12 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     for (ProgramSymbols::Variable const& variable : symbols.variables) {
         if (!is_own(variable.name) &&
             (variable.is_of_thread || !is_configured(address_in(image, variable), variable.bytes, bound))) {
-            return fmt::format("all robots share the variable '{}' (put it into USERDATA, or declare it const)",
-                               variable.name);
+            bool const is_constant_of_first = symbols.has_guard(variable.name);
+            return fmt::format(
+                "all robots share the variable '{}' ({})", name_by_symbol(variable.name),
+                is_constant_of_first
+                    ? "the first robot that gets there sets it: put it into USERDATA, or make it constexpr"
+                    : "put it into USERDATA, or declare it const");
         }
     }
     for (std::string const& name : symbols.imports) {
@@ -219,9 +224,9 @@ std::vector<ProgramSymbols::Variable> variables_of_all_robots(ProgramImage const
             return place >= begin && place < begin + variable.bytes;
         });
     };
-    // Names that begin with two underscores are the compiler's, _ZGV stands before guards of static variables.
+    // Names that begin with two underscores are the compiler's.
     auto const is_of_compiler = [](ProgramSymbols::Variable const& variable) {
-        return variable.name.starts_with("__") || variable.name.starts_with("_ZGV") || is_own(variable.name);
+        return variable.name.starts_with("__") || is_own(variable.name);
     };
     std::erase_if(symbols.variables, [&](ProgramSymbols::Variable const& variable) {
         return variable.is_of_thread || is_of_compiler(variable) || !is_robots(variable) ||

@@ -1,13 +1,10 @@
 #include "robot/shared_variables_check.hpp"
 
-#include <cxxabi.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -42,25 +39,6 @@ bool is_new(ProgramImage const& image) {
     static std::set<Program> known;
     std::lock_guard const lock(mutex);
     return known.emplace(image.file, image.file_time).second;
-}
-
-/// "steps" for the symbol "steps.0" of a variable in a function (gcc), and "user_step::steps" for "user_step.steps"
-/// (clang).
-std::string name_by_symbol(std::string const& symbol) {
-    int status = 0;
-    std::unique_ptr<char, void (*)(void*)> const demangled(
-        abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), std::free);
-    if (demangled != nullptr) {
-        return demangled.get();
-    }
-    std::size_t const dot = symbol.find('.');
-    bool const is_numbered =
-        dot != std::string::npos && symbol.find_first_not_of("0123456789.", dot) == std::string::npos;
-    std::string name = is_numbered ? symbol.substr(0, dot) : symbol;
-    if (std::size_t const inner = name.find('.'); inner != std::string::npos) {
-        name.replace(inner, 1, "::");
-    }
-    return name;
 }
 
 #ifdef __linux__
@@ -114,9 +92,11 @@ bool mentions(std::string_view expression, std::string_view word) {
 }
 
 /// Finds shared variables by symbols alone. These do not distinguish variables from C++ constants that are initialised
-/// at run time. Parameters are recognised by name, even if they have not been read yet.
+/// at run time, before main() or when the first robot gets there (then they have a guard). Parameters are recognised by
+/// name, even if they have not been read yet.
 Found found_by_symbols(ProgramImage const& image, std::vector<ProgramSymbols::Variable> const& suspects) {
     Found found{.is_certain = image.constructors == nullptr};
+    ProgramSymbols const symbols = suspects.empty() ? ProgramSymbols() : image.symbols();
     std::vector<std::string> const configured =
         suspects.empty() ? std::vector<std::string>() : configured_expressions(image);
     for (ProgramSymbols::Variable const& variable : suspects) {
@@ -124,6 +104,7 @@ Found found_by_symbols(ProgramImage const& image, std::vector<ProgramSymbols::Va
         std::string_view const word = std::string_view(name).substr(std::min(name.rfind(':') + 1, name.size()));
         auto const is_mentioned = [word](std::string const& expression) { return mentions(expression, word); };
         if (std::ranges::none_of(configured, is_mentioned)) {
+            found.is_certain = found.is_certain && !symbols.has_guard(variable.name);
             found.names.push_back(fmt::format("'{}'", name));
         }
     }
@@ -153,9 +134,13 @@ Found found_in(ProgramImage const& image, std::vector<ProgramSymbols::Variable> 
         std::vector<std::string> with_lines;
         for (shared_state::Object const& object :
              shared_state::shared_variables(info, file, shared_state::system_folders())) {
-            if (suspected.contains(object.address)) {
-                with_lines.push_back(fmt::format("{} ({}:{})", shared_state::shown_name(object),
-                                                 shared_state::shown_file(object.file), object.line));
+            // A constant object has a constructor, so it is set when the first robot gets there, even to the same text
+            // for all; a number is only if it is calculated then.
+            bool const is_usual_constant = object.constant && object.structure;
+            if (suspected.contains(object.address) && !is_usual_constant) {
+                with_lines.push_back(fmt::format("{} ({}:{}{})", shared_state::shown_name(object),
+                                                 shared_state::shown_file(object.file), object.line,
+                                                 object.constant ? ", set once, by the first robot" : ""));
             }
         }
         found.is_certain = found.is_certain || found.names.empty();

@@ -163,6 +163,54 @@ def test_objects_of_cpp_are_named(tmp_path: Path) -> None:
     assert warning.startswith("all robots share the variable 'mine::counter' (main.cpp:5), of which ")
 
 
+CONSTANTS = {
+    "in a function": (
+        'static std::string const& name() { static std::string const one = "robot"; return one; }',
+        "(void)name().size();",
+    ),
+    "several": (
+        "struct Table { int at[3]; }; static Table make() { return {{1, 2, int(std::rand())}}; }",
+        'static auto const table = make(); static std::string const names[] = {"a", "b"}; '
+        "(void)table.at[names[0].size()];",
+    ),
+    "member": ('struct Own { static inline std::string const name = "x"; };', "(void)Own::name.size();"),
+    "number that is a member": ("struct Own { static inline int const n = std::rand(); };", "(void)Own::n;"),
+    "of a template": (
+        "template <class T> T const& nothing() { static T const none{}; return none; }",
+        "(void)nothing<std::string>().size();",
+    ),
+}
+CPP_COMPILERS = [name for names in (("g++",), ("clang++", "clang++-14")) if (name := compiler(*names))]
+
+
+def build_cpp(folder: Path, variable: str, step: str, name: str, *flags: str) -> Path:
+    text = "#include <string>\n" + CPP.replace("{{", "{").replace("}}", "}")
+    text = text.replace("{variable}", variable).replace("{step}", step)
+    return compile_text(folder, text, "main.cpp", compiler=name, flags=list(flags))
+
+
+@pytest.mark.parametrize("flags", [["-g", "-O0"], ["-g", "-O2"], ["-g0"]], ids=" ".join)
+@pytest.mark.parametrize("name", CPP_COMPILERS)
+@pytest.mark.parametrize("case", CONSTANTS)
+def test_constant_objects_are_not_shared_by_mistake(case: str, name: str, flags: list[str], tmp_path: Path) -> None:
+    assert told(build_cpp(tmp_path, *CONSTANTS[case], name, *flags), tmp_path) == []
+
+
+@pytest.mark.parametrize("name", CPP_COMPILERS)
+def test_constant_number_that_the_first_robot_sets_is_told_as_that(name: str, tmp_path: Path) -> None:
+    step = "static uint16_t const id = pogobot_helper_getid(); uint16_t volatile used = id; (void)used;"
+    (warning,) = told(build_cpp(tmp_path, "", step, name, "-g"), tmp_path)
+    assert "variable 'id' in step() (main.cpp:7, set once, by the first robot), of which each real robot" in warning
+
+
+def test_robots_that_share_such_a_constant_take_their_steps_one_after_the_other(tmp_path: Path) -> None:
+    result = run(build_cpp(tmp_path, *CONSTANTS["in a function"], "g++", "-g"), tmp_path, {"threads": 2})
+    assert (
+        "all robots share the variable 'name[abi:cxx11]()::one' (the first robot that gets there sets it: put it into "
+        "USERDATA, or make it constexpr)"
+    ) in result.output
+
+
 def test_process_says_it_once_for_each_program(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     shared = "-shared -fPIC -g"
     programs = [build(tmp_path / name, f"uint32_t {name};", f"{name}++;", flags=shared) for name in ("first", "second")]
