@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/counted.hpp"
 #include "base/memory.hpp"
 #include "geometry/polygon.hpp"
 
@@ -62,8 +63,8 @@ void Visibility::update(World const& world) {
                               .ignore_occlusions = world.ignore_occlusions};
     if (structure != structure_) {
         structure_ = structure;
-        allocate_for([&] { return fmt::format("the neighbour grid of {} robots", world.robots.size()); }, std::nullopt,
-                     [&] { start(world); });
+        allocate_for([&] { return fmt::format("the neighbour grid of {}", counted(world.robots.size(), "robot")); },
+                     std::nullopt, [&] { start(world); });
     }
     cells_.update(world);
     note_switched(world);

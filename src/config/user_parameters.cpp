@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
@@ -35,8 +36,8 @@ double read_number(Place const& place, double largest) {
 
 /// A value of which the program reads only the beginning.
 void warn_of_rest(Place const& place, std::string_view what, std::size_t found, std::size_t most) {
-    log().warn("{}: {}: the program has room for {} {}, found {}; the rest is ignored", place.node.where(),
-               shown(place.path), most, what, found);
+    log().warn("{}: {}: the program has room for {}, found {}; the rest is ignored", place.node.where(),
+               shown(place.path), counted(most, what), found);
 }
 
 }  // namespace
@@ -99,7 +100,7 @@ std::optional<std::string> UserParameters::text(std::string const& name, std::si
     auto text = read<std::string>(name, {});
     if (text && text->size() > most) {
         if (read_.size() > read_before) {
-            warn_of_rest({*find_path(parameters_, name), path_of(name)}, "characters", text->size(), most);
+            warn_of_rest({*find_path(parameters_, name), path_of(name)}, "character", text->size(), most);
         }
         text->resize(most);
     }
@@ -120,7 +121,7 @@ std::optional<std::vector<double>> UserParameters::numbers(std::string const& na
         fail_at(place, fmt::format("expected a list of at least {} numbers, found {}", size, node->items.size()));
     }
     if (node->items.size() > size && read_.size() > read_before) {
-        warn_of_rest(place, "numbers", node->items.size(), size);
+        warn_of_rest(place, "number", node->items.size(), size);
     }
     std::vector<double> numbers(size);
     for (std::size_t i = 0; i < size; ++i) {

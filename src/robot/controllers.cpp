@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "robot/assert_controllers.hpp"
@@ -116,7 +117,7 @@ Controllers::Controllers(ProgramImage image, World& world, RunServices& services
     services_.access.controllers = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
-        return fmt::format("the controllers of {} robots, {} bytes each", count, sizeof(Controller));
+        return fmt::format("the controllers of {}, {} bytes each", counted(count, "robot"), sizeof(Controller));
     };
     allocate_for(purpose, static_cast<double>(count * sizeof(Controller)), [&] { controllers_.resize(count); });
     allocate_user_data();
@@ -158,8 +159,8 @@ void Controllers::allocate_user_data() {
     std::size_t const stride = user_data_stride();
     std::size_t const blocks = controllers_.size() + 1;
     auto const purpose = [&] {
-        return fmt::format("the user data (USERDATA) of {} robots and the global step, {} bytes each",
-                           controllers_.size(), image_.user_data_bytes);
+        return fmt::format("the user data (USERDATA) of {} and the global step, {} bytes each",
+                           counted(controllers_.size(), "robot"), image_.user_data_bytes);
     };
     allocate_for(purpose, static_cast<double>(stride) * static_cast<double>(blocks), [&] {
         if (stride > std::numeric_limits<std::ptrdiff_t>::max() / blocks) {

@@ -13,6 +13,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/counted.hpp"
 #include "base/memory.hpp"
 
 // A sanitizer needs to know which stack is in use. It may be in the user's program alone, so it is asked for here.
@@ -246,9 +247,9 @@ Fiber& FiberPool::take() {
     if (unused_.empty()) {
         auto const purpose = [&] {
             return fmt::format(
-                "the stack of one more robot that waits in the middle of its program, after {} others "
+                "the stack of one more robot that waits in the middle of its program, after {} "
                 "(robot_stack_size: {:g} KiB; the system allows only so many: sysctl vm.max_map_count)",
-                all_.size(), static_cast<double>(stack_bytes_) / kBytesPerKib);
+                counted(all_.size(), "other"), static_cast<double>(stack_bytes_) / kBytesPerKib);
         };
         allocate_for(purpose, std::nullopt, [&] {
             all_.push_back(std::make_unique<Fiber>(stack_bytes_));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/counted.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "robot/slip.hpp"
@@ -40,7 +41,8 @@ std::vector<bool> categories_where_all(World const& world, std::span<Controller 
 }
 
 bool sends_never(Controller const& controller) {
-    return controller.loop.send != nullptr && controller.loop.send_percent == 0 && controller.loop.sent == 0;
+    return controller.loop.send != nullptr && controller.loop.send_percent == 0 && controller.loop.sent == 0 &&
+           controller.messages_sent == 0;
 }
 
 bool receives_never(Controller const& controller) {
@@ -149,10 +151,9 @@ void warn_of_lost_messages(World const& world, std::span<Controller const> contr
     }
     for (std::size_t category = 0; category < lost.size(); ++category) {
         if (lost[category] > 0) {
-            log().warn(
-                "{} messages to robots of category '{}' were lost because their queues were full "
-                "(message_queue_size: {})",
-                lost[category], world.categories[category].name, world.categories[category].spec.robot->ir.queue_size);
+            log().warn("{} to robots of category '{}' {} lost because their queues were full (message_queue_size: {})",
+                       counted(lost[category], "message"), world.categories[category].name,
+                       lost[category] == 1 ? "was" : "were", world.categories[category].spec.robot->ir.queue_size);
         }
     }
 }
@@ -179,9 +180,9 @@ void warn_of_unused_messages(World const& world, std::span<Controller const> con
     };
     if (arrivals > 0 && std::ranges::none_of(controllers, reads) && std::ranges::none_of(deaf, std::identity())) {
         log().warn(
-            "{} messages arrived, but no robot reads them: set msg_rx_fn in user_init, or look for them with "
+            "{} arrived, but no robot reads {}: set msg_rx_fn in user_init, or look for messages with "
             "pogobot_infrared_message_available()",
-            arrivals);
+            counted(arrivals, "message"), arrivals == 1 ? "it" : "them");
     }
 }
 
@@ -213,9 +214,9 @@ void warn_of_send_results(std::span<Controller const> controllers) {
     }
     if (all.sent > 0 && all.said == 0) {
         log().warn(
-            "msg_tx_fn has sent messages in {} calls and returned false in each, so nb_msgs_sent is 0: return true "
+            "msg_tx_fn has sent messages in {} and returned false in each, so nb_msgs_sent is 0: return true "
             "when a message was sent (the send functions return 0 then)",
-            all.sent);
+            counted(all.sent, "call"));
     }
 }
 
@@ -233,8 +234,8 @@ void tell_of_ended_programs(std::span<Controller const> controllers) {
     auto const has_returned = [](Controller const& controller) { return controller.program.returned; };
     auto const ended = std::ranges::count_if(controllers, has_returned);
     if (ended > 0) {
-        log().info("main() of {} robot{} has returned: such a robot keeps its motors and LEDs and does nothing more",
-                   ended, ended == 1 ? "" : "s");
+        log().info("main() of {} has returned: such a robot keeps its motors and LEDs and does nothing more",
+                   counted(ended, "robot"));
     }
 }
 

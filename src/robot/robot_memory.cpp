@@ -7,6 +7,7 @@
 #include <limits>
 #include <new>
 
+#include "base/counted.hpp"
 #include "base/memory.hpp"
 
 // A program built with -fsanitize=address has forbidden bytes between its variables, which are copied with the rest.
@@ -247,7 +248,7 @@ void RobotMemory::make_room(std::uint32_t capacity) {
     std::size_t const bytes = std::size_t{capacity} * kBlockBytes;
     std::size_t const used_bytes = copied_bytes();
     auto const purpose = [&] {
-        return fmt::format("the own memory (robot_memory: own) of {} robots, {} bytes each", robots_, bytes);
+        return fmt::format("the own memory (robot_memory: own) of {}, {} bytes each", counted(robots_, "robot"), bytes);
     };
     allocate_for(purpose, static_cast<double>(bytes) * robots_, [&] {
         if (bytes > std::numeric_limits<std::ptrdiff_t>::max() / std::max(1U, robots_)) {

@@ -17,14 +17,17 @@ namespace pogosim {
 namespace {
 
 constexpr std::int64_t kUsPerS = 1000000;
-constexpr std::int64_t kLongUs = 60 * kUsPerS;  // during the run, if half of a category is in such a call or more
+// During the run, if half of a category is in such a call or more: how long it has lasted, and how often it has waited.
+// An endless loop looks around again and again; a long dance of LEDs or motors, which will return, pauses between them.
+constexpr std::int64_t kLongUs = 60 * kUsPerS;
+constexpr int kWaitsOfLongCall = 1000;
 constexpr std::int64_t kLookPeriodUs = 10 * kUsPerS;
 // At the end of the run, for each robot: how long its call must last at least, in time, as a part of the run, and
 // compared with the usual in its category. A robot that only waits for something may be in one call for long, too.
 constexpr std::int64_t kLongAtEndUs = 10 * kUsPerS;
 constexpr std::int64_t kPartOfRunAtEnd = 4;
 constexpr std::int64_t kTimesTheUsual = 10;
-constexpr int kWaitsOfLoop = 5;  // fewer may be a few long sleeps, one after the other
+constexpr int kWaitsAtEnd = 5;  // fewer may be a few long sleeps, one after the other
 
 /// Robots of one category that have been in a call for long.
 struct Unreturned {
@@ -62,7 +65,7 @@ void look_at_stack(void* of_wait) {
 std::string consequences(Controller const& robot, std::string_view function) {
     std::vector<std::string> parts;
     if (function == "user_init") {
-        return "user_step is never called";
+        return "user_step is not called";
     }
     parts.emplace_back(robot.loop.ticks == 0 ? "pogobot_ticks stays 0" : "pogobot_ticks stays as it is");
     if (function != "user_step") {
@@ -114,7 +117,7 @@ void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool most) {
         Unreturned& category = categories[world_.robots.category[i]];
         ++category.alive;
         std::int64_t const limit_us = std::max(least_us, kTimesTheUsual * category.longest_call_us);
-        bool const is_loop = self.fiber != nullptr && self.waits >= kWaitsOfLoop;
+        bool const is_loop = self.fiber != nullptr && self.waits >= (most ? kWaitsOfLongCall : kWaitsAtEnd);
         if (is_loop && now_us - self.call_began_us >= limit_us) {
             ++category.count;
             if (category.first == kNone || self.call_began_us < controllers_[category.first].call_began_us) {
@@ -144,9 +147,9 @@ void Controllers::warn_of_unreturned_call(std::uint32_t robot, std::uint32_t cou
                                : alive == 1  ? "its robot"
                                              : fmt::format("all {} robots", alive);
     log().warn(
-        "category '{}': {} of {} has not returned since t = {:.4g} s (robot #{} waits{}{}): {}. Let it return: the "
-        "main loop calls user_step at each tick. An endless loop as on the robot belongs in main(), with pogobot.h "
-        "(docs/porting.md)",
+        "category '{}': {} of {} has not returned since t = {:.4g} s (robot #{} waits{}{}): {} until it returns. Let "
+        "it return: the main loop calls user_step at each tick. An endless loop as on the robot belongs in main(), "
+        "with pogobot.h (docs/porting.md)",
         world_.categories[world_.robots.category[robot]].name, wait.function, robots,
         static_cast<double>(self.call_began_us) / static_cast<double>(kUsPerS), world_.robots.id[robot],
         place.empty() ? "" : " ", place, consequences(self, wait.function));

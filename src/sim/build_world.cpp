@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
@@ -249,8 +250,8 @@ void make_mailboxes(World& world) {
     }
     constexpr std::size_t message_bytes = sizeof(FrameHeader) + MAX_PAYLOAD_SIZE_BYTES;
     auto const purpose = [&] {
-        return fmt::format("the message queues (message_queue_size) of {} robots: {:.0f} messages of {} bytes",
-                           sizes.size(), messages, message_bytes);
+        return fmt::format("the message queues (message_queue_size) of {}: {:.0f} messages of {} bytes",
+                           counted(sizes.size(), "robot"), messages, message_bytes);
     };
     allocate_for(purpose, messages * message_bytes,
                  [&] { world.mailboxes = Mailboxes(sizes, MAX_PAYLOAD_SIZE_BYTES); });

@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/log.hpp"
@@ -43,9 +44,9 @@ std::uint32_t thread_count(Scenario const& scenario, World const& world) {
     auto const threads = static_cast<std::uint32_t>(*scenario.threads);
     if (threads > processors) {
         log().warn(
-            "{}: {} threads wait for each other on {} processor{}, which makes the run slower; 'auto' takes as many as "
+            "{}: {} threads wait for each other on {}, which makes the run slower; 'auto' takes as many as "
             "are useful",
-            place_of(scenario, Setting::threads), threads, processors, processors == 1 ? "" : "s");
+            place_of(scenario, Setting::threads), threads, counted(processors, "processor"));
     }
     return threads;
 }
@@ -289,16 +290,15 @@ std::string Simulation::summary(double wall_s) const {
     if (!is_complete_ || window_) {
         return "";
     }
-    auto const robots = world_.robots.size();
     auto const rows = recorder_.row_count();
     std::string const record =
-        rows ? fmt::format("{} row{} in '{}'", *rows, *rows == 1 ? "" : "s", escaped(scenario_.output.data_filename))
+        rows ? fmt::format("{} in '{}'", counted(*rows, "row"), escaped(scenario_.output.data_filename))
              : "no data file (enable_data_logging: false)";
     double const times_real = world_.time_s() / wall_s;
     std::string const speed =
         times_real < 1000.0 ? fmt::format("{:.3g}", times_real) : fmt::format("{:.0f}", times_real);
-    return fmt::format("{:.9g} s of {} robot{} simulated in {:.2f} s, {} x real time; {}", world_.time_s(), robots,
-                       robots == 1 ? "" : "s", wall_s, speed, record);
+    return fmt::format("{:.9g} s of {} simulated in {:.2f} s, {} x real time; {}", world_.time_s(),
+                       counted(world_.robots.size(), "robot"), wall_s, speed, record);
 }
 
 std::optional<Restart> Simulation::restart() {
@@ -312,9 +312,9 @@ void Simulation::save_while_waiting() {
 
 std::optional<UserFailure> Simulation::start() {
     Thread const thread(*this);
-    log().debug("seed {}, {} robots with {} bytes of user data each, {} steps of {} s, physics engine {}, threads: {}",
-                seed_, world_.robots.size(), controllers_.user_data_bytes(), step_count(), world_.time_step_s,
-                physics_engine_behind(scenario_.physics_engine, world_), workers_.size());
+    log().debug("seed {}, {} with {} bytes of user data each, {} steps of {} s, physics engine {}, threads: {}", seed_,
+                counted(world_.robots.size(), "robot"), controllers_.user_data_bytes(), step_count(),
+                world_.time_step_s, physics_engine_behind(scenario_.physics_engine, world_), workers_.size());
     lighting_.update(world_);
     bool const is_own = scenario_.robot_memory == RobotMemoryKind::automatic
                             ? controllers_.image().is_for_sdk

@@ -28,7 +28,7 @@ static void receive(message_t* message) {
 
 void user_init(void) {
     max_nb_processed_msg_per_tick = is("reads_none") ? 0 : 20;
-    percent_msgs_sent_per_ticks = is("sends_never") ? 0 : is("sends_too_often") ? 150 : 100;
+    percent_msgs_sent_per_ticks = is("sends_never") || is("sends_itself") ? 0 : is("sends_too_often") ? 150 : 100;
     msg_tx_fn = send;
     msg_rx_fn = is("deaf") || is("polls") ? NULL : receive;
     main_loop_hz = is("slow") && pogobot_helper_getid() % 2 == 0 ? 1 : 60;
@@ -114,6 +114,8 @@ void user_step(void) {
         pogobot_infrared_clear_message_queue();
         pogobot_infrared_update();
         pogobot_infrared_message_available();
+    } else if (is("sends_itself")) {
+        msg_tx_fn();
     } else if (is("late_reading")) {
         init_from_configuration(late);
     }

@@ -64,6 +64,11 @@ void user_step(void) {
         for (int i = 0; i < 20; i++) {
             msleep(1000);
         }
+    } else if (is("dance")) {
+        for (int i = 0; i < 140; i++) {
+            pogobot_led_setColor(i % 2 == 0 ? 25 : 0, 0, 0);
+            msleep(500);
+        }
     } else if (is("long sleep")) {
         msleep(1000000);
     } else if (is("late")) {

@@ -167,7 +167,7 @@ def test_robots_on_several_threads_say_what_they_say_on_one(program: Compile, tm
     assert texts[0] == texts[1]
 
 
-@pytest.mark.parametrize("kind", ["nothing", "polls", "late_reading"])
+@pytest.mark.parametrize("kind", ["nothing", "polls", "sends_itself", "late_reading"])
 def test_program_without_a_slip_is_not_nagged(program: Compile, tmp_path: Path, kind: str) -> None:
     assert (
         warnings(
@@ -187,6 +187,17 @@ def test_messages_that_are_not_read_are_counted(program: Compile, tmp_path: Path
     count, _, rest = warning.partition(" ")
     assert int(count) > 1000
     assert rest.startswith("messages arrived, but no robot reads them: set msg_rx_fn ")
+
+
+def test_one_message_is_not_several(tmp_path: Path) -> None:
+    sending = "static void send(void) { uint8_t m = 1; pogobot_infrared_sendShortMessage_omni(&m, 1); }\n"
+    step = "static void step(void) { if (pogobot_ticks == 3 && pogobot_helper_getid() == 0) send(); }\n"
+    main = "int main(void) { pogobot_init(); pogobot_start(NULL, step); return 0; }\n"
+    program = compile_text(tmp_path, f'#include "pogobase.h"\n{sending}{step}{main}')
+    poses = {"objects.robots.nb": None, "objects.robots.poses": [[300, 300, 0], [360, 300, 0]]}
+    sure = {"objects.robots.msg_success_rate": {"type": "static", "rate": 1.0}}
+    (warning,) = warnings(run(program, tmp_path, {**poses, **sure}))
+    assert warning.startswith("1 message arrived, but no robot reads it: set msg_rx_fn in user_init, or look for ")
 
 
 def test_messages_that_a_limit_of_0_keeps_from_being_read_are_warned_of_once(program: Compile, tmp_path: Path) -> None:
@@ -482,7 +493,11 @@ static void export_values(void) {{ data_set_value_int{bits}("n", {value}); }}
         (8, "-129", 127, True),
         (16, "(uint16_t)40000", -25536, True),
         (16, "32767", 32767, False),
-        (32, "(uint32_t)4000000000u", -294967296, True),
+        (32, "INT64_C(4000000000)", -294967296, True),
+        (32, "(uint64_t)4294967288u", -8, True),
+        (32, "*(uint32_t const*)mydata - 8u", -8, False),
+        (32, "UINT32_MAX", -1, False),
+        (16, "*(uint32_t const*)mydata - 8u", -8, True),
         (32, "INT32_MIN", -(2**31), False),
     ],
 )

@@ -47,7 +47,10 @@ def test_user_step_that_never_returns_is_told(with_lines: Path, tmp_path: Path, 
         "category 'robots': user_step of all 3 robots has not returned since t = 0 s (robot #0 waits at "
         in result.errors
     )
-    assert "): pogobot_ticks stays 0, msg_tx_fn sends nothing, msg_rx_fn gets no message. " + ADVICE in result.errors
+    assert (
+        "): pogobot_ticks stays 0, msg_tx_fn sends nothing, msg_rx_fn gets no message until it returns. " + ADVICE
+        in result.errors
+    )
     if how in ("msleep", "sleep"):
         line = line_of(f"here it {'sleeps' if how == 'sleep' else 'waits'}")
         assert re.search(rf"unreturned\.c:{line} in loop\(\)\)", result.errors)
@@ -56,13 +59,13 @@ def test_user_step_that_never_returns_is_told(with_lines: Path, tmp_path: Path, 
 
 def test_callbacks_that_a_program_does_not_have_are_not_named(program: Compile, tmp_path: Path) -> None:
     errors = run_loop(program("unreturned.c"), tmp_path, "no callbacks").errors
-    assert "): pogobot_ticks stays 0. Let it return" in errors
+    assert "): pogobot_ticks stays 0 until it returns. Let it return" in errors
 
 
 @pytest.mark.parametrize(
     ("how", "consequence"),
     [
-        ("user_init", "user_step is never called"),
+        ("user_init", "user_step is not called"),
         ("msg_tx_fn", "pogobot_ticks stays 0, user_step is not called again, msg_rx_fn gets no message"),
         ("msg_rx_fn", "pogobot_ticks stays as it is, user_step is not called again"),
     ],
@@ -71,7 +74,7 @@ def test_function_that_does_not_return_is_named(program: Compile, tmp_path: Path
     errors = run_loop(program("unreturned.c"), tmp_path, how).errors
     assert errors.count("[warning]") == 1, errors
     assert f"category 'robots': {how} of all 3 robots has not returned" in errors
-    assert f"): {consequence}. Let it return" in errors
+    assert f"): {consequence} until it returns. Let it return" in errors
 
 
 def test_robots_that_do_not_return_are_counted(program: Compile, tmp_path: Path) -> None:
@@ -124,10 +127,15 @@ def test_it_is_told_early_though_a_few_robots_go_on(
         assert f"{how if how != 'late' else 'user_step'} of {count} has not returned" in caplog.text
 
 
-@pytest.mark.parametrize("how", ["long sleep", "long steps", "now and then"])
+@pytest.mark.parametrize("how", ["long sleep", "long steps", "now and then", "dance"])
 def test_robots_that_wait_for_long_and_return_are_not_told(program: Compile, tmp_path: Path, how: str) -> None:
-    result = run_loop(program("unreturned.c"), tmp_path, how, simulation_time=65.0)
+    result = run_loop(program("unreturned.c"), tmp_path, how, simulation_time=90.0)
     assert result.errors == ""
+
+
+def test_loop_with_long_pauses_is_told_at_the_end(program: Compile, tmp_path: Path) -> None:
+    errors = run_loop(program("unreturned.c"), tmp_path, "dance", simulation_time=65.0).errors
+    assert "user_step of all 3 robots has not returned since t = 0 s" in errors
 
 
 def test_end_of_the_run_during_a_few_long_sleeps_is_not_told(program: Compile, tmp_path: Path) -> None:
