@@ -20,9 +20,10 @@ from typing import Any
 from pogosim.batch.dask_backend import imported, outcomes_of
 from pogosim.batch.errors import BatchError, one_line, tell
 from pogosim.batch.run import Outcome, Task
-from pogosim.batch.slurm_jobs import Jobs, check_commands, counted, own_folder
+from pogosim.batch.slurm_jobs import Jobs, check_commands, own_folder
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB, TIME, SlurmJobs
 from pogosim.batch.slurm_worker import do_in_job
+from pogosim.counted import counted
 from pogosim.extras import installing
 
 LOSSES_PER_RUN = 5

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from pogosim.batch.errors import BatchError, one_line, tell
 from pogosim.batch.run import tail
+from pogosim.counted import counted
 
 COMMANDS = ("sbatch", "squeue", "scancel")
 ENDED = re.compile("BOOT_FAIL|CANCELLED|COMPLETED|DEADLINE|FAILED|NODE_FAIL|OUT_OF_MEMORY|PREEMPTED|REVOKED|TIMEOUT")
@@ -198,11 +199,6 @@ class Jobs:
         self.states.clear()
         with contextlib.suppress(OSError):
             ask(["scancel", f"--user={getpass.getuser()}", f"--name={self.name}"])
-
-
-def counted(number: int, what: str) -> str:
-    """Return a number of things: "1 job", "2 jobs"."""
-    return f"{number} {what}{'s' if number != 1 else ''}"
 
 
 def own_folder(path: Path) -> Path:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pogosim.command.parser import warn
+from pogosim.counted import counted
 from pogosim.film.encoder import PAGE, encode
 from pogosim.film.replay import write_replay
 from pogosim.film.stills import Look, Stills, size_for
@@ -86,4 +87,4 @@ def encode_film(
             yield stills.frame(time_s)
 
     encode(frames(), pixels, options.fps, path)
-    return f"{len(times_s)} frames of {pixels[0]} x {pixels[1]} pixels, {len(times_s) / options.fps:.2f} s"
+    return f"{counted(len(times_s), 'frame')} of {pixels[0]} x {pixels[1]} pixels, {len(times_s) / options.fps:.2f} s"

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from pogosim.counted import counted
 from pogosim.film.first_picture import first_picture
 from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, quantised, shades_of
 from pogosim.film.timeline import Timeline, timeline_of
@@ -65,7 +66,7 @@ def write_replay(
     with partial_output(path) as partial:
         partial.write_bytes(page)
     count, times = len(head["objects"]), head["times"]
-    return f"{count} objects from {times[0]:.9g} s to {times[-1]:.9g} s, {len(page) / 1e6:.2f} MB", warnings
+    return f"{counted(count, 'object')} from {times[0]:.9g} s to {times[-1]:.9g} s, {len(page) / 1e6:.2f} MB", warnings
 
 
 def page_of(head: dict[str, Any], data: str, picture: str, name: str) -> str:

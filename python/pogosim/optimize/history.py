@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from pogosim.batch.errors import cannot
+from pogosim.counted import counted
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.objective import Judgement
 
@@ -121,8 +122,8 @@ class Journal:
         """
         if self.known and not self.is_finished:
             raise OptimizeError(
-                f"{self.path.parent} has a search that is not finished, with {len(self.known)} evaluations: --resume "
-                f"continues it; for another one, choose another folder with -o, or remove {self.path}"
+                f"{self.path.parent} has a search that is not finished, with {counted(len(self.known), 'evaluation')}: "
+                f"--resume continues it; for another one, choose another folder with -o, or remove {self.path}"
             )
         self.replaces = bool(self.known)
         self.known, self.end = {}, 0

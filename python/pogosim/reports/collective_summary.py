@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.counted import counted
 from pogosim.reports.collective_metrics import METRICS
 from pogosim.reports.collective_swarm import Settings
 from pogosim.reports.figures import groups_of
@@ -27,11 +28,11 @@ def write_summaries(
         }
         for index in range(len(runs))
     ]
-    write(folder / "SUMMARY_global.txt", [f"All {len(runs)} runs", *lines(numbers)])
+    write(folder / "SUMMARY_global.txt", [f"{'All ' * (len(runs) > 1)}{counted(len(runs), 'run')}", *lines(numbers)])
     per_arena: list[str] = []
     for name, own in groups_of(runs).items():
         members = [numbers[index] for index, run in enumerate(runs) if any(run is other for other in own)]
-        per_arena += [f"{name}: {len(own)} runs", *lines(members), ""]
+        per_arena += [f"{name}: {counted(len(own), 'run')}", *lines(members), ""]
     write(folder / "SUMMARY_per_arena.txt", per_arena[:-1])
     write(folder / "SUMMARY_metric_details.txt", details(runs, settings))
 
@@ -46,7 +47,7 @@ def lines(numbers: Sequence[Mapping[tuple[str, str], float]]) -> list[str]:
             text.append(f"  {key}: {name}: no value")
             continue
         spread = f" +- {values.std(ddof=1):.4g}" if len(values) > 1 else ""
-        text.append(f"  {key}: {name} = {values.mean():.4g}{spread} ({len(values)} runs)")
+        text.append(f"  {key}: {name} = {values.mean():.4g}{spread} ({counted(len(values), 'run')})")
     return text
 
 

@@ -12,6 +12,7 @@ import pandas as pd
 from pogosim.analysis.density import count_outside
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.parser import warn
+from pogosim.counted import counted
 from pogosim.reports.figures import group_names, group_of
 from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
 from pogosim.reports.locomotion_figures import RunTables, draw_all
@@ -82,7 +83,8 @@ def summary_text(tables: Sequence[RunTables], names: Sequence[str]) -> str:
         robots = f"{rows['robots'].min()} to {rows['robots'].max()}"
         if rows["robots"].nunique() == 1:
             robots = str(rows["robots"].iloc[0])
-        lines += [f"{group}: {count} {'run' if count == 1 else 'runs'}, {robots} robots, until {last:g} s"]
+        swarm = f"{robots} robot{'' if robots == '1' else 's'}"
+        lines += [f"{group}: {counted(count, 'run')}, {swarm}, until {last:g} s"]
         for column in rows.columns[list(rows.columns).index("mean_speed_mm_s") :]:
             lines.append(f"  {words(column):42} {mean_text(rows[column])}")
         lines.append("")
