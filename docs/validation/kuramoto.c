@@ -45,6 +45,7 @@ static float mean_pull(void) {
     bool heard[MAX_ROBOTS] = {false};
     float sum = 0.0f;
     int count = 0;
+    pogobot_infrared_update();
     while (pogobot_infrared_message_available()) {
         message_t message;
         content_t content;

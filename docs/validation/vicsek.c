@@ -52,6 +52,7 @@ static void tell_heading(void) {
 static float mean_heading(void) {
     bool heard[MAX_ROBOTS] = {false};
     float x = cosf(mydata->heading), y = sinf(mydata->heading);
+    pogobot_infrared_update();
     while (pogobot_infrared_message_available()) {
         message_t message;
         content_t content;

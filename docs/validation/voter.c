@@ -30,6 +30,7 @@ static void announce(void) {
 }
 
 static void listen(void) {
+    pogobot_infrared_update();
     while (pogobot_infrared_message_available()) {
         message_t message;
         pogobot_infrared_recover_next_message(&message);

@@ -45,6 +45,16 @@ def test_example_runs_with_the_configuration_that_its_first_lines_name(program: 
 
 
 @pytest.mark.parametrize("program", PROGRAMS)
+def test_example_warns_of_nothing_until_its_run_is_over(program: str, tmp_path: Path) -> None:
+    outputs = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
+    arguments = ["-c", str(ROOT / NAMED[program]), "-g", "--set", "simulation_time=15"]
+    for key, name in outputs.items():
+        arguments += ["--set", f"{key}={tmp_path / name}"]
+    result = run_command(example(program), tmp_path, arguments)
+    assert (result.code, result.errors) == (0, "")
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
 def test_resolved_configuration_gives_the_same_run(program: str, tmp_path: Path) -> None:
     first, again = tmp_path / "first", tmp_path / "again"
     first.mkdir()

@@ -14,7 +14,7 @@ import validation
 from all import differences
 from matplotlib.figure import Figure
 from quotes import Quote, quote, quoted
-from running import ROOT, compile_program, pkg_config
+from running import ROOT, compile_program, pkg_config, run_command
 from studies import outcome_print
 from validation.agreement import FALSE_ALARM, Comparison, absolute, relative, two_samples
 from validation.experiment import Outcome, batch, changed
@@ -26,6 +26,7 @@ from validation.walks import SPEED_MM_S, theory_msd
 
 PAGE = ROOT / "docs" / "validation.md"
 PROGRAMS = sorted((ROOT / "docs" / "validation").glob("*.c"))
+CONFIGURATIONS = sorted((ROOT / "docs" / "validation").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("scene", validation.SCENES)
@@ -48,6 +49,15 @@ def test_program_shares_no_variable_by_mistake_and_compiles_without_a_warning(so
     (tool,) = pkg_config("--variable=shared_state")
     done = subprocess.run([tool, str(program)], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout + done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("configuration", CONFIGURATIONS, ids=lambda path: path.stem)
+def test_run_of_a_scene_warns_of_nothing(configuration: Path, tmp_path: Path) -> None:
+    name = "persistent_walk" if configuration.stem == "lamp" else configuration.stem
+    program = compile_program(tmp_path / name, configuration.with_name(f"{name}.c"), flags=["-g"])
+    arguments = ["-c", str(configuration), "-g", "--set", "simulation_time=15"]
+    result = run_command(program, tmp_path, [*arguments, "--set", f"data_filename={tmp_path / 'data.feather'}"])
+    assert (result.code, result.errors) == (0, "")
 
 
 def test_page_names_every_program_and_scene() -> None:

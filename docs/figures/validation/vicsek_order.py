@@ -15,9 +15,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pogosim.analysis.directions import directions_of_headings
-from pogosim.analysis.order import polar_order
-from pogosim.analysis.trajectories import trajectories_of
 from scipy.spatial import cKDTree
 
 from .agreement import Comparison, Values, absolute, two_samples
@@ -75,12 +72,12 @@ def robot_orders(folder: Path, robots: int, etas: tuple[float, ...], runs: int) 
         "parameters.noise_eta": {"batch_options": list(etas)},
     }
     rows = batch(compile_program(NAME, folder), NAME, runs, changes)[NAME]
-    order = {}
-    for run in trajectories_of(rows):
-        late = run.time_s >= STEPS_LEFT_OUT * STEP_S - 1e-6
-        label = (run.labels["parameters.noise_eta"], run.labels["run"])
-        order[label] = polar_order(directions_of_headings(run))[late].mean()
-    return np.array([[order[eta, run] for eta in etas] for run in range(runs)])
+    late = rows["time"] >= STEPS_LEFT_OUT * STEP_S - 1e-6
+    angle = rows["angle"].astype(float)
+    directions = rows[late].assign(x=np.cos(angle), y=np.sin(angle))
+    means = directions.groupby(["parameters.noise_eta", "run", "time"])[["x", "y"]].mean()
+    order = means.assign(r=np.hypot(means["x"], means["y"])).groupby(level=[0, 1])["r"].mean()
+    return np.asarray(order.unstack(0)[list(etas)].to_numpy())
 
 
 def independent_order(robots: int) -> float:
