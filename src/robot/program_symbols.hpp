@@ -34,8 +34,8 @@ struct ProgramSymbols {
     bool has_guard(std::string const& symbol) const;
 };
 
-/// "steps" for the symbol "steps.0" of a variable in a function (gcc), "user_step::steps" for "user_step.steps" (clang),
-/// "name()::n" for "_ZZ4namevE1n" (C++).
+/// "steps" for the symbol "steps.0" of a variable in a function (gcc), "user_step::steps" for "user_step.steps"
+/// (clang), "name()::n" for "_ZZ4namevE1n" (C++).
 std::string name_by_symbol(std::string const& symbol);
 
 /// `file`: the bytes of an executable or a shared object, which need not be well-formed.

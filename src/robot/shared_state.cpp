@@ -153,7 +153,7 @@ bool is_of_simulator_or_mathematical(std::string const& name) {
 
 bool is_own(std::string_view name) {
     // completed.0: of the C compiler, set when the program ends. DW.ref: where C++ finds its own functions. _ZGV: guards
-    // of static variables, which stand in the table beside these.
+    // of static variables, which are in the table themselves.
     return std::ranges::find(kOwnVariables, name) != kOwnVariables.end() || name.starts_with("completed.") ||
            name.starts_with("DW.ref.") || name.starts_with("pogo_user_data_") || name.starts_with("_ZGV");
 }
@@ -191,11 +191,11 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
         if (!is_own(variable.name) &&
             (variable.is_of_thread || !is_configured(address_in(image, variable), variable.bytes, bound))) {
             bool const is_constant_of_first = symbols.has_guard(variable.name);
-            return fmt::format(
-                "all robots share the variable '{}' ({})", name_by_symbol(variable.name),
-                is_constant_of_first
-                    ? "the first robot that gets there sets it: put it into USERDATA, or make it constexpr"
-                    : "put it into USERDATA, or declare it const");
+            return fmt::format("all robots share the variable '{}' ({})", name_by_symbol(variable.name),
+                               is_constant_of_first
+                                   ? "the first robot that gets there sets it: put it into USERDATA, or make it "
+                                     "constexpr"
+                                   : "put it into USERDATA, or declare it const");
         }
     }
     for (std::string const& name : symbols.imports) {
