@@ -206,7 +206,7 @@ def test_constant_number_that_the_first_robot_sets_is_told_as_that(name: str, tm
 def test_robots_that_share_such_a_constant_take_their_steps_one_after_the_other(tmp_path: Path) -> None:
     result = run(build_cpp(tmp_path, *CONSTANTS["in a function"], "g++", "-g"), tmp_path, {"threads": 2})
     assert (
-        "all robots share the variable 'name[abi:cxx11]()::one' (the first robot that gets there sets it: put it into "
+        "all robots share the variable 'name()::one' (the first robot that gets there sets it: put it into "
         "USERDATA, or make it constexpr)"
     ) in result.output
 
