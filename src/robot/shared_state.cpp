@@ -152,8 +152,8 @@ bool is_of_simulator_or_mathematical(std::string const& name) {
 }
 
 bool is_own(std::string_view name) {
-    // completed.0: of the C compiler, set when the program ends. DW.ref: where C++ finds its own functions. _ZGV: guards
-    // of static variables, which are in the table themselves.
+    // completed.0: of the C compiler, set when the program ends. DW.ref: where C++ finds its own functions. _ZGV:
+    // guards of static variables, which are in the table, too.
     return std::ranges::find(kOwnVariables, name) != kOwnVariables.end() || name.starts_with("completed.") ||
            name.starts_with("DW.ref.") || name.starts_with("pogo_user_data_") || name.starts_with("_ZGV");
 }

@@ -260,8 +260,8 @@ TEST_F(AnglesOfAFile, ThatAreNotReadAreToldOnce) {
         EXPECT_NE(text.find("poses.csv: " + told), std::string::npos) << text;
         EXPECT_EQ(text.find("poses.csv: "), text.rfind("poses.csv: ")) << text;
     }
-    for (char const* const header : {"x,y", "x,y,time", "theta,id,x,y", "x,y,angle,heading", ",x,y",
-                                     "x,y,angle,theta,robot_category"}) {
+    for (char const* const header :
+         {"x,y", "x,y,time", "theta,id,x,y", "x,y,angle,heading", ",x,y", "x,y,angle,theta,robot_category"}) {
         messages_.str("");
         place_from(std::string(header) + "\n30,30,30,30,30\n", 1);
         EXPECT_EQ(messages_.str().find("heading"), std::string::npos) << messages_.str();
