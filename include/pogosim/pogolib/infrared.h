@@ -193,11 +193,12 @@ static POGO_INLINE void pogobot_infrared_recover_next_message(message_t* message
 #define POGO_NO_DIRECTION 0
 #endif
 // Is false: `POGO_NOTE_SENT(message, size) ? NULL : message, size` are the same arguments, however many commas there
-// are in braces. (It reads the text, which clang would leave out otherwise.)
+// are in braces. (It takes the address of the text, which clang would leave out otherwise.)
 #define POGO_NOTE_SENT(...)                                                                      \
     __extension__({                                                                              \
         static char const pogosim_sent_arguments[] __attribute__((used, unused)) = #__VA_ARGS__; \
-        pogosim_sent_arguments[0] == '\1';                                                       \
+        char const* const pogosim_sent = pogosim_sent_arguments;                                 \
+        !pogosim_sent;                                                                           \
     })
 // clang-format off
 #define pogobot_infrared_sendLongMessage_omniGen(...) \
