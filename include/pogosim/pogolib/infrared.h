@@ -193,11 +193,11 @@ static POGO_INLINE void pogobot_infrared_recover_next_message(message_t* message
 #define POGO_NO_DIRECTION 0
 #endif
 // Is false: `POGO_NOTE_SENT(message, size) ? NULL : message, size` are the same arguments, however many commas there
-// are in braces. (It takes the address of the text, which clang would leave out otherwise.)
+// are in braces. (Volatile: clang would leave the text out if it knew the result.)
 #define POGO_NOTE_SENT(...)                                                                      \
     __extension__({                                                                              \
         static char const pogosim_sent_arguments[] __attribute__((used, unused)) = #__VA_ARGS__; \
-        char const* const pogosim_sent = pogosim_sent_arguments;                                 \
+        char const* volatile pogosim_sent = pogosim_sent_arguments;                              \
         !pogosim_sent;                                                                           \
     })
 // clang-format off
