@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from debugger import PRINTERS, debug, needs_gdb
-from running import LIBRARY, ROOT, build_folder, compile_program
+from running import LIBRARY, ROOT, build_folder, compile_program, compiler
 
 pytestmark = needs_gdb
 
@@ -170,5 +170,60 @@ def test_gdb_reads_the_file_beside_the_library_if_it_may(folder: Path) -> None:
 def test_mistakes_get_one_sentence(where: str, line: str, message: str, folder: Path) -> None:
     start = () if where.startswith("show") else ("run",)
     output = debug_run(folder, where, *start, line)
+    assert message in output
+    assert "Traceback" not in output
+
+
+COMPILERS = [
+    (name, ending)
+    for names, ending in (
+        (("gcc",), "c"),
+        (("g++",), "cpp"),
+        (("clang", "clang-14"), "c"),
+        (("clang++", "clang++-14"), "cpp"),
+    )
+    if (name := compiler(*names))
+]
+
+
+@pytest.mark.parametrize("level", ["-O0", "-O2"])
+@pytest.mark.parametrize(("name", "ending"), COMPILERS)
+def test_user_data_of_every_compiler_have_their_type(name: str, ending: str, level: str, tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    source = tmp_path / f"main.{ending}"
+    source.write_text(PROGRAM)
+    compile_program(tmp_path / "program", source, compiler=name, flags=["-g", level])
+    output = debug_run(
+        tmp_path,
+        "break user_step if mydata->id == 3 && mydata->steps == 4",
+        *("run", "print *mydata", "print mydata->steps", "whatis mydata", "print $data(2).id", "print *$mydata()"),
+        *("delete", "watch -location mydata->steps", "continue", "print $robot()"),
+    )
+    assert printed(output, 1).startswith("{steps = 4, id = 3, ")
+    assert [printed(output, 2), printed(output, 3)] == ["4", "2"]
+    assert "type = USERDATA *\n" in output
+    assert printed(output, 4) == printed(output, 1)
+    assert "Old value = 4\nNew value = 5\n" in output
+    assert printed(output, 5) == "3"
+
+
+WITHOUT_USERDATA = re.sub(r"typedef struct.*?REGISTER_USERDATA.USERDATA.;|mydata.*?;", "", PROGRAM, flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("name", [name for name, ending in COMPILERS if ending == "c"])
+@pytest.mark.parametrize(
+    ("text", "flags", "message"),
+    [
+        (WITHOUT_USERDATA, ["-g"], "The program has no USERDATA."),
+        (PROGRAM, [], "The program has no user data with debug information: compile it with -g."),
+    ],
+)
+def test_missing_user_data_are_said_to_be_missing(
+    text: str, flags: list[str], message: str, name: str, tmp_path: Path
+) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    (tmp_path / "main.c").write_text(text)
+    compile_program(tmp_path / "program", tmp_path / "main.c", compiler=name, flags=flags)
+    output = debug_run(tmp_path, "break user_step", "run", "print $data(2)")
     assert message in output
     assert "Traceback" not in output

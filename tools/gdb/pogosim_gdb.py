@@ -274,6 +274,26 @@ class Controller(gdb.Function):
         return controller_of(int(robot))
 
 
+def user_data_type() -> gdb.Type | None:
+    """Return the type of the program's user data: REGISTER_USERDATA leaves a constant of it with every compiler."""
+    registered = gdb.lookup_static_symbol("pogo_user_data_type")
+    return registered.type.target().unqualified() if registered else None
+
+
+def registered_type() -> gdb.Type:
+    """Return the type of the program's user data."""
+    if found := user_data_type():
+        return found
+    try:
+        gdb.parse_and_eval("&REGISTER_USERDATA_once")
+    except gdb.error:
+        raise gdb.GdbError(
+            "The program has no USERDATA. With pogobot.h or robot_memory: own, print the variables of the robot "
+            "that runs by their names."
+        ) from None
+    raise gdb.GdbError("The program has no user data with debug information: compile it with -g.")
+
+
 class UserData(gdb.Function):
     """$data(ID): the user data of any robot, as *mydata is that of the robot whose program is running."""
 
@@ -281,18 +301,38 @@ class UserData(gdb.Function):
         super().__init__("data")
 
     def invoke(self, robot: gdb.Value) -> gdb.Value:
-        try:
-            mine = gdb.parse_and_eval("mydata")
-        except gdb.error as error:
-            raise gdb.GdbError(
-                "The program has no USERDATA. With pogobot.h or robot_memory: own, print the variables of the robot "
-                "that runs by their names."
-            ) from error
-        if mine.type.strip_typedefs().target().strip_typedefs().code == gdb.TYPE_CODE_VOID:
-            raise gdb.GdbError("The program has no user data with debug information: compile it with -g.")
-        return controller_of(int(robot))["user_data"].cast(mine.type).dereference()
+        pointer = registered_type().pointer()
+        return controller_of(int(robot))["user_data"].cast(pointer).dereference()
+
+
+class MyData(gdb.Function):
+    """$mydata(): the pointer mydata with its type, which debug information of clang does not have."""
+
+    def __init__(self) -> None:
+        super().__init__("mydata")
+
+    def invoke(self) -> gdb.Value:
+        pointer = registered_type().pointer()
+        return gdb.parse_and_eval("&'mydata'").cast(pointer.pointer()).dereference()
+
+
+def is_declared(kind: gdb.Type) -> bool:
+    """Tell whether debug information has the type of `mydata`. The library itself declares it as a void pointer."""
+    declared = gdb.lookup_global_symbol("mydata")
+    return declared is not None and declared.type.strip_typedefs().target().unqualified() == kind
+
+
+def name_mydata(_: object = None) -> None:
+    """Let `mydata` mean $mydata() where it is not declared. Conditions may have it before the library is loaded."""
+    kind = user_data_type()
+    if kind and not is_declared(kind):
+        gdb.execute(f"macro define mydata (({kind}*)$mydata())")
+    else:
+        gdb.execute("macro undef mydata")
 
 
 gdb.printing.register_pretty_printer(gdb.current_objfile(), Printers(), replace=True)
-for function in (World, RunningRobot, Ticks, Controller, UserData):
+for function in (World, RunningRobot, Ticks, Controller, UserData, MyData):
     function()
+name_mydata()
+gdb.events.new_objfile.connect(name_mydata)
