@@ -17,9 +17,12 @@ def edit_distance(a: str, b: str) -> int:
 
 
 def nearest_name(typed: str, known: Iterable[str]) -> str | None:
-    """Return the nearest of the known names; None if more than a third of the longer one would have to change."""
+    """Return the nearest of the known names.
+
+    None if more than three letters, or more than a third of the shorter name, would have to change.
+    """
     near = [(edit_distance(typed, name), name) for name in known]
-    near = [(distance, name) for distance, name in near if 3 * distance <= max(len(typed), len(name))]
+    near = [(distance, name) for distance, name in near if distance <= min(3, len(typed) // 3, len(name) // 3)]
     return min(near, key=lambda pair: pair[0])[1] if near else None
 
 

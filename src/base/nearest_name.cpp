@@ -13,6 +13,12 @@ bool same_letter(char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
 }
 
+// In long names, a third is a word: run_duration_min is no slip of turn_duration_ms.
+bool is_misspelling(std::string_view typed, std::string_view name, std::size_t distance) {
+    constexpr std::size_t kMostLetters = 3;
+    return distance <= kMostLetters && 3 * distance <= std::min(typed.size(), name.size());
+}
+
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -35,8 +41,7 @@ std::string nearest_name(std::string_view typed, std::span<std::string const> kn
     std::size_t best_distance = 0;
     for (std::string const& name : known) {
         std::size_t const distance = edit_distance(typed, name);
-        bool const close_enough = 3 * distance <= std::max(typed.size(), name.size());
-        if (close_enough && (best.empty() || distance < best_distance)) {
+        if (is_misspelling(typed, name, distance) && (best.empty() || distance < best_distance)) {
             best = name;
             best_distance = distance;
         }

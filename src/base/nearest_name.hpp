@@ -10,8 +10,8 @@ namespace pogosim {
 /// Levenshtein distance between two strings (insertions, deletions, substitutions), ignoring ASCII case.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The closest of `known`, or an empty string when nothing is close enough to be a misspelling (more than a third of
-/// the longer name would have to change).
+/// The closest of `known`, or an empty string when nothing is close enough to be a misspelling: three letters have to
+/// change at most, and a third of the shorter name.
 std::string nearest_name(std::string_view typed, std::span<std::string const> known);
 
 /// "; did you mean 'x'?", or an empty string when nothing is close enough.

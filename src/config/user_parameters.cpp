@@ -146,9 +146,24 @@ void UserParameters::check_range(std::string const& name, double value, double m
 }
 
 std::string UserParameters::unread() const {
-    std::vector<std::string> unread;
+    std::vector<Unread> unread;
     collect_unread(parameters_, "", unread);
-    return fmt::format("{}", fmt::join(unread, ", "));
+    std::vector<std::string> nearest;
+    for (auto const& [path, node] : unread) {
+        nearest.push_back(did_you_mean(shown(path), missed_));
+    }
+    std::vector<std::string> texts;
+    for (auto const& [path, node] : unread) {
+        std::string hint = nearest[texts.size()];
+        if (std::ranges::count(nearest, hint) > 1) {
+            hint.clear();  // a name that is near to several keys is no slip of theirs
+        }
+        if (auto const word = misspelt_option(std::string_view(path).substr(path.rfind('.') + 1)); !word.empty()) {
+            hint = fmt::format("; did you mean '{}'?", word);
+        }
+        texts.push_back(fmt::format("{} ({}{})", shown(path), node->where(), hint));
+    }
+    return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 bool UserParameters::any_part_was_read(Node const& node) const {
@@ -157,7 +172,7 @@ bool UserParameters::any_part_was_read(Node const& node) const {
            std::ranges::any_of(node.entries, [&](auto const& entry) { return is_read(entry.value); });
 }
 
-void UserParameters::collect_unread(Node const& node, std::string const& path, std::vector<std::string>& unread) const {
+void UserParameters::collect_unread(Node const& node, std::string const& path, std::vector<Unread>& unread) const {
     bool const is_list = !node.items.empty();  // read as a whole
     if (read_.contains(&node) || (is_list && any_part_was_read(node))) {
         return;
@@ -166,10 +181,7 @@ void UserParameters::collect_unread(Node const& node, std::string const& path, s
         collect_unread(value, path.empty() ? key : fmt::format("{}.{}", path, key), unread);
     }
     if (node.entries.empty() && &node != &parameters_) {
-        std::string_view const option = misspelt_option(std::string_view(path).substr(path.rfind('.') + 1));
-        std::string const hint =
-            option.empty() ? did_you_mean(shown(path), missed_) : fmt::format("; did you mean '{}'?", option);
-        unread.push_back(fmt::format("{} ({}{})", shown(path), node.where(), hint));
+        unread.push_back({path, &node});
     }
 }
 

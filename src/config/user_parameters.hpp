@@ -46,8 +46,13 @@ private:
     template <class T>
     std::optional<T> read(std::string const& name, Range const& range);
 
+    struct Unread {
+        std::string path;
+        Node const* node;
+    };
+
     bool any_part_was_read(Node const& node) const;
-    void collect_unread(Node const& node, std::string const& path, std::vector<std::string>& unread) const;
+    void collect_unread(Node const& node, std::string const& path, std::vector<Unread>& unread) const;
 
     Node parameters_;
     std::unordered_set<Node const*> read_;

@@ -26,6 +26,15 @@ TEST(NearestName, IsEmptyWhenNothingIsClose) {
     std::array<std::string, 2> const known{"radius", "nb"};
     EXPECT_EQ(nearest_name("temperature", known), "");
     EXPECT_EQ(nearest_name("x", known), "");
+    EXPECT_EQ(nearest_name("b", known), "");
+}
+
+TEST(NearestName, IsNotALongNameInWhichAWordIsAnother) {
+    std::array<std::string, 2> const known{"turn_duration_ms", "body_linear_damping"};
+    EXPECT_EQ(nearest_name("run_duration_min", known), "");
+    EXPECT_EQ(nearest_name("tumble_duration_max", known), "");
+    EXPECT_EQ(nearest_name("body_angular_damping", known), "");
+    EXPECT_EQ(nearest_name("turn_duraton_ms", known), "turn_duration_ms");
 }
 
 }  // namespace

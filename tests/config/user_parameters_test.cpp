@@ -108,3 +108,11 @@ TEST(UserParameters, ListIsReadWhenAnythingInItIs) {
         EXPECT_EQ(unread_after({"speed", name}), "") << name;
     }
 }
+
+TEST(UserParameters, NameThatIsNearToSeveralUnreadOnesIsNoSlipOfThem) {
+    UserParameters near_both(parse_yaml("turn_mx: 1\nturn_mix: 2\nwalk_sped: 3\n", "x.yaml"));
+    near_both.text("turn_max", 100);
+    near_both.text("walk_speed", 100);
+    EXPECT_EQ(near_both.unread(),
+              "turn_mx (x.yaml:1), turn_mix (x.yaml:2), walk_sped (x.yaml:3; did you mean 'walk_speed'?)");
+}

@@ -290,7 +290,13 @@ def test_words_are_those_of_the_simulator() -> None:
 
 @pytest.mark.parametrize(
     ("typed", "known", "nearest"),
-    [("raduis", ["radius", "nb"], "radius"), ("x", ["radius"], None), ("NB", ["nb"], "nb"), ("", ["a"], None)],
+    [
+        ("raduis", ["radius", "nb"], "radius"),
+        ("x", ["radius"], None),
+        ("NB", ["nb"], "nb"),
+        ("", ["a"], None),
+        ("run_duration_min", ["turn_duration_ms"], None),
+    ],
 )
 def test_nearest_name_is_that_with_the_fewest_changes(typed: str, known: list[str], nearest: str | None) -> None:
     assert nearest_name(typed, known) == nearest
