@@ -401,6 +401,142 @@ def test_bytes_are_no_message_of_another_size(name: str, options: str, tmp_path:
     assert check(program).text == ""
 
 
+NESTED = """#include "pogobase.h"
+typedef struct { uint16_t id; int16_t value; } beacon_t;
+typedef struct { long big; beacon_t out; beacon_t* outs; } part_t;
+typedef struct {
+    size_t size; beacon_t out; beacon_t arr[3]; beacon_t table[2][3]; part_t part; uint8_t* slots[2]; uint8_t** sp;
+    uint8_t bytes[8]; beacon_t* list[3]; part_t parts[2];
+} USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+long counter;
+static part_t* get(void) { return &mydata->part; }
+static void user_step(void) {
+    part_t* p = get();
+    part_t ps[2] = {0};
+    part_t** pp = &p;
+    long k = 1;
+    size_t len = 2;
+    void* raw = p;
+    (void)p; (void)ps; (void)pp; (void)k; (void)len; (void)raw;
+    SENDING
+}
+static void user_init(void) {}
+int main(void) {
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    return 0;
+}
+"""
+RIGHT_SENDS = [
+    "(uint8_t*)&(*mydata).out, sizeof((*mydata).out)",
+    "(uint8_t*)&(*p).out, sizeof((*p).out)",
+    "(uint8_t*)&(*pp)->out, sizeof((*pp)->out)",
+    "(uint8_t*)&(p[0]).out, sizeof(beacon_t)",
+    "(uint8_t*)&p[0].out, 4",
+    "(uint8_t*)&(mydata->part).out, sizeof (mydata->part).out",
+    "(uint8_t*)&((part_t*)p)->out, sizeof(((part_t*)p)->out)",
+    "(uint8_t*)&((part_t*)raw)->out, 4",
+    "*(mydata->slots + 1), 3",
+    "(uint8_t*)(p != NULL ? &p->out : &mydata->out), sizeof(beacon_t)",
+    "p != NULL ? (uint8_t*)&p->out : (uint8_t*)&mydata->out, 4",
+    "(uint8_t*)(p ? p->outs : mydata->list[0]), 4",
+    "(uint8_t*)p->outs, sizeof(*p->outs)",
+    "(uint8_t*)&*p->outs, sizeof *p->outs",
+    "(uint8_t*)mydata->list[1], sizeof(*mydata->list[1])",
+    "(uint8_t*)mydata->arr, sizeof(mydata->arr)",
+    "(uint8_t*)(mydata->arr + 1), sizeof(mydata->arr[0])",
+    "(uint8_t*)&mydata->arr[mydata->size % 3], sizeof(beacon_t)",
+    "(uint8_t*)&mydata->table[1][mydata->size].id, sizeof(uint16_t)",
+    "(uint8_t*)mydata->table[0], sizeof mydata->table[0]",
+    "(uint8_t*)&ps[1].out, sizeof(ps[1].out)",
+    "(uint8_t*)&(ps + 1)->out, sizeof((ps + 1)->out)",
+    "(uint8_t*)&get()->out, sizeof(get()->out)",
+    "(uint8_t*)&(get())->out, (uint16_t)sizeof(beacon_t)",
+    "(uint8_t*)mydata + offsetof(USERDATA, out), sizeof(beacon_t)",
+    "(uint8_t*)&mydata->part + offsetof(part_t, out), 4",
+    "((uint8_t*)&mydata->part) + 8, len",
+    "&((uint8_t*)p)[8], 4",
+    "(uint8_t*)raw, 4",
+    "(uint8_t*)(uintptr_t)&p->out, 4",
+    "mydata->bytes + len, (uint16_t)(sizeof(mydata->bytes) - len)",
+    "*mydata->sp, 2",
+    "mydata->sp[k], 2",
+    "(uint8_t*)p, sizeof(uint16_t)",
+    "(uint8_t*)(&(((p->out)))), sizeof(p->out)",
+    "(uint8_t*)&(beacon_t){1, 2}, sizeof(beacon_t)",
+    "(uint8_t[]){1, 2, 3}, 3",
+    '(uint8_t*)(len > 1 ? "ab" : "cd"), 2',
+    "(len++, mydata->bytes), 2",
+]
+
+
+def with_nested(folder: Path, sending: list[str], **how: Any) -> Path:
+    lines = "\n    ".join(f"{GEN}({arguments});" for arguments in sending)
+    return compile_text(folder, NESTED.replace("SENDING", lines), **how)
+
+
+@pytest.mark.parametrize("options", ["-O0", "-O2"])
+@pytest.mark.parametrize("name", COMPILERS)
+def test_part_of_a_structure_is_sent_however_it_is_spelt(name: str, options: str, tmp_path: Path) -> None:
+    assert check(with_nested(tmp_path, RIGHT_SENDS, compiler=name, flags=["-g", options])).text == ""
+
+
+WRONG_SENDS = {
+    "(uint8_t*)&(*p), sizeof(*p)": {"'big' in the message 'part_t'", "'outs' in the message 'part_t'"},
+    "(uint8_t*)&(*mydata).part, 4": {"'big' in the message 'part_t'", "'outs' in the message 'part_t'"},
+    "(uint8_t*)((part_t*)raw), 8": {"'big' in the message 'part_t'", "'outs' in the message 'part_t'"},
+    "(uint8_t*)&(*pp)->big, sizeof((*pp)->big)": {"'big' is sent as a message"},
+    "(uint8_t*)&(p[0]).outs, 8": {"'outs' is sent as a message"},
+    "(uint8_t*)(len ? &k : &counter), 8": {"'k' is sent as a message", "'counter' is sent as a message"},
+    "len ? (uint8_t*)&p->big : mydata->bytes, 8": {"'big' is sent as a message"},
+    "(uint8_t*)(mydata->parts + 1), 8": {"'big' in the message 'part_t'", "'outs' in the message 'part_t'"},
+    "(uint8_t*)&p, sizeof p": {"'p' is sent as a message"},
+    "(uint8_t*)&(part_t){1}, 8": {"'big' in the message 'part_t'", "'outs' in the message 'part_t'"},
+    "mydata->bytes, (uint16_t)(2 + sizeof(part_t))": {
+        "'big' in the message 'part_t'",
+        "'outs' in the message 'part_t'",
+    },
+}
+
+
+@pytest.mark.parametrize("arguments", WRONG_SENDS)
+@pytest.mark.parametrize("name", COMPILERS)
+def test_what_is_sent_is_found_however_it_is_spelt(name: str, arguments: str, tmp_path: Path) -> None:
+    result = check(with_nested(tmp_path, [arguments], compiler=name, flags=["-g", "-O2"]))
+    said = {line.split("warning: ")[1] for line in result.errors.splitlines()}
+    expected = WRONG_SENDS[arguments]
+    assert len(said) == len(expected), said
+    assert all(any(line.startswith(begin) for line in said) for begin in expected), said
+
+
+CPP_SENDS = [
+    "reinterpret_cast<uint8_t*>(&(*mydata).out), sizeof(beacon_t)",
+    "reinterpret_cast<std::uint8_t*>(&p->out), sizeof p->out",
+    "static_cast<uint8_t*>(static_cast<void*>(&(*pp)->out)), 4",
+    "const_cast<uint8_t*>(&mydata->bytes[0]), 4",
+    "(uint8_t*)std::next(&mydata->arr[0]), 4",
+    "(uint8_t*)&ps[std::min<size_t>(len, 1)].out, 4",
+    "boxes.front(), 4",
+]
+
+
+@pytest.mark.parametrize("name", [name for names in (("g++",), ("clang++",)) if (name := compiler(*names))])
+def test_casts_of_cpp_are_followed(name: str, tmp_path: Path) -> None:
+    text = NESTED.replace(
+        "typedef struct { uint16_t", "#include <algorithm>\n#include <vector>\ntypedef struct { uint16_t"
+    )
+    text = text.replace("    (void)p;", "    std::vector<uint8_t*> boxes{mydata->bytes};\n    (void)p;")
+    right = "\n    ".join(f"{GEN}({arguments});" for arguments in CPP_SENDS)
+    how: dict[str, Any] = {"name": "main.cpp", "compiler": name, "flags": ["-g", "-O1"]}
+    assert check(compile_text(tmp_path, text.replace("SENDING", right), **how)).text == ""
+    wrong = f"{GEN}(reinterpret_cast<uint8_t*>(&(*pp)->big), uint16_t(sizeof(long)));"
+    result = check(compile_text(tmp_path, text.replace("SENDING", wrong), **how))
+    assert result.errors.count("warning") == 1
+    assert "'big' is sent as a message" in result.errors
+
+
 EXAMPLES = sorted(path.parent / path.parent.name for path in ROOT.glob("examples/*/main.c*"))
 
 

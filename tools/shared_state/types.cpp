@@ -9,6 +9,10 @@ bool is_structure(Dwarf_Die* type) {
     return tag == DW_TAG_structure_type || tag == DW_TAG_class_type || tag == DW_TAG_union_type;
 }
 
+bool is_type(Dwarf_Die* declaration) {
+    return dwarf_tag(declaration) == DW_TAG_typedef || is_structure(declaration);
+}
+
 bool is_pointer(Dwarf_Die* type) {
     int const tag = dwarf_tag(type);
     return tag == DW_TAG_pointer_type || tag == DW_TAG_reference_type || tag == DW_TAG_rvalue_reference_type;

@@ -11,6 +11,9 @@ namespace shared_state {
 
 bool is_structure(Dwarf_Die* type);
 
+/// A structure, or a name for a type.
+bool is_type(Dwarf_Die* declaration);
+
 /// Also a reference.
 bool is_pointer(Dwarf_Die* type);
 
