@@ -9,8 +9,9 @@ parameters.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,7 @@ import numpy.typing as npt
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.identifiability import without_own_effect
 from pogosim.calibration.parameters import ALL, BIAS, BIAS_LIMIT, PARAMETERS, TRACKER
+from pogosim.calibration.rounding import rounded, rounding_noise, with_random_digits
 from pogosim.calibration.simulation import Bias, Candidate, Simulator
 from pogosim.calibration.statistics import Statistics, quantile, statistics_of, turn_rates
 from pogosim.calibration.tracks import Floats, Tracks
@@ -116,8 +118,8 @@ class Matcher:
         angle = clean.angle_rad
         if clean.has_angles:
             angle = angle + values["tracker_noise_rad"] * draws.standard_normal(angle.shape)
-        seen = Tracks(position, angle, clean.piece, clean.frame_s, clean.has_angles)
-        return with_headings(seen, values["tracker_noise_mm"])
+        seen = rounded(replace(clean, position_mm=position, angle_rad=angle))
+        return with_headings(with_random_digits(seen, draws), tracker_errors(values, clean)[0])
 
     def logarithms(self, values: Mapping[str, float], bias: Bias, runs: Sequence[int]) -> tuple[Floats, Floats]:
         """Return the logarithms of simulated statistics, averaged over runs, and their standard errors."""
@@ -166,6 +168,12 @@ class Matcher:
         if not np.isfinite(slope) or abs(slope) < 1e-9:
             return np.full(len(self.measured.bias), np.nan), np.inf
         return (self.measured.bias - (low + high) / 2.0) / slope, float(scatter)
+
+
+def tracker_errors(values: Mapping[str, float], tracks: Tracks) -> tuple[float, float]:
+    """Return the standard deviations of all errors of the tracker, with those of rounding, in mm and in rad."""
+    of_position, of_angle = rounding_noise(tracks)
+    return math.hypot(values["tracker_noise_mm"], of_position), math.hypot(values["tracker_noise_rad"], of_angle)
 
 
 def median_turn_rate(tracks: Tracks) -> Floats:
@@ -239,7 +247,7 @@ def fit(matcher: Matcher, noise: tuple[float, float], report: Report) -> Fit:
 
     Args:
         matcher: The tracks, and how to simulate.
-        noise: First guess of the noise of the tracker in mm and in rad (NaN: no headings).
+        noise: First guess of the noise of the tracker in mm and in rad (NaN: no headings), without that of rounding.
         report: Called with a line for each iteration.
 
     Raises:

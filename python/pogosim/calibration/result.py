@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pogosim.calibration.fit import ALIKE, DAMPINGS, Fit
+from pogosim.calibration.fit import ALIKE, DAMPINGS, Fit, tracker_errors
 from pogosim.calibration.identifiability import Verdict, verdicts, weakest_direction
 from pogosim.calibration.parameters import ALL, BIAS, NOISES, PARAMETERS, TRACKER
 from pogosim.calibration.statistics import Statistics
@@ -176,7 +176,7 @@ def as_json(
             "by_robot": [number_or_none(value) for value in fitted.bias_by_robot],
             "standard_error": number_or_none(fitted.bias_error),
         },
-        "tracker": {key: fitted.values[key] for key in TRACKER},
+        "tracker": dict(zip(TRACKER, tracker_errors(fitted.values, fitted.tracks), strict=True)),
         "weakest_direction": {"singular_value": singular, "parts": direction},
         "statistics": {
             name: {"measured": exponential(a), "simulated": exponential(b), "relative_error": float(error)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -120,4 +120,4 @@ class Simulator:
         position[hidden] = np.nan
         unknown = ~np.isfinite(self.tracks.angle_rad) if self.tracks.has_angles else hidden
         angle[unknown] = np.nan
-        return Tracks(position, angle, self.tracks.piece, self.tracks.frame_s, self.tracks.has_angles)
+        return replace(self.tracks, position_mm=position, angle_rad=angle)

@@ -32,6 +32,8 @@ class Tracks:
         piece: Shape (frames, robots); number of the piece of a track without gaps, -1 where the robot was not seen.
         frame_s: Time from frame to frame.
         has_angles: The tracker knows the heading; otherwise it is the direction of motion.
+        step_mm: Positions are rounded to multiples of it; 0: they are not.
+        step_rad: The same of angles.
     """
 
     position_mm: Floats
@@ -39,6 +41,8 @@ class Tracks:
     piece: Ints
     frame_s: float
     has_angles: bool = True
+    step_mm: float = 0.0
+    step_rad: float = 0.0
 
     @property
     def robots(self) -> int:

@@ -78,7 +78,7 @@ def in_millimetres(
         warn(f"the tracks extend over {size} only, in an arena of {arena}: is {unit} their unit? (--length-unit)")
     scale_text = f" of {scale:g} mm" if unit == "px" else ""
     say(f"lengths: {unit}{scale_text} ({why}); the tracks extend over {size}, the arena over {arena}")
-    return replace(tracks, position_mm=tracks.position_mm * scale)
+    return replace(tracks, position_mm=tracks.position_mm * scale, step_mm=tracks.step_mm * scale)
 
 
 def recognised_length(extent: Floats, arena_mm: Floats) -> str:
@@ -150,14 +150,19 @@ def in_radians(tracks: Tracks, column_unit: str | None, options: UnitOptions, sa
             f"that hardly move, or another column? They are taken as they are, in {unit}"
         )
         say(f"angles: {unit} ({why})")
-        return replace(tracks, angle_rad=tracks.angle_rad * ANGLES_RAD[unit])
+        return scaled_angles(tracks, ANGLES_RAD[unit])
     why = why if known else "recognised by the directions of motion"
     offset = math.atan2(found.imag, found.real)
     turned = f"; turned by {math.degrees(-offset):.0f} degrees, to the direction of motion" if abs(offset) > 0.1 else ""
     mirrored = "; their sign is changed, to agree with the directions of motion" if sign < 0 else ""
     say(f"angles: {unit} ({why}){mirrored}{turned}")
-    angle = sign * ANGLES_RAD[unit] * tracks.angle_rad - (offset if turned else 0.0)
-    return replace(tracks, angle_rad=angle)
+    scaled = scaled_angles(tracks, sign * ANGLES_RAD[unit])
+    return replace(scaled, angle_rad=scaled.angle_rad - (offset if turned else 0.0))
+
+
+def scaled_angles(tracks: Tracks, factor: float) -> Tracks:
+    """Return tracks with other units of angles."""
+    return replace(tracks, angle_rad=tracks.angle_rad * factor, step_rad=tracks.step_rad * abs(factor))
 
 
 def by_range(angle: Floats) -> str:

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import argparse
+import math
 import shutil
 import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from pogosim.batch.backends import Workers
 from pogosim.batch.errors import BatchError
 from pogosim.batch.rows import Runs
 from pogosim.calibration.errors import CalibrationError
-from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile
+from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile, tracker_errors
 from pogosim.calibration.parameters import BIAS, chosen, start_bias, start_values
 from pogosim.calibration.reading import read_track_table
 from pogosim.calibration.result import as_json, bias_is_known, configuration_block, found_parameters, misfits
 from pogosim.calibration.results import LINES, PICTURE, PROTOCOL, RESULT, check_outputs
+from pogosim.calibration.rounding import in_words, noticed, rounding_noise, with_random_digits, with_steps
 from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses
 from pogosim.calibration.simulation import Simulator
 from pogosim.calibration.statistics import check_motion, noise_bounds, statistics_of, tracker_noise
@@ -44,7 +48,7 @@ class Prepared:
 
     Attributes:
         tracks: In mm and rad, with headings.
-        noise: First guess of the errors of the tracker in mm and rad.
+        noise: First guess of the errors of the tracker in mm and rad, without those of rounding.
         facts: What was said of them.
     """
 
@@ -70,17 +74,25 @@ def prepare(prog: str, options: argparse.Namespace, scene: Scene) -> Prepared:
         warn(prog, text)
 
     table = read_track_table(Path(options.tracks), scene.category, caution)
-    tracks = on_grid(table, *frame_numbers(table, options.fps, caution), caution)
+    tracks = with_steps(on_grid(table, *frame_numbers(table, options.fps, caution), caution))
     robots = f"{tracks.robots} robot{'' if tracks.robots == 1 else 's'}"
     tell(f"tracks: {robots}, {tracks.length_s:.4g} s, {1.0 / tracks.frame_s:.4g} frames/s")
     unit_options = UnitOptions(options.length_unit, options.mm_per_pixel, options.angle_unit, options.y_up)
     tracks = in_millimetres(tracks, table.units.get("x"), unit_options, scene.size_mm, tell, caution)
     tracks = cut(tracks, scene.radius_mm, caution)
     tracks = in_radians(tracks, table.units.get("angle"), unit_options, tell, caution)
-    tracks = in_arena(continuous(y_down(tracks, unit_options, scene.size_mm[1], tell)), scene, caution)
+    tracks = noticed(in_arena(continuous(y_down(tracks, unit_options, scene.size_mm[1], tell)), scene, caution))
+    if steps := in_words(tracks):
+        tell(f"rounded: {steps}; simulated tracks are rounded like them")
+    tracks = with_random_digits(tracks, np.random.default_rng(options.seed))
     noise = tracker_noise(tracks)
     check_motion(tracks, noise[0])
-    return Prepared(with_headings(tracks, noise[0]), noise, facts)
+    # Robots at rest show the random digits alone.
+    own = [
+        math.sqrt(max(of_all**2 - of_steps**2, 0.0))
+        for of_all, of_steps in zip(noise, rounding_noise(tracks), strict=True)
+    ]
+    return Prepared(with_headings(tracks, noise[0]), (own[0], own[1]), facts)
 
 
 def compiled(what: str | None, temporary: Path) -> Path:
@@ -134,11 +146,11 @@ def report(
     prog: str, options: argparse.Namespace, scene: Scene, prepared: Prepared, matcher: Matcher, fitted: Fit
 ) -> None:
     """Print the result and the doubts about it, and write it if a folder is given."""
-    settings, noise = matcher.settings, fitted.values
+    settings, (of_position, of_angle) = matcher.settings, tracker_errors(fitted.values, fitted.tracks)
     found = found_parameters(fitted, settings.start)
     with_bias = BIAS in settings.free
-    of_angle = f", {noise['tracker_noise_rad']:.2g} rad" if noise["tracker_noise_rad"] else ""
-    say(f"noise of the tracker: {noise['tracker_noise_mm']:.2g} mm{of_angle}")
+    and_angle = f", {of_angle:.2g} rad" if of_angle else ""
+    say(f"noise of the tracker: {of_position:.2g} mm{and_angle}")
     side = handedness(median_profile(prepared.tracks), median_profile(fitted.tracks), fitted.tracks.frame_s)
     say_what_is_doubtful(prog, side, with_bias and bias_is_known(fitted))
     for line in misfits(matcher.measured, fitted):
