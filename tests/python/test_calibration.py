@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-from pogosim.calibration import statistics
+from pogosim.calibration import rounding, statistics
 from pogosim.calibration.command import main
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.fit import bias_range
@@ -183,7 +183,7 @@ def test_one_robot_and_a_data_file_will_do(
 
 
 @pytest.mark.parametrize("noise_of_the_start", [0.0, 0.3])
-@pytest.mark.parametrize("kind", ["spots", "data file"])
+@pytest.mark.parametrize("kind", ["spots", "data file", "rounded"])
 def test_film_without_any_noise_gives_the_parameters_of_its_run(
     kind: str, noise_of_the_start: float, here: Path, protocol: Path
 ) -> None:
@@ -194,16 +194,52 @@ def test_film_without_any_noise_gives_the_parameters_of_its_run(
     if kind == "spots":
         write_spots(film.frame().rename(columns={"robot_id": "id"}), here / "film", "mm")
         shutil.move(here / "film", here / "tracks.csv")
+    elif kind == "rounded":
+        rows = film.frame().rename(columns={"robot_id": "id"})[["time", "id", "x", "y", "angle"]]
+        write(rows.round({"x": 0, "y": 0, "angle": 2}), here / "tracks.csv")
     else:
         shutil.copy(film.folder / "data.feather", here / "tracks.csv")
     noises = {"linear_noise_stddev": noise_of_the_start, "angular_noise_stddev": noise_of_the_start}
     objects = {"robots": {"type": "pogobot", "nb": 3, **START, **noises}}
     write_configuration(here / "conf.yaml", objects=objects)
-    found = calibrated(here)["parameters"]
+    everything = calibrated(here)
+    found = everything["parameters"]
     for key, value in true.items():
         assert found[key]["value"] == pytest.approx(value, rel=0.03), key
+    of_rounding = {"rounded": [1.0 / math.sqrt(12.0), 0.01 / math.sqrt(12.0)]}.get(kind, [0.0, 0.0])
+    assert list(everything["tracker"].values()) == pytest.approx(of_rounding, rel=0.05, abs=0.005)
     for key in noises.keys() & found.keys():
         assert found[key]["value"] == 0.0, key
+
+
+def test_noise_of_motors_is_found_in_rounded_tracks(
+    here: Path, filmed: Run, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = filmed.frame().rename(columns={"robot_id": "id"})[["time", "id", "x", "y", "angle"]]
+    pixels = rows.assign(x=rows["x"] / 2.0, y=rows["y"] / 2.0, angle=np.degrees(rows["angle"]))
+    write(pixels.round({"x": 0, "y": 0, "angle": 0}), here / "tracks.csv")
+    found = calibrated(here, "--mm-per-pixel", "2")
+    for key in TRUE:
+        assert found["parameters"][key]["value"] == pytest.approx(TRUE[key], rel=0.15), key
+    text = "rounded: positions to 2 mm (noise of 0.58 mm), angles to 0.017 rad (noise of 0.005 rad)"
+    assert text in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("step", [1.0, 0.5, 0.25, 0.1, 0.01, 0.8 / 3.0])
+@pytest.mark.parametrize("offset", [0.0, 0.37])
+def test_step_of_rounded_numbers_is_found(step: float, offset: float) -> None:
+    numbers = np.random.default_rng(4).uniform(-700.0, 1500.0, (500, 20))
+    numbers[3, 4] = np.nan
+    assert rounding.step_of(np.rint(numbers / step) * step + offset) == pytest.approx(step)
+
+
+def test_numbers_that_are_not_rounded_have_no_step() -> None:
+    numbers = np.random.default_rng(4).uniform(-700.0, 1500.0, (500, 20))
+    assert rounding.step_of(numbers) == 0.0
+    assert rounding.step_of(np.rint(numbers) + 0.1 * (numbers > 1000.0)) == pytest.approx(0.1)
+    assert rounding.step_of(numbers.astype(np.float32).astype(float)) < rounding.LEAST_RAD
+    assert rounding.step_of(np.array([1.0, 1.0, 2.0, np.nan])) == 0.0
+    assert rounding.step_of(np.full(4, np.nan)) == 0.0
 
 
 @pytest.mark.parametrize("name", ["tracks.arrow", "tracks.ipc", "tracks", "tracks.txt"])

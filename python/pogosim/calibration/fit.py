@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.identifiability import without_own_effect
-from pogosim.calibration.parameters import ALL, BIAS, BIAS_LIMIT, PARAMETERS, TRACKER
+from pogosim.calibration.parameters import ALL, BIAS, BIAS_LIMIT, NOISES, PARAMETERS, TRACKER
 from pogosim.calibration.rounding import rounded, rounding_noise, with_random_digits
 from pogosim.calibration.simulation import Bias, Candidate, Simulator
 from pogosim.calibration.statistics import Statistics, quantile, statistics_of, turn_rates
@@ -273,7 +273,7 @@ def fit(matcher: Matcher, noise: tuple[float, float], report: Report) -> Fit:
         simulated, error = total_error(matcher, values, bias, runs, own_error)
         both = usable & np.isfinite(simulated)
         residual = np.where(both, measured - simulated, 0.0)
-        misfit = float(np.sum((residual / error) ** 2)) / max(int(both.sum()), 1)
+        misfit = misfit_per_statistic(residual, error, both)
         report(f"iteration {iteration + 1}: misfit {misfit:.3g} per statistic")
         # The first iteration has fewer runs and larger errors: its misfit is no measure for the others.
         if misfit < best[0] or iteration == 1:
@@ -294,7 +294,34 @@ def fit(matcher: Matcher, noise: tuple[float, float], report: Report) -> Fit:
         }
         if np.max(np.abs(step)) < DONE:
             break
-    return ended(matcher, best[1], best[2], looked_at, [name for name in looked_at if name not in free], own_error)
+    without = without_needless_noise(matcher, best, usable, own_error)
+    return ended(matcher, without, best[2], looked_at, [name for name in looked_at if name not in free], own_error)
+
+
+def misfit_per_statistic(residual: Floats, error: Floats, compared: npt.NDArray[np.bool_]) -> float:
+    """Return the mean square of residuals, in their errors."""
+    return float(np.sum((residual / error) ** 2)) / max(int(compared.sum()), 1)
+
+
+def without_needless_noise(
+    matcher: Matcher, best: tuple[float, dict[str, float], Bias], usable: npt.NDArray[np.bool_], own_error: Floats
+) -> dict[str, float]:
+    """Return the best values, without noise of motors where the tracks are reproduced as well without it.
+
+    Noise far below that of the tracker changes the statistics by the square of its share: steps towards zero are small.
+    """
+    misfit, values, bias = best
+    measured = matcher.measured.logarithms()[0]
+    for key in NOISES:
+        if key not in matcher.settings.free:
+            continue
+        own = {**values, key: ALL[key].least}
+        simulated, error = total_error(matcher, own, bias, range(matcher.settings.runs), own_error)
+        both = usable & np.isfinite(simulated)
+        found = misfit_per_statistic(np.where(both, measured - simulated, 0.0), error, both)
+        if found <= misfit:
+            misfit, values = found, own
+    return values
 
 
 def total_error(
