@@ -175,13 +175,12 @@ void warn_of_shared_variables(ProgramImage const& image, std::span<BoundVariable
     }
     std::size_t const count = found.names.size();
     std::size_t const shown = count > kMostNames + 1 ? kMostNames : count;
-    bool const one = count == 1;
     std::string const text = fmt::format(
-        "all robots share the variable{} {}{}, of which each real robot has its own: put {} into USERDATA, read "
-        "parameters with init_from_configuration(), declare constants const and what is meant to be shared "
+        "all robots share the variable{} {}{}, which real robots cannot: put what each robot has into USERDATA, read "
+        "parameters with init_from_configuration(), declare constants const and what the supervisor or all robots use "
         "POGO_SHARED, or set robot_memory: own",
-        one ? "" : "s", fmt::join(std::span(found.names).first(shown), ", "),
-        shown < count ? fmt::format(" and {} more", count - shown) : "", one ? "it" : "them");
+        count == 1 ? "" : "s", fmt::join(std::span(found.names).first(shown), ", "),
+        shown < count ? fmt::format(" and {} more", count - shown) : "");
     log().log(found.is_certain ? spdlog::level::warn : spdlog::level::info, "{}", escaped(text));
 }
 

@@ -99,7 +99,7 @@ def test_warning_reads_like_a_compilers(tmp_path: Path) -> None:
     program = build(tmp_path, "int32_t total;\nvoid count(void);\nvoid count(void) { static bool seen; seen = !seen; }")
     result = check(program, folder=tmp_path)
     assert (result.code, result.output) == (0, "")
-    shared = "is shared by all simulated robots; on real robots each has its own [-Wshared-state]"
+    shared = "is shared by all simulated robots; real robots cannot share it [-Wshared-state]"
     assert result.errors.splitlines() == [
         f"main.c:2:9: warning: 'total' (4 bytes) {shared}",
         f"main.c:4:32: warning: 'seen' in count() (1 byte) {shared}",

@@ -22,8 +22,8 @@ int main(void) {{
 }}
 """
 REMEDY = (
-    "into USERDATA, read parameters with init_from_configuration(), declare constants const and what is meant to be "
-    "shared POGO_SHARED, or set robot_memory: own"
+    "which real robots cannot: put what each robot has into USERDATA, read parameters with init_from_configuration(), "
+    "declare constants const and what the supervisor or all robots use POGO_SHARED, or set robot_memory: own"
 )
 COMPILERS = [name for names in (("gcc",), ("clang", "clang-14")) if (name := compiler(*names))]
 
@@ -55,21 +55,30 @@ def test_shared_variables_are_named_with_their_lines(name: str, options: str, tm
     )
     program = compile_text(tmp_path, text, compiler=name, flags=["-Wall", *options.split()])
     assert told(program, tmp_path) == [
-        "all robots share the variables 'total' (main.c:3), 'table' (main.c:4), 'steps' in user_step() (main.c:5), of "
-        f"which each real robot has its own: put them {REMEDY}"
+        "all robots share the variables 'total' (main.c:3), 'table' (main.c:4), 'steps' in user_step() (main.c:5), "
+        f"{REMEDY}"
     ]
 
 
 def test_one_variable_is_one(tmp_path: Path) -> None:
     assert told(build(tmp_path, "uint32_t total;", "total++;"), tmp_path) == [
-        f"all robots share the variable 'total' (main.c:3), of which each real robot has its own: put it {REMEDY}"
+        f"all robots share the variable 'total' (main.c:3), {REMEDY}"
     ]
+
+
+def test_variable_of_the_supervisor_is_not_said_to_be_one_of_real_robots(tmp_path: Path) -> None:
+    text = PROGRAM.format(
+        variables="static uint32_t steps_of_world;\nstatic void look(void) { steps_of_world++; }", step="", setup=""
+    )
+    text = text.replace("pogobot_start(", "SET_CALLBACK(callback_global_step, look);\n    pogobot_start(", 1)
+    program = compile_text(tmp_path, text, flags=["-g"])
+    assert told(program, tmp_path) == [f"all robots share the variable 'steps_of_world' (main.c:3), {REMEDY}"]
 
 
 def test_of_many_variables_the_first_are_named(tmp_path: Path) -> None:
     variables = "\n".join(f"uint32_t number_{i};" for i in range(6))
     (warning,) = told(build(tmp_path, variables), tmp_path)
-    assert "variables 'number_0' (main.c:3), 'number_1' (main.c:4), 'number_2' (main.c:5) and 3 more, of" in warning
+    assert "variables 'number_0' (main.c:3), 'number_1' (main.c:4), 'number_2' (main.c:5) and 3 more, which" in warning
 
 
 @pytest.mark.parametrize("name", COMPILERS)

@@ -99,7 +99,7 @@ void print(Object const& object, Check const& check) {
     char const* const what = object.constant
                                  ? "is set once, by the first robot to run this line, for all simulated robots"
                                  : "is shared by all simulated robots";
-    std::fprintf(stderr, "%s: %s (%llu byte%s) %s; on real robots each has its own %s\n",
+    std::fprintf(stderr, "%s: %s (%llu byte%s) %s; real robots cannot share it %s\n",
                  beginning(object.file, object.line, object.column, check).c_str(), shown_name(object).c_str(),
                  static_cast<unsigned long long>(object.bytes), object.bytes == 1 ? "" : "s", what, end(check).c_str());
 }
