@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -67,6 +68,26 @@ def test_run_is_over_though_ctrl_c_came_in_its_last_step(
         assert simulation.steps == simulation.step_count
         assert simulation.is_over
         assert simulation.run() == 0
+
+
+@pytest.mark.parametrize("function", ["pogosim_run_end", "pogosim_run_close"])
+@pytest.mark.parametrize("is_closed", [True, False])
+def test_ctrl_c_while_a_run_is_freed_reaches_the_program(
+    is_closed: bool, function: str, program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupt_in(function, 1, monkeypatch)
+    simulations = [pogosim.Simulation(program, scene)]
+
+    def forget() -> None:
+        if is_closed:
+            simulations[0].close()
+        simulations.clear()
+        gc.collect()
+        time.sleep(10)  # the program goes on
+
+    with pytest.raises(KeyboardInterrupt):
+        forget()
+    simulations.clear()
 
 
 @pytest.mark.parametrize("function", ["pogosim_run_open", "pogosim_run_end", "pogosim_run_number"])
@@ -300,6 +321,27 @@ def test_forked_child_gets_an_error_for_all_that_it_asks(program: Path, scene: P
         assert len(simulation.to_dataframe()) == 6
         simulation.run()
         assert len(simulation.to_dataframe()) == 15
+
+
+@pytest.mark.parametrize("use", ["in_a_forked_child", "of_a_closed_one"])
+def test_rows_are_refused_before_pandas_is_read(use: str, program: Path, scene: Path) -> None:
+    script = scene.parent / "script.py"
+    script.write_text(
+        "import os, sys, pogosim\n"
+        f"simulation = pogosim.Simulation({str(program)!r}, {str(scene)!r})\n"
+        "def look():\n"
+        "    try:\n        simulation.to_dataframe()\n"
+        "    except pogosim.SimulationError:\n"
+        "        print('pandas' in sys.modules, flush=True)\n"
+        "def in_a_forked_child():\n"
+        "    child = os.fork()\n"
+        "    if child == 0:\n        look()\n        os._exit(0)\n"
+        "    os.waitpid(child, 0)\n"
+        "def of_a_closed_one():\n    simulation.close()\n    look()\n"
+        f"{use}()\n"
+    )
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout == "False\n", done.stderr
 
 
 def test_many_runs_in_a_forked_child_do_not_wait_for_threads_that_it_lacks(program: Path, scene: Path) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import ConfigurationError
+from pogosim.simulation.interrupts import interrupt_soon
 from pogosim.simulation.library import OpenRun, library, open_run
 
 WARNING = threading.Lock()
@@ -78,8 +79,11 @@ class CurrentRun:
     def finish(self) -> None:
         """End a run that was not closed, when its simulation is collected or Python ends: its file is complete then."""
         self.should_pause = True
-        self.lock.acquire(timeout=LONGEST_WAIT_S)
-        self.clean_up()
+        try:
+            self.lock.acquire(timeout=LONGEST_WAIT_S)
+            self.clean_up()
+        except KeyboardInterrupt:
+            interrupt_soon()
 
     def clean_up(self) -> None:
         """End the run, then remove the temporary folder, if it has one: without it, the rows would be rescued."""

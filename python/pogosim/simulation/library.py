@@ -32,6 +32,7 @@ from pogosim import __version__
 from pogosim.installation import InstallationError, find_installation
 from pogosim.lines import printable
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
+from pogosim.simulation.interrupts import interrupt_soon
 
 OK, OVER, USAGE, PROGRAM_FAILED = range(4)
 
@@ -167,11 +168,15 @@ class OpenRun:
         self._process = os.getpid()
         self._close = library().pogosim_run_close
 
-    def __del__(self, process_now: Callable[[], int] = os.getpid) -> None:  # modules may be gone at the end of Python
-        if (
-            self._close is not None and process_now() == self._process
-        ):  # in a forked child, the files are those of its parent
-            self._close(self.pointer)
+    def __del__(  # modules may be gone at the end of Python
+        self, process_now: Callable[[], int] = os.getpid, interrupt_soon: Callable[[], None] = interrupt_soon
+    ) -> None:
+        try:
+            # In a forked child, the files are those of its parent.
+            if self._close is not None and process_now() == self._process:
+                self._close(self.pointer)
+        except KeyboardInterrupt:
+            interrupt_soon()
 
 
 def open_run(

@@ -531,11 +531,12 @@ class Simulation:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the rows recorded so far, as `pogosim.utils.load_dataframe` does."""
-        from pogosim import utils  # pandas takes most of a second, which runs without rows need not wait
-
         with self._busy():
             check(library().pogosim_run_save(self._run.pointer))
             self._check_data_file()
+            # pandas takes most of a second, for which runs without rows, and what is refused, need not wait.
+            from pogosim import utils
+
             rows, metadata = utils.load_file(self.data_file, warns=False)  # the run goes on
         rows.attrs = utils.attributes(metadata)
         return rows
