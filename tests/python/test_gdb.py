@@ -207,6 +207,35 @@ def test_user_data_of_every_compiler_have_their_type(name: str, ending: str, lev
     assert printed(output, 5) == "3"
 
 
+@pytest.mark.parametrize(
+    ("ending", "declared", "kind"),
+    [
+        ("c", "struct state {|};", "struct state"),
+        ("cpp", "struct state {|};", "state"),
+        ("cpp", "namespace swarm { struct state {|};}", "swarm::state"),
+        ("cpp", "class Outer { public: struct state {|};};", "Outer::state"),
+        ("cpp", "template <int Size> struct state {|};", "state<3>"),
+    ],
+)
+def test_user_data_without_a_typedef_have_their_type(ending: str, declared: str, kind: str, tmp_path: Path) -> None:
+    found = compiler(*(("clang", "clang-14") if ending == "c" else ("clang++", "clang++-14")))
+    if found is None:
+        pytest.skip("clang is not installed")
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    source = tmp_path / f"main.{ending}"
+    begin, end = declared.split("|")
+    text = PROGRAM.replace("typedef struct {", begin).replace("} USERDATA;", end).replace("(USERDATA)", f"({kind})")
+    source.write_text(text)
+    compile_program(tmp_path / "program", source, compiler=found, flags=["-g", "-O0"])
+    output = debug_run(
+        tmp_path,
+        "break user_step if mydata->id == 3 && mydata->steps == 4",
+        *("run", "print *mydata", "print $data(2).id"),
+    )
+    assert printed(output, 1).startswith("{steps = 4, id = 3, ")
+    assert printed(output, 2) == "2"
+
+
 WITHOUT_USERDATA = re.sub(r"typedef struct.*?REGISTER_USERDATA.USERDATA.;|mydata.*?;", "", PROGRAM, flags=re.DOTALL)
 
 

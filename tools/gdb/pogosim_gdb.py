@@ -326,7 +326,9 @@ def name_mydata(_: object = None) -> None:
     """Let `mydata` mean $mydata() where it is not declared. Conditions may have it before the library is loaded."""
     kind = user_data_type()
     if kind and not is_declared(kind):
-        gdb.execute(f"macro define mydata (({kind}*)$mydata())")
+        # Conditions may be read as C, which needs "struct" and has no namespaces, before the program runs.
+        name = re.sub(r"^(\w+ )?(.*[:<].*)$", r"'\2'", str(kind))
+        gdb.execute(f"macro define mydata (({name}*)$mydata())")
     else:
         gdb.execute("macro undef mydata")
 
