@@ -169,7 +169,7 @@ def test_objects_of_cpp_are_named(tmp_path: Path) -> None:
     text = CPP.replace("{variable}", "namespace mine { Counter counter; }").replace("{step}", "mine::counter.count++;")
     program = compile_text(tmp_path, text.replace("{{", "{").replace("}}", "}"), "main.cpp", flags=["-g"])
     (warning,) = told(program, tmp_path)
-    assert warning.startswith("all robots share the variable 'mine::counter' (main.cpp:5), of which ")
+    assert warning.startswith("all robots share the variable 'mine::counter' (main.cpp:5), which ")
 
 
 CONSTANTS = {
