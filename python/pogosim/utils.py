@@ -24,6 +24,8 @@ from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
 from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
 from pogosim.shared_metadata import shared
+from pogosim.table_formats import CSV, format_in
+from pogosim.table_metadata import NoMetadataWarning, are_of_runs, metadata_of
 from pogosim.tables import read_other
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
@@ -33,7 +35,8 @@ given = Arguments()
 def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Read a data file, or several.
 
-    The file of an active or killed run is read up to its last complete rows, with a warning (RuntimeWarning).
+    The file of an active or killed run is read up to its last complete rows, with a warning (RuntimeWarning). A file
+    that says nothing of its run is read with a NoMetadataWarning.
 
     Args:
         path: Feather, Parquet or CSV file, written by the simulator or by a batch of runs. Several files, as a list or
@@ -52,7 +55,8 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
         "combinations": of a batch, a list with a dictionary per combination of options.
         "files": of several files, the list of their names.
         The `attrs` of the dataframe are a copy of the metadata, with lists in place of arrays. All that is selected
-        from the dataframe shares them.
+        from the dataframe shares them. Where pandas saved them with a dataframe (`to_feather`, `to_parquet`), they are
+        its metadata.
 
     Raises:
         FileNotFoundError: There is no such file, or none that fits the pattern.
@@ -83,10 +87,14 @@ def load_file(path: Path, warns: bool = True) -> tuple[pd.DataFrame, dict[str, A
         rows = table.to_pandas()
     except DAMAGED as error:
         raise ValueError(f"{path} is damaged: its rows cannot be read: {error}") from error
-    metadata: dict[str, Any] = {
-        key.decode("utf-8", "replace"): value.decode("utf-8", "replace")
-        for key, value in (table.schema.metadata or {}).items()
-    }
+    metadata = metadata_of(table.schema)
+    if warns and not are_of_runs(metadata) and format_in(path) != CSV:  # reading a CSV file tells of it already
+        warnings.warn(
+            f"{path} has no metadata of a run, so configuration and arena are unknown; a dataframe of load_dataframe "
+            "keeps them in its attrs, and to_feather and to_parquet of pandas save these",
+            NoMetadataWarning,
+            stacklevel=3,
+        )
     metadata["configuration"] = parse_configuration(metadata.get("configuration", ""))
     if "resolved_configuration" in metadata:
         metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])
@@ -135,21 +143,24 @@ def read_table(path: Path, warns: bool = True) -> pyarrow.Table:
 
 
 def polygons_of(polygons: Any) -> list[npt.NDArray[np.float64]]:
-    """Convert sequences of sequences of {x, y} to arrays of shape (corners, 2)."""
-    return [np.array([[p["x"], p["y"]] for p in polygon], dtype=np.float64) for polygon in polygons]
+    """Convert sequences of sequences of {x, y}, or of pairs as in `attrs`, to arrays of shape (corners, 2)."""
+    return [
+        np.array([[p["x"], p["y"]] if isinstance(p, dict) else p for p in polygon], dtype=np.float64)
+        for polygon in polygons
+    ]
 
 
-def parse_polygons(text: str) -> list[npt.NDArray[np.float64]] | str:
-    """Parse the polygons stored in a data file: YAML, a sequence of sequences of {x, y}.
+def parse_polygons(stored: Any) -> Any:
+    """Parse the polygons stored in a data file: YAML, a sequence of sequences of {x, y}; or as they are in `attrs`.
 
     Returns:
-        Arrays of shape (corners, 2) in the unit of the file (mm); the text itself if it cannot be parsed.
+        Arrays of shape (corners, 2) in the unit of the file (mm); what was stored if it cannot be parsed.
     """
     try:
-        arrays = outlines_in(text)
+        arrays = outlines_in(stored) if isinstance(stored, str) else tuple(polygons_of(stored))
     except WRONG_VALUES:
-        return text
-    return [array.copy() for array in arrays] if all(array.ndim == 2 for array in arrays) else text
+        return stored
+    return [array.copy() for array in arrays] if all(array.ndim == 2 for array in arrays) else stored
 
 
 @functools.lru_cache(maxsize=8)
@@ -158,15 +169,14 @@ def outlines_in(text: str) -> tuple[npt.NDArray[np.float64], ...]:
     return tuple(polygons_of(parse_yaml(text) or []))
 
 
-def in_millimetres(
-    polygons: list[npt.NDArray[np.float64]] | str, rows: pd.DataFrame
-) -> list[npt.NDArray[np.float64]] | str:
+def in_millimetres(polygons: Any, rows: pd.DataFrame) -> Any:
     """Convert outlines in units of 100 mm, which simulators up to 0.10 write.
 
     They are taken for such if nine in ten positions are within the bounding box of the outlines that are 100 times as
     large, and not one in ten within that of those in the file.
     """
-    if isinstance(polygons, str) or not polygons or not {"x", "y"} <= set(rows.columns):
+    has_outlines = isinstance(polygons, list) and polygons and all(isinstance(own, np.ndarray) for own in polygons)
+    if not has_outlines or not {"x", "y"} <= set(rows.columns):
         return polygons
     try:
         position = rows[["x", "y"]].to_numpy(dtype=float)
@@ -184,26 +194,28 @@ def in_millimetres(
     return [100.0 * polygon for polygon in polygons]
 
 
-def parse_combinations(text: str) -> list[dict[str, Any]] | str:
-    """Parse what a batch says about its combinations: YAML, a sequence of maps; else the text itself."""
+def parse_combinations(stored: Any) -> Any:
+    """Parse what a batch says about its combinations: YAML, a sequence of maps; else what was stored."""
     try:
-        combinations = parse_yaml(text)
+        combinations = parse_yaml(stored) if isinstance(stored, str) else stored
     except WRONG_VALUES:
-        return text
+        return stored
     if not isinstance(combinations, list) or not all(isinstance(entry, dict) for entry in combinations):
-        return text
+        return stored
     for entry in combinations:
         with contextlib.suppress(KeyError, TypeError, ValueError):
             entry["arena_polygons"] = polygons_of(entry["arena_polygons"])
     return combinations
 
 
-def parse_configuration(text: str) -> dict[str, Any]:
-    """Parse the configuration stored in a data file: YAML, JSON or a Python literal.
+def parse_configuration(text: Any) -> dict[str, Any]:
+    """Parse the configuration stored in a data file: YAML, JSON or a Python literal; or a map already, as in `attrs`.
 
     Returns:
         The configuration; empty if the text is not a map in any of the three.
     """
+    if isinstance(text, dict):
+        return text
     for parse in (parse_yaml, json.loads, ast.literal_eval):
         try:
             value = parse(text)

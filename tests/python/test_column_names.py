@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 from batches import batch, write_options
 from pogosim.analysis.trajectories import trajectories_of
@@ -137,7 +136,7 @@ def test_trails_are_those_of_the_robots_whatever_columns_there_are(folder: Path)
 def test_file_with_columns_of_our_own_names_is_drawn_without_them(folder: Path, tmp_path: Path) -> None:
     data = recorded(folder, "plain").folder / "data.feather"
     strange = tmp_path / "strange.feather"
-    pd.read_feather(data).assign(**{"\0object": 7, "\0rgb_0": 8}).to_feather(strange)
+    load_dataframe(data)[0].assign(**{"\0object": 7, "\0rgb_0": 8}).to_feather(strange)
     assert read_recording(strange).last.rows["robot_id"].nunique() == 3
 
 

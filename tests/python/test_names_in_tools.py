@@ -35,6 +35,7 @@ def write_files(folder: Path) -> None:
             "angle": [0.0, 1.0] * 3,
         }
     )
+    rows.attrs["program_version"] = "v0.11.0"
     rows.to_feather(folder / "data.feather")
     rows.rename(columns={"x": f"x{CLEAR}"}).to_feather(folder / "columns.feather")
     rows.rename(columns={"x": f"x{CLEAR}"}).to_csv(folder / "tracks.csv")

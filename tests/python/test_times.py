@@ -73,6 +73,7 @@ def test_late_moments_are_told_apart(tmp_path: Path) -> None:
     times = np.round(270_000.0 + 0.1 * np.arange(5), 1)
     rows = pd.DataFrame({"time": times, "robot_id": 0, "x": np.arange(5.0), "y": 0.0})
     path = tmp_path / "late.feather"
+    rows.attrs["program_version"] = "v0.11.0"
     rows.to_feather(path)
     recording = read_recording(path)
     assert [recording.until(time_s).end_s for time_s in times] == times.tolist()

@@ -1,0 +1,46 @@
+"""What a table says of the runs that it is of: as the simulator or a batch wrote it, or as pandas saved it."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+# One of these is in each file of a run or a batch.
+OF_RUNS = ("configuration", "resolved_configuration", "arena_polygons", "combinations", "program_version")
+
+
+class NoMetadataWarning(RuntimeWarning):
+    """A table says nothing of its run: its arena, its borders, and the sizes of its robots are unknown."""
+
+
+def are_of_runs(metadata: dict[str, Any]) -> bool:
+    """Tell whether metadata are those of a run or of a batch."""
+    return any(name in metadata for name in OF_RUNS)
+
+
+def metadata_of(schema: pa.Schema) -> dict[str, Any]:
+    """Return the metadata of a table: texts; of a dataframe that pandas saved with its `attrs`, those, parsed."""
+    texts = {
+        key.decode("utf-8", "replace"): value.decode("utf-8", "replace")
+        for key, value in (schema.metadata or {}).items()
+    }
+    if are_of_runs(texts):
+        return texts
+    return next((attrs for attrs in saved_attrs(texts) if are_of_runs(attrs)), texts)
+
+
+def saved_attrs(texts: dict[str, str]) -> list[dict[str, Any]]:
+    """Return the `attrs` that pandas and pyarrow wrote into the metadata of a table, in JSON."""
+    found = []
+    for name, key in (("pandas", "attributes"), ("PANDAS_ATTRS", None)):
+        try:
+            saved = json.loads(texts.get(name, ""))
+        except (ValueError, RecursionError):
+            continue
+        attrs = saved.get(key) if key and isinstance(saved, dict) else saved
+        if isinstance(attrs, dict):
+            found.append(attrs)
+    return found
