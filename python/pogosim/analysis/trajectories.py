@@ -25,6 +25,7 @@ from pogosim.arguments import Arguments
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.configuration_values import number
 from pogosim.far_away import is_near
+from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.periodic import steps_of
 from pogosim.run_columns import is_one_run
 from pogosim.scene import POGOBOT_RADIUS_MM, read_categories
@@ -130,7 +131,7 @@ def trajectories_of(
         raise given.refused("metadata", "a map, as of load_dataframe", metadata)
     need_columns(rows, ["time", "x", "y"])
     need_numbers(rows, ["time", "x", "y", "angle"])
-    rows = of_category(with_objects(rows), metadata, category)
+    rows = of_category(with_objects(rows, metadata), metadata, category)
     rows = rows[is_near(rows)]
     rows = rows[np.isfinite(rows["time"]) & np.isfinite(rows["x"]) & np.isfinite(rows["y"])]
     if rows.empty:
@@ -181,12 +182,19 @@ def need_numbers(rows: pd.DataFrame, names: Sequence[str]) -> None:
             raise AnalysisError(f"its column {name} holds {rows[name].dtype}, not numbers")
 
 
-def with_objects(rows: pd.DataFrame) -> pd.DataFrame:
-    """Add what tells objects apart where the file does not have it, and leave out parts of membranes."""
+def with_objects(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> pd.DataFrame:
+    """Add what tells objects apart where the file does not have it, and leave out parts of membranes.
+
+    Raises:
+        AnalysisError: There are several categories of objects, and nothing says which ones are the robots.
+    """
     if "subpart_id" in rows:
         rows = rows[~(rows["subpart_id"] >= 0)]
-    defaults: dict[str, Any] = {"robot_category": "robots", "robot_id": 0}
-    return rows.assign(**{name: value for name, value in defaults.items() if name not in rows})
+    try:
+        rows = with_categories(rows, metadata)
+    except UnknownCategoriesError as error:
+        raise AnalysisError(str(error)) from None
+    return rows if "robot_id" in rows else rows.assign(robot_id=0)
 
 
 def of_category(rows: pd.DataFrame, metadata: Mapping[str, Any], category: str | None) -> pd.DataFrame:

@@ -13,8 +13,10 @@ import pandas as pd
 
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.trackmate import MARK, encoding_of, spots
+from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.run_columns import RUN, is_one_run
 from pogosim.table_formats import is_binary, is_our_metadata, metadata_path
+from pogosim.table_metadata import NoMetadataWarning, are_of_runs
 from pogosim.utils import load_dataframe
 
 SYNONYMS = {
@@ -99,12 +101,18 @@ def read_run(path: Path, category: str, warn: Warn) -> TrackTable:
     """Read the robots of a category from the data file of a run."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RuntimeWarning)
+        warnings.simplefilter("ignore", NoMetadataWarning)  # tracks are all that is read
         try:
             table, metadata = load_dataframe(path)
         except ValueError as error:
             raise CalibrationError(str(error)) from None
     for warning in caught:
         warn(str(warning.message))
+    if are_of_runs(metadata):  # others hold nothing but tracks
+        try:
+            table = with_categories(table, metadata)
+        except UnknownCategoriesError as error:
+            raise CalibrationError(f"{path}: {error}") from None
     if "robot_category" in table:
         kept = table[table["robot_category"] == category]
         if kept.empty and len(table):

@@ -11,6 +11,7 @@ import pandas as pd
 
 from pogosim.arguments import Arguments
 from pogosim.far_away import is_near
+from pogosim.object_categories import with_categories
 from pogosim.outputs import PathLike
 from pogosim.picture.colouring import Colouring, checked_column, colouring_of, legend_of_categories
 from pogosim.picture.errors import PictureError
@@ -167,7 +168,7 @@ def read_recording(
         checked_column(rows, str(color_by))
     configuration = metadata["configuration"]
     categories = read_categories(configuration)
-    rows = completed(with_defaults(rows))
+    rows = completed(with_defaults(with_categories(rows, metadata)))
     is_periodic = read_periodic(configuration, metadata.get("resolved_configuration"))
     top_speed_mm_s = read_top_speed(metadata.get("resolved_configuration") or configuration)
     if color_by == SPEED:
@@ -200,7 +201,7 @@ def read_recording(
 def with_defaults(rows: pd.DataFrame) -> pd.DataFrame:
     """Add columns of the simulator that are not there."""
     defaults: tuple[tuple[str, Any], ...]
-    defaults = (("robot_category", "robots"), ("robot_id", 0), ("angle", np.nan), ("subpart_id", -1))
+    defaults = (("robot_id", 0), ("angle", np.nan), ("subpart_id", -1))
     return rows.assign(**{name: default for name, default in defaults if name not in rows})
 
 

@@ -1,0 +1,126 @@
+"""The categories of objects in a file without the column robot_category: those that its configuration says.
+
+Robots, pogobjects and active objects have the ids 0, 1, ... in the order of the configuration, all others 65535, 65534,
+..., or from the number of objects on downwards if there are more than 65536 (ObjectMaker in src/sim/build_world.cpp).
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from pogosim.batch.paths import set_in_dict
+from pogosim.configuration_values import number
+from pogosim.run_columns import is_one_run
+from pogosim.scene import RAYS, SPOTS, TALKERS, entries, read_periodic, type_of
+from pogosim.several_files import configuration_of
+
+IDS_ON_AIR = 65536
+OBJECTS = "objects"
+
+
+class UnknownCategoriesError(ValueError):
+    """Nothing says which rows are those of robots."""
+
+
+def with_categories(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> pd.DataFrame:
+    """Return rows with the column robot_category: from the ids of objects and the configuration, if it is not there.
+
+    Where there is no configuration, all are robots.
+
+    Raises:
+        UnknownCategoriesError: There are several categories, and the configuration does not say whose an id is.
+    """
+    if "robot_category" in rows:
+        return rows
+    configuration = configuration_of(dict(metadata))
+    varied = [str(name) for name in rows.columns if str(name).startswith(f"{OBJECTS}.")]
+    if not varied or is_one_run(rows, metadata):
+        return rows.assign(robot_category=categories_of(rows, configuration, metadata))
+    names = np.empty(len(rows), dtype=object)
+    for values, place in rows.groupby(varied, dropna=False, observed=True).indices.items():
+        settings = dict(zip(varied, values if isinstance(values, tuple) else (values,), strict=True))
+        names[place] = categories_of(rows.iloc[place], changed(configuration, settings), metadata)
+    return rows.assign(robot_category=names)
+
+
+def changed(configuration: dict[str, Any], settings: dict[str, Any]) -> dict[str, Any]:
+    """Return a configuration with some settings of objects, by their dotted path.
+
+    Raises:
+        UnknownCategoriesError: A category is not in it, so that its place among the others is unknown.
+    """
+    result = copy.deepcopy(configuration)
+    for path, value in settings.items():
+        if path.split(".")[1] not in (result.get(OBJECTS) or {}):
+            raise unknown("its runs have different categories of objects")
+        set_in_dict(result, path, value)
+    return result
+
+
+def categories_of(rows: pd.DataFrame, configuration: dict[str, Any], metadata: Mapping[str, Any]) -> Any:
+    """Return the categories of the objects of rows, of one configuration: an array, or one name for all."""
+    bodies = [(name, own) for name, own in entries(configuration) if type_of(own) not in SPOTS + RAYS]
+    recorded = recorded_categories(configuration) or {name for name, _ in bodies} or {"robots"}
+    if len(recorded) == 1:
+        return next(iter(recorded))
+    if "robot_id" not in rows:
+        raise unknown("neither has it a column robot_id")
+    if given := metadata.get("configuration"):
+        check_categories(given, bodies)
+    ids = rows["robot_id"].to_numpy()
+    names = np.full(len(ids), None, dtype=object)
+    for name, first, last in ids_of(bodies, read_periodic(configuration)):
+        names[(ids >= first) & (ids <= last)] = name
+    if any(name is None for name in names):
+        raise unknown(f"none of its objects has the id {ids[[name is None for name in names]][0]}")
+    return names
+
+
+def recorded_categories(configuration: dict[str, Any]) -> set[str]:
+    """Return the categories that data_logger_category names; empty: all."""
+    names = configuration.get("data_logger_category")
+    return set(map(str, names if isinstance(names, list) else [names] if isinstance(names, str) else []))
+
+
+def check_categories(given: Any, bodies: list[tuple[str, dict[str, Any]]]) -> None:
+    """Raise UnknownCategoriesError if a batch has combinations with other categories than all have in common."""
+    objects = given.get(OBJECTS) if isinstance(given, dict) else None
+    names = [name for name, own in objects.items() if own is not None] if isinstance(objects, dict) else []
+    known = {name for name, _ in bodies}
+    lamps = [name for name, own in entries({OBJECTS: objects}) if type_of(own) in SPOTS + RAYS]
+    if any(str(name) not in known and str(name) not in lamps for name in names):
+        raise unknown("its runs have different categories of objects")
+
+
+def ids_of(bodies: list[tuple[str, dict[str, Any]]], is_periodic: bool) -> list[tuple[str, int, int]]:
+    """Return the first and the last id of the objects of each category, in the order of the configuration."""
+    counts = [number(own.get("nb"), -1.0) for _, own in bodies]
+    counts = [
+        0.0 if is_periodic and type_of(own) == "pogowall" else count
+        for (_, own), count in zip(bodies, counts, strict=True)
+    ]
+    if any(count < 0.0 or count != int(count) for count in counts):
+        raise unknown("its configuration does not say how many objects of each category there are")
+    up, down = 0, max(int(sum(counts)), IDS_ON_AIR) - 1
+    ids = []
+    for (name, own), count in zip(bodies, map(int, counts), strict=True):
+        if type_of(own) in TALKERS:
+            ids.append((name, up, up + count - 1))
+            up += count
+        else:
+            ids.append((name, down - count + 1, down))
+            down -= count
+    return ids
+
+
+def unknown(reason: str) -> UnknownCategoriesError:
+    """Return the error of rows whose categories are unknown."""
+    return UnknownCategoriesError(
+        f"it has no column robot_category, and {reason}, so nothing says which rows are those of robots; record "
+        "robot_category, too (data_logger_fields)"
+    )
