@@ -33,7 +33,9 @@ def minimum_image(offset_mm: npt.ArrayLike, size_mm: Floats | None) -> Floats:
     return offset if size_mm is None else offset - size_mm * np.round(offset / size_mm)
 
 
-def steps_of(offset_mm: Floats, duration_s: Floats, size_mm: Floats | None, top_speed_mm_s: float | None) -> Floats:
+def steps_of(
+    offset_mm: Floats, duration_s: Floats, size_mm: Floats | None, top_speed_mm_s: npt.ArrayLike | None
+) -> Floats:
     """Return the steps of robots from one row to the next, without jumps at periodic borders.
 
     Warns (AmbiguousStepsWarning) if robots are fast enough for another way across the borders in the same time.
@@ -42,7 +44,8 @@ def steps_of(offset_mm: Floats, duration_s: Floats, size_mm: Floats | None, top_
         offset_mm: From each row to the next one of the same robot, shape (..., 2).
         duration_s: Between them, shape (...).
         size_mm: Width and height of a periodic arena. None: it has walls.
-        top_speed_mm_s: Top speed of the robots, mm/s. None: unknown; the speed of their fastest step counts.
+        top_speed_mm_s: Top speed of each robot or of all, mm/s, for each duration. None or NaN: unknown; the speed of
+            the fastest step of such robots counts.
 
     Returns:
         Shape (..., 2), mm.
@@ -53,29 +56,37 @@ def steps_of(offset_mm: Floats, duration_s: Floats, size_mm: Floats | None, top_
     return step
 
 
-def warn_if_ambiguous(step_mm: Floats, duration_s: Floats, size_mm: Floats, top_speed_mm_s: float | None) -> None:
+def warn_if_ambiguous(
+    step_mm: Floats, duration_s: Floats, size_mm: Floats, top_speed_mm_s: npt.ArrayLike | None
+) -> None:
     """Warn if, for one of these steps, shape (..., 2), a robot of this speed could have taken another way."""
     known = np.isfinite(step_mm).all(axis=-1) & (duration_s > 0.0)
     if not known.any():
         return
     step, duration = np.abs(step_mm[known]), duration_s[known]
     length = np.hypot(*step.T)
-    speed = float((length / duration).max()) if top_speed_mm_s is None else top_speed_mm_s
+    told = np.asarray(np.nan if top_speed_mm_s is None else top_speed_mm_s, dtype=float)
+    told = np.broadcast_to(told, duration_s.shape)[known]
+    is_told = np.isfinite(told)
+    speed = np.where(is_told, told, (length / duration).max(where=~is_told, initial=0.0))
     # The second shortest way leads once more across the border that is nearer.
     others = [np.hypot(size_mm[axis] - step[:, axis], step[:, 1 - axis]) for axis in (0, 1)]
     is_ambiguous = np.minimum(*others) <= MARGIN * speed * duration
-    if not is_ambiguous.any() or speed <= 0.0:
+    is_ambiguous &= speed > 0.0
+    if not is_ambiguous.any():
         return
+    fastest = int(np.argmax(np.where(is_ambiguous, speed, 0.0)))
+    top_mm_s = float(speed[fastest])
     half_mm = float(size_mm.min()) / 2.0
     fast = (
         f"robots go up to {length.max():.4g} mm from row to row"
-        if top_speed_mm_s is None
-        else f"robots drive up to {speed:.4g} mm/s (max_linear_speed), with {duration.max():.4g} s between rows"
+        if not is_told[fastest]
+        else f"robots drive up to {top_mm_s:.4g} mm/s (max_linear_speed), with {duration.max():.4g} s between rows"
     )
     warnings.warn(
         f"{fast}: enough to cross half of the periodic arena ({half_mm:.4g} mm), so that the shortest way to the next "
         "row need not be the one that they went. Speeds, displacements and paths may be wrong; record with a "
-        f"save_data_period below {rounded_down(half_mm / speed):g} s",
+        f"save_data_period below {rounded_down(half_mm / top_mm_s):g} s",
         AmbiguousStepsWarning,
         stacklevel=2,
     )

@@ -110,7 +110,10 @@ def test_combinations_of_a_batch_have_numbers_of_objects_of_their_own(tmp_path: 
 def test_rows_whose_categories_nothing_says_are_refused(
     rows: dict[str, Any], objects: dict[str, Any], given: dict[str, Any] | None, words: str, tmp_path: Path
 ) -> None:
-    metadata = {"resolved_configuration": {"objects": objects}, "configuration": {"objects": given or objects}}
+    metadata: dict[Any, Any] = {
+        "resolved_configuration": {"objects": objects},
+        "configuration": {"objects": given or objects},
+    }
     frame = pd.DataFrame({"time": [0.0, 1.0], "x": 0.0, "y": 0.0, **rows})
     with pytest.raises(UnknownCategoriesError, match="record robot_category, too"):
         with_categories(frame, metadata)

@@ -152,12 +152,12 @@ def peclet_numbers(run: Trajectories, characteristic_length_mm: float | None = N
 
     Args:
         run: One run.
-        characteristic_length_mm: L; None: the diameter of a robot.
+        characteristic_length_mm: L; None: the diameter of each robot.
 
     Returns:
         Shape (N,). NaN where D is not positive: the robot stood still, or did not move away from where it began.
     """
-    length = 2.0 * run.radius_mm if characteristic_length_mm is None else characteristic_length_mm
+    length = 2.0 * run.sizes.radius_mm if characteristic_length_mm is None else characteristic_length_mm
     mean_speed = mean_and_variance(speed(run), axis=0)[0]
     diffusion = diffusion_coefficients(run)
     with np.errstate(invalid="ignore", divide="ignore"):

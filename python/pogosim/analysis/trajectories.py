@@ -8,7 +8,6 @@ for run in trajectories_of(rows):
 from __future__ import annotations
 
 import contextlib
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,19 +20,16 @@ import pandas as pd
 
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.robot_sizes import Sizes, sizes_of
 from pogosim.arguments import Arguments
 from pogosim.batch.paths import get_by_dotted_path
-from pogosim.configuration_values import number
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.periodic import steps_of
 from pogosim.run_columns import is_one_run
-from pogosim.scene import POGOBOT_RADIUS_MM, read_categories
+from pogosim.scene import read_categories
 from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
-
-# Robots of the real swarm, where a file does not say: reach of an emitter, in mm.
-COMMUNICATION_RADIUS_MM = 80.0
 
 # With more cells per row, times and robots do not belong together.
 MAX_CELLS_PER_ROW = 1000
@@ -57,14 +53,22 @@ class Trajectories:
     heading_rad: Floats  # (T, N), NaN where the file has none
     row: npt.NDArray[np.int64]  # (T, N), position of the row in `rows`, -1 where there is none
     rows: pd.DataFrame  # all that the file has on this run
-    radius_mm: float  # of a robot
-    reach_mm: float  # between the centres of two robots that count as neighbours: communication_radius + 2 radius
-    top_speed_mm_s: float | None = None  # of a robot; None: the file does not say
+    sizes: Sizes  # radius, reach and top speed of each robot
 
     @cached_property
     def is_there(self) -> npt.NDArray[np.bool_]:
         """Which robots have a position at which times, shape (T, N)."""
         return np.asarray(np.isfinite(self.position_mm).all(axis=2))
+
+    @property
+    def radius_mm(self) -> float:
+        """Radius of a robot; of the first category, with a warning (DifferentRobotsWarning), if they differ."""
+        return self.sizes.one("radius_mm")
+
+    @property
+    def reach_mm(self) -> float:
+        """Greatest distance between the centres of neighbours, communication_radius + 2 radius; as `radius_mm`."""
+        return self.sizes.one("reach_mm")
 
     @cached_property
     def path_mm(self) -> Floats:
@@ -263,8 +267,6 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
     def setting(path: str) -> Any:
         return setting_of(path, labels, metadata)
 
-    category = str(robots["robot_category"].iloc[0])
-    radius_mm, reach_mm = sizes_of(category, setting)
     return Trajectories(
         labels=labels,
         arena=arena_of(labels, metadata, setting),
@@ -275,25 +277,8 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         heading_rad=heading,
         row=row,
         rows=rows,
-        radius_mm=radius_mm,
-        reach_mm=reach_mm,
-        top_speed_mm_s=top_speed_of(category, setting),
+        sizes=sizes_of(robots["robot_category"].to_numpy(dtype=object), setting),
     )
-
-
-def top_speed_of(category: str, setting: Callable[[str], Any]) -> float | None:
-    """Return how fast the robots of a category drive, in mm/s; None where nothing says so, or they do not drive."""
-    if setting(f"objects.{category}.type") != "pogobot":
-        return None
-    speed = number(setting(f"objects.{category}.max_linear_speed"), math.nan)
-    return speed if math.isfinite(speed) else None
-
-
-def sizes_of(category: str, setting: Callable[[str], Any]) -> tuple[float, float]:
-    """Return the radius of the robots of a category and their reach, in mm; of pogobots where nothing is said."""
-    radius_mm = number(setting(f"objects.{category}.radius"), POGOBOT_RADIUS_MM)
-    range_mm = number(setting(f"objects.{category}.communication_radius"), COMMUNICATION_RADIUS_MM)
-    return radius_mm, range_mm + 2.0 * radius_mm
 
 
 def setting_of(path: str, labels: Mapping[str, Any], metadata: Mapping[str, Any]) -> Any:
@@ -361,7 +346,7 @@ def unwrapped_path(run: Trajectories) -> Floats:
     np.maximum.accumulate(last, axis=0, out=last)  # the time of the last position up to now
     filled = np.take_along_axis(run.position_mm, last[:, :, None], axis=0)
     duration = np.where(run.is_there[1:], run.time_s[1:, None] - run.time_s[last[:-1]], np.nan)
-    steps = steps_of(np.diff(filled, axis=0), duration, run.arena.period_mm, run.top_speed_mm_s)
+    steps = steps_of(np.diff(filled, axis=0), duration, run.arena.period_mm, run.sizes.top_speed_mm_s)
     first = np.take_along_axis(run.position_mm, np.argmax(run.is_there, axis=0)[None, :, None], axis=0)
     path = first + np.concatenate([np.zeros_like(first), np.cumsum(np.nan_to_num(steps), axis=0)])
     return np.where(run.is_there[:, :, None], path, np.nan)

@@ -27,15 +27,16 @@ def warn(prog: str, text: object) -> None:
 
 
 @contextlib.contextmanager
-def warnings_told(prog: str, kind: type[Warning]) -> Iterator[None]:
-    """Print Python's warnings of a kind as lines of a command, each once."""
+def warnings_told(prog: str, *kinds: type[Warning]) -> Iterator[None]:
+    """Print Python's warnings of some kinds as lines of a command, each once."""
     told = set()
     with warnings.catch_warnings():
-        warnings.simplefilter("always", kind)
+        for kind in kinds:
+            warnings.simplefilter("always", kind)
         show_others = warnings.showwarning
 
         def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
-            if not issubclass(category, kind):
+            if not issubclass(category, kinds):
                 show_others(message, category, *place, **more)
             elif str(message) not in told:
                 told.add(str(message))

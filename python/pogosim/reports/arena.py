@@ -36,11 +36,15 @@ def room_of(run: Trajectories) -> Room | None:
 
 def visited_mm2(run: Trajectories) -> float:
     """Return the area of the floor that bodies of robots covered at some save time, mm2."""
-    position = run.position_mm[run.is_there]
-    cells = np.unique(np.floor(position / (0.1 * run.radius_mm)), axis=0)  # places that are nearly the same count once
     same_area = np.sqrt(np.pi / (16.0 * np.sin(np.pi / 16.0)))  # of a polygon with 32 corners
-    disks = shapely.buffer(shapely.points((cells + 0.5) * 0.1 * run.radius_mm), same_area * run.radius_mm, quad_segs=8)
-    covered = shapely.union_all(disks)
+    disks = []
+    for radius_mm in np.unique(run.sizes.radius_mm):
+        position = run.position_mm[run.is_there & (run.sizes.radius_mm == radius_mm)]
+        cells = np.unique(np.floor(position / (0.1 * radius_mm)), axis=0)  # places that are nearly the same count once
+        disks.append(
+            shapely.buffer(shapely.points((cells + 0.5) * 0.1 * radius_mm), same_area * radius_mm, quad_segs=8)
+        )
+    covered = shapely.union_all(np.concatenate(disks))
     if run.arena.is_periodic:
         width, height = run.arena.size_mm
         shifts = [(x, y) for x in (-width, 0.0, width) for y in (-height, 0.0, height)]
@@ -65,7 +69,7 @@ def row_of(run: Trajectories, room: Room | None) -> pd.DataFrame:
             "holes": [len(arena.polygons) - 1],
             "room_share": [np.nan if room is None else room.share],
             "robots": [len(run.robot_id)],
-            "robots_area_share": [len(run.robot_id) * np.pi * run.radius_mm**2 / floor.area],
+            "robots_area_share": [np.pi * float(np.sum(run.sizes.radius_mm**2)) / floor.area],
             "visited_share": [visited_mm2(run) / floor.area],
             "least_wall_distance_mm": [np.nan if arena.is_periodic else float(np.nanmin(to_wall))],
         }

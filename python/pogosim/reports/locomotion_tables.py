@@ -81,12 +81,12 @@ def time_table(run: Trajectories, window_s: float) -> pd.DataFrame:
 
 def peclet_table(run: Trajectories, characteristic_length_mm: float | None) -> pd.DataFrame:
     """Return the Peclet number of each robot that has two positions, and what it is computed from."""
-    length = 2.0 * run.radius_mm if characteristic_length_mm is None else characteristic_length_mm
+    length = 2.0 * run.sizes.radius_mm if characteristic_length_mm is None else characteristic_length_mm
     table = robots_of(run).assign(
         mean_speed_mm_s=mean_and_variance(speed(run), axis=0)[0],
         diffusion_coefficient_mm2_s=diffusion_coefficients(run),
         characteristic_length_mm=length,
-        peclet=peclet_numbers(run, length),
+        peclet=peclet_numbers(run, characteristic_length_mm),
     )
     return labelled(table[run.is_there.sum(axis=0) > 1], run)
 

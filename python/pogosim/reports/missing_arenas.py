@@ -10,7 +10,8 @@ from typing import Any
 
 from pogosim.analysis.arena import Arena
 from pogosim.analysis.errors import AnalysisError
-from pogosim.analysis.trajectories import Trajectories, setting_of, sizes_of, with_arenas_told_apart
+from pogosim.analysis.robot_sizes import sizes_of
+from pogosim.analysis.trajectories import Trajectories, setting_of, with_arenas_told_apart
 from pogosim.batch.option_words import OptionsError
 from pogosim.batch.options import single_value
 from pogosim.geometry.arena_file import ArenaError, read_arena, scaled
@@ -61,10 +62,9 @@ def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: arg
     except ArenaError as error:
         raise AnalysisError(str(error)) from error
     is_periodic = outline.periodic or str(value("boundary_condition")).lower() == "periodic"
-    radius_mm, reach_mm = sizes_of(str(run.category[0]), lambda path: setting_of(path, run.labels, metadata))
+    sizes = sizes_of(run.category, lambda path: setting_of(path, run.labels, metadata))
     return replace(
         run,
         arena=Arena(path.stem, list(outline.polygons), is_periodic),
-        radius_mm=radius_mm,
-        reach_mm=reach_mm if options.rc is None else options.rc,
+        sizes=sizes if options.rc is None else sizes.with_reach(options.rc),
     )

@@ -12,6 +12,7 @@ import pandas as pd
 import pyarrow
 
 from pogosim.analysis.errors import AnalysisError
+from pogosim.analysis.robot_sizes import DifferentRobotsWarning
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.parser import complain, warn, warnings_told
 from pogosim.lines import say
@@ -46,7 +47,7 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
             for warning in caught:
                 warn(prog, warning.message)
     if options.rc is not None:
-        runs = [replace(run, reach_mm=options.rc) for run in runs]
+        runs = [replace(run, sizes=run.sizes.with_reach(options.rc)) for run in runs]
     return runs
 
 
@@ -101,7 +102,7 @@ def labelled(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
 def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Namespace, str], None]) -> int:
     """Do an analysis, and say in one line where its results are, or what is wrong. Returns the exit code, 0 or 2."""
     try:
-        with warnings_told(prog, AmbiguousStepsWarning):
+        with warnings_told(prog, AmbiguousStepsWarning, DifferentRobotsWarning):
             work(options, prog)
         say(f"written to {options.output_dir}")
     except (AnalysisError, OutputError) as error:

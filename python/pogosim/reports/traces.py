@@ -107,7 +107,7 @@ class TraceFigure:
         self.lines.set_color(list(map(tuple, colours[oldest_first])))
         there = self.run.is_there[index]
         angle = np.linspace(0.0, 2.0 * np.pi, 17)[:-1]
-        circle = self.run.radius_mm * np.column_stack([np.cos(angle), np.sin(angle)])
+        circle = self.run.sizes.radius_mm[there, None, None] * np.column_stack([np.cos(angle), np.sin(angle)])
         self.bodies.set_verts(list(self.run.position_mm[index][there][:, None, :] + circle))
         self.bodies.set_facecolor(list(map(tuple, self.colours[there])))
         self.axes.set_title(f"{literal(self.run.arena.name)}, {self.run.time_s[index]:.1f} s")
