@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from pogosim.outputs import PathLike
-from pogosim.run_columns import is_one_run, tells_runs_apart
+from pogosim.run_columns import RUN, is_one_run, tells_runs_apart
 from pogosim.times import with_exact_times
 from pogosim.varied import varied_parameters
 
@@ -96,6 +97,51 @@ def combinations_of_file(
     return [{**arena, **entry, "columns": {**columns, **entry.get("columns", {})}} for entry in entries]
 
 
+def seeds_of_runs(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> npt.NDArray[np.object_] | None:
+    """Return the seed of the run of each row of a batch; None for other files, or if the metadata do not say them."""
+    combinations = metadata.get("combinations")
+    if not isinstance(combinations, list) or RUN not in rows or "files" in metadata:
+        return None
+    try:
+        seeds = [seeds_by_run(entry) for entry in combinations]
+        counts = [int(entry["rows"]) for entry in combinations]
+    except (KeyError, TypeError, ValueError):
+        return None
+    runs = rows[RUN].to_numpy()
+    if all(own == seeds[0] for own in seeds):
+        return np.array([seeds[0].get(run) for run in runs], dtype=object)
+    if sum(counts) != len(rows):
+        return None
+    combination = np.repeat(np.arange(len(counts)), counts)
+    return np.array([seeds[place].get(run) for place, run in zip(combination, runs, strict=True)], dtype=object)
+
+
+def seeds_by_run(combination: Mapping[str, Any]) -> dict[int, int]:
+    """Return the seeds of the runs of a combination of a batch; those are their numbers, unless it says others."""
+    failed = [int(run) for run in combination.get("failed_runs", [])]
+    runs = [run for run in range(int(combination["runs"]) + len(failed)) if run not in failed]
+    return dict(zip(runs, combination.get("seeds", runs), strict=True))
+
+
+def warn_of_same_runs(files: Sequence[Loaded], parts: Sequence[pd.DataFrame], names: Sequence[str]) -> None:
+    """Warn if nothing tells apart runs of two batches: neither their number nor their seed, nor a parameter."""
+    seen: dict[tuple[Any, ...], Path] = {}
+    for (path, rows, metadata), part in zip(files, parts, strict=True):
+        if RUN not in rows or is_one_run(rows, metadata):
+            continue
+        known = [name for name in part.columns if name in names or tells_runs_apart(str(name))]
+        runs = [tuple(map(str, run)) for run in part[known].drop_duplicates().itertuples(index=False)]
+        keys = [tuple(zip(known, run, strict=True)) for run in runs]
+        if other := next((seen[key] for key in keys if key in seen), None):
+            warnings.warn(
+                f"{other} and {path} have runs of the same number, seed and parameters, which nothing tells apart; "
+                "leave one out, or read them one by one and give their runs other numbers in the column run",
+                RuntimeWarning,
+                stacklevel=4,
+            )
+        seen |= dict.fromkeys(keys, path)
+
+
 def check_own_columns(path: Path, rows: pd.DataFrame, metadata: Mapping[str, Any]) -> None:
     """Raise ValueError if the program of a single run wrote a column that would say which run its rows are of."""
     own = [name for name in map(str, rows.columns) if tells_runs_apart(name)]
@@ -143,7 +189,8 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
 
     Returns:
         All rows, in the order of the files, with these columns in addition, unless the file has them:
-        `run`, the number of the file (0, 1, ...); `seed`, if a configuration has one; and for each key whose value
+        `run`, the number of the file (0, 1, ...); `seed`, if a configuration has one, and of a batch that of each run;
+        and for each key whose value
         differs between the files, its dotted path (`objects.robots.nb`). Null where a file has no such key; lists as
         text.
         And the metadata that all files have in common, `files` with the names of the files, and `configuration` with
@@ -156,20 +203,27 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     if not files:
         raise ValueError("there are no files to read: the list is empty")
     configurations = [configuration_of(metadata) for _, _, metadata in files]
+    of_batches = [seeds_of_runs(rows, metadata) for _, rows, metadata in files]
     added: dict[str, list[Any]] = {
         "run": list(range(len(files))),
-        "seed": [configuration.get("seed") for configuration in configurations],
+        "seed": [
+            own.get("seed") if of_batch is None else None
+            for own, of_batch in zip(configurations, of_batches, strict=True)
+        ],
     }
-    if all(seed is None for seed in added["seed"]):
-        del added["seed"]  # of files of results: each of their runs has its own
+    if all(seed is None for seed in [*added["seed"], *of_batches]):
+        del added["seed"]
     added |= varied_parameters(configurations)
     warn_of_copies(files, added)
     parts, combinations = [], []
     for number, (path, rows, own) in enumerate(files):
         check_own_columns(path, rows, own)
         missing = {name: scalar(found[number]) for name, found in added.items() if name not in rows.columns}
+        if (seeds := of_batches[number]) is not None and "seed" in missing:
+            missing["seed"] = seeds if any(seed is None for seed in seeds) else seeds.astype(np.int64)
         parts.append(rows.assign(**missing))
         combinations += combinations_of_file(rows, own, missing)
+    warn_of_same_runs(files, parts, list(added))
     if len({str(rows["time"].dtype) for rows in parts if list(rows.columns).count("time") == 1}) > 1:
         parts = [with_exact_times(rows) for rows in parts]
     metadata: dict[str, Any] = in_common([metadata for _, _, metadata in files])

@@ -6,19 +6,21 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
 import yaml
+from batches import batch, write_options
+from pogosim.analysis.trajectories import trajectories_of
+from pogosim.picture.swarm import read_recording
 from pogosim.several_files import natural_order
 from pogosim.utils import load_dataframe
+from pyarrow import feather
 
 SQUARE = "- [{x: 0, y: 0}, {x: 10, y: 0}, {x: 10, y: 10}]\n"
 
 
 def write(path: Path, configuration: dict[str, object], rows: int = 2, polygons: str = SQUARE) -> Path:
     """Write a data file as a run does."""
-    import pyarrow as pa
-    from pyarrow import feather
-
     table = pa.table({"time": pa.array(np.arange(rows), pa.float32()), "robot_id": pa.array([0] * rows, pa.int32())})
     metadata = {"configuration": yaml.safe_dump(configuration), "arena_polygons": polygons, "program_version": "v1"}
     feather.write_feather(table.replace_schema_metadata(metadata), str(path))
@@ -100,3 +102,74 @@ def test_attributes_of_the_dataframe_are_the_metadata_and_survive_pandas(tmp_pat
 )
 def test_numbers_in_names_sort_by_value(names: list[str], expected: list[str]) -> None:
     assert sorted(names, key=natural_order) == expected
+
+
+def write_batch(
+    path: Path, seeds: list[list[int]] | None = None, failed: list[int] | None = None, **more: object
+) -> Path:
+    """Write the results of a batch of two runs for each list of seeds (None: one list, seeds are run numbers)."""
+    failed = failed or []
+    runs = [run for run in range(2 + len(failed)) if run not in failed]
+    entries: list[dict[str, object]] = [
+        {"columns": {}, "runs": 2, "rows": 4, "failed_runs": failed, **({"seeds": own} if own else {})}
+        for own in seeds or [[]]
+    ]
+    table = pa.table(
+        {
+            "time": [0.0, 1.0] * 2 * len(entries),
+            "robot_id": pa.array([0] * 4 * len(entries), pa.int32()),
+            "x": [1.0, 2.0, 3.0, 4.0] * len(entries),
+            "y": [1.0] * 4 * len(entries),
+            "run": pa.array(np.repeat(runs, 2).tolist() * len(entries), pa.int64()),
+        }
+    )
+    metadata = {"program_version": "v1", "configuration": yaml.safe_dump({"seed": 7, **more})}
+    feather.write_feather(
+        table.replace_schema_metadata({**metadata, "combinations": yaml.safe_dump(entries)}), str(path)
+    )
+    return path
+
+
+def test_runs_of_batches_with_other_seeds_are_told_apart_by_their_seeds(tmp_path: Path) -> None:
+    files = [write_batch(tmp_path / f"{first}.feather", [[first, first + 1]]) for first in (10, 20)]
+    rows, metadata = load_dataframe(files)
+    assert rows[["run", "seed"]].drop_duplicates().to_numpy().tolist() == [[0, 10], [1, 11], [0, 20], [1, 21]]
+    assert rows["seed"].dtype == np.int64
+    runs = trajectories_of(rows, metadata)
+    assert [own.labels for own in runs] == [{"run": run, "seed": run + first} for run in (0, 1) for first in (10, 20)]
+    assert all(own.position_mm.shape == (2, 1, 2) for own in runs)
+
+
+def test_runs_of_a_batch_have_the_seeds_of_their_combination(tmp_path: Path) -> None:
+    first = write_batch(tmp_path / "a.feather", [[1, 2], [3, 4]], more=1)
+    second = write_batch(tmp_path / "b.feather", failed=[1])
+    rows, _ = load_dataframe([first, second])
+    assert rows["seed"].tolist() == [1, 1, 2, 2, 3, 3, 4, 4, 0, 0, 2, 2]
+
+
+def test_runs_that_nothing_tells_apart_are_said(tmp_path: Path) -> None:
+    files = [write_batch(tmp_path / f"{name}.feather") for name in "ab"]
+    with pytest.warns(
+        RuntimeWarning, match=r"a\.feather and .*b\.feather have runs of the same number, seed and"
+    ) as said:
+        load_dataframe(files)
+    assert len(said) == 1
+    load_dataframe([files[0], write_batch(tmp_path / "c.feather", time_step=0.1)])  # a parameter tells them apart
+
+
+def test_picture_of_several_batches_draws_one_run(tmp_path: Path) -> None:
+    for first in (10, 20):
+        write_batch(tmp_path / f"{first}.feather", [[first, first + 1]])
+    recording = read_recording(str(tmp_path / "*.feather"))
+    assert recording.last.rows["x"].tolist() == [1.0, 2.0]
+    assert "that of seed 10 is drawn" in recording.left_out
+
+
+def test_batches_with_seeds_from_their_configurations_are_independent_samples(tmp_path: Path) -> None:
+    for seed in (1, 2):
+        write_options(tmp_path / str(seed), {"seed": seed, "objects.robots.nb": 2})
+        assert batch(tmp_path / str(seed), "-r", "2", "--seed-from", "config").code == 0
+    rows, metadata = load_dataframe(str(tmp_path / "*" / "results" / "*.feather"))
+    runs = trajectories_of(rows, metadata)
+    assert len(runs) == 4
+    assert len({own.labels["seed"] for own in runs}) == 4

@@ -217,7 +217,7 @@ def of_category(rows: pd.DataFrame, metadata: Mapping[str, Any], category: str |
 
 
 def label_columns(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> list[str]:
-    """Return the columns that tell runs apart: run, arena_file, those of combinations, and paths of settings."""
+    """Return the columns that tell runs apart: run, arena_file, those of combinations, paths of settings, and seed."""
     configuration = metadata.get("configuration")
     named = configuration.get("result_new_columns") if isinstance(configuration, dict) else None
     names = ["run", "arena_file", *(named if isinstance(named, list) else [])]
@@ -225,7 +225,12 @@ def label_columns(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> list[str]:
     maps = {"objects", "parameters", *(key for key, value in entries.items() if isinstance(value, dict))}
     names += [name for name in rows.columns if str(name).partition(".")[0] in maps and "." in str(name)]
     names += [name for entry in combinations_of(metadata) for name in entry.get("columns", {})]
-    return [name for name in dict.fromkeys(map(str, names)) if name in rows]
+    names = [name for name in dict.fromkeys(map(str, names)) if name in rows]
+    # Runs of several batches may have the same number, and only their seeds differ.
+    may_differ = "files" in metadata and "seed" in rows and bool(names)
+    if may_differ and (rows.groupby(names, dropna=False, observed=True)["seed"].nunique(dropna=False) > 1).any():
+        names.insert(1, "seed")
+    return names
 
 
 def combinations_of(metadata: Mapping[str, Any]) -> list[dict[str, Any]]:

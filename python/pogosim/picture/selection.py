@@ -9,7 +9,7 @@ import pandas as pd
 
 from pogosim.picture.colouring import is_internal
 from pogosim.picture.errors import PictureError
-from pogosim.run_columns import RUN, is_one_run
+from pogosim.run_columns import RUN, is_one_run, tells_runs_apart
 from pogosim.scene import Floats
 
 # Columns of the file that pictures use, by what they hold.
@@ -85,9 +85,25 @@ def one_run(
         if run is not None and run not in runs:
             raise PictureError(f"it has no run {run}, only {runs[0]} to {runs[-1]}")
         rows = rows[rows[RUN] == (run if run is not None else runs.min())]
+        rows, others = of_first_parameters(rows)
+        left_out = left_out or others
     elif run not in (None, 0):
         raise PictureError(f"it has no run {run}: no column run numbers several runs")
     return rows, checked_polygons(polygons), left_out
+
+
+def of_first_parameters(rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
+    """Take the rows of the first seed and parameters, of those of runs with one number; and tell of the others."""
+    varied = [name for name in map(str, rows.columns) if name != RUN and tells_runs_apart(name)]
+    varied = [name for name in varied if rows[name].nunique(dropna=False) > 1]
+    if not varied:
+        return rows, ""
+    first = rows[varied].iloc[0]
+    is_same = (rows[varied].eq(first) | (rows[varied].isna() & first.isna())).all(axis=1)
+    shown = ", ".join(f"{name} {first[name]}" for name in varied)
+    return rows[
+        is_same
+    ], f"several runs of this number; that of {shown} is drawn (read its file alone to choose another)"
 
 
 def told_combinations(rows: pd.DataFrame, metadata: dict[str, Any]) -> list[dict[str, Any]]:
