@@ -12,6 +12,7 @@ from yaml.resolver import Resolver
 
 INTEGER = "tag:yaml.org,2002:int"
 FLOAT = "tag:yaml.org,2002:float"
+BOOLEAN = "tag:yaml.org,2002:bool"
 
 # Tags that PyYAML (YAML 1.1) resolves and the simulator does not.
 ONLY_IN_YAML_1_1 = (INTEGER, FLOAT, "tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
@@ -153,9 +154,29 @@ class WrittenFloat(float):
     text = ""
 
 
+class WrittenBool(str):
+    """A boolean that was written in another way than true or false, as TRUE was; Python's own cannot know that."""
+
+    @property
+    def text(self) -> str:
+        """How it was written."""
+        return str(self)
+
+
+Written = WrittenInt | WrittenFloat | WrittenBool
+
+
 def plain(value: Any) -> Any:
-    """Return a number that does not know how it was written; any other value as it is."""
+    """Return a number or a boolean that does not know how it was written; any other value as it is."""
+    if isinstance(value, WrittenBool):
+        return SafeConstructor.bool_values[value.lower()]
     return int(value) if isinstance(value, WrittenInt) else float(value) if isinstance(value, WrittenFloat) else value
+
+
+def boolean_as_written(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> bool | WrittenBool:
+    """Construct a boolean, which knows how it was written unless that is true or false."""
+    value = loader.construct_yaml_bool(node)
+    return value if node.value in ("true", "false") else WrittenBool(node.value)
 
 
 def as_written(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> WrittenInt | WrittenFloat:
@@ -166,13 +187,16 @@ def as_written(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> WrittenInt | W
     return value
 
 
-def represent_written(dumper: Any, value: WrittenInt | WrittenFloat) -> yaml.ScalarNode:
-    """Represent a number as it was written."""
-    node: yaml.ScalarNode = dumper.represent_scalar(INTEGER if isinstance(value, int) else FLOAT, value.text)
+TAGS = {WrittenInt: INTEGER, WrittenFloat: FLOAT, WrittenBool: BOOLEAN}
+
+
+def represent_written(dumper: Any, value: Written) -> yaml.ScalarNode:
+    """Represent a number or a boolean as it was written."""
+    node: yaml.ScalarNode = dumper.represent_scalar(TAGS[type(value)], value.text)
     return node
 
 
-for written in (WrittenInt, WrittenFloat):
+for written in TAGS:
     ConfigurationDumper.add_representer(written, represent_written)
 
 

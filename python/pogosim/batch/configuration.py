@@ -13,6 +13,7 @@ import yaml
 from pogosim.batch.errors import BatchError, cannot, one_line
 from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError, check_options
 from pogosim.yaml_1_2 import (
+    BOOLEAN,
     FLOAT,
     INTEGER,
     WRONG_VALUES,
@@ -20,6 +21,7 @@ from pogosim.yaml_1_2 import (
     ConfigurationLoader,
     StructureError,
     as_written,
+    boolean_as_written,
     dump_yaml,
     problem_of,
 )
@@ -41,6 +43,7 @@ class BatchLoader(ConfigurationLoader):
 
 BatchLoader.add_constructor(INTEGER, as_written)
 BatchLoader.add_constructor(FLOAT, as_written)
+BatchLoader.add_constructor(BOOLEAN, boolean_as_written)
 BatchLoader.add_implicit_resolver(
     "tag:yaml.org,2002:bool", re.compile(r"(true|True|TRUE|false|False|FALSE)$"), list("tTfF")
 )

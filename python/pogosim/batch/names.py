@@ -59,7 +59,7 @@ def value_at(combination: dict[str, Any], path: str, is_whole: bool = False) -> 
     choices = combination.get(CHOICES)
     if isinstance(choices, dict) and path in choices:
         return choices[path]
-    value = get_by_dotted_path(combination, path)
+    value = plain(get_by_dotted_path(combination, path))
     return value if is_whole else without_folder(value)
 
 

@@ -10,6 +10,7 @@ from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
 from pogosim.nearest_name import advice, edit_distance
+from pogosim.yaml_1_2 import WrittenBool, plain
 
 DEFAULT = "default_option"
 LIST = "batch_options"
@@ -106,8 +107,8 @@ def identities(value: Any) -> list[Hashable]:
         return [tuple((str(key), identities(inner)[0]) for key, inner in value.items())]
     if isinstance(value, list):
         return [tuple(identities(inner)[0] for inner in value)]
-    if value is None or isinstance(value, bool):
-        return [("word", value)]
+    if value is None or isinstance(value, (bool, WrittenBool)):
+        return [("word", plain(value))]
     if isinstance(value, (int, float)):
         return [("number", value if value == value else "nan"), ("text", getattr(value, "text", str(value)))]
     return [("text", str(value))]

@@ -19,6 +19,7 @@ from pogosim.batch.option_words import (
     refuse_unknown,
     shown,
 )
+from pogosim.yaml_1_2 import plain
 
 MAX_VALUES = 1_000_000
 
@@ -86,7 +87,7 @@ def expand_range(options: Any) -> list[Any]:
     start, stop, step = (number_in(options, key) for key in ("start", "stop", "step"))
     if step == 0:
         raise OptionsError(f"{RANGE}: step is 0; give a step from start towards stop")
-    inclusive = options.get("inclusive", False)
+    inclusive = plain(options.get("inclusive", False))
     if not isinstance(inclusive, bool):
         raise OptionsError(f"{RANGE}: inclusive: expected true or false, found {shown(inclusive)}")
     steps = (stop - start) / step

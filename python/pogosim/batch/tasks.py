@@ -13,6 +13,7 @@ from pogosim.batch.identity import run_key, world_digest
 from pogosim.batch.run import Task
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.table_formats import FEATHER, format_of
+from pogosim.yaml_1_2 import plain
 
 OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
 MESSAGE_LOG = "message_log"  # an output only of runs that ask for it
@@ -48,7 +49,7 @@ def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> No
     Raises:
         BatchError: They do not; says where that stands.
     """
-    if entries.get("enable_data_logging") is False:
+    if plain(entries.get("enable_data_logging")) is False:
         where = configuration.where(("enable_data_logging",))
         raise BatchError(f"{where}: is false, so runs write no data to join; set it to true")
 

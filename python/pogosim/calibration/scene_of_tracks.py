@@ -20,6 +20,7 @@ from pogosim.calibration.tracks import Floats, Tracks
 from pogosim.configuration_values import number
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
 from pogosim.scene import POGOBOT_RADIUS_MM, read_periodic, type_of
+from pogosim.yaml_1_2 import plain
 
 CLOSE_MM = 10.0  # a start so far beyond where a robot can be is an error of the tracker
 LEAST_CORRELATION, CLEARLY = 0.5, 1.25  # of turn rates over time
@@ -102,7 +103,7 @@ def arena_of(entries: dict[str, Any], path: Path) -> Outline:
         raise CalibrationError(f"{path} has no arena_file; expected the arena in which the robots were tracked")
     area_mm2, stretch = (single_value(entries.get(key)) for key in ("arena_surface", "arena_stretch"))
     try:
-        outline = scaled(read_arena(find_arena(name, path)), area_of(area_mm2, path), stretch=stretch is True)
+        outline = scaled(read_arena(find_arena(name, path)), area_of(area_mm2, path), stretch=plain(stretch) is True)
     except ArenaError as error:
         raise CalibrationError(str(error)) from None
     low, _ = outline.bounds

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pogosim.batch.option_words import DEFAULT, DOMAIN, DOMAIN_WORDS, LIST, OptionsError, refuse_unknown, shown
+from pogosim.yaml_1_2 import plain
 
 TYPES = ("int", "float", "categorical")
 LARGEST = 1e300
@@ -197,6 +198,7 @@ def is_in(value: Any, choices: Sequence[Any]) -> bool:
 
 def same(value: Any, other: Any) -> bool:
     """Tell whether two values of a configuration are the same; true is not 1."""
+    value, other = plain(value), plain(other)
     return isinstance(value, bool) == isinstance(other, bool) and bool(value == other)
 
 
@@ -207,7 +209,7 @@ def number(entries: dict[str, Any], kind: str, default: Any) -> Real | Whole:
         raise OptionsError(f"{DOMAIN}: expected min below max, found {shown(low)} and {shown(high)}")
     if not math.isfinite(high - low):
         raise OptionsError(f"{DOMAIN}: min and max are too far apart")
-    is_log = entries.get("log", False)
+    is_log = plain(entries.get("log", False))
     if not isinstance(is_log, bool):
         raise OptionsError(f"{DOMAIN}: log: expected true or false, found {shown(is_log)}")
     if is_log and low <= 0:

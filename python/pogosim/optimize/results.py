@@ -130,7 +130,8 @@ def free_name(name: str, taken: Collection[str]) -> str:
 
 def plain_column(values: Sequence[Any]) -> Sequence[Any]:
     """Return values that have one type as they are, and others as text."""
-    kinds = {type(plain(value)) for value in values if value is not None}
+    values = [plain(value) for value in values]
+    kinds = {type(value) for value in values if value is not None}
     if int in kinds and any(isinstance(value, int) and abs(value) >= 2**63 for value in values):
         kinds = {list}  # too large for a column of numbers
     if len(kinds) <= 1 and not kinds & {list, dict}:
