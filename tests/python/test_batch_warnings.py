@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
 from pathlib import Path
+from typing import cast
 
 import pytest
-from batches import batch, script, write_options
+from batches import batch, script, start_batch, write_options
 from pogosim.batch.reports import SHOWN_WARNINGS, report_warnings
 from pogosim.batch.run import LOG, LOG_LINES, MAX_WARNINGS, tail, warnings_in
+from pogosim.batch.running import Running, Watch
+from running import compile_text
 
 
 def write_log(folder: Path, lines: list[str]) -> Path:
@@ -60,3 +65,52 @@ def test_last_ten_lines_of_a_failed_run_are_shown_and_nothing_that_a_terminal_ob
     write_options(tmp_path, {"objects.robots.nb": 2})
     result = batch(tmp_path, "-R", "0", program=script(tmp_path / "broken", "seq 100; exit 3"))
     assert [line.split("| ")[1] for line in result.errors.splitlines() if "| " in line] == [*map(str, range(91, 101))]
+
+
+BLOCKS = """
+#include <time.h>
+#include "pogobase.h"
+typedef struct { int unused; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static void user_init(void) {}
+static void user_step(void) {
+    struct timespec wait = {6, 0};
+    if (pogobot_ticks == 3 && pogobot_helper_getid() == 0) nanosleep(&wait, NULL);
+}
+int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+"""
+
+
+def test_blocked_run_is_said_once_while_it_lasts(tmp_path: Path) -> None:
+    program = compile_text(tmp_path, BLOCKS)
+    write_options(tmp_path, {"objects.robots.nb": 1, "simulation_time": 0.2})
+    with start_batch(tmp_path, "-r", "2", "-j", "2", program=program) as process:
+        assert process.stderr is not None
+        said = next(line for line in process.stderr if "is blocked" in line)
+        assert process.poll() is None
+        match = re.search(r"a run is blocked, and goes on: user_step of robot #0 .* \(its log: (.*)\)$", said.strip())
+        assert match is not None, said
+        assert "has blocked for 2 s" in Path(match[1]).read_text()
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert "is blocked" not in errors
+
+
+def test_time_without_an_end_of_a_run_is_said_in_ever_longer_intervals(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The clock of the test stands for the hours that such runs take."""
+    watch = Watch()
+    watch.begin()
+    now_s = [watch.last_end_s]
+    monkeypatch.setattr("pogosim.batch.running.time.monotonic", lambda: now_s[0])
+    running = Running(cast("subprocess.Popen[bytes]", None), tmp_path / "log.txt")
+    caplog.set_level("INFO", logger="pogobatch")
+    for minute in range(1, 11):
+        now_s[0] = running.started_s + 60.0 * minute
+        watch.look_at([running])
+    assert [record.getMessage().split(";")[0] for record in caplog.records] == [
+        f"no run has ended for {seconds} s" for seconds in (60, 120, 240, 480)
+    ]
+    assert str(tmp_path / "log.txt") in caplog.text

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pogosim.batch.errors import reason
+from pogosim.batch.running import Watch
 from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
 
@@ -82,14 +83,14 @@ class Simulators:
     """The simulators of this process, so that they can be ended."""
 
     def __init__(self) -> None:
-        self.running: set[subprocess.Popen[bytes]] = set()
-        self.lock = threading.Lock()
+        self.watch = Watch()
         self.is_stopping = False
         self.slots: contextlib.AbstractContextManager[object] = contextlib.nullcontext()
 
     def begin(self, at_once: int) -> None:
         """Let this number of simulators run at the same time; others wait for their turn."""
         self.is_stopping = False
+        self.watch.begin()
         self.slots = threading.BoundedSemaphore(at_once)
 
     def run(self, command: Sequence[str], folder: str, log: Path) -> tuple[int, float]:
@@ -120,8 +121,7 @@ class Simulators:
                 stderr=subprocess.STDOUT,
                 start_new_session=True,  # Ctrl-C reaches the batch alone
             )
-        with self.lock:
-            self.running.add(process)
+        running = self.watch.add(process, log)
         if self.is_stopping:
             kill(process)
         try:
@@ -131,8 +131,7 @@ class Simulators:
             process.wait()
             raise
         finally:
-            with self.lock:
-                self.running.discard(process)
+            self.watch.remove(running)
         if self.is_stopping:
             raise StoppedError
         return code
@@ -140,9 +139,9 @@ class Simulators:
     def stop(self) -> None:
         """End all simulators, and let none begin."""
         self.is_stopping = True
-        with self.lock:
-            for process in self.running:
-                kill(process)
+        with self.watch.lock:
+            for running in self.watch.running:
+                kill(running.process)
 
 
 simulators = Simulators()
