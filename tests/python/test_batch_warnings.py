@@ -68,6 +68,7 @@ def test_last_ten_lines_of_a_failed_run_are_shown_and_nothing_that_a_terminal_ob
 
 
 BLOCKS = """
+#define _POSIX_C_SOURCE 199309L
 #include <time.h>
 #include "pogobase.h"
 typedef struct { int unused; } USERDATA;
