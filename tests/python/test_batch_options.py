@@ -9,6 +9,7 @@ from typing import Any
 
 import pyarrow as pa
 import pytest
+from batches import batch, write_options
 from hypothesis import given
 from hypothesis import strategies as st
 from pogosim.batch.combinations import combinations_of
@@ -345,3 +346,33 @@ def test_dotted_paths_read_and_write_nested_maps() -> None:
         get_by_dotted_path(tree, "a.1")
     with pytest.raises(KeyError):
         set_in_dict(tree, "c.d.x", 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("a: 1\n---\nb: 2\n", 2),
+        ("---\na: 1\n...\n---\nb: 2\n---\nc: 3\n", 4),
+        ("a: 1\n---\n", 2),
+        ("a: 1\n...\n", 0),
+        ("---\na: 1\n", 0),
+    ],
+)
+def test_of_several_documents_the_first_one_counts_with_a_warning(
+    text: str, line: int, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert read(tmp_path, text).entries == {"a": 1}
+    said = f"{tmp_path}/many.yaml:{line}: a second document starts here; only the first one is used"
+    assert caplog.messages == ([said] if line else [])
+
+
+def test_a_second_document_says_the_same_in_a_batch_as_in_a_single_run(tmp_path: Path) -> None:
+    path = write_options(tmp_path, {"objects.robots.nb": 1})
+    path.write_text(f"{path.read_text()}---\nmore: 1\n")
+    words = f"{path.name}:{len(path.read_text().splitlines()) - 1}: a second document starts here; only the first one"
+    assert words in run_command(example("helloworld"), tmp_path, ["-c", path.name, "-g"]).text
+    result = batch(tmp_path)
+    assert (result.code, words in result.errors) == (0, True)
+    path.write_text(f"{path.read_text()}[1\n")
+    assert run_command(example("helloworld"), tmp_path, ["-c", path.name, "-g"]).code == 2
+    assert batch(tmp_path).code == 2

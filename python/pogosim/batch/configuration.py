@@ -84,7 +84,8 @@ class Configuration:
         loader: BatchLoader | None = None
         try:
             loader = BatchLoader(self.text)
-            self.root = loader.get_single_node()
+            self.root = loader.get_node() if loader.check_node() else None
+            self.warn_of_another_document(loader)
             if isinstance(self.root, yaml.MappingNode):
                 self.take_repeated_keys(self.root, ())
                 self.entries: dict[str, Any] = loader.construct_document(self.root)
@@ -102,6 +103,14 @@ class Configuration:
             raise BatchError(f"{path} is empty; a configuration needs at least arena_file and objects")
         if not isinstance(self.root, yaml.MappingNode):
             raise BatchError(f"{path} is not a configuration: expected a map of keys and values")
+
+    def warn_of_another_document(self, loader: BatchLoader) -> None:
+        """Say that a second document of the file is not used, as the simulator does."""
+        if loader.check_node():
+            event: Any = loader.peek_event()  # type: ignore[no-untyped-call]
+            line = event.start_mark.line + 1
+            loader.get_node()  # it must be valid, though
+            log.warning("%s:%d: a second document starts here; only the first one is used", self.path, line)
 
     def take_repeated_keys(self, node: yaml.Node, path: tuple[str, ...]) -> None:
         """Make a list of categories with the same name; of other keys that are repeated, the last one counts."""
