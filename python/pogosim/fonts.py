@@ -6,6 +6,8 @@ import contextlib
 import warnings
 from collections.abc import Iterator
 
+import matplotlib as mpl
+
 HIDES = "_"  # at the beginning, a label that legends leave out
 NOTHING = "\u200b"  # of no width
 
@@ -21,4 +23,11 @@ def any_characters() -> Iterator[None]:
     """Draw boxes in place of characters that the font lacks, without two lines of a warning for each of them."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph ", category=UserWarning)
+        yield
+
+
+@contextlib.contextmanager
+def without_tex() -> Iterator[None]:
+    """Draw texts without TeX, whatever the user's matplotlibrc says: it may be missing, and names are no TeX."""
+    with mpl.rc_context({"text.usetex": False}):
         yield

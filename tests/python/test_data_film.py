@@ -19,6 +19,7 @@ from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.picture import layers
 from pogosim.picture.links import links_at_end
 from pogosim.picture.swarm import OBJECT, Recording, read_recording
+from pogosim.utils import load_dataframe
 from recordings import walkers, write
 
 
@@ -55,6 +56,22 @@ def test_times_of_frames_follow_speed_and_rate(
     span: tuple[float, float], speed: float, fps: float, times: list[float]
 ) -> None:
     assert frame_times(*span, speed, fps) == pytest.approx(times)
+
+
+@pytest.mark.parametrize(("fps", "said"), [("24", False), ("50", False), ("60", True), ("1000", True)])
+def test_gif_lasts_as_long_as_it_should_in_all_players(
+    data: Path, fps: str, said: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Players take delays below 20 ms for 100 ms."""
+    assert film(data, "film.gif", "--fps", fps, "--size", "200") == 0
+    warning = f"warning: a GIF has 50 frames per second, not {fps}: players show more of them slowly"
+    assert (warning in capsys.readouterr().err) == said
+    command = ["ffprobe", "-v", "error", "-show_entries", "packet=duration_time", "-of", "csv=p=0"]
+    text = subprocess.run([*command, str(data.parent / "film.gif")], capture_output=True, text=True, check=True).stdout
+    delays = np.array([float(line.rstrip(",")) for line in text.split()])
+    assert delays.min() >= 0.02
+    recorded_s = float(load_dataframe(data)[0]["time"].max())
+    assert delays.sum() == pytest.approx(recorded_s, abs=0.06)
 
 
 def test_last_frame_is_not_lost_to_rounding() -> None:

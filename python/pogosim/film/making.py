@@ -12,12 +12,16 @@ from pogosim.counted import counted
 from pogosim.film.encoder import PAGE, encode
 from pogosim.film.replay import write_replay
 from pogosim.film.stills import Look, Stills, size_for
+from pogosim.fonts import without_tex
 from pogosim.lines import say
 from pogosim.picture.errors import PictureError
 from pogosim.picture.loading import load, sayings
 from pogosim.picture.swarm import Recording
 
 MAX_FRAMES = 1_000_000
+
+# Players take delays below 20 ms for 100 ms, and delays are multiples of 10 ms.
+GIF_FPS = 50.0
 
 
 def span(recording: Recording, options: argparse.Namespace) -> tuple[float, float]:
@@ -48,6 +52,7 @@ def frame_times(start_s: float, end_s: float, speed: float, fps: float) -> list[
     return [start_s + i * speed / fps for i in range(math.floor(count + 1e-6))]
 
 
+@without_tex()
 def make_film(path: Path, options: argparse.Namespace, prog: str) -> None:
     """Make the film that the options ask for, and say what it is.
 
@@ -60,6 +65,9 @@ def make_film(path: Path, options: argparse.Namespace, prog: str) -> None:
         PictureError, OSError: Says which file, and why.
     """
     suffix = Path(options.output).suffix.lower()
+    if suffix == ".gif" and options.fps > GIF_FPS:
+        warn(prog, f"a GIF has {GIF_FPS:g} frames per second, not {options.fps:g}: players show more of them slowly")
+        options = argparse.Namespace(**{**vars(options), "fps": GIF_FPS})
     with sayings(options.data):
         recording = load(options, prog)
         start_s, end_s = span(recording, options)
