@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -12,6 +14,11 @@ if TYPE_CHECKING:
         SimulationError,
         VectorSimulation,
     )
+
+# Commands of a notebook (!python -m ...) inherit its backend, which matplotlib refuses where it is not installed.
+IS_INLINE = os.environ.get("MPLBACKEND", "").startswith("module://matplotlib_inline")
+if IS_INLINE and importlib.util.find_spec("matplotlib_inline") is None:
+    os.environ["MPLBACKEND"] = "agg"
 
 __version__ = "0.11.0"
 __all__ = ["ConfigurationError", "ProgramFailedError", "Simulation", "SimulationError", "VectorSimulation"]

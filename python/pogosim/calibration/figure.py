@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from pogosim.calibration.statistics import mean_square_displacement, speeds, turn_rates
 from pogosim.calibration.tracks import Floats, Tracks
+from pogosim.fonts import without_tex
 
 MEASURED, SIMULATED = "#1b6ca8", "#d98200"
 BINS = 60
@@ -36,6 +37,7 @@ def displacement(axes: Axes, measured: Tracks, simulated: Tracks) -> None:
     axes.set(xlabel="lag (s)", ylabel="mean squared displacement (mm$^2$)")
 
 
+@without_tex()
 def picture(measured: Tracks, simulated: Tracks) -> bytes:
     """Return a PNG picture.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
@@ -112,7 +113,13 @@ def ended(prog: str, command: Callable[[], int]) -> int:
 
 
 def process(prog: str, command: Callable[[], int]) -> int:
-    """Run a command that is all of this process: what signals do to it is told once, and not after its end."""
+    """Run a command that is all of this process: what signals do to it is told once, and not after its end.
+
+    It draws to files, unless a window is asked for, whatever backend of matplotlib the environment names: a notebook's
+    cannot be imported here.
+    """
+    if "--show" not in sys.argv:
+        os.environ["MPLBACKEND"] = "agg"
     return last(ended(prog, lambda: last(command())))
 
 

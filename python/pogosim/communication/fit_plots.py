@@ -19,6 +19,7 @@ from scipy import stats
 from pogosim.communication.measurements import Measurements
 from pogosim.communication.quality import quality
 from pogosim.communication.reception_law import Law
+from pogosim.fonts import without_tex
 
 COLOURS = ("#1b6ca8", "#d98200", "#a8321b", "#3c8d5a", "#7a4fa0", "#5f6b73")
 CELLS = 25  # of a surface, along each side
@@ -131,6 +132,7 @@ PLOTS: dict[str, Draw] = {
 }
 
 
+@without_tex()
 def pictures(law: Law, measurements: Measurements, compared: pd.DataFrame) -> dict[str, bytes]:
     """Return the pictures by file name; the same ones each time, to the byte."""
     made = {}

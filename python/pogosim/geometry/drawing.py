@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Curve
 
-from pogosim.fonts import literal
+from pogosim.fonts import literal, without_tex
 from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.validity import Room
 
@@ -18,6 +18,7 @@ FORMATS = ("pdf", "png", "svg")
 FLOOR, WALL, HOLE, UNREACHABLE = "#eef2f5", "#29343d", "#a8321b", "#f0c9a8"
 
 
+@without_tex()
 def draw(outline: Outline, room: Room | None, title: str, figure: Figure | None = None) -> Figure:
     """Draw an arena: its floor, walls and holes, and what robots cannot reach.
 
@@ -59,6 +60,7 @@ def draw(outline: Outline, room: Room | None, title: str, figure: Figure | None 
     return figure
 
 
+@without_tex()
 def rendered(figure: Figure, suffix: str) -> bytes:
     """Return the bytes of a picture, the same each time; `suffix` is one of FORMATS."""
     metadata = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(suffix, {})

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.fonts import literal
+from pogosim.fonts import literal, without_tex
 from pogosim.optimize.history import Evaluation
 from pogosim.optimize.results import FreshRuns, best_so_far
 from pogosim.picture.palette import INK
@@ -17,6 +17,7 @@ from pogosim.reports.figures import new_figure, save
 DOT, LINE, FRESH, INITIAL, FAILED = "#8fa8c8", "#1f4e9e", "#c2571a", "#5c7a29", "#b3261e"
 
 
+@without_tex()
 def draw_convergence(
     path: Path, history: Sequence[Evaluation], best: FreshRuns | None, initial: FreshRuns | None
 ) -> None:
@@ -43,6 +44,7 @@ def draw_convergence(
     save(figure, path)
 
 
+@without_tex()
 def draw_archive(
     path: Path,
     fitness: npt.NDArray[np.float64],

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from pogosim.fonts import any_characters
+from pogosim.fonts import any_characters, without_tex
 from pogosim.lines import say
 from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw, draw_series, title
@@ -48,6 +48,7 @@ def figure_of(recording: Recording, options: argparse.Namespace) -> Figure:
     return draw_series(swarms, options.tail, options.links)
 
 
+@without_tex()
 def make_picture(path: Path, options: argparse.Namespace, prog: str) -> None:
     """Draw a data file into a picture. A picture that is there stays until the new one is drawn.
 

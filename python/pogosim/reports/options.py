@@ -15,6 +15,7 @@ from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.robot_sizes import DifferentRobotsWarning
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.parser import complain, warn, warnings_told
+from pogosim.fonts import without_tex
 from pogosim.lines import say
 from pogosim.outputs import OutputError, leads_to, told
 from pogosim.periodic import AmbiguousStepsWarning
@@ -102,7 +103,7 @@ def labelled(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
 def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Namespace, str], None]) -> int:
     """Do an analysis, and say in one line where its results are, or what is wrong. Returns the exit code, 0 or 2."""
     try:
-        with warnings_told(prog, AmbiguousStepsWarning, DifferentRobotsWarning):
+        with warnings_told(prog, AmbiguousStepsWarning, DifferentRobotsWarning), without_tex():
             work(options, prog)
         say(f"written to {options.output_dir}")
     except (AnalysisError, OutputError) as error:
