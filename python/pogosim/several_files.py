@@ -116,6 +116,12 @@ def seeds_of_runs(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> npt.NDArra
     return np.array([seeds[place].get(run) for place, run in zip(combination, runs, strict=True)], dtype=object)
 
 
+def has_own_seeds(metadata: Mapping[str, Any]) -> bool:
+    """Tell whether the seeds of a batch are others than the numbers of its runs."""
+    combinations = metadata.get("combinations")
+    return isinstance(combinations, list) and any("seeds" in entry for entry in combinations)
+
+
 def seeds_by_run(combination: Mapping[str, Any]) -> dict[int, int]:
     """Return the seeds of the runs of a combination of a batch; those are their numbers, unless it says others."""
     failed = [int(run) for run in combination.get("failed_runs", [])]
@@ -189,10 +195,9 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
 
     Returns:
         All rows, in the order of the files, with these columns in addition, unless the file has them:
-        `run`, the number of the file (0, 1, ...); `seed`, if a configuration has one, and of a batch that of each run;
-        and for each key whose value
-        differs between the files, its dotted path (`objects.robots.nb`). Null where a file has no such key; lists as
-        text.
+        `run`, the number of the file (0, 1, ...); `seed`, if a configuration has one or a batch other seeds than the
+        numbers of its runs; and for each key whose value differs between the files, its dotted path
+        (`objects.robots.nb`). Null where a file has no such key; lists as text.
         And the metadata that all files have in common, `files` with the names of the files, and `configuration` with
         the common entries. If arenas differ, `combinations` has those of all files, with
         their arenas; a file of one run is a combination of its own.
@@ -211,7 +216,7 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
             for own, of_batch in zip(configurations, of_batches, strict=True)
         ],
     }
-    if all(seed is None for seed in [*added["seed"], *of_batches]):
+    if all(seed is None for seed in added["seed"]) and not any(has_own_seeds(metadata) for _, _, metadata in files):
         del added["seed"]
     added |= varied_parameters(configurations)
     warn_of_copies(files, added)
