@@ -81,7 +81,7 @@ void warn_of_ambiguous_rows(Scenario const& scenario, World const& world) {
 }
 
 void warn_of_rounded_speeds(Scenario const& scenario, World const& world) {
-    constexpr double most = 0.005;  // of a speed
+    constexpr double most = 0.01;  // of a speed
     float const farthest_mm = std::max(world.arena.bounds.max.x, world.arena.bounds.max.y);
     double const unit_mm = static_cast<double>(farthest_mm - std::nextafter(farthest_mm, 0.0F));
     double const unit_mm_s = unit_mm / world.time_step_s;

@@ -15,7 +15,7 @@ void check_motion(Scenario const& scenario, MotionLimits const& limits, double t
 /// compute displacements from rows assume the shortest way.
 void warn_of_ambiguous_rows(Scenario const& scenario, World const& world);
 
-/// Warns when the arena is so large, or the step so short, that rounding positions changes speeds by a half per cent.
+/// Warns when the arena is so large, or the step so short, that rounding positions changes speeds by one per cent.
 void warn_of_rounded_speeds(Scenario const& scenario, World const& world);
 
 }  // namespace pogosim

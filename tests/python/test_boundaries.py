@@ -251,5 +251,5 @@ def test_speeds_that_rounding_changes_are_told(tmp_path: Path) -> None:
     )
     for change in ({"arena_surface": 1e8}, {"objects.robots.max_linear_speed": 2000}, {"objects.robots.nb": 0}):
         assert "rounded" not in run(example("helloworld"), tmp_path, {**settings, **change}).errors, change
-    short = {**settings, "arena_surface": 1e6, "time_step": 1e-4, "simulation_time": 0.01}
-    assert "multiples of 0.61 mm/s" in run(example("helloworld"), tmp_path, short).errors
+    short = {**settings, "arena_surface": 1e6, "time_step": 1e-5, "simulation_time": 0.001}
+    assert "multiples of 6.1 mm/s" in run(example("helloworld"), tmp_path, short).errors

@@ -209,7 +209,7 @@ def test_constant_objects_are_not_shared_by_mistake(case: str, name: str, flags:
 def test_constant_number_that_the_first_robot_sets_is_told_as_that(name: str, tmp_path: Path) -> None:
     step = "static uint16_t const id = pogobot_helper_getid(); uint16_t volatile used = id; (void)used;"
     (warning,) = told(build_cpp(tmp_path, "", step, name, "-g"), tmp_path)
-    assert "variable 'id' in step() (main.cpp:7, set once, by the first robot), of which each real robot" in warning
+    assert "variable 'id' in step() (main.cpp:7, set once, by the first robot), which real robots cannot" in warning
 
 
 def test_robots_that_share_such_a_constant_take_their_steps_one_after_the_other(tmp_path: Path) -> None:

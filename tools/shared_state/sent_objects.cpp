@@ -12,7 +12,7 @@ bool is_one_byte(Basic& basic) {
     return !is_structure(&basic.type) && dwarf_bytesize(&basic.type) <= 1;
 }
 
-// Of an array, the type of its elements.
+// The type of the elements, if it is an array.
 std::optional<Basic> type_of_object(Value const& value) {
     auto const layer = std::find_if(value.layers.begin(), value.layers.end(), [](auto& one) { return one.is_pointer; });
     if (layer == value.layers.end()) {
