@@ -20,6 +20,7 @@ from pogosim.table_formats import BEGIN, BESIDE, CSV, PARQUET, format_in, is_our
 # In the metadata of a CSV file: the names of its columns, and their types in the same order.
 NAMES = "column_names"
 TYPES = "column_types"
+NO_VALUE = ["", "NA"]  # how other programs write an empty cell, also in quotes
 
 
 # ---- reading ----
@@ -127,6 +128,10 @@ def converted(text: pa.ChunkedArray, name: str, kind: pa.DataType) -> pa.Chunked
     Raises:
         ValueError: They do not fit; names the first one.
     """
+    import pyarrow.compute as pc  # takes a while
+
+    if not pa.types.is_string(kind):
+        text = pc.if_else(pc.is_in(text, pa.array(NO_VALUE)), None, text)
     real, whole = pa.float64(), pa.int64()
     ways = [[kind], [whole], [real, kind], [real, whole], [real]] if pa.types.is_integer(kind) else [[kind]]
     for way in ways:

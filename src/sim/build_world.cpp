@@ -83,12 +83,12 @@ void build_arena(Scenario const& scenario, World& world) {
 std::uint32_t add_body(Bodies& bodies, MembraneBody const& body, BodySpec const& spec) {
     auto const index = static_cast<std::uint32_t>(bodies.size());
     bodies.position_mm.push_back(body.position_mm);
-    bodies.heading_rad.push_back(body.heading_rad);
+    bodies.heading_rad.push_back(wrap_angle(body.heading_rad));
     bodies.heading_dir.push_back(direction(body.heading_rad));
     bodies.velocity_mm_s.push_back({});
     bodies.angular_velocity_rad_s.push_back(0.0F);
     bodies.start_mm.push_back(body.position_mm);
-    bodies.start_rad.push_back(body.heading_rad);
+    bodies.start_rad.push_back(bodies.heading_rad.back());
     bodies.radius_mm.push_back(bounding_radius(body.shape));
     bodies.shape.push_back(body.shape);
     bodies.spec.push_back(spec);

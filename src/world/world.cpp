@@ -19,12 +19,12 @@ std::int16_t LightMap::at(Vec2 point_mm) const {
 
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad) {
     bodies.position_mm[body] = position_mm;
-    bodies.heading_rad[body] = heading_rad;
+    bodies.heading_rad[body] = wrap_angle(heading_rad);
     bodies.heading_dir[body] = direction(heading_rad);
     bodies.velocity_mm_s[body] = {};
     bodies.angular_velocity_rad_s[body] = 0.0F;
     bodies.start_mm[body] = position_mm;
-    bodies.start_rad[body] = heading_rad;
+    bodies.start_rad[body] = bodies.heading_rad[body];
 }
 
 void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) {

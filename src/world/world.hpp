@@ -58,7 +58,7 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 /// Rigid bodies. Shape: one entry per body.
 struct Bodies {
     std::vector<Vec2> position_mm;
-    std::vector<float> heading_rad;  // in (-pi, pi] after a step: far from 0, a small turn would be rounded away
+    std::vector<float> heading_rad;  // in (-pi, pi]: far from 0, a small turn would be rounded away
     std::vector<Vec2> heading_dir;   // unit vector along the heading; takes precedence over heading_rad
     std::vector<Vec2> velocity_mm_s;
     std::vector<float> angular_velocity_rad_s;  // clockwise on the screen

@@ -69,6 +69,7 @@ def test_last_ten_lines_of_a_failed_run_are_shown_and_nothing_that_a_terminal_ob
 
 BLOCKS = """
 #define _POSIX_C_SOURCE 199309L
+#include <stdio.h>
 #include <time.h>
 #include "pogobase.h"
 typedef struct { int unused; } USERDATA;
@@ -76,15 +77,24 @@ DECLARE_USERDATA(USERDATA);
 REGISTER_USERDATA(USERDATA);
 static void user_init(void) {}
 static void user_step(void) {
+#ifdef AGAIN
+    struct timespec wait = {0, 500000000};
+    nanosleep(&wait, NULL);
+#else
     struct timespec wait = {6, 0};
-    if (pogobot_ticks == 3 && pogobot_helper_getid() == 0) nanosleep(&wait, NULL);
+    for (int i = 0; i < 1200000 && pogobot_ticks == 3; i++) fputc(i % 100 == 99 ? '\\n' : '.', stderr);
+    if (pogobot_ticks == 3) nanosleep(&wait, NULL);
+#endif
 }
 int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
 """
 
 
-def test_blocked_run_is_said_once_while_it_lasts(tmp_path: Path) -> None:
-    program = compile_text(tmp_path, BLOCKS)
+@pytest.mark.parametrize(
+    ("how", "text"), [("", "has blocked for 2 s"), ("#define AGAIN\n", "blocks again and again: for 2 s")]
+)
+def test_blocked_run_is_said_once_while_it_lasts(tmp_path: Path, how: str, text: str) -> None:
+    program = compile_text(tmp_path, how + BLOCKS)
     write_options(tmp_path, {"objects.robots.nb": 1, "simulation_time": 0.2})
     with start_batch(tmp_path, "-r", "2", "-j", "2", program=program) as process:
         assert process.stderr is not None
@@ -92,7 +102,7 @@ def test_blocked_run_is_said_once_while_it_lasts(tmp_path: Path) -> None:
         assert process.poll() is None
         match = re.search(r"a run is blocked, and goes on: user_step of robot #0 .* \(its log: (.*)\)$", said.strip())
         assert match is not None, said
-        assert "has blocked for 2 s" in Path(match[1]).read_text()
+        assert text in Path(match[1]).read_text()
         _, errors = process.communicate(timeout=60)
     assert process.returncode == 0
     assert "is blocked" not in errors

@@ -174,6 +174,7 @@ SAME: list[tuple[str, dict[str, Any], str, str]] = [
     ("- 3.0", {"objects.robots.nb": {"batch_options": [3, 3.0]}}, "batch_options", "3 and 3.0, which are the same"),
     ("- '3'", {"objects.robots.nb": {"batch_options": [3, "3"]}}, "batch_options", "3 "),
     ("- -0.0", {"objects.robots.nb": {"batch_options": [0, -0.0]}}, "batch_options", "0 and -0.0, which are the same"),
+    ("- '10000.0'", {"objects.robots.nb": {"batch_options": [1e4, "10000.0"]}}, "batch_options", "10000.0 "),
     ("- true", {"objects.robots.nb": {"batch_options": [True, True]}}, "batch_options", ""),
     ("- null", {"objects.robots.nb": {"batch_options": [None, 3, None]}}, "batch_options", "nothing twice"),
     ("- .nan", {"objects.robots.nb": {"batch_options": [float("nan")] * 2}}, "batch_options", ""),

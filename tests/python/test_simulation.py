@@ -278,6 +278,8 @@ def test_poses_can_be_set(sim: pogosim.Simulation) -> None:
     assert sim.velocities[1].tolist() == [0.0, 0.0]
     sim.step(2)
     assert np.hypot(*(sim.positions[1] - (500.0, 520.0))) < 5
+    sim.set_pose(1, 480.0, 520.0, 7.0)
+    assert sim.headings[1] == pytest.approx(7.0 - 2.0 * math.pi)
     sim.set_pose(1, 480.0, 520.0)
     for robot, x, y, message in (
         (1, 0.0, 0.0, "is inside a wall or outside the arena"),

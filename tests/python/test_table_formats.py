@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import shutil
 import signal
 import time
@@ -114,6 +115,15 @@ def test_columns_of_a_changed_csv_have_their_types_by_name(runs: Path, tmp_path:
     rows = load_dataframe(changed(runs, tmp_path, CHANGES[change]))[0]
     expected = CHANGES[change](original).reset_index(drop=True)
     pd.testing.assert_frame_equal(rows, expected)
+
+
+@pytest.mark.parametrize("options", [{"quoting": csv.QUOTE_ALL}, {"na_rep": "NA"}], ids=["quoted", "NA"])
+def test_empty_cells_of_other_programs_are_missing_numbers(runs: Path, tmp_path: Path, options: dict[str, Any]) -> None:
+    rows = load_dataframe(
+        changed(runs, tmp_path, lambda rows: rows.assign(number=rows["number"].where(rows.index > 1)), **options)
+    )[0]
+    assert rows["number"].isna().tolist() == [True, True, *[False] * (len(rows) - 2)]
+    assert rows["number"].tolist()[2:4] == [200, 300]
 
 
 def test_index_that_pandas_writes_is_a_column_of_its_own(runs: Path, tmp_path: Path) -> None:

@@ -102,16 +102,22 @@ def refuse_other_keys(node: Mapping[Any, Any], path: Path) -> None:
 
 
 def identities(value: Any) -> list[Hashable]:
-    """Return what a value is to the simulator; two values that share one of these are the same: 3, 3.0 and '3'."""
+    """Return what a value is to the simulator and in results; two values that share one of these are the same.
+
+    So are 3, 3.0 and '3', and 1e4 and '10000.0', which a column of texts would not tell apart.
+    """
     if isinstance(value, dict):
         return [tuple((str(key), identities(inner)[0]) for key, inner in value.items())]
     if isinstance(value, list):
         return [tuple(identities(inner)[0] for inner in value)]
-    if value is None or isinstance(value, (bool, WrittenBool)):
-        return [("word", plain(value))]
+    text = getattr(value, "text", str(value))
+    if value is None:
+        return [("word", value)]
+    if isinstance(value, (bool, WrittenBool)):
+        return [("word", plain(value)), ("text", text), ("text", str(plain(value)).lower())]
     if isinstance(value, (int, float)):
-        return [("number", value if value == value else "nan"), ("text", getattr(value, "text", str(value)))]
-    return [("text", str(value))]
+        return [("number", value if value == value else "nan"), ("text", text), ("text", str(plain(value)))]
+    return [("text", text)]
 
 
 def refuse_twice(values: list[tuple[Path, Any]]) -> None:

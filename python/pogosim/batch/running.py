@@ -12,10 +12,10 @@ from pathlib import Path
 from pogosim.lines import printable
 
 # In a line of the log of a run whose robot waits in wall-clock time (src/robot/blocked_watch.cpp).
-BLOCKED = "has blocked for 2 s of wall-clock time"
+BLOCKED = "for 2 s of wall-clock time"  # at once, or in short calls
 LOOK_EVERY_S = 2.0
 FIRST_LINE_S = 60.0  # after this time without a run that ends, and twice, four times, ... as long
-LONGEST_LOG = 1_000_000  # bytes of a log that are searched
+LONGEST_LOG = 1_000_000  # bytes at the end of a log that are searched
 
 log = logging.getLogger("pogobatch")
 
@@ -93,6 +93,7 @@ def blocked_line(log_file: Path) -> str:
     """Return what the log of a run says of a robot that blocks it; empty if it says nothing."""
     try:
         with log_file.open("rb") as file:
+            file.seek(max(0, log_file.stat().st_size - LONGEST_LOG))
             lines = file.read(LONGEST_LOG).decode(errors="replace").splitlines()
     except OSError:
         return ""
