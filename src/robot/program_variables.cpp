@@ -97,8 +97,9 @@ void place_bits(Dwarf_Die& entry, VariableType::Member& member) {
 void add_members(Dwarf_Die& structure, std::size_t offset, int depth, std::vector<VariableType::Member>& members) {
     for_each_child(&structure, [&](Dwarf_Die& child) {
         int const tag = dwarf_tag(&child);
-        bool const is_shared = number(child, DW_AT_declaration) || number(child, DW_AT_external);  // static in C++
-        bool const has_no_place = tag == DW_TAG_inheritance && number(child, DW_AT_virtuality);    // known when it runs
+        bool const is_shared = dwarf_hasattr(&child, DW_AT_declaration) != 0 ||
+                               dwarf_hasattr(&child, DW_AT_external) != 0;                       // static in C++
+        bool const has_no_place = tag == DW_TAG_inheritance && number(child, DW_AT_virtuality);  // known when it runs
         bool const is_hidden = dwarf_hasattr(&child, DW_AT_artificial) != 0;  // the address of virtual functions
         if ((tag != DW_TAG_member && tag != DW_TAG_inheritance) || is_shared || has_no_place || is_hidden) {
             return;
