@@ -15,7 +15,7 @@ DebugFile::DebugFile(std::string const& path)
 
 DebugFile::~DebugFile() {
     dwarf_end(dwarf_);
-    if (descriptor_ >= 0) {
+    if (is_open()) {
         close(descriptor_);
     }
 }

@@ -18,6 +18,9 @@ public:
     DebugFile(DebugFile const&) = delete;
     DebugFile& operator=(DebugFile const&) = delete;
 
+    /// False if it cannot be; errno says why.
+    bool is_open() const { return descriptor_ >= 0; }
+
     /// Null if the file cannot be opened, or has none.
     Dwarf* debug_info() const { return dwarf_; }
 

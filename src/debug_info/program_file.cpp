@@ -1,8 +1,6 @@
 #include "debug_info/program_file.hpp"
 
-#include <fcntl.h>
 #include <gelf.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -37,28 +35,19 @@ bool is_for_the_loader(GElf_Shdr const& header, std::string const& name) {
 
 }  // namespace
 
-ProgramFile::ProgramFile(std::string const& path) : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (descriptor_ < 0) {
+ProgramFile::ProgramFile(std::string const& path) : file_(path) {
+    if (!file_.is_open()) {
         throw ProgramError(path + ": " + std::strerror(errno));
     }
-    dwarf_ = dwarf_begin(descriptor_, DWARF_C_READ);
-    if (!dwarf_) {
-        close(descriptor_);
+    if (!debug_info()) {
         throw ProgramError(path + ": no debug information; compile and link with -g (" + dwarf_errmsg(-1) + ")");
     }
-    elf_ = dwarf_getelf(dwarf_);
+    elf_ = dwarf_getelf(debug_info());
     GElf_Ehdr header;
     if (!gelf_getehdr(elf_, &header) || header.e_type == ET_REL) {
-        dwarf_end(dwarf_);
-        close(descriptor_);
         throw ProgramError(path + ": not linked yet; specify the linked program");
     }
     read_symbols();
-}
-
-ProgramFile::~ProgramFile() {
-    dwarf_end(dwarf_);
-    close(descriptor_);
 }
 
 ProgramFile::Section ProgramFile::section_at(uint64_t address) const {

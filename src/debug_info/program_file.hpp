@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "debug_info/entries.hpp"
+
 namespace shared_state {
 
 /// A problem with the file, for the user.
@@ -19,11 +21,8 @@ class ProgramFile {
 public:
     /// Throws ProgramError if the file is not a linked program with debug information.
     explicit ProgramFile(std::string const& path);
-    ~ProgramFile();
-    ProgramFile(ProgramFile const&) = delete;
-    ProgramFile& operator=(ProgramFile const&) = delete;
 
-    Dwarf* debug_info() const { return dwarf_; }
+    Dwarf* debug_info() const { return file_.debug_info(); }
 
     struct Section {
         std::string name;
@@ -48,8 +47,7 @@ public:
 private:
     void read_symbols();
 
-    int descriptor_ = -1;
-    Dwarf* dwarf_ = nullptr;
+    DebugFile file_;
     Elf* elf_ = nullptr;
     std::multimap<uint64_t, std::string> symbols_;
     std::map<std::string, uint64_t> guards_;

@@ -49,10 +49,13 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
                     text(rounded_down(motion.most / motion.per_speed / motion.speed))));
 }
 
+bool drives(ObjectConfig const& object) {
+    return object.nb > 0 && object.spec.body && object.spec.robot && object.spec.robot->has_wheels;
+}
+
 /// 0 for an object that does not drive.
 double top_speed_mm_s(ObjectConfig const& object) {
-    bool const drives = object.nb > 0 && object.spec.body && object.spec.robot && object.spec.robot->has_wheels;
-    return drives ? static_cast<double>(object.spec.robot->max_linear_speed_mm_s) : 0.0;
+    return drives(object) ? static_cast<double>(object.spec.robot->max_linear_speed_mm_s) : 0.0;
 }
 
 }  // namespace
@@ -103,7 +106,7 @@ void check_motion(Scenario const& scenario, MotionLimits const& limits, double t
     char const* const can_simulate = "can be simulated";
     char const* const can_move = limits.is_of_membranes ? "a membrane can hold back" : can_simulate;
     for (ObjectConfig const& object : scenario.objects) {
-        if (object.nb == 0 || !object.spec.body || !object.spec.robot || !object.spec.robot->has_wheels) {
+        if (!drives(object)) {
             continue;
         }
         RobotSpec const& robot = *object.spec.robot;

@@ -97,13 +97,7 @@ def test_warning_reads_like_a_compilers_and_can_be_an_error(tmp_path: Path) -> N
     assert check(program, "-Wno-message-layout", "-Werror").text == ""
 
 
-SENDER = """#include "pogobase.h"
-TYPES
-typedef struct { size_t length; long number; uint8_t buffer[40]; pair_t pair; long numbers[2]; } USERDATA;
-DECLARE_USERDATA(USERDATA);
-REGISTER_USERDATA(USERDATA);
-static void user_step(void) {
-    SENDING
+END = """
 }
 static void user_init(void) {}
 int main(void) {
@@ -112,6 +106,16 @@ int main(void) {
     return 0;
 }
 """
+SENDER = (
+    """#include "pogobase.h"
+TYPES
+typedef struct { size_t length; long number; uint8_t buffer[40]; pair_t pair; long numbers[2]; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static void user_step(void) {
+    SENDING"""
+    + END
+)
 PAIR = "typedef struct { uint32_t i; size_t z; } pair_t;"
 PACKED = "typedef struct __attribute__((packed)) { uint8_t i; long z; } pair_t;"
 GEN = "pogobot_infrared_sendLongMessage_omniGen"
@@ -401,7 +405,8 @@ def test_bytes_are_no_message_of_another_size(name: str, options: str, tmp_path:
     assert check(program).text == ""
 
 
-NESTED = """#include "pogobase.h"
+NESTED = (
+    """#include "pogobase.h"
 typedef struct { uint16_t id; int16_t value; } beacon_t;
 typedef struct { long big; beacon_t out; beacon_t* outs; } part_t;
 typedef struct {
@@ -420,15 +425,9 @@ static void user_step(void) {
     size_t len = 2;
     void* raw = p;
     (void)p; (void)ps; (void)pp; (void)k; (void)len; (void)raw;
-    SENDING
-}
-static void user_init(void) {}
-int main(void) {
-    pogobot_init();
-    pogobot_start(user_init, user_step);
-    return 0;
-}
-"""
+    SENDING"""
+    + END
+)
 RIGHT_SENDS = [
     "(uint8_t*)&(*mydata).out, sizeof((*mydata).out)",
     "(uint8_t*)&(*p).out, sizeof((*p).out)",

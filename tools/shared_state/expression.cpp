@@ -91,14 +91,17 @@ private:
         return values;
     }
 
-    Values comparison() {
-        Values values = sum();
-        while (take_one_of(kComparisons)) {
-            sum();
+    // Operands with operators between them whose result is no object of the program.
+    Values operation(Words const& operators, Values (Reader::*operand)()) {
+        Values values = (this->*operand)();
+        while (take_one_of(operators)) {
+            (this->*operand)();
             values.clear();
         }
         return values;
     }
+
+    Values comparison() { return operation(kComparisons, &Reader::sum); }
 
     Values sum() {
         Values values = product();
@@ -110,14 +113,7 @@ private:
         return values;
     }
 
-    Values product() {
-        Values values = unary();
-        while (take_one_of(kProducts)) {
-            unary();
-            values.clear();
-        }
-        return values;
-    }
+    Values product() { return operation(kProducts, &Reader::unary); }
 
     Values unary() {
         if (take("&")) {
