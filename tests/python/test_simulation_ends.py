@@ -85,13 +85,17 @@ def test_ctrl_c_while_a_run_is_freed_reaches_the_program(
         gc.collect()
         time.sleep(10)  # the program goes on
 
-    # Python drops what is raised in callbacks of its garbage collector, and a library of other tests has one.
+    # Python drops what is raised in callbacks of its garbage collector and of weak references: keep those of other
+    # tests' libraries and objects out.
     callbacks = gc.callbacks[:]
     gc.callbacks.clear()
+    gc.collect()
+    gc.freeze()
     try:
         with pytest.raises(KeyboardInterrupt):
             forget()
     finally:
+        gc.unfreeze()
         gc.callbacks.extend(callbacks)
     simulations.clear()
 
