@@ -5,7 +5,7 @@ Python only prints an exception of a finaliser, and the program would go on.
 
 from __future__ import annotations
 
-import _thread
+import signal
 import threading
 import time
 
@@ -17,6 +17,8 @@ def interrupt_soon() -> None:
 
     def interrupt() -> None:
         time.sleep(DELAY_S)
-        _thread.interrupt_main()
+        main = threading.main_thread().ident
+        if main is not None and callable(signal.getsignal(signal.SIGINT)):  # else the signal would end the process
+            signal.pthread_kill(main, signal.SIGINT)  # ends its sleep, too
 
     threading.Thread(target=interrupt, name="pogosim-interrupt", daemon=True).start()
