@@ -28,6 +28,7 @@ TABLES = {
         "pogolib/leds.h",
         "pogolib/infrared.h",
         "pogolib/sensors.h",
+        "pogolib/flash.h",
         "pogolib/timers.h",
         "pogolib/helper.h",
         "pogolib/console.h",

@@ -50,6 +50,7 @@ extern "C++" {
 #define POGO_MAIN_PICK(first, second, third, chosen, ...) chosen
 
 #include "pogosim/pogolib/console.h"
+#include "pogosim/pogolib/flash.h"
 #include "pogosim/pogolib/formats.h"
 #include "pogosim/pogolib/helper.h"
 #include "pogosim/pogolib/infrared.h"

@@ -11,6 +11,7 @@
 
 #include "base/random.hpp"
 #include "interface/pogobase_inside.hpp"
+#include "robot/flash.hpp"
 #include "robot/phase.hpp"
 #include "world/observed_motion.hpp"
 #include "world/world.hpp"
@@ -108,6 +109,7 @@ struct Controller {
     std::byte* user_data = nullptr;
     LoopGlobals loop;
     Motors motors;
+    Flash flash;
     Accelerometer accelerometer;
     std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
     std::uint8_t ir_power = 1;

@@ -101,6 +101,14 @@ void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailbo
     hash.add(mailboxes.dropped(robot));
 }
 
+void add_flash(Hash& hash, Flash const& flash, std::size_t robot) {
+    for (std::uint16_t const page : written_pages(flash)) {
+        hash.add(robot);
+        hash.add(page);
+        hash.add_bytes(page_at(flash, page));
+    }
+}
+
 /// Hashes what robots have changed in their own memory. Addresses differ from run to run: for an address in the
 /// program, its offset counts; for any other, only that it is an address.
 void add_own_memory(Hash& hash, Controllers const& controllers) {
@@ -131,6 +139,9 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
         add_robot(hash, all[robot], world.mailboxes, robot);
     }
     // Adds nothing where none of these has changed.
+    for (std::size_t robot = 0; robot < all.size(); ++robot) {
+        add_flash(hash, all[robot].flash, robot);
+    }
     for (Controllers::SwitchedOff const& off : controllers.switched_off()) {
         hash.add(off.robot);
         hash.add(off.clock_us);

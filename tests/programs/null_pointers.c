@@ -42,6 +42,8 @@ static void user_step(void) {
     FOR_NULL(pogobot_timer_offset_origin_microseconds.timer, pogobot_timer_offset_origin_microseconds(NULL, 1))
     FOR_NULL(pogobot_imu_read.acc, pogobot_imu_read(NULL, three))
     FOR_NULL(pogobot_imu_read.gyro, pogobot_imu_read(three, NULL))
+    FOR_NULL(read_page_flash.buf, read_page_flash(0, NULL))
+    FOR_NULL(write_page_flash.data, write_page_flash(0, NULL))
     FOR_NULL(pogobot_infrared_recover_next_message.message, pogobot_infrared_recover_next_message(NULL))
     FOR_NULL(pogobot_infrared_sendLongMessage_omniGen.message, pogobot_infrared_sendLongMessage_omniGen(NULL, 4))
     FOR_NULL(pogobot_infrared_sendLongMessage_omniSpe.message, pogobot_infrared_sendLongMessage_omniSpe(NULL, 4))

@@ -41,6 +41,7 @@ static void pass_odd_argument(void) {
     uint8_t r = 0, g = 0, b = 0;
     uint8_t directions[3] = {0, 1, 7};
     uint16_t powers[3] = {0, 2000, 0};
+    char page[POGOBOT_USER_FLASH_PAGE_SIZE] = {0};
     time_reference_t watch;
     message_t long_message = {.header = {._emitting_power_list = 255, .payload_length = 383}};
     message_t powerless_message = {.header = {.payload_length = 3}};
@@ -67,6 +68,10 @@ static void pass_odd_argument(void) {
         pogobot_led_setColors(25, 0, 0, 5);
     } else if (is("sensor_3")) {
         pogobot_photosensors_read(3);
+    } else if (is("write_of_page_5888")) {
+        write_page_flash(POGOBOT_USER_FLASH_PAGE_COUNT, page);
+    } else if (is("read_of_page_65535")) {
+        read_page_flash(UINT16_MAX, page);
     } else if (is("direction_5")) {
         pogobot_infrared_sendShortMessage_uni((ir_direction)5, text, 3);
     } else if (is("direction_-1")) {

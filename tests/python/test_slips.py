@@ -64,6 +64,8 @@ def warnings(result: Run) -> list[str]:
         ("nowhere_to_read_to", f"{FIRST}pogobot_motor_power_mem_get(): p_powers is NULL, expected "),
         ("led_5", f"{FIRST}pogobot_led_setColors(): id is 5, expected 0 (head) to 4 (left); nothing is set"),
         ("sensor_3", f"{FIRST}pogobot_photosensors_read(): sensor_number is 3, expected p_B (0, back), "),
+        ("write_of_page_5888", f"{FIRST}write_page_flash(): page is 5888, expected 0 to 5887 "),
+        ("read_of_page_65535", f"{FIRST}read_page_flash(): page is 65535, expected 0 to 5887 "),
         (
             "direction_5",
             f"{FIRST}pogobot_infrared_sendShortMessage_uni(): dir is 5, expected ir_front (0) to ir_left (3), or "

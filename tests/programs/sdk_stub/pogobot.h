@@ -114,6 +114,14 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number);
 void pogobot_imu_read(float* acc, float* gyro);
 float pogobot_imu_readTemp(void);
 
+// Flash.
+#define POGOBOT_USER_FLASH_START_OFFSET 0x90000u
+#define POGOBOT_USER_FLASH_PAGE_SIZE 256u
+#define POGOBOT_USER_FLASH_PAGE_COUNT 5888u
+void read_page_flash(uint16_t page, char* buf);
+void write_page_flash(uint16_t page, const void* data);
+void erase_write_section_flash(void);
+
 // Time.
 typedef struct time_reference_t {
     uint32_t hardware_value_at_time_origin;
