@@ -40,6 +40,13 @@ def rectangle(left: float, top: float, width: float, height: float) -> Polygon:
     return [(left, top), (left + width, top), (left + width, top + height), (left, top + height)]
 
 
+def room_with_recess(width: float, height: float, recess_width: float, recess_depth: float) -> Polygon:
+    """Return a room with a recess in the middle of its upper wall, from which a partition may slide."""
+    left, right = (width - recess_width) / 2, (width + recess_width) / 2
+    room = rectangle(0, recess_depth, width, height)
+    return [room[0], (left, recess_depth), (left, 0.0), (right, 0.0), (right, recess_depth), *room[1:]]
+
+
 def star(points: int, inner: float, turn_deg: float = -90.0) -> Polygon:
     """Return a star of outer radius 1000; its notches are at ``inner`` times that.
 
@@ -133,6 +140,7 @@ def arenas() -> dict[str, Arena]:
         "sqtriangle": [square_and_triangle],
         "sqtriangle2": [mirrored(square_and_triangle)],
         "sqtriangle3": [[(y, -x) for x, y in square_and_triangle]],
+        "recess": [room_with_recess(width=1300, height=600, recess_width=74, recess_depth=600)],
         "square": [rectangle(0, 0, 1000, 1000)],
         "squarewithHole": [rectangle(0, 0, 1155, 1155), rectangle(288.75, 288.75, 577.5, 577.5)],
         "star": [star(5, inner=math.cos(math.radians(72)) / math.cos(math.radians(36)), turn_deg=0.0)],

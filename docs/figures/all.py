@@ -30,6 +30,7 @@ try:
     import lamps
     import messages
     import mistakes
+    import moving_partition
     import parameter_study
     import printed
     import reception
@@ -58,6 +59,7 @@ SCRIPTS: dict[str, ModuleType] = {
         lamps,
         messages,
         mistakes,
+        moving_partition,
         parameter_study,
         printed,
         reception,
