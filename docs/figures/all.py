@@ -30,6 +30,7 @@ try:
     import lamps
     import messages
     import mistakes
+    import models
     import moving_partition
     import parameter_study
     import printed
@@ -59,6 +60,7 @@ SCRIPTS: dict[str, ModuleType] = {
         lamps,
         messages,
         mistakes,
+        models,
         moving_partition,
         parameter_study,
         printed,
