@@ -1,46 +1,62 @@
 """Many runs of a program, with every combination of the options in a configuration, joined into files of results.
 
-    pogobatch -c conf/batch/test.yaml -S ./examples/hanabi/hanabi -r 10 -t tmp -o results
+    pogobatch run -c conf/batch/test.yaml -S ./examples/hanabi/hanabi --seeds 0:9 -t tmp -o results
 
-`python -m pogosim.pogobatch` is the same command. Extend `PogobotBatchRunner` for anything else.
+`python -m pogosim.pogobatch` is the same command, and `run_local_campaign` the same in Python. Extend
+`PogobotBatchRunner` for anything else.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from typing import Any
 
+from pogosim.batch.campaign import LocalCampaignError, LocalCampaignResult, run_local_campaign
 from pogosim.batch.command_line import main
 from pogosim.batch.errors import BatchError
+from pogosim.batch.merging import discover_task_artifacts, merge_task_artifacts
 from pogosim.batch.options import expand_batch_options
 from pogosim.batch.paths import get_by_dotted_path, set_in_dict
 from pogosim.batch.runner import PogobotBatchRunner
+from pogosim.batch.single_task import TaskArtifact, TaskError, execute_task
+from pogosim.batch.sweeps import (
+    build_combinations,
+    compute_extra_columns,
+    compute_result_filename,
+    count_combinations,
+    expand_combinations,
+    make_rundra_sweep_config,
+    resolve_batch_defaults,
+)
 from pogosim.command.main import pogobatch
+
+PogobatchError = BatchError  # its name in scripts written for the original simulator
 
 __all__ = [
     "BatchError",
+    "LocalCampaignError",
+    "LocalCampaignResult",
+    "PogobatchError",
     "PogobotBatchRunner",
     "PogobotLauncher",
+    "TaskArtifact",
+    "TaskError",
+    "build_combinations",
+    "compute_extra_columns",
+    "compute_result_filename",
+    "count_combinations",
+    "discover_task_artifacts",
+    "execute_task",
     "expand_batch_options",
+    "expand_combinations",
     "get_by_dotted_path",
     "main",
+    "make_rundra_sweep_config",
+    "merge_task_artifacts",
+    "resolve_batch_defaults",
+    "run_local_campaign",
     "set_in_dict",
 ]
-
-
-class RunnerWithSeeds(PogobotBatchRunner):
-    """A batch whose runs have seeds of one's own choice.
-
-    Attributes:
-        seeds: Seed of each run; None: the usual ones.
-    """
-
-    seeds: Sequence[int] | None = None
-
-    def compute_seed(self, comb_config: dict[str, Any], run: int) -> int:
-        """Return the seed of a run."""
-        return super().compute_seed(comb_config, run) if self.seeds is None else self.seeds[run]
 
 
 class PogobotLauncher:
@@ -75,7 +91,7 @@ class PogobotLauncher:
     ) -> None:
         self.path = base_config_path
         self.output = combined_output_path
-        self.runner = RunnerWithSeeds(
+        self.runner = PogobotBatchRunner(
             base_config_path,
             num_instances,
             simulator_binary,

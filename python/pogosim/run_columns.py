@@ -9,7 +9,9 @@ if TYPE_CHECKING:
     import pandas as pd  # takes a while
 
 RUN = "run"  # the number of the run in a batch, or of the file among several
-NAMES = (RUN, "seed", "arena_file")  # kColumnsOfRuns in src/record/columns.cpp
+SEED = "seed"
+RETRY = "retry_attempt"  # which replacement the seed of the run is, after failures; 0: its own seed
+NAMES = (RUN, SEED, "arena_file")  # kColumnsOfRuns in src/record/columns.cpp
 KEYS = ("objects.", "parameters.")  # how dotted paths of configuration keys begin; kKeysOfRuns there
 
 # What an object has in one row at each time.

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from batches import batch, script, start_batch, wait_for_simulators, wait_until_gone, write_options
-from pogosim.batch.command_line import catch_signals
+from pogosim.batch.ending import catch_signals
 from pogosim.pogobatch import PogobotBatchRunner
 
 ENDING = [signal.SIGHUP, signal.SIGINT, signal.SIGTERM]

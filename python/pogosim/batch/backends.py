@@ -68,6 +68,18 @@ class Workers:
             return self.slurm_jobs.jobs * (self.slurm_jobs.cores or CORES)
         return processors() if self.number is None else self.number
 
+    @property
+    def name(self) -> str:
+        """What does the runs: "slurm", "dask" or another backend."""
+        if self.slurm_jobs is not None:
+            return "slurm"
+        return "dask" if self.scheduler is not None or self.backend == "ray" else self.backend
+
+    @property
+    def at_once(self) -> int:
+        """Runs at the same time, at most."""
+        return 1 if self.name == "sequential" else self.count
+
     def opened(self, keep_idle: bool = False) -> AbstractContextManager[Do]:
         """Return what does runs until it is closed.
 

@@ -12,6 +12,7 @@ import yaml
 
 from pogosim.batch.errors import BatchError, cannot, one_line
 from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError, check_options
+from pogosim.batch.tool_maps import without_tool_maps
 from pogosim.yaml_1_2 import (
     BOOLEAN,
     FLOAT,
@@ -63,7 +64,12 @@ def dump_configuration(entries: dict[str, Any]) -> str:
 
 
 class Configuration:
-    """A configuration file: its text, its entries, and the lines they stand on."""
+    """A configuration file: its text, its entries, and the lines they stand on.
+
+    Attributes:
+        entries: What it says, without the maps that are for batch tools alone.
+        seeds: Seeds that it asks for; None: it says nothing.
+    """
 
     def __init__(self, path: str | Path) -> None:
         """Read a file.
@@ -103,6 +109,20 @@ class Configuration:
             raise BatchError(f"{path} is empty; a configuration needs at least arena_file and objects")
         if not isinstance(self.root, yaml.MappingNode):
             raise BatchError(f"{path} is not a configuration: expected a map of keys and values")
+        self.moved: dict[str, tuple[str, ...]] = {}
+        self.take_tool_maps()
+
+    def take_tool_maps(self) -> None:
+        """Take out what is for batch tools alone.
+
+        Raises:
+            BatchError: It is wrong.
+        """
+        try:
+            maps = without_tool_maps(self.entries, lambda at, text: log.warning("%s: %s", self.where(at), text))
+        except CombinationsError as error:
+            raise self.error(error) from None
+        self.entries, self.moved, self.seeds = maps.entries, maps.moved, maps.seeds
 
     def warn_of_another_document(self, loader: BatchLoader) -> None:
         """Say that a second document of the file is not used, as the simulator does."""
@@ -156,13 +176,18 @@ class Configuration:
             path: Path of the entry.
             key: A key in it, whose line is given; empty: the line of the entry.
         """
+        path = self.written_at(path)
         line = self.line_at([*path, key] if key else path)
         return f"{self.path}{f':{line}' if line else ''}{': ' if path else ''}{'.'.join(path)}"
+
+    def written_at(self, path: Sequence[str]) -> Sequence[str]:
+        """Return the path in the file of an entry."""
+        return [*self.moved[path[0]], *path[1:]] if path and path[0] in self.moved else path
 
     def line_at(self, path: Sequence[str]) -> int:
         """Return the line of an entry, or of the last that there is on the way to it; 0 of the whole file."""
         node, line = self.root, 0
-        for step in path:
+        for step in self.written_at(path):
             if isinstance(node, yaml.MappingNode):
                 pair = next(((key, value) for key, value in node.value if str(key.value) == step), None)
                 if pair is None:

@@ -6,11 +6,14 @@ import logging
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, tell
+from pogosim.batch.manifests import write_manifest
 from pogosim.batch.option_words import CHOICES
+from pogosim.batch.parts import PLAIN, Format
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import Failure, Progress, report_warnings
 from pogosim.batch.results import check_columns, schema_of
@@ -27,15 +30,26 @@ class Execution:
 
     Attributes:
         failures: Runs that failed.
+        finished: With which replacement of its seed a run is done (0: its own seed), by key.
         simulator_s: Wall-clock time of simulators, in s, added up.
     """
 
-    def __init__(self, combinations: Sequence[Combination], program: str, configuration: Configuration) -> None:
+    def __init__(
+        self,
+        combinations: Sequence[Combination],
+        program: str,
+        configuration: Configuration,
+        layout: Format = PLAIN,
+        shows_warnings: bool = True,
+    ) -> None:
         self.combinations = combinations
         self.configuration = configuration
         self.tasks = {task.key: task for combination in combinations for task in combination.tasks}
         self.first_of = {task.key: combination for combination in reversed(combinations) for task in combination.tasks}
         self.program = program  # its name in messages
+        self.layout = layout
+        self.shows_warnings = shows_warnings
+        self.finished: dict[str, int] = {}
         self.checked: set[tuple[str | None, ...]] = set()  # names of columns
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
@@ -46,28 +60,32 @@ class Execution:
         Raises:
             BatchError: The columns of one that is done are wrong.
         """
-        waiting = [task for task in self.tasks.values() if not temporary.has_finished(task)]
-        for key in self.tasks.keys() - {task.key for task in waiting}:
-            self.check_run(self.tasks[key])
+        for task in self.tasks.values():
+            if (replacement := temporary.finished(task)) is not None:
+                self.finished[task.key] = replacement
+                self.check_run(task)
+        waiting = [task for task in self.tasks.values() if task.key not in self.finished]
         if len(waiting) < len(self.tasks):
             tell(f"{len(self.tasks) - len(waiting)} of {len(self.tasks)} runs are done already, in {temporary.done}")
         return waiting
 
-    def take(self, outcomes: Generator[Outcome, None, None], total: int) -> None:
-        """Let a backend do runs, and show how many are done.
+    def take(self, outcomes: Generator[Outcome, None, None], total: int, with_progress: bool = False) -> None:
+        """Let a backend do runs, and show how many are done; on a terminal always, elsewhere as asked for.
 
         Raises:
             BatchError: The others would fail in the same way as one that did; or its columns are wrong.
         """
         warnings: dict[str, None] = {}
-        bar = Progress(total)
+        bar = Progress(total, is_asked_for=with_progress)
         try:
             for outcome in outcomes:
                 task = self.tasks[outcome.key]
                 self.simulator_s += outcome.simulator_s
                 if not outcome.problem:
                     warnings.update(dict.fromkeys(self.messages(outcome, task).splitlines()))
+                    self.finished[task.key] = outcome.replacement
                     self.check_run(task)
+                    self.keep_manifest(task, outcome)
                 elif outcome.is_fatal:
                     raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
                 else:
@@ -77,7 +95,8 @@ class Execution:
         finally:
             bar.close()
             outcomes.close()
-            report_warnings(warnings)
+            if self.shows_warnings:
+                report_warnings(warnings)
         self.failures.sort(key=lambda failure: (failure.output, failure.task.run, failure.task.key))
 
     def messages(self, outcome: Outcome, task: Task) -> str:
@@ -87,9 +106,17 @@ class Execution:
     def failure(self, outcome: Outcome, task: Task) -> Failure:
         """Return what is said of a run that has failed."""
         combination = self.first_of[task.key]
-        number = next(i for i, one in enumerate(self.combinations) if one is combination)
-        options = {key.removeprefix(f"{CHOICES}."): values[number] for key, values in self.varied.items()}
-        return Failure(task, replace(outcome, log=self.messages(outcome, task)), combination.output, options)
+        number = self.number_of(combination)
+        options = self.options_of(number)
+        return Failure(task, replace(outcome, log=self.messages(outcome, task)), combination.output, options, number)
+
+    def number_of(self, combination: Combination) -> int:
+        """Return which one a combination is, from 0 on."""
+        return next(i for i, one in enumerate(self.combinations) if one is combination)
+
+    def options_of(self, number: int) -> dict[str, Any]:
+        """Return what tells a combination from the others: keys and their values."""
+        return {key.removeprefix(f"{CHOICES}."): values[number] for key, values in self.varied.items()}
 
     @cached_property
     def varied(self) -> dict[str, list[Any]]:
@@ -99,8 +126,16 @@ class Execution:
     def check_run(self, task: Task) -> None:
         """Check the columns of a finished run; those that many runs have are checked once."""
         combination = self.first_of[task.key]
-        schema = schema_of(task.result)
+        schema = schema_of(task.result_of(self.finished[task.key]))
         names = (*schema.names, None, *combination.columns)
         if names not in self.checked:
             self.checked.add(names)
-            check_columns(schema, list(combination.columns), self.program)
+            check_columns(schema, list(combination.columns), self.program, self.layout)
+
+    def keep_manifest(self, task: Task, outcome: Outcome) -> None:
+        """Write down what a run is whose folder stays."""
+        if not outcome.folder:
+            return
+        combination = self.first_of[task.key]
+        number = self.number_of(combination)
+        write_manifest(Path(outcome.folder), combination, task, outcome.replacement, number, self.options_of(number))

@@ -23,6 +23,8 @@ NOT_IN_THE_WORLD = (
 )
 LIBRARY = re.compile(r"^\s*(?:\S+ => )?(/\S*libpogosim[^/\s]*)", re.MULTILINE)
 
+PYTHON = ".py"  # how the names of files end that Python runs
+
 # Every program of the simulator mentions its library, or contains it.
 MARK = b"pogosim"
 EXECUTABLES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
@@ -46,10 +48,10 @@ def find_program(name: str) -> Path:
             content = file.read()
     except OSError as error:
         raise cannot("read the simulator", name, error) from None
-    is_script = content.startswith(b"#!")
+    is_script = content.startswith(b"#!") or path.suffix == PYTHON
     if not is_script and not (content.startswith(EXECUTABLES) and MARK in content):
         raise BatchError(f"{name} is not a simulator; {expected}")
-    if shutil.which(str(path.absolute())) is None:
+    if path.suffix != PYTHON and shutil.which(str(path.absolute())) is None:
         raise BatchError(f"the simulator {name} is not executable; chmod +x {name}")
     return path.absolute()
 

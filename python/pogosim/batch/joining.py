@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 
 from pogosim.batch.errors import cannot
-from pogosim.batch.reports import Failure
-from pogosim.batch.results import Part, RunFile, check_output, write_results
-from pogosim.batch.run import Outcome
+from pogosim.batch.manifests import config_hash
+from pogosim.batch.parts import PLAIN, Format, Part, RunFile
+from pogosim.batch.results import check_output, write_results
+from pogosim.batch.run import Outcome, Task
 from pogosim.batch.tasks import Combination
 from pogosim.table_formats import CSV, format_of, metadata_path
 
@@ -52,23 +53,29 @@ def removing_stale(outputs: Sequence[str], outcomes: Generator[Outcome, None, No
         outcomes.close()
 
 
-def join(combinations: Sequence[Combination], failures: Sequence[Failure], text: str) -> bool:
+def file_of(task: Task, replacement: int) -> RunFile:
+    """Return the data file of a finished run."""
+    return RunFile(task.result_of(replacement), task.run, task.seed_of(replacement), replacement)
+
+
+def join(combinations: Sequence[Combination], finished: Mapping[str, int], text: str, layout: Format = PLAIN) -> bool:
     """Write one file of results. Returns whether there was anything to write.
 
     Args:
         combinations: Those whose results are in it, at least one.
-        failures: Runs that are missing.
+        finished: Runs that are done, by key, with the replacement of their seed; others are missing in the results.
         text: Configuration of the batch.
+        layout: What the file has beside the rows of the runs.
 
     Raises:
         BatchError: It cannot be written.
     """
-    failed = {failure.task.key for failure in failures}
     parts = [
         Part(
             combination.columns,
-            [RunFile(task.result, task.run, task.seed) for task in combination.tasks if task.key not in failed],
-            [task.run for task in combination.tasks if task.key in failed],
+            [file_of(task, finished[task.key]) for task in combination.tasks if task.key in finished],
+            [task.run for task in combination.tasks if task.key not in finished],
+            config_hash(combination.entries) if layout.with_manifest else "",
         )
         for combination in combinations
     ]
@@ -76,7 +83,7 @@ def join(combinations: Sequence[Combination], failures: Sequence[Failure], text:
     if not any(part.runs for part in parts):
         log.error("%s is not written: none of its runs ended well", output)
         return False
-    written = write_results(output, parts, text)
+    written = write_results(output, parts, text, layout)
     of_each = f" ({', '.join(map(str, written.rows))})" if len(written.rows) > 1 else ""
     log.debug("Created %s with %d rows%s", output, sum(written.rows), of_each)
     return True

@@ -23,6 +23,7 @@ log = logging.getLogger("pogobatch")
 SHOWN_FAILURES = 5
 SHOWN_WARNINGS = 10
 LINE_EVERY_S = 60.0
+LINES = 20  # of a batch whose progress is asked for
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,7 @@ class Failure:
     outcome: Outcome
     output: str
     options: dict[str, Any]
+    combination: int  # its number, from 0 on
 
 
 class Progress:
@@ -41,12 +43,14 @@ class Progress:
     Args:
         total: How many there are.
         unit: What they are: runs, or something else.
+        is_asked_for: Say more than a line a minute: twenty lines, or one for each if they are fewer.
     """
 
-    def __init__(self, total: int, unit: str = "run") -> None:
+    def __init__(self, total: int, unit: str = "run", is_asked_for: bool = False) -> None:
         self.total = total
         self.unit = unit
         self.done = 0
+        self.is_asked_for = is_asked_for
         self.started_s = self.said_s = time.monotonic()
         is_terminal = total > 0 and sys.stderr is not None and sys.stderr.isatty()
         # Some terminals have no size; the bar would be empty.
@@ -61,7 +65,9 @@ class Progress:
         self.done += 1
         self.bar.update()
         now_s = time.monotonic()
-        if self.bar.disable and now_s - self.said_s >= LINE_EVERY_S and self.done < self.total:
+        is_due = now_s - self.said_s >= LINE_EVERY_S and self.done < self.total
+        is_part = self.done * LINES // self.total > (self.done - 1) * LINES // self.total
+        if self.bar.disable and (is_due or (self.is_asked_for and is_part)):
             self.said_s = now_s
             left_s = (now_s - self.started_s) / self.done * (self.total - self.done)
             left = tqdm.format_interval(left_s)

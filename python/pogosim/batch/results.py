@@ -18,38 +18,17 @@ import pyarrow as pa
 from pyarrow import ipc
 
 from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.batch.parts import PLAIN, Format, Part, RunFile
+from pogosim.batch.result_metadata import COMBINATIONS, MANIFEST, Earlier, manifest, metadata_of, summary
 from pogosim.outputs import OutputError, real_output
 from pogosim.recover import DAMAGED, RecoverError, check_metadata_beside, check_replaceable, reraise_system_error
-from pogosim.run_columns import RUN, tells_runs_apart
+from pogosim.run_columns import tells_runs_apart
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.tables import TableWriter, table_writer, write_metadata_beside
 from pogosim.times import as_float64
-from pogosim.yaml_1_2 import dump_yaml, parse_yaml, plain
+from pogosim.yaml_1_2 import dump_yaml, plain
 
 ROWS_PER_BATCH = 65536
-RESOLVED = "resolved_configuration"
-POLYGONS = "arena_polygons"
-
-# What differs between the runs of one configuration.
-OF_ONE_RUN = ("seed", "data_filename", "message_log", "console_filename", "frames_name")
-
-
-@dataclass(frozen=True)
-class RunFile:
-    """The data file of a finished run."""
-
-    path: Path
-    run: int
-    seed: int | None = None
-
-
-@dataclass(frozen=True)
-class Part:
-    """The runs of one combination."""
-
-    columns: dict[str, Any]  # constant columns
-    runs: Sequence[RunFile]
-    failed: Sequence[int] = ()  # runs without a data file
 
 
 @dataclass(frozen=True)
@@ -84,16 +63,16 @@ def schema_of(path: Path) -> pa.Schema:
         return reader.schema
 
 
-def check_columns(schema: pa.Schema, columns: Sequence[str], program: str) -> None:
+def check_columns(schema: pa.Schema, columns: Sequence[str], program: str, layout: Format = PLAIN) -> None:
     """Check that no column of the program would be taken for one that tells runs apart.
 
     Raises:
         BatchError: There is one of such a name.
     """
     for name in schema.names:
-        if name == RUN:
+        if name in layout.run_columns:
             raise BatchError(
-                f"{program} writes a column 'run', and a batch adds one of that name; rename the program's"
+                f"{program} writes a column '{name}', and a batch adds one of that name; rename the program's"
             )
         if name in columns:
             raise BatchError(
@@ -201,72 +180,12 @@ class Pieces:
             self.write(self.rows)
 
 
-def metadata_of(schemas: Sequence[Sequence[pa.Schema]], text: str) -> dict[str, bytes]:
-    """Return the metadata of a file of results.
-
-    They are what all runs have in common, with `configuration`, the configuration with all its options, and
-    `resolved_configuration`, the entries that are the same in all runs. `summary` adds what differs.
-    """
-    all_metadata = [schema.metadata or {} for part in schemas for schema in part]
-    first = all_metadata[0]
-    skipped = (b"configuration", RESOLVED.encode())
-    common = {
-        key: value
-        for key, value in first.items()
-        if key not in skipped and all(metadata.get(key) == value for metadata in all_metadata)
-    }
-    metadata = {key.decode(errors="replace"): value for key, value in common.items()}
-    metadata["configuration"] = text.encode()
-    resolved = [configuration_in(part[0].metadata or {}) for part in schemas if part]
-    if shared := shared_entries(resolved):
-        metadata[RESOLVED] = dump_yaml(shared).encode()
-    return metadata
-
-
-def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
-    """Return the configuration with all defaults of a run, without what only that run has."""
-    try:
-        entries = parse_yaml(metadata.get(RESOLVED.encode(), b"").decode())
-    except (ValueError, RecursionError):
-        return {}
-    return {key: value for key, value in entries.items() if key not in OF_ONE_RUN} if isinstance(entries, dict) else {}
-
-
-def shared_entries(maps: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return the entries that several maps have in common, at any depth."""
-    first, *others = maps
-    shared: dict[str, Any] = {}
-    for key, value in first.items():
-        if not all(key in other for other in others):
-            continue
-        found = [other[key] for other in others]
-        if isinstance(value, dict) and all(isinstance(entry, dict) for entry in found):
-            entries = shared_entries([value, *found])
-            if entries or not value:
-                shared[key] = entries
-        elif all(entry == value for entry in found):
-            shared[key] = value
-    return shared
-
-
-def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows: Sequence[int]) -> bytes:
-    """Return the metadata entry `combinations`, in YAML.
-
-    A list with the columns of each combination, its number of runs and rows, the runs that failed, the seeds of the
-    others if they are not their numbers, and the polygons of its arena if they are not the same everywhere.
-    """
-    polygons = [(part[0].metadata or {}).get(POLYGONS.encode()) if part else None for part in schemas]
-    differ = len({text for text in polygons if text is not None}) > 1
-    entries = []
-    for i, part in enumerate(parts):
-        entry = {"columns": part.columns, "runs": len(part.runs), "rows": rows[i], "failed_runs": list(part.failed)}
-        if any(run.seed is not None and run.seed != run.run for run in part.runs):
-            entry["seeds"] = [run.seed for run in part.runs]
-        text = polygons[i]
-        if differ and text is not None:
-            entry[POLYGONS] = parse_yaml(text.decode())
-        entries.append(entry)
-    return dump_yaml(entries).encode()
+def with_added(own: pa.Schema, added: Sequence[tuple[str, pa.DataType]]) -> pa.Schema:
+    """Return the columns of runs, followed by those that a batch adds; earlier results have those already."""
+    kinds = [pa.schema([column]) for column in added]
+    known = [pa.schema([own.field(name)]) for name, _ in added if name in own.names]
+    kept = pa.schema([field for field in own if field.name not in dict(added)])
+    return joint_schema([kept, *kinds, *known])
 
 
 def check_output(path: str) -> Path:
@@ -327,7 +246,9 @@ def replacement(path: Path) -> Iterator[Any]:
             raise
 
 
-def write_results(path: str, parts: Sequence[Part], text: str) -> Written:
+def write_results(
+    path: str, parts: Sequence[Part], text: str, layout: Format = PLAIN, earlier: Earlier | None = None
+) -> Written:
     """Join runs into one file.
 
     Args:
@@ -335,6 +256,8 @@ def write_results(path: str, parts: Sequence[Part], text: str) -> Written:
             there is replaced.
         parts: Combinations, each with its finished runs; at least one run in all.
         text: Configuration with all options, for the metadata.
+        layout: What the file has beside the rows.
+        earlier: Results whose rows come first, those that are there.
 
     Returns:
         What was written.
@@ -344,28 +267,42 @@ def write_results(path: str, parts: Sequence[Part], text: str) -> Written:
     """
     real = check_output(path)
     try:
-        schemas = [[schema_of(run.path) for run in part.runs] for part in parts]
-        rows = [sum(rows_in(run.path) for run in part.runs) for part in parts]
+        before = [] if earlier is None else [[earlier.schema]]
+        schemas = [*before, *([schema_of(run.path) for run in part.runs] for part in parts)]
+        rows = [rows_of(part.runs) for part in parts]
         own = joint_schema([schema for part in schemas for schema in part])
         names = list(dict.fromkeys(name for part in parts for name in part.columns))
         types = {name: column_type([part.columns.get(name) for part in parts]) for name in names}
-        schema = pa.schema([*own, pa.field(RUN, pa.int64()), *(pa.field(name, kind) for name, kind in types.items())])
+        added = [*((name, pa.int64()) for name in layout.run_columns), *types.items()]
+        schema = with_added(own, added)
         metadata = metadata_of(schemas, text)
-        schema = schema.with_metadata({**metadata, "combinations": summary(parts, schemas, rows)})
+        entries = [*(earlier.combinations if earlier else []), *summary(parts, schemas[len(before) :], rows)]
+        metadata[COMBINATIONS] = dump_yaml(entries).encode()
+        if layout.with_manifest:
+            metadata[MANIFEST] = manifest(parts, earlier)
+        schema = schema.with_metadata(metadata)
         with replacement(real) as file:
             kind = format_of(real) or FEATHER
             with contextlib.closing(table_writer(file, kind, schema)) as writer:
                 pieces = Pieces(writer)
+                for batch in batches_of(earlier.path) if earlier else ():
+                    pieces.add(with_columns(batch, schema, {}))
                 for part in parts:
-                    constants = {name: as_type(part.columns.get(name), kind) for name, kind in types.items()}
+                    constants = {name: as_type(part.columns.get(name), schema.field(name).type) for name in names}
                     for run in part.runs:
+                        which = {name: run.column(name) for name in layout.run_columns}
                         for batch in batches_of(run.path):
-                            pieces.add(with_columns(batch, schema, {**constants, RUN: run.run}))
+                            pieces.add(with_columns(batch, schema, {**constants, **which}))
                 pieces.finish()
             write_metadata_beside(real, kind, schema)
     except OSError as error:
         raise cannot("write", path, error) from None
     return Written(path, rows)
+
+
+def rows_of(runs: Sequence[RunFile]) -> int:
+    """Return the number of rows of some runs."""
+    return sum(rows_in(run.path) for run in runs)
 
 
 def rows_in(path: Path) -> int:

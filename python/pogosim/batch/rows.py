@@ -17,11 +17,13 @@ from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import find_program, program_digest, world_digest
+from pogosim.batch.joining import file_of
 from pogosim.batch.names import ambiguous, new_columns, value_at
 from pogosim.batch.option_words import CombinationsError
+from pogosim.batch.parts import Part
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import report_warnings
-from pogosim.batch.results import Part, RunFile, check_columns, schema_of, write_results
+from pogosim.batch.results import check_columns, schema_of, write_results
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
@@ -48,11 +50,16 @@ class Finished:
         number: Which one it is of those that were asked for, from 0 on.
         rows: All its runs, as `load_dataframe` reads those of a batch; None: a run has failed.
         problem: Why, or empty.
+        seeds: Seeds that its runs have had in the end, in the order of the runs of a combination; those of a
+            combination differ from others only where a run had failed.
+        replacement: The greatest number of a replacement of a seed among its runs; 0: all have their own.
     """
 
     number: int
     rows: pd.DataFrame | None
     problem: str
+    seeds: tuple[int, ...] = ()
+    replacement: int = 0
 
 
 @dataclass
@@ -63,6 +70,7 @@ class Wanted:
     text: str  # its metadata entry "configuration"
     combinations: list[Combination]
     waiting: set[str] = field(default_factory=set)  # keys of runs
+    finished: dict[str, int] = field(default_factory=dict)  # by key, the replacement of the seed of a run
     problem: str = ""
 
 
@@ -148,25 +156,27 @@ class Runs:
         uses = {key: [one for one in wanted if key in one.waiting] for key in tasks}
         left = {key: len(ones) for key, ones in uses.items()}
 
-        def take(key: str, problem: str) -> Iterator[Finished]:
+        def take(key: str, problem: str, replacement: int) -> Iterator[Finished]:
             for one in uses[key]:
                 one.waiting.discard(key)
+                one.finished[key] = replacement
                 one.problem = one.problem or problem
                 if not one.waiting:
                     yield self.finished(one, save(one.number) if save is not None else None)
                     for own in {task.key for part in one.combinations for task in part.tasks}:
                         left[own] -= 1
                         if left[own] == 0 and not self.temporary.is_kept:
-                            tasks[own].result.unlink(missing_ok=True)
+                            tasks[own].result_of(one.finished.get(own, 0)).unlink(missing_ok=True)
 
-        for key in [key for key, task in tasks.items() if self.temporary.has_finished(task)]:
-            yield from take(key, "")
+        for key, task in tasks.items():
+            if (replacement := self.temporary.finished(task)) is not None:
+                yield from take(key, "", replacement)
         waiting = [task for key, task in tasks.items() if any(key in one.waiting for one in uses[key])]
         with contextlib.closing(self.do(waiting)) as outcomes:
             for outcome in outcomes:
                 task = tasks[outcome.key]
                 said = in_the_users_file(outcome.log, task, entries[outcome.key], self.configuration)
-                yield from take(outcome.key, self.problem_of(replace(outcome, log=said), task))
+                yield from take(outcome.key, self.problem_of(replace(outcome, log=said), task), outcome.replacement)
 
     def wanted(self, number: int, entries: dict[str, Any], seeds: Sequence[int]) -> Wanted:
         """Return the runs of a configuration."""
@@ -204,17 +214,20 @@ class Runs:
 
     def finished(self, one: Wanted, target: tuple[Path, str] | None) -> Finished:
         """Return the rows of a configuration whose runs are done."""
+        replacement = max(one.finished.values())
         if one.problem:
-            return Finished(one.number, None, one.problem)
+            return Finished(one.number, None, one.problem, replacement=replacement)
+        seeds = tuple(task.seed_of(one.finished[task.key]) for task in one.combinations[0].tasks)
         parts = []
         for combination in one.combinations:
             for task in combination.tasks[:1]:
-                check_columns(schema_of(task.result), list(combination.columns), self.program)
-            files = [RunFile(task.result, task.run, task.seed) for task in combination.tasks]
+                result = task.result_of(one.finished[task.key])
+                check_columns(schema_of(result), list(combination.columns), self.program)
+            files = [file_of(task, one.finished[task.key]) for task in combination.tasks]
             parts.append(Part(combination.columns, files))
         scratch = self.temporary.done / f"joined_{one.number}.feather"
         path, text = (scratch, one.text) if target is None else target
         write_results(str(path), parts, text)
         rows, _ = load_dataframe(path)
         scratch.unlink(missing_ok=True)
-        return Finished(one.number, rows, "")
+        return Finished(one.number, rows, "", seeds, replacement)

@@ -18,14 +18,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pogosim.batch.errors import reason
+from pogosim.batch.identity import PYTHON
 from pogosim.batch.running import Watch
 from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
 
 LOG = "log.txt"
 CONFIGURATION = "test.yaml"
+EFFECTIVE = "pogobatch_effective.yaml"  # its name in the folder of a single task
+FRAMES = "frames"  # folder of the outputs of a run, in its own
 OWN = "<configuration>"  # in messages of a run: its own configuration, a temporary file
 REFUSED = 2  # exit code of a program that refuses its configuration, or cannot write its files
+QUIET = ("-nr", "-q")  # a simulator prints warnings and errors only
 LOG_LINES = 10
 MAX_WARNINGS = 1000  # of one run
 LONGEST_LINE = 10_000  # bytes of a line that are read at once
@@ -57,11 +61,26 @@ class Task:
     retries: int
     gui: bool
     keep_temp: bool
+    replacements: tuple[int, ...] = ()  # seeds of its second, third, ... attempt; empty: its own seed
+    says: tuple[str, ...] = QUIET
+
+    def seed_of(self, attempt: int) -> int:
+        """Return the seed of an attempt, from 0 on."""
+        return self.replacements[attempt - 1] if attempt and self.replacements else self.seed
+
+    def result_of(self, replacement: int) -> Path:
+        """Return where the data file is when the run is done, with its own seed (0) or a replacement (1, ...)."""
+        suffix = f"_{replacement}_{self.seed_of(replacement)}" if replacement else ""
+        return Path(self.done_folder) / f"{self.key}{suffix}.feather"
+
+    def replacement_in(self, attempt: int) -> int:
+        """Return which replacement of its seed an attempt has: 0 if it is its own seed again."""
+        return attempt if self.replacements else 0
 
     @property
     def result(self) -> Path:
-        """Where the data file is when the run is done."""
-        return Path(self.done_folder) / f"{self.key}.feather"
+        """Where the data file is when the run is done with its own seed."""
+        return self.result_of(0)
 
 
 @dataclass(frozen=True)
@@ -73,6 +92,7 @@ class Outcome:
     is_fatal: bool = False  # other runs would end in the same way
     is_certain: bool = False  # the same run would end in the same way: its configuration is refused
     attempts: int = 1
+    replacement: int = 0  # of its seed, with which the run was done; 0: its own seed
     command: str = ""
     log: str = ""  # its last lines; of a run that is done, its warnings
     folder: str = ""  # what a failure leaves
@@ -174,7 +194,9 @@ def tail(path: Path) -> str:
 
 def without_folder(line: str, folder: Path) -> str:
     """Return a line of a log with its control characters shown, and the run's own configuration as OWN."""
-    return printable(line.replace(str(folder / CONFIGURATION), OWN))
+    for name in (CONFIGURATION, EFFECTIVE):
+        line = line.replace(str(folder / name), OWN)
+    return printable(line)
 
 
 def warnings_in(folder: Path) -> str:
@@ -198,10 +220,10 @@ def ending(code: int) -> str:
         return f"killed by signal {-code}"
 
 
-def write_configuration(task: Task, folder: Path) -> Path:
+def write_configuration(task: Task, folder: Path, configuration: str) -> Path:
     """Write the configuration of a run, whose outputs go to `frames` in its folder."""
-    lines = "".join(f"{key}: {quoted(folder / 'frames' / name)}\n" for key, name in task.outputs)
-    path = folder / CONFIGURATION
+    lines = "".join(f"{key}: {quoted(folder / FRAMES / name)}\n" for key, name in task.outputs)
+    path = folder / configuration
     path.write_text(task.text + lines)
     return path
 
@@ -212,7 +234,7 @@ def quoted(path: Path) -> str:
 
 
 def attempt(task: Task, number: int) -> Outcome:
-    """Do a run once. Its folder stays if it fails, or if folders are kept.
+    """Do a run once, in a new folder, and keep its data file. The folder stays if it fails, or if folders are kept.
 
     Raises:
         OSError: A file cannot be written, or the program not be started.
@@ -222,35 +244,67 @@ def attempt(task: Task, number: int) -> Outcome:
     folder = Path(tempfile.mkdtemp(prefix=prefix, dir=task.temp_folder))
     is_kept = task.keep_temp
     try:
-        (folder / "frames").mkdir()
-        arguments = ["-c", str(write_configuration(task, folder)), "-nr", "-q", "--seed", str(task.seed)]
-        command = [task.program, *arguments, *([] if task.gui else ["-g"])]
-        code, simulator_s = simulators.run(command, task.working_folder, folder / LOG)
-        data = folder / "frames" / task.data
-        problem, is_fatal, is_certain = "", False, False
-        log = ""
-        if code != 0:
-            log = tail(folder / LOG)
-            problem = ending(code)
-            is_certain = code == REFUSED and f"Error: {OWN}:" in log
-            is_fatal = any(words in log for words in DISK_FULL)
-            if is_fatal:
-                problem = disk_full(task)
-        elif not data.is_file():
-            problem = f"it ended without writing its data file: is {task.program} a program compiled for Pogosim?"
-            is_fatal = True
-        elif not is_complete_data(data):
-            problem = "its data file is damaged"
-        else:
-            log = warnings_in(folder)
-            keep(data, task.result, as_copy=task.keep_temp)
-        is_kept |= bool(problem)
-        line = shlex.join(command)
-        left = str(folder) if is_kept else ""
-        return Outcome(task.key, problem, is_fatal, is_certain, number + 1, line, log, left, simulator_s)
+        outcome = attempt_in(folder, task, number)
+        if not outcome.problem:
+            keep(folder / FRAMES / task.data, task.result_of(outcome.replacement), as_copy=task.keep_temp)
+        is_kept |= bool(outcome.problem)
+        return replace(outcome, folder=str(folder) if is_kept else "")
     finally:
         if not is_kept:
             shutil.rmtree(folder, ignore_errors=True)
+
+
+def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFIGURATION) -> Outcome:
+    """Do a run once, in a folder, where its configuration, its log and its outputs stay.
+
+    Args:
+        folder: The folder, which is there.
+        task: The run.
+        number: Number of the attempt, from 0 on.
+        configuration: Name of its configuration.
+
+    Raises:
+        OSError: A file cannot be written, or the program not be started.
+        StoppedError: The batch ends.
+    """
+    (folder / FRAMES).mkdir(exist_ok=True)
+    path = write_configuration(task, folder, configuration)
+    arguments = ["-c", str(path), *task.says, "--seed", str(task.seed_of(number))]
+    command = [*starting(task.program), *arguments, *([] if task.gui else ["-g"])]
+    code, simulator_s = simulators.run(command, task.working_folder, folder / LOG)
+    data = folder / FRAMES / task.data
+    problem, is_fatal, is_certain = "", False, False
+    log = ""
+    if code != 0:
+        log = tail(folder / LOG)
+        problem = ending(code)
+        is_certain = code == REFUSED and f"Error: {OWN}:" in log
+        is_fatal = any(words in log for words in DISK_FULL)
+        if is_fatal:
+            problem = disk_full(task)
+    elif not data.is_file():
+        problem = f"it ended without writing its data file: is {task.program} a program compiled for Pogosim?"
+        is_fatal = True
+    elif not is_complete_data(data):
+        problem = "its data file is damaged"
+    else:
+        log = warnings_in(folder)
+    return Outcome(
+        task.key,
+        problem,
+        is_fatal,
+        is_certain,
+        attempts=number + 1,
+        replacement=task.replacement_in(number),
+        command=shlex.join(command),
+        log=log,
+        simulator_s=simulator_s,
+    )
+
+
+def starting(program: str) -> list[str]:
+    """Return the start of a command line that runs a program: the Python that runs now, for a file in Python."""
+    return [sys.executable, program] if program.endswith(PYTHON) else [program]
 
 
 def disk_full(task: Task) -> str:

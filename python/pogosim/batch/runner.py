@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import logging
-from collections.abc import Iterator, Sequence
+import os
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +17,23 @@ from pogosim.batch.errors import BatchError, at_least, cannot, given, one_line, 
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
-from pogosim.batch.names import NamesError, ambiguous, file_name, is_linked_out, new_columns
+from pogosim.batch.names import COLUMNS, NamesError, ambiguous, file_name, is_linked_out, new_columns
 from pogosim.batch.option_words import CombinationsError
+from pogosim.batch.parts import PLAIN, WITH_SEEDS
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
+from pogosim.batch.run import QUIET
+from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.run_columns import RUN
 
 MAX_RUNS = 10_000_000  # in memory, about 1 kB each
+
+# What a simulator is asked to print, into the log of its run.
+SIMULATOR_OUTPUTS = {"normal": QUIET, "quiet": QUIET, "verbose": ("-v",)}
 
 log = logging.getLogger("pogobatch")
 
@@ -39,7 +47,7 @@ class PogobotBatchRunner:
 
     Args:
         multi_config_file: YAML file with options (`batch_options` and others).
-        runs: Runs per combination, at least 1.
+        runs: Runs per combination, at least 1; None: as many as there are seeds.
         simulator_binary: Program compiled for Pogosim.
         temp_base: Folder for files of single runs. Finished runs of an unfinished batch are kept there.
         output_dir: Folder of the results.
@@ -54,11 +62,20 @@ class PogobotBatchRunner:
         workers: Runs at the same time; None: one per processor.
         scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
         slurm_jobs: Jobs of SLURM that do the runs.
+        seeds: Seed of each run; None: those of `_rundr` in the configuration if `runs` is None, too, or else as
+            `seed_from` says.
+        retry_new_seed: Repeat a failed run with another seed, see `pogosim.batch.seeds.replacements`; otherwise, with
+            the same one.
+        with_seeds: Add the columns `seed` and `retry_attempt` to the results, and a manifest to their metadata.
+        progress: Say how many runs are done also where there is no terminal.
+        simulator_output: "normal": warnings of simulators are shown; "quiet": they are not; "verbose": simulators and
+            robots also print what they usually do into the logs of their runs, which stay with `keep_temp`.
 
     Attributes:
         failures: Runs of the last `run_all()` that failed.
         simulator_s: Wall-clock time, in s, that simulators of the last `run_all()` took, added up.
         generated: Files of results that the last `run_all()` wrote, each once.
+        combination_count: Number of combinations of the last `run_all()`.
 
     Raises:
         BatchError: An argument is wrong, or the configuration cannot be read. Also raised by all methods: its message
@@ -68,7 +85,7 @@ class PogobotBatchRunner:
     def __init__(
         self,
         multi_config_file: str,
-        runs: int,
+        runs: int | None,
         simulator_binary: str,
         temp_base: str,
         output_dir: str,
@@ -83,9 +100,15 @@ class PogobotBatchRunner:
         workers: int | None = None,
         scheduler: str | None = None,
         slurm_jobs: SlurmJobs | None = None,
+        seeds: Iterable[int] | None = None,
+        retry_new_seed: bool = False,
+        with_seeds: bool = False,
+        progress: bool = False,
+        simulator_output: str = "normal",
     ) -> None:
         self.multi_config_file = str(given.path("multi_config_file", multi_config_file))
-        self.runs = at_least(1, runs, "--runs")
+        self.seeds = None if seeds is None else listed_seeds(seeds, "--seeds")
+        self.runs = len(self.seeds or ()) if runs is None else at_least(1, runs, "--runs")
         self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
         self.temp_base = str(given.path("temp_base", temp_base))
         self.output_dir = str(given.path("output_dir", output_dir))
@@ -96,9 +119,14 @@ class PogobotBatchRunner:
         self.gui = gui
         self.only_output = only_output
         self.seed_from = seed_from
+        self.retry_new_seed = retry_new_seed
+        self.layout = WITH_SEEDS if with_seeds else PLAIN
+        self.progress = progress
+        self.simulator_output = simulator_output
         self.failures: list[Failure] = []
         self.simulator_s = 0.0
         self.generated: list[str] = []
+        self.combination_count = 0
         self.whole: frozenset[str] = frozenset()  # columns whose paths are not reduced to their stems
         self.queue: list[Combination] | None = None
         self.run_settings: RunSettings | None = None
@@ -106,7 +134,16 @@ class PogobotBatchRunner:
         self.written: dict[str, tuple[str, dict[str, Any]]] = {}
         if seed_from not in ("run", "config"):
             raise BatchError(f"--seed-from: expected run or config; found '{seed_from}'")
+        if seed_from == "config" and self.seeds is not None:
+            raise BatchError("--seed-from config goes with --runs; the seeds are given already")
+        if simulator_output not in SIMULATOR_OUTPUTS:
+            known = ", ".join(SIMULATOR_OUTPUTS)
+            raise BatchError(f"simulator_output: expected one of {known}; found '{simulator_output}'")
         self.configuration = Configuration(self.multi_config_file)
+        if not self.runs:
+            asked_for = self.configuration.seeds or range(1)
+            self.runs = len(asked_for)
+            self.seeds = asked_for if seed_from == "run" else None
 
     # ---- What can be overridden ----
 
@@ -143,6 +180,8 @@ class PogobotBatchRunner:
 
     def compute_seed(self, comb_config: dict[str, Any], run: int) -> int:
         """Return the seed of a run, 0 to 2^32-1. Runs are numbered 0, 1, ..."""
+        if self.seeds is not None:
+            return self.seeds[run]
         if self.seed_from == "run":
             return run
         seed = comb_config.get("seed")
@@ -200,18 +239,8 @@ class PogobotBatchRunner:
             The file of results of each combination; one that several share is there several times. Runs that failed are
             missing in the results and listed in `failures`.
         """
-        selected = self.selected()
-        if len(selected) * self.runs > MAX_RUNS:
-            wanted = f"{self.runs} runs of {len(selected)} combination(s)"
-            raise BatchError(f"--runs: {wanted} are more than {MAX_RUNS}; make several batches")
-        try:
-            check_columns_exist([config for config, _ in selected])
-        except NamesError as error:
-            raise self.names_error(error) from None
-        columns = [(config, output, self.compute_new_columns(config)) for config, output in selected]
-        for output, keys in indistinguishable(columns).items():
-            listed = ", ".join(keys)
-            log.warning("%s: no column tells its combinations apart; add to result_new_columns: %s", output, listed)
+        selected = self.checked_selection()
+        self.combination_count = len(selected)
         with self.prepared():
             for output in dict.fromkeys(output for _, output in selected):
                 check_output(output)
@@ -231,7 +260,8 @@ class PogobotBatchRunner:
 
     def do_all(self, combinations: Sequence[Combination]) -> None:
         """Do the runs that are not done yet, and write the results."""
-        execution = Execution(combinations, self.simulator_binary, self.configuration)
+        shows_warnings = self.simulator_output != "quiet"
+        execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, shows_warnings)
         self.failures, self.simulator_s, self.generated = execution.failures, 0.0, []
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
         waiting = execution.waiting(self.temporary)
@@ -243,13 +273,13 @@ class PogobotBatchRunner:
                 for output in outputs:
                     remove_stale(output)
             try:
-                execution.take(outcomes, len(waiting))
+                execution.take(outcomes, len(waiting), self.progress)
             finally:
                 self.simulator_s = execution.simulator_s
         report_failures(self.failures)
         for output in outputs:
             of_output = [combination for combination in combinations if combination.output == output]
-            if join(of_output, self.failures, self.configuration.text):
+            if join(of_output, execution.finished, self.configuration.text, self.layout):
                 self.generated.append(output)
         if self.failures:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
@@ -271,7 +301,14 @@ class PogobotBatchRunner:
         program = find_program(self.simulator_binary)
         beside = Path(self.multi_config_file).absolute().parent
         self.run_settings = RunSettings(
-            program, program_digest(program), beside, self.temporary, retries=self.retries, gui=self.gui
+            program,
+            program_digest(program),
+            beside,
+            self.temporary,
+            retries=self.retries,
+            gui=self.gui,
+            retry_new_seed=self.retry_new_seed,
+            says=SIMULATOR_OUTPUTS[self.simulator_output],
         )
         with self.temporary.locked():
             self.temporary.remove_leftovers()
@@ -279,6 +316,32 @@ class PogobotBatchRunner:
                 yield
             finally:
                 self.temporary.tidy(self.written)
+
+    @property
+    def asked_seeds(self) -> Sequence[int]:
+        """Seeds of the runs of each combination, before `compute_seed` makes others of them."""
+        return range(self.runs) if self.seeds is None else self.seeds
+
+    def checked_selection(self) -> list[tuple[dict[str, Any], str]]:
+        """Return the combinations to do, each with its file of results, after all checks that need no program.
+
+        Raises:
+            BatchError: They are too many, or a column is wrong.
+            NothingSelectedError: None has the output that was asked for.
+        """
+        selected = self.selected()
+        if len(selected) * self.runs > MAX_RUNS:
+            wanted = f"{self.runs} runs of {len(selected)} combination(s)"
+            raise BatchError(f"--runs: {wanted} are more than {MAX_RUNS}; make several batches")
+        try:
+            check_columns_exist([config for config, _ in selected])
+        except NamesError as error:
+            raise self.names_error(error) from None
+        columns = [(config, output, self.compute_new_columns(config)) for config, output in selected]
+        for output, keys in indistinguishable(columns).items():
+            listed = ", ".join(keys)
+            log.warning("%s: no column tells its combinations apart; add to result_new_columns: %s", output, listed)
+        return selected
 
     def selected(self) -> list[tuple[dict[str, Any], str]]:
         """Return the combinations to do, each with its file of results.
@@ -306,8 +369,13 @@ class PogobotBatchRunner:
         check_logs_data(entries, self.configuration)
         assert self.run_settings is not None  # within prepared()
         columns = self.compute_new_columns(entries)
+        for name in self.layout.run_columns:
+            if name in columns and name != RUN:
+                log.warning("%s: the column '%s' has that of each run", self.configuration.where((COLUMNS,)), name)
+                del columns[name]
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
-        return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings))
+        name = os.path.relpath(output, self.output_dir)
+        return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings), name)
 
     def names_error(self, error: NamesError) -> BatchError:
         """Return the error of a wrong name, with its place."""

@@ -10,7 +10,8 @@ from typing import Any
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import run_key, world_digest
-from pogosim.batch.run import Task
+from pogosim.batch.run import QUIET, Task
+from pogosim.batch.seeds import replacements
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.yaml_1_2 import plain
@@ -28,6 +29,7 @@ class Combination:
     columns: dict[str, Any]
     entries: dict[str, Any]
     tasks: list[Task] = field(default_factory=list)
+    name: str = ""  # of the output, in the folder of the results
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,8 @@ class RunSettings:
     temporary: TemporaryFolder
     retries: int
     gui: bool
+    retry_new_seed: bool = False  # a run that failed is repeated with another seed
+    says: tuple[str, ...] = QUIET
     digests: dict[Path, str] = field(default_factory=dict)  # of files that configurations name
 
 
@@ -67,6 +71,9 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
         outputs[MESSAGE_LOG] = basename(entries[MESSAGE_LOG], "messages.feather")
     text = dump_configuration(world) if world else ""
     digest = world_digest(world, (Path.cwd(), settings.configuration_folder), settings.digests)
+    others = [
+        replacements(seeds, run, settings.retries) if settings.retry_new_seed else () for run in range(len(seeds))
+    ]
     return [
         Task(
             key=run_key(digest, settings.program_digest, seed),
@@ -80,9 +87,11 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
             temp_folder=str(settings.temporary.path),
             done_folder=str(settings.temporary.done),
             batch=settings.temporary.batch,
-            retries=settings.retries,
+            retries=len(others[run]) if settings.retry_new_seed else settings.retries,
             gui=settings.gui,
             keep_temp=settings.temporary.is_kept,
+            replacements=others[run],
+            says=settings.says,
         )
         for run, seed in enumerate(seeds)
     ]

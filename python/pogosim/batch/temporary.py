@@ -63,9 +63,13 @@ class TemporaryFolder:
         except OSError as error:
             raise cannot("use", error.filename or self.path, error) from None
 
-    def has_finished(self, task: Task) -> bool:
-        """Tell whether a run is done already."""
-        return task.result.is_file() and is_complete_data(task.result)
+    def finished(self, task: Task) -> int | None:
+        """Return with which replacement of its seed a run is done already (0: its own seed); None: it is not."""
+        for replacement in range(len(task.replacements) + 1):
+            result = task.result_of(replacement)
+            if result.is_file() and is_complete_data(result):
+                return replacement
+        return None
 
     def remove_leftovers(self) -> None:
         """Remove what runs of an interrupted batch have left, unless folders are kept."""

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from pogosim.batch.command_line import catch_signals
+from pogosim.batch.ending import catch_signals
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.parameters import NAMES
 from pogosim.calibration.results import LINES, PICTURE, RESULT, write_protocol

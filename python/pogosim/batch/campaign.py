@@ -1,0 +1,183 @@
+"""A batch with seeds of one's own choice, called from Python, which says in a manifest what was done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pogosim
+from pogosim.batch.errors import BatchError, at_least
+from pogosim.batch.manifests import CAMPAIGN, CAMPAIGN_VERSION, check_campaign, write_json
+from pogosim.batch.runner import PogobotBatchRunner
+from pogosim.outputs import PathLike
+
+
+@dataclass(frozen=True)
+class LocalCampaignResult:
+    """What a campaign has done.
+
+    Attributes:
+        outputs: Files of results, each once, in the order of the combinations.
+        manifest_path: `pogobatch_run.json`, in the folder of the results.
+        task_count: Number of runs: combinations times seeds.
+        combination_count: Number of combinations of options.
+        seeds: Seeds of the runs of each combination.
+        effective_jobs: Number of runs at the same time, at most.
+        retained_temp_dir: Folder with the files of single runs; None: they are removed.
+    """
+
+    outputs: list[str]
+    manifest_path: Path
+    task_count: int
+    combination_count: int
+    seeds: tuple[int, ...]
+    effective_jobs: int
+    retained_temp_dir: Path | None
+
+
+class LocalCampaignError(BatchError):
+    """Runs failed again and again. The results have all others.
+
+    Attributes:
+        campaign_dir: Folder with what the failed runs have left: their configurations and logs, and the finished runs,
+            which the same call does not do again.
+        failures: A map for each failed run: `ok` (False), `combination_ordinal` (from 0 on), `logical_run` (from 0 on),
+            `seed` (of its first attempt), `attempts` and `error`.
+        result: What has been done nevertheless.
+    """
+
+    def __init__(
+        self, message: str, campaign_dir: Path, failures: Sequence[Mapping[str, Any]], result: LocalCampaignResult
+    ) -> None:
+        super().__init__(message)
+        self.campaign_dir = campaign_dir
+        self.failures = list(failures)
+        self.result = result
+
+
+def run_local_campaign(
+    config_path: PathLike,
+    simulator_binary: PathLike,
+    *,
+    seeds: Iterable[int],
+    output_dir: PathLike,
+    temp_base: PathLike,
+    backend: str = "multiprocessing",
+    jobs: int = 0,
+    retries: int = 5,
+    retry_new_seed: bool = True,
+    keep_temp: bool = False,
+    progress: bool = False,
+    gui: bool = False,
+    simulator_output: str = "normal",
+    only_output: str | None = None,
+) -> LocalCampaignResult:
+    """Run a program with every combination of the options in a configuration, once for each seed.
+
+    This is `pogobatch run`. The files of results have the columns `run` (0, 1, ... in the order of the seeds), `seed`,
+    `retry_attempt`, and those of `result_new_columns`. Bytes depend neither on `jobs` nor on `backend`.
+
+    Args:
+        config_path: YAML file with options (`batch_options` and others).
+        simulator_binary: Program compiled for Pogosim, or a Python file that behaves like one.
+        seeds: Seeds of the runs of each combination: different whole numbers from 0 to 2^32-1.
+        output_dir: Folder of the results, which is made.
+        temp_base: Folder for files of single runs. Finished runs of an unfinished campaign are kept there.
+        backend: "multiprocessing", "sequential" or "dask".
+        jobs: Runs at the same time; 0: one per processor.
+        retries: How many times a failed run is repeated.
+        retry_new_seed: With another seed, see `pogosim.batch.seeds.replacements`; False: with the same one.
+        keep_temp: Keep the folders of single runs, each with its `pogobatch_task.json`.
+        progress: Say how many runs are done, also where there is no terminal.
+        gui: Let each run open its window.
+        simulator_output: "normal": warnings of simulators are shown; "quiet": they are not; "verbose": simulators and
+            robots also print what they usually do into the logs of their runs.
+        only_output: Do only combinations whose results have this name, or path.
+
+    Raises:
+        BatchError: It cannot be done. The message is one line.
+        LocalCampaignError: Runs failed.
+    """
+    runner = PogobotBatchRunner(
+        str(config_path),
+        None,
+        str(simulator_binary),
+        str(temp_base),
+        str(output_dir),
+        backend=backend,
+        keep_temp=keep_temp,
+        retries=retries,
+        gui=gui,
+        only_output=only_output or "",
+        workers=at_least(0, jobs, "jobs") or None,
+        seeds=seeds,
+        retry_new_seed=retry_new_seed,
+        with_seeds=True,
+        progress=progress,
+        simulator_output=simulator_output,
+    )
+    return run_campaign(runner)
+
+
+def run_campaign(runner: PogobotBatchRunner) -> LocalCampaignResult:
+    """Do all runs of a batch, and write down what was done.
+
+    Raises:
+        BatchError: It cannot be done.
+        LocalCampaignError: Runs failed.
+    """
+    path = Path(runner.output_dir) / CAMPAIGN
+    check_campaign(path)
+    runner.run_all()
+    done = entries_of(runner)
+    write_json(path, {"schema_version": CAMPAIGN_VERSION, "executor": "local", **done})
+    failures, count = done["failures"], done["task_count"]
+    folder = runner.temporary.path
+    result = LocalCampaignResult(
+        runner.generated,
+        path,
+        count,
+        runner.combination_count,
+        tuple(done["seeds"]),
+        done["jobs"],
+        folder if runner.keep_temp or failures else None,
+    )
+    if failures:
+        first = failures[0]
+        raise LocalCampaignError(
+            f"{len(failures)} of {count} runs failed, first run {first['logical_run']} with seed {first['seed']}: "
+            f"{first['error']}; what they left is in {folder}, and the same call does only them",
+            folder,
+            failures,
+            result,
+        )
+    return result
+
+
+def entries_of(runner: PogobotBatchRunner) -> dict[str, Any]:
+    """Return what a batch has done, for its manifest."""
+    count = runner.combination_count * runner.runs
+    return {
+        "config": runner.multi_config_file,
+        "task_count": count,
+        "combinations": runner.combination_count,
+        "seeds": list(runner.asked_seeds),
+        "backend": runner.workers.name,
+        "jobs": min(runner.workers.at_once, count),
+        "retry_new_seed": runner.retry_new_seed,
+        "outputs": runner.generated,
+        "failures": [
+            {
+                "ok": False,
+                "combination_ordinal": failure.combination,
+                "logical_run": failure.task.run,
+                "seed": failure.task.seed,
+                "attempts": failure.outcome.attempts,
+                "error": failure.outcome.problem,
+            }
+            for failure in runner.failures
+        ],
+        "pogosim_version": pogosim.__version__,
+    }

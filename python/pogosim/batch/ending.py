@@ -1,0 +1,102 @@
+"""How a command of batches ends: its messages, its exit code, and what it prints as JSON."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import signal
+import sys
+from collections.abc import Callable
+from types import FrameType
+from typing import Any, NoReturn
+
+from pogosim.batch.errors import BatchError, NothingSelectedError, reason, tell
+from pogosim.batch.run_options import DONE, INTERRUPTED, NO_SUCH_OUTPUT, RUNS_FAILED, WRONG
+from pogosim.lines import LineFormatter
+
+log = logging.getLogger("pogobatch")
+
+Report = dict[str, Any]  # what a command prints as JSON
+
+
+class RunsFailedError(Exception):
+    """Runs failed.
+
+    Attributes:
+        report: What the command prints as JSON.
+        said: What is to be said of it; empty: all is said.
+    """
+
+    def __init__(self, report: Report, said: str = "") -> None:
+        super().__init__(said or "runs failed")
+        self.report = report
+        self.said = said
+
+
+def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
+    """End the batch as Ctrl-C does."""
+    raise KeyboardInterrupt
+
+
+def catch_signals() -> None:
+    """Let the signals with which batch systems and terminals end a program end it in good order."""
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, interrupt)
+
+
+def start_logging(verbose: bool, prog: str) -> None:
+    """Print messages on standard error."""
+    handler = logging.StreamHandler()
+    handler.setFormatter(LineFormatter(f"{prog}: %(message)s"))
+    log.handlers = [handler]
+    log.propagate = False
+    log.setLevel(logging.DEBUG if verbose else logging.INFO)
+
+
+def ended(operation: str, command: Callable[[], Report], as_json: bool, folder: str) -> int:
+    """Run a command to its end; returns its exit code.
+
+    Args:
+        operation: Its name.
+        command: Returns what it has done.
+        as_json: Print that as JSON, with `operation`, `ok` and perhaps `error`.
+        folder: Where it keeps files; for messages.
+    """
+    report: Report = {}
+    with contextlib.redirect_stdout(sys.stderr) if as_json else contextlib.nullcontext():
+        code, error = called(command, report, folder)
+    if as_json:
+        problem = {"error": error} if error else {}
+        tell(json.dumps({"operation": operation, "ok": code == DONE, **report, **problem}, ensure_ascii=False))
+    return code
+
+
+def called(command: Callable[[], Report], report: Report, folder: str) -> tuple[int, str]:
+    """Call a command, and say what keeps it from ending well; returns the exit code, and the message."""
+    code = WRONG
+    try:
+        report.update(command())
+        return DONE, ""
+    except RunsFailedError as error:
+        report.update(error.report)
+        if error.said:
+            log.error("%s", error.said)
+        return RUNS_FAILED, str(error)
+    except NothingSelectedError as error:
+        code, message = NO_SUCH_OUTPUT, str(error)
+    except BatchError as error:
+        message = str(error)
+    except OSError as error:
+        message = f"{error.filename or folder}: {reason(error)}"
+    except RuntimeError as error:
+        if "start new thread" not in str(error):
+            raise
+        message = "no thread can be started: the limit of memory or of processes (ulimit -v, ulimit -u) is too low"
+    except MemoryError:
+        message = "not enough memory for this many combinations and runs; make several batches"
+    except KeyboardInterrupt:
+        code, message = INTERRUPTED, f"interrupted; finished runs are kept in {folder}: the same command continues"
+    log.error("%s", message)
+    return code, message

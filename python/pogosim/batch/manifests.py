@@ -1,0 +1,150 @@
+"""What a batch writes down of itself in JSON: `pogobatch_task.json` of a run, and `pogobatch_run.json` of all."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import uuid
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pogosim
+from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.batch.option_words import CHOICES, shown
+from pogosim.batch.run import FRAMES, Task
+from pogosim.batch.tasks import MESSAGE_LOG, OUTPUTS, Combination
+from pogosim.outputs import OutputError, partial_output, real_output
+from pogosim.yaml_1_2 import dump_yaml, plain
+
+TASK = "pogobatch_task.json"
+TASK_VERSION = 2
+TASK_VERSIONS = (1, 2)  # that can be read
+CAMPAIGN = "pogobatch_run.json"
+CAMPAIGN_VERSION = 1
+NAMESPACE = uuid.UUID("6f6a0f0e-2a43-5d1e-9d0b-7b6f676f7369")
+
+# What every manifest of a run has, in whatever version, with the type of its value.
+NEEDED = {"seed": int, "logical_run": int, "result_filename": str, "data_file": str}
+
+
+def config_hash(entries: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of a configuration in YAML, with sorted keys, without the names of outputs of a run."""
+    kept = {key: value for key, value in entries.items() if key not in (*OUTPUTS, MESSAGE_LOG, CHOICES)}
+    return hashlib.sha256(dump_yaml(in_order(kept)).encode(errors="surrogatepass")).hexdigest()
+
+
+def in_order(value: Any) -> Any:
+    """Return a value whose maps have their keys sorted."""
+    if isinstance(value, Mapping):
+        return {key: in_order(value[key]) for key in sorted(value, key=str)}
+    return [in_order(item) for item in value] if isinstance(value, list) else value
+
+
+def for_json(value: Any) -> Any:
+    """Return a value of a configuration with the types that JSON has; infinity and NaN as text."""
+    if isinstance(value, Mapping):
+        return {str(key): for_json(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [for_json(item) for item in value]
+    value = plain(value)
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def task_entries(
+    combination: Combination, task: Task, replacement: int, ordinal: int, choices: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return what `pogobatch_task.json` says of a run.
+
+    Args:
+        combination: The combination of options that it belongs to.
+        task: The run.
+        replacement: Which replacement its seed is; 0: its own.
+        ordinal: Number of the combination, from 0 on.
+        choices: What tells the combination from others: keys and values.
+    """
+    digest, seed = config_hash(combination.entries), task.seed_of(replacement)
+    return {
+        "schema_version": TASK_VERSION,
+        # The same run always has the same one, so that it is not merged twice.
+        "task_uuid": str(uuid.uuid5(NAMESPACE, f"{digest} {task.run} {seed} {replacement}")),
+        "seed": seed,
+        "logical_run": task.run,
+        "retry_attempt": replacement,
+        "combination_ordinal": ordinal,
+        "config_hash": digest,
+        "result_filename": combination.name,
+        "extra_columns": for_json(combination.columns),
+        "batch_choices": for_json(choices),
+        "data_file": f"{FRAMES}/{task.data}",
+        "pogosim_version": pogosim.__version__,
+    }
+
+
+def write_manifest(
+    folder: Path, combination: Combination, task: Task, replacement: int, ordinal: int, choices: Mapping[str, Any]
+) -> Path:
+    """Write `pogobatch_task.json` into the folder of a run; see `task_entries`. Returns its path.
+
+    Raises:
+        BatchError: It cannot be written.
+    """
+    return write_json(folder / TASK, task_entries(combination, task, replacement, ordinal, choices))
+
+
+def write_json(path: Path, entries: Mapping[str, Any]) -> Path:
+    """Write a file in JSON, which appears as a whole; returns its path.
+
+    Raises:
+        BatchError: It cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with partial_output(real_output(path)) as partial:
+            partial.write_text(json.dumps(entries, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise cannot("write", path, error) from None
+    except OutputError as error:
+        raise BatchError(str(error)) from None
+    return path
+
+
+def read_manifest(path: Path) -> dict[str, Any]:
+    """Read `pogobatch_task.json`.
+
+    Raises:
+        BatchError: It cannot be read, or is not what a batch writes.
+    """
+    try:
+        entries = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise cannot("read", path, error) from None
+    except (ValueError, RecursionError) as error:
+        raise BatchError(f"{path} is no manifest of a run: {one_line(error)}") from None
+    version = entries.get("schema_version") if isinstance(entries, dict) else None
+    if version not in TASK_VERSIONS:
+        raise BatchError(f"{path}: schema_version: expected 1 or {TASK_VERSION}, found {shown(version)}")
+    for name, kind in NEEDED.items():
+        if not isinstance(entries.get(name), kind) or isinstance(entries[name], bool):
+            expected = "a whole number" if kind is int else "a text"
+            raise BatchError(f"{path}: {name}: expected {expected}, found {shown(entries.get(name))}")
+    if not isinstance(entries.get("extra_columns", {}), dict):
+        raise BatchError(f"{path}: extra_columns: expected a map, found {shown(entries['extra_columns'])}")
+    return dict(entries)
+
+
+def check_campaign(path: Path) -> None:
+    """Check that a manifest of all runs may take the place of what is there.
+
+    Raises:
+        BatchError: Something else is there.
+    """
+    if not path.exists() and not path.is_symlink():
+        return
+    try:
+        entries = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        entries = None
+    if not isinstance(entries, dict) or "schema_version" not in entries:
+        raise BatchError(f"{path} is there and was not written by pogobatch; it will not be overwritten: remove it")

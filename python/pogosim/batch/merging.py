@@ -1,0 +1,193 @@
+"""Runs that were done one by one, each in a folder of its own, joined into files of results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pogosim.batch.configuration import Configuration
+from pogosim.batch.errors import BatchError, cannot
+from pogosim.batch.manifests import TASK, read_manifest
+from pogosim.batch.names import is_linked_out, leads_out
+from pogosim.batch.parts import WITH_SEEDS, Part, RunFile
+from pogosim.batch.result_metadata import COMBINATIONS, Earlier
+from pogosim.batch.results import check_columns, check_output, schema_of, write_results
+from pogosim.batch.single_task import TaskArtifact
+from pogosim.outputs import PathLike
+from pogosim.run_columns import RETRY, RUN, SEED
+from pogosim.table_formats import FEATHER, format_of
+from pogosim.yaml_1_2 import parse_yaml
+
+
+def discover_task_artifacts(inputs: Iterable[PathLike]) -> list[TaskArtifact]:
+    """Return the runs in some folders, at any depth, in the order in which they are merged.
+
+    Args:
+        inputs: Folders, or files `pogobatch_task.json`.
+
+    Raises:
+        BatchError: One is not there, or damaged; or there are no runs in it.
+    """
+    found: dict[Path, TaskArtifact] = {}
+    for given in map(Path, [inputs] if isinstance(inputs, (str, Path)) else inputs):
+        if not given.exists():
+            raise BatchError(f"{given} does not exist; expected a folder with runs, or a {TASK}")
+        paths = sorted(given.rglob(TASK)) if given.is_dir() else [given]
+        if not paths:
+            raise BatchError(f"there is no {TASK} in {given}; expected a folder with runs of pogobatch")
+        for path in paths:
+            if path.resolve() not in found:
+                found[path.resolve()] = TaskArtifact(path.parent, read_manifest(path))
+    return sorted(found.values(), key=lambda artifact: place_of(artifact.manifest))
+
+
+def place_of(manifest: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Return the order of a run among others."""
+    return (
+        manifest.get("combination_ordinal") or 0,
+        str(manifest.get("config_hash", "")),
+        manifest["logical_run"],
+        manifest["seed"],
+    )
+
+
+def merge_task_artifacts(
+    artifacts: Sequence[TaskArtifact],
+    output_dir: PathLike,
+    *,
+    config_path: PathLike | None = None,
+    append: bool = False,
+) -> list[str]:
+    """Join runs into the files of results that their manifests name, as `pogobatch run` does.
+
+    Args:
+        artifacts: The runs, see `discover_task_artifacts`.
+        output_dir: Folder of the results, which is made.
+        config_path: Configuration with options that the runs are of, for the metadata; None: that of the first run.
+        append: Keep the rows of results that are there, and add others; otherwise, they are replaced.
+
+    Returns:
+        Paths of the files of results.
+
+    Raises:
+        BatchError: Nothing is to be merged, a run is there twice, or a file cannot be read or written.
+    """
+    if not artifacts:
+        raise BatchError("there are no runs to merge")
+    refuse_same_runs(artifacts)
+    by_output: dict[str, list[TaskArtifact]] = {}
+    for artifact in artifacts:
+        by_output.setdefault(output_of(artifact, Path(output_dir)), []).append(artifact)
+    text = None if config_path is None else Configuration(config_path).text
+    for artifact in artifacts:
+        check_columns(schema_of_run(artifact), list(columns_of(artifact)), str(artifact.folder), WITH_SEEDS)
+    parts = {output: parts_of(own) for output, own in by_output.items()}
+    earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
+    for output, own in by_output.items():
+        own_text = configuration_of(own[0]) if text is None else text
+        write_results(output, parts[output], own_text, WITH_SEEDS, earlier[output])
+    return list(by_output)
+
+
+def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:
+    """Raise BatchError if a run is there twice: with the same seed, or again after a failure."""
+    known: dict[tuple[Any, ...], Path] = {}
+    for artifact in artifacts:
+        manifest = artifact.manifest
+        which = combination_of(artifact)
+        for what in ("logical_run", "seed"):
+            before = known.setdefault((*which, what, manifest[what]), artifact.folder)
+            if before != artifact.folder:
+                raise BatchError(
+                    f"{before} and {artifact.folder} have the same {what.replace('_', ' ')}, {manifest[what]}, of one "
+                    "configuration, which would count twice; leave one out"
+                )
+
+
+def combination_of(artifact: TaskArtifact) -> tuple[str, ...]:
+    """Return what tells the combination of a run from others."""
+    manifest = artifact.manifest
+    return (str(manifest.get("config_hash", "")), as_text(columns_of(artifact)), str(manifest["result_filename"]))
+
+
+def as_text(columns: Mapping[str, Any]) -> str:
+    """Return columns as a text, which is the same for the same columns."""
+    return json.dumps(columns, sort_keys=True, default=str)
+
+
+def columns_of(artifact: TaskArtifact) -> dict[str, Any]:
+    """Return the constant columns of a run."""
+    return {name: value for name, value in artifact.manifest.get("extra_columns", {}).items() if name != SEED}
+
+
+def schema_of_run(artifact: TaskArtifact) -> Any:
+    """Return columns and metadata of a run."""
+    try:
+        return schema_of(artifact.data)
+    except OSError as error:
+        raise cannot("read", artifact.data, error) from None
+
+
+def output_of(artifact: TaskArtifact, folder: Path) -> str:
+    """Return the path of the results that a run belongs to."""
+    name = str(artifact.manifest["result_filename"])
+    output = str(folder / name)
+    if not name or "\0" in name or leads_out(name) or is_linked_out(output, str(folder)):
+        raise BatchError(f"{artifact.folder / TASK}: result_filename: '{name}' is not in the folder of the results")
+    if format_of(name) is None:
+        raise BatchError(f"{artifact.folder / TASK}: result_filename: the format of '{name}' is unknown")
+    return output
+
+
+def parts_of(artifacts: Sequence[TaskArtifact]) -> list[Part]:
+    """Return runs by their combinations of options, in the order of the first run of each."""
+    parts: dict[tuple[str, ...], list[TaskArtifact]] = {}
+    for artifact in artifacts:
+        parts.setdefault(combination_of(artifact), []).append(artifact)
+    return [Part(columns_of(runs[0]), [file_of(run) for run in runs], (), which[0]) for which, runs in parts.items()]
+
+
+def file_of(artifact: TaskArtifact) -> RunFile:
+    """Return the data file of a run."""
+    manifest = artifact.manifest
+    return RunFile(artifact.data, manifest["logical_run"], manifest["seed"], int(manifest.get(RETRY) or 0))
+
+
+def configuration_of(artifact: TaskArtifact) -> str:
+    """Return the configuration in the data file of a run."""
+    text: bytes = (schema_of_run(artifact).metadata or {}).get(b"configuration", b"")
+    return text.decode(errors="replace")
+
+
+def earlier_results(output: str, parts: Sequence[Part]) -> Earlier | None:
+    """Return the results that are there, to which others are appended; None: there are none.
+
+    Raises:
+        BatchError: They are in another format than Feather, or have one of the runs already.
+    """
+    real = check_output(output)
+    if not real.exists() or real.stat().st_size == 0:
+        return None
+    if format_of(real) != FEATHER:
+        raise BatchError(f"{output}: --append needs results in Feather; join all runs anew, without it")
+    schema = schema_of(real)
+    if not {RUN, SEED} <= set(schema.names):
+        raise BatchError(f"{output} has no columns run and seed: pogobatch run, or merge, did not write it")
+    try:
+        combinations = parse_yaml((schema.metadata or {})[COMBINATIONS.encode()].decode())
+        known = {(as_text(entry["columns"]), seed) for entry in combinations for seed in seeds_of(entry)}
+    except (KeyError, TypeError, ValueError, RecursionError):
+        raise BatchError(f"{output} does not say which runs it has: pogobatch did not write it") from None
+    for part in parts:
+        for run in part.runs:
+            if (as_text(part.columns), run.seed) in known:
+                raise BatchError(f"{output} has the run of {run.path} already, with seed {run.seed}; leave it out")
+    return Earlier(real, schema, combinations)
+
+
+def seeds_of(entry: Mapping[str, Any]) -> list[int]:
+    """Return the seeds of a combination, as the metadata of results say."""
+    runs = [run for run in range(entry["runs"] + len(entry["failed_runs"])) if run not in entry["failed_runs"]]
+    return list(entry.get("seeds", runs))

@@ -1,0 +1,118 @@
+"""The metadata of a file of results: what its runs have in common, and what tells its combinations apart."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from pogosim.batch.parts import Part
+from pogosim.yaml_1_2 import dump_yaml, parse_yaml
+
+RESOLVED = "resolved_configuration"
+POLYGONS = "arena_polygons"
+COMBINATIONS = "combinations"
+MANIFEST = "pogobatch_manifest"
+
+# What differs between the runs of one configuration.
+OF_ONE_RUN = ("seed", "data_filename", "message_log", "console_filename", "frames_name")
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """A file of results whose rows stay when others are appended.
+
+    Attributes:
+        path: The file.
+        schema: Its columns and metadata.
+        combinations: What it says of its combinations.
+    """
+
+    path: Path
+    schema: pa.Schema
+    combinations: list[dict[str, Any]]
+
+
+def manifest(parts: Sequence[Part], earlier: Earlier | None) -> bytes:
+    """Return the metadata entry `pogobatch_manifest`, in JSON: how many runs there are, and of which configurations."""
+    known = json.loads((earlier.schema.metadata or {}).get(MANIFEST.encode(), b"{}")) if earlier else {}
+    hashes = [*known.get("config_hashes", []), *(part.config_hash for part in parts if part.runs)]
+    entries = {
+        "schema_version": 1,
+        "task_count": known.get("task_count", 0) + sum(len(part.runs) for part in parts),
+        "config_hashes": sorted(set(hashes)),
+    }
+    return json.dumps(entries).encode()
+
+
+def metadata_of(schemas: Sequence[Sequence[pa.Schema]], text: str) -> dict[str, bytes]:
+    """Return the metadata of a file of results.
+
+    They are what all runs have in common, with `configuration`, the configuration with all its options, and
+    `resolved_configuration`, the entries that are the same in all runs. `summary` adds what differs.
+    """
+    all_metadata = [schema.metadata or {} for part in schemas for schema in part]
+    first = all_metadata[0]
+    skipped = (b"configuration", RESOLVED.encode())
+    common = {
+        key: value
+        for key, value in first.items()
+        if key not in skipped and all(metadata.get(key) == value for metadata in all_metadata)
+    }
+    metadata = {key.decode(errors="replace"): value for key, value in common.items()}
+    metadata["configuration"] = text.encode()
+    resolved = [configuration_in(part[0].metadata or {}) for part in schemas if part]
+    if shared := shared_entries(resolved):
+        metadata[RESOLVED] = dump_yaml(shared).encode()
+    return metadata
+
+
+def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
+    """Return the configuration with all defaults of a run, without what only that run has."""
+    try:
+        entries = parse_yaml(metadata.get(RESOLVED.encode(), b"").decode())
+    except (ValueError, RecursionError):
+        return {}
+    return {key: value for key, value in entries.items() if key not in OF_ONE_RUN} if isinstance(entries, dict) else {}
+
+
+def shared_entries(maps: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return the entries that several maps have in common, at any depth."""
+    first, *others = maps
+    shared: dict[str, Any] = {}
+    for key, value in first.items():
+        if not all(key in other for other in others):
+            continue
+        found = [other[key] for other in others]
+        if isinstance(value, dict) and all(isinstance(entry, dict) for entry in found):
+            entries = shared_entries([value, *found])
+            if entries or not value:
+                shared[key] = entries
+        elif all(entry == value for entry in found):
+            shared[key] = value
+    return shared
+
+
+def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows: Sequence[int]) -> list[dict[str, Any]]:
+    """Return the metadata entry `combinations`.
+
+    A list with the columns of each combination, its number of runs and rows, the runs that failed, the seeds of the
+    others if they are not their numbers, and the polygons of its arena if they are not the same everywhere.
+    """
+    polygons = [(part[0].metadata or {}).get(POLYGONS.encode()) if part else None for part in schemas]
+    differ = len({text for text in polygons if text is not None}) > 1
+    entries = []
+    for i, part in enumerate(parts):
+        entry = {"columns": part.columns, "runs": len(part.runs), "rows": rows[i], "failed_runs": list(part.failed)}
+        numbers = [run for run in range(len(part.runs) + len(part.failed)) if run not in part.failed]
+        if any(run.seed is not None and run.seed != number for run, number in zip(part.runs, numbers, strict=True)):
+            entry["seeds"] = [run.seed for run in part.runs]
+        text = polygons[i]
+        if differ and text is not None:
+            entry[POLYGONS] = parse_yaml(text.decode())
+        entries.append(entry)
+    return entries

@@ -1,0 +1,128 @@
+"""One run of a batch in a folder of its own, for schedulers that start every run themselves; see also `merging`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pogosim.batch.configuration import Configuration
+from pogosim.batch.errors import BatchError, at_least, cannot
+from pogosim.batch.identity import find_program
+from pogosim.batch.manifests import TASK, task_entries, write_json
+from pogosim.batch.names import NamesError, file_name, new_columns
+from pogosim.batch.option_words import CHOICES, CombinationsError
+from pogosim.batch.parts import WITH_SEEDS
+from pogosim.batch.places import in_the_users_file
+from pogosim.batch.results import check_columns, schema_of
+from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, Task, attempt_in, simulators
+from pogosim.batch.seeds import listed_seeds
+from pogosim.batch.sweeps import resolved
+from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
+from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.outputs import PathLike
+
+
+@dataclass(frozen=True)
+class TaskArtifact:
+    """The folder of a run that is done.
+
+    Attributes:
+        folder: The folder.
+        manifest: What its `pogobatch_task.json` says.
+    """
+
+    folder: Path
+    manifest: dict[str, Any]
+
+    @property
+    def data(self) -> Path:
+        """The data file."""
+        return self.folder / str(self.manifest["data_file"])
+
+
+class TaskError(BatchError):
+    """The run failed. The message is one line.
+
+    Attributes:
+        outcome: What became of it.
+    """
+
+    def __init__(self, message: str, outcome: Outcome) -> None:
+        super().__init__(message)
+        self.outcome = outcome
+
+
+def execute_task(
+    config_path: PathLike,
+    simulator_binary: PathLike,
+    *,
+    seed: int,
+    output_dir: PathLike,
+    run_index: int = 0,
+    retry_attempt: int = 0,
+    gui: bool = False,
+) -> TaskArtifact:
+    """Do one run in a folder: `pogobatch_effective.yaml`, `log.txt`, `frames/`, and at the end `pogobatch_task.json`.
+
+    Args:
+        config_path: YAML file. A run takes the `default_option` of each of its options.
+        simulator_binary: Program compiled for Pogosim, or a Python file that behaves like one.
+        seed: Seed, 0 to 2^32-1.
+        output_dir: The folder, which is made. What an earlier run has left there is replaced.
+        run_index: Number of the run, from 0 on, for the column `run`.
+        retry_attempt: Which attempt this is, from 0 on, for the column `retry_attempt`.
+        gui: Let the run open its window.
+
+    Raises:
+        BatchError: It cannot be done.
+        TaskError: The run failed.
+    """
+    (seed,) = listed_seeds([seed], "--seed")
+    at_least(0, run_index, "--run-index")
+    at_least(0, retry_attempt, "--retry-attempt")
+    configuration = Configuration(config_path)
+    try:
+        entries = resolved(configuration.entries)
+        name, columns = file_name(entries), new_columns(entries)
+    except CombinationsError as error:
+        raise configuration.error(error) from None
+    except NamesError as error:
+        raise BatchError(f"{configuration.where((error.key,))}{str(error).removeprefix(error.key)}") from None
+    check_logs_data(entries, configuration)
+    folder = Path(output_dir)
+    task = task_in(folder, configuration, entries, str(simulator_binary), seed, run_index, gui)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for left in (TASK, f"{FRAMES}/{task.data}"):
+            (folder / left).unlink(missing_ok=True)
+        simulators.begin(1)
+        outcome = attempt_in(folder.absolute(), task, retry_attempt, EFFECTIVE)
+    except OSError as error:
+        raise cannot("use", error.filename or folder, error) from None
+    if outcome.problem:
+        said = in_the_users_file(outcome.log, task, entries, configuration)
+        last = next((f": {line}" for line in reversed(said.splitlines()) if line.strip()), "")
+        raise TaskError(f"the run with seed {seed} failed: {outcome.problem}{last}", outcome)
+    check_columns(schema_of(folder / FRAMES / task.data), list(columns), str(simulator_binary), WITH_SEEDS)
+    combination = Combination("", columns, entries, [task], name)
+    manifest = task_entries(combination, task, 0, 0, entries.get(CHOICES, {})) | {"retry_attempt": retry_attempt}
+    write_json(folder / TASK, manifest)
+    return TaskArtifact(folder, manifest)
+
+
+def task_in(
+    folder: Path,
+    configuration: Configuration,
+    entries: dict[str, Any],
+    program: str,
+    seed: int,
+    run_index: int,
+    gui: bool,
+) -> Task:
+    """Return a run whose files are in a folder."""
+    path = find_program(program)
+    temporary = TemporaryFolder(folder.absolute(), batch_name([str(folder)]), is_kept=True)
+    settings = RunSettings(path, "", configuration.path.absolute().parent, temporary, retries=0, gui=gui)
+    (task,) = tasks_of(entries, [seed], settings)
+    return replace(task, run=run_index)

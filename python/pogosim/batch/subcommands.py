@@ -1,0 +1,261 @@
+"""The subcommands of `pogobatch`: what they do, and their options."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pogosim.batch.ending import Report, RunsFailedError
+from pogosim.batch.errors import BatchError, tell
+from pogosim.batch.run_options import Parser, add_choice_options, add_run_options, check_names, runner_of
+from pogosim.counted import counted
+from pogosim.nearest_name import nearest_name
+
+if TYPE_CHECKING:
+    from pogosim.batch.runner import PogobotBatchRunner
+
+
+class Subcommand(NamedTuple):
+    """A subcommand.
+
+    Attributes:
+        summary: What it is for.
+        usage: Options that its usage line shows.
+        add_options: Adds its options.
+        do: Does it, and returns what it has done.
+    """
+
+    summary: str
+    usage: str
+    add_options: Callable[[Parser], None]
+    do: Callable[[argparse.Namespace], Report]
+
+
+# ---- plan ----
+
+
+def add_plan_options(options: Parser) -> None:
+    """Add the options of `plan`."""
+    add_choice_options(options)
+    options.add_argument("--show-tasks", action="store_true", help="list all runs")
+
+
+def plan(arguments: argparse.Namespace) -> Report:
+    """Say which runs a batch would do."""
+    runner = runner_of(arguments, is_campaign=True)
+    tasks = list(planned(runner))
+    outputs = list(dict.fromkeys(str(task["output"]) for task in tasks))
+    combinations = len(tasks) // runner.runs
+    tell(f"{counted(combinations, 'combination')} x {counted(runner.runs, 'seed')}: {counted(len(tasks), 'run')}")
+    for output in outputs:
+        tell(f" - {output}")
+    for task in tasks if arguments.show_tasks else ():
+        choices = "".join(f", {key}: {value}" for key, value in task["batch_choices"].items())
+        tell(f"run {task['logical_run']} of {task['output']}, seed {task['seed']}{choices}")
+    return {
+        "config": arguments.config,
+        "combinations": combinations,
+        "seeds": list(runner.asked_seeds),
+        "task_count": len(tasks),
+        "outputs": outputs,
+        "tasks": tasks,
+    }
+
+
+def planned(runner: PogobotBatchRunner) -> Iterator[dict[str, Any]]:
+    """Yield the runs of a batch."""
+    from pogosim.batch.manifests import for_json
+    from pogosim.batch.option_words import CHOICES
+    from pogosim.varied import varied_parameters
+
+    selected = runner.checked_selection()
+    varied = varied_parameters([config for config, _ in selected])
+    for number, (config, output) in enumerate(selected):
+        choices = {key.removeprefix(f"{CHOICES}."): values[number] for key, values in varied.items()}
+        for run in range(runner.runs):
+            yield {
+                "combination_ordinal": number,
+                "logical_run": run,
+                "seed": runner.compute_seed(config, run),
+                "output": output,
+                "batch_choices": for_json(choices),
+            }
+
+
+# ---- task ----
+
+
+def add_task_options(options: Parser) -> None:
+    """Add the options of `task`."""
+    add = options.add_argument
+    add("-c", "--config", required=True, help="configuration (YAML); options have their default_option")
+    add("-S", "--simulator-binary", metavar="PROGRAM", required=True, help="program compiled for Pogosim")
+    add("--seed", type=int, required=True, metavar="N", help="seed of the run")
+    add("-o", "--output-dir", metavar="FOLDER", required=True, help="folder of the run")
+    add("--run-index", type=int, default=0, metavar="N", help="its number, for the column run (%(default)s)")
+    add("--retry-attempt", type=int, default=0, metavar="N", help="which attempt this is (%(default)s)")
+    add("--gui", action="store_true", help="let the run open its window")
+    add("--json", action="store_true", help="print what was done as JSON, and all else on standard error")
+    add("-v", "--verbose", action="store_true", help="say more")
+
+
+def task(arguments: argparse.Namespace) -> Report:
+    """Do one run in a folder of its own."""
+    check_names(arguments)
+    from pogosim.batch.single_task import TaskError, execute_task  # takes a while
+
+    try:
+        artifact = execute_task(
+            arguments.config,
+            arguments.simulator_binary,
+            seed=arguments.seed,
+            output_dir=arguments.output_dir,
+            run_index=arguments.run_index,
+            retry_attempt=arguments.retry_attempt,
+            gui=arguments.gui,
+        )
+    except TaskError as error:
+        raise RunsFailedError({"config": arguments.config, "seed": arguments.seed}, str(error)) from None
+    tell(f"Done: {artifact.data}")
+    return {"config": arguments.config, "output_dir": str(artifact.folder), **artifact.manifest}
+
+
+# ---- run ----
+
+
+def add_campaign_options(options: Parser) -> None:
+    """Add the options of `run`."""
+    add = options.add_argument
+    add("-S", "--simulator-binary", metavar="PROGRAM", required=True, help="program compiled for Pogosim")
+    add(
+        *("-j", "--jobs", "--workers"),
+        dest="workers",
+        type=int,
+        default=0,
+        metavar="N",
+        help="runs at the same time; 0: one per processor (%(default)s)",
+    )
+    add_choice_options(options)
+    add_run_options(options)
+
+
+def run(arguments: argparse.Namespace) -> Report:
+    """Do a batch whose results say the seeds, and which writes a manifest."""
+    runner = runner_of(arguments, is_campaign=True)
+    from pogosim.batch.campaign import LocalCampaignError, entries_of, run_campaign
+
+    try:
+        manifest = run_campaign(runner).manifest_path
+    except LocalCampaignError as error:
+        tell_outputs(runner.generated)
+        raise RunsFailedError({**entries_of(runner), "manifest": str(error.result.manifest_path)}, str(error)) from None
+    tell_outputs(runner.generated)
+    return {**entries_of(runner), "manifest": str(manifest)}
+
+
+def tell_outputs(outputs: Sequence[str]) -> None:
+    """Say which files of results a batch has written."""
+    if outputs:
+        tell("Batch run completed. Generated output files:")
+    else:
+        tell("Batch run ended without an output file.")
+    for output in outputs:
+        tell(f" - {output}")
+
+
+# ---- merge ----
+
+
+def add_merge_options(options: Parser) -> None:
+    """Add the options of `merge`."""
+    add = options.add_argument
+    add("inputs", nargs="+", metavar="FOLDER", help="folders with runs, at any depth, or files pogobatch_task.json")
+    add("-o", "--output-dir", metavar="FOLDER", default=".", help="folder of the results (.)")
+    add("-c", "--config", help="configuration with options that the runs are of, for the metadata of the results")
+    add("--append", action="store_true", help="add to results that are there, in place of replacing them")
+    add("--json", action="store_true", help="print what was done as JSON, and all else on standard error")
+    add("-v", "--verbose", action="store_true", help="say more")
+
+
+def merge(arguments: argparse.Namespace) -> Report:
+    """Join runs that were done one by one."""
+    check_names(arguments)
+    from pogosim.batch.merging import discover_task_artifacts, merge_task_artifacts
+
+    artifacts = discover_task_artifacts(arguments.inputs)
+    outputs = merge_task_artifacts(
+        artifacts, arguments.output_dir, config_path=arguments.config, append=arguments.append
+    )
+    tell(f"{counted(len(artifacts), 'run')} merged. Generated output files:")
+    for output in outputs:
+        tell(f" - {output}")
+    return {"inputs": arguments.inputs, "task_count": len(artifacts), "outputs": outputs}
+
+
+# ---- cluster ----
+
+
+def add_cluster_options(options: Parser) -> None:
+    """Take whatever follows `cluster`."""
+    options.add_argument("rest", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+
+
+def cluster(arguments: argparse.Namespace) -> Report:  # noqa: ARG001
+    """Say what does runs on several machines here.
+
+    Raises:
+        BatchError: Always.
+    """
+    raise BatchError(
+        "cluster: the scheduler Rundra is not used here; for several machines, use pogobatch run --slurm (jobs of "
+        "SLURM) or pogobatch run --scheduler tcp://... (workers of Dask)"
+    )
+
+
+SUBCOMMANDS = {
+    "plan": Subcommand("say which runs a batch would do", "-c CONFIG [--seeds A:B]", add_plan_options, plan),
+    "run": Subcommand(
+        "do a batch; results have the columns seed and retry_attempt",
+        "-c CONFIG -S PROGRAM [--seeds A:B] [-o FOLDER]",
+        add_campaign_options,
+        run,
+    ),
+    "task": Subcommand(
+        "do one run, in a folder of its own", "-c CONFIG -S PROGRAM --seed N -o FOLDER", add_task_options, task
+    ),
+    "merge": Subcommand(
+        "join runs that were done one by one", "FOLDER... [-o FOLDER] [-c CONFIG]", add_merge_options, merge
+    ),
+    "cluster": Subcommand("says what to use in its place", "", add_cluster_options, cluster),
+}
+
+
+def subparser(name: str, prog: str) -> Parser:
+    """Return the parser of the options of a subcommand."""
+    own = SUBCOMMANDS[name]
+    options = Parser(prog=prog, description=f"{own.summary[0].upper()}{own.summary[1:]}.", allow_abbrev=False)
+    options.required = own.usage
+    own.add_options(options)
+    return options
+
+
+def overview(prog: str) -> list[str]:
+    """Return what `pogobatch help` prints."""
+    width = max(map(len, SUBCOMMANDS))
+    listed = [f"  {name:{width}}  {own.summary}" for name, own in SUBCOMMANDS.items()]
+    return [
+        f"Usage: {prog} SUBCOMMAND [OPTIONS], or {prog} -c CONFIG -S PROGRAM [OPTIONS]",
+        "",
+        "Subcommands:",
+        *listed,
+        f"  {'help':{width}}  print this help; {prog} help SUBCOMMAND: that of a subcommand",
+        "",
+        f"Without a subcommand, {prog} does a batch whose results have the column run alone; {prog} --help.",
+    ]
+
+
+def unknown(name: str, prog: str) -> str:
+    """Return what is said of a word that is no subcommand."""
+    near = nearest_name(name, [*SUBCOMMANDS, "help"])
+    return f"{prog}: there is no subcommand '{name}'" + (f"; did you mean '{near}'?" if near else f"; see {prog} help")
