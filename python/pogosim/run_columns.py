@@ -23,13 +23,21 @@ def tells_runs_apart(name: str) -> bool:
     return name in NAMES or name.startswith(KEYS)
 
 
+def named_columns(metadata: Mapping[str, Any]) -> list[str] | None:
+    """Return the columns that a batch was asked for: its `result_new_columns`, perhaps in its map `pogobatch`."""
+    configuration = metadata.get("configuration")
+    entries = configuration if isinstance(configuration, dict) else {}
+    own = entries.get("pogobatch")
+    named = {**entries, **(own if isinstance(own, dict) else {})}.get("result_new_columns")
+    return [named] if isinstance(named, str) else named if isinstance(named, list) else None
+
+
 def is_one_run(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> bool:
     """Tell whether the rows are those that a single run wrote, so that all their columns are the program's or ours.
 
     The file of a single run says its version, has no combinations, and has each object once at each time.
     """
-    configuration = metadata.get("configuration")
-    is_batch = isinstance(configuration, dict) and "result_new_columns" in configuration
+    is_batch = named_columns(metadata) is not None
     if is_batch or metadata.get("combinations") or "files" in metadata or "program_version" not in metadata:
         return False
     return not rows.duplicated([name for name in OBJECT_AND_TIME if name in rows]).any()

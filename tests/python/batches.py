@@ -66,6 +66,12 @@ def run_main(folder: Path, options: list[str], command: Callable[[list[str]], in
     return Run(code, output.getvalue(), errors.getvalue(), folder)
 
 
+def subcommand(folder: Path, name: str, *more: str, program: Path | None = None, folder_of: str = "results") -> Run:
+    """Run a subcommand that does runs, in a folder with many.yaml, in this process."""
+    options = ["-c", "many.yaml", "-S", str(program or example("helloworld")), "-o", folder_of]
+    return run_main(folder, [name, *options, *(["-t", "tmp"] if name == "run" else []), *more])
+
+
 def batch_apart(folder: Path, *more: str, program: Path | None = None) -> Run:
     """Run a batch in a folder with many.yaml, in a process of its own."""
     return ended(arguments(program or example("helloworld"), *more), folder)

@@ -50,7 +50,7 @@ def scene(settings: Settings) -> dict[str, Any]:
         for parent in parents:
             node = node.setdefault(parent, {})
         if value is None:
-            del node[key]
+            node.pop(key, None)
         else:
             node[key] = value
     return result

@@ -13,7 +13,8 @@ from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.execution import Execution
-from pogosim.batch.results import Part, RunFile, replacement, write_results
+from pogosim.batch.parts import Part, RunFile
+from pogosim.batch.results import replacement, write_results
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.tasks import Combination
 from pogosim.batch.temporary import TemporaryFolder

@@ -11,7 +11,8 @@ import pytest
 from batches import batch, batch_apart, ended, results, write_options
 from conftest import Compile
 from pogosim.batch.errors import BatchError
-from pogosim.batch.results import ROWS_PER_BATCH, Part, RunFile, write_results
+from pogosim.batch.parts import Part, RunFile
+from pogosim.batch.results import ROWS_PER_BATCH, write_results
 from pogosim.utils import load_dataframe
 from pyarrow import feather, ipc
 from running import ROOT, example, run_command

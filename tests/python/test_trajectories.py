@@ -62,6 +62,17 @@ def test_runs_of_a_batch_are_told_apart_by_run_and_columns_of_combinations() -> 
     ]
 
 
+@pytest.mark.parametrize("columns", [["density"], "density"])
+def test_columns_of_batches_of_others_tell_runs_apart(columns: object) -> None:
+    rows = pd.concat([line().assign(run=0, seed=5, retry_attempt=0, density=name) for name in ("low", "high")])
+    for configuration in ({"result_new_columns": columns}, {"pogobatch": {"result_new_columns": columns}}):
+        metadata = {**metadata_of(), "program_version": "v0.10.10", "configuration": configuration}
+        assert [run.labels for run in trajectories_of(rows, metadata)] == [
+            {"run": 0, "density": "high"},
+            {"run": 0, "density": "low"},
+        ]
+
+
 def test_each_combination_has_its_own_arena() -> None:
     rows = pd.concat([line().assign(run=0, arena_file=name) for name in ("small", "large")])
     small, large = ([[0, 0], [side, 0], [side, side], [0, side]] for side in (500.0, 2000.0))

@@ -26,7 +26,7 @@ from pogosim.batch.paths import get_by_dotted_path
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.periodic import steps_of
-from pogosim.run_columns import is_one_run
+from pogosim.run_columns import is_one_run, named_columns
 from pogosim.scene import read_categories
 from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
@@ -219,8 +219,7 @@ def of_category(rows: pd.DataFrame, metadata: Mapping[str, Any], category: str |
 def label_columns(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> list[str]:
     """Return the columns that tell runs apart: run, arena_file, those of combinations, paths of settings, and seed."""
     configuration = metadata.get("configuration")
-    named = configuration.get("result_new_columns") if isinstance(configuration, dict) else None
-    names = ["run", "arena_file", *(named if isinstance(named, list) else [])]
+    names = ["run", "arena_file", *(named_columns(metadata) or [])]
     entries = configuration if isinstance(configuration, dict) else {}
     maps = {"objects", "parameters", *(key for key, value in entries.items() if isinstance(value, dict))}
     names += [name for name in rows.columns if str(name).partition(".")[0] in maps and "." in str(name)]

@@ -177,7 +177,7 @@ def entries_of(runner: PogobotBatchRunner) -> dict[str, Any]:
                 "attempts": failure.outcome.attempts,
                 "error": failure.outcome.problem,
             }
-            for failure in runner.failures
+            for failure in sorted(runner.failures, key=lambda failure: (failure.combination, failure.task.run))
         ],
         "pogosim_version": pogosim.__version__,
     }

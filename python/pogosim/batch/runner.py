@@ -28,7 +28,6 @@ from pogosim.batch.selection import check_columns_exist, indistinguishable, with
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
-from pogosim.run_columns import RUN
 
 MAX_RUNS = 10_000_000  # in memory, about 1 kB each
 
@@ -338,6 +337,9 @@ class PogobotBatchRunner:
         except NamesError as error:
             raise self.names_error(error) from None
         columns = [(config, output, self.compute_new_columns(config)) for config, output in selected]
+        for name in self.layout.run_columns:
+            if any(name in own for _, _, own in columns):
+                log.warning("%s: the column '%s' has that of each run", self.configuration.where((COLUMNS,)), name)
         for output, keys in indistinguishable(columns).items():
             listed = ", ".join(keys)
             log.warning("%s: no column tells its combinations apart; add to result_new_columns: %s", output, listed)
@@ -369,10 +371,7 @@ class PogobotBatchRunner:
         check_logs_data(entries, self.configuration)
         assert self.run_settings is not None  # within prepared()
         columns = self.compute_new_columns(entries)
-        for name in self.layout.run_columns:
-            if name in columns and name != RUN:
-                log.warning("%s: the column '%s' has that of each run", self.configuration.where((COLUMNS,)), name)
-                del columns[name]
+        columns = {name: value for name, value in columns.items() if name not in self.layout.run_columns}
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
         name = os.path.relpath(output, self.output_dir)
         return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings), name)

@@ -78,8 +78,8 @@ def map_at(entries: dict[str, Any], name: str, keys: tuple[str, ...], warn: Warn
     if not isinstance(found, dict):
         raise CombinationsError((name,), f"expected a map with {' and '.join(keys)}, found {shown(found)}")
     for key in found:
-        if any(is_slip_of(word, str(key)) for word in keys):
-            raise CombinationsError((name,), f"unknown key {shown(str(key))}{advice(str(key), keys)}", str(key))
+        if slip := next((word for word in keys if is_slip_of(word, str(key))), None):
+            raise CombinationsError((name,), f"unknown key {shown(str(key))}; did you mean '{slip}'?", str(key))
         if key not in keys:
             warn((name, str(key)), f"unknown key, which has no effect{advice(str(key), keys)}")
     return found

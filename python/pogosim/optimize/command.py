@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import pogosim
 from pogosim.ambiguity import AmbiguousStepsWarning
-from pogosim.batch.ending import catch_signals
 from pogosim.batch.configuration import Configuration
+from pogosim.batch.ending import catch_signals
 from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
 from pogosim.batch.option_words import CombinationsError

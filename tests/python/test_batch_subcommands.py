@@ -1,0 +1,345 @@
+"""The subcommands of pogobatch: plan and run, what they print as JSON, and the maps of a configuration for them."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+from batches import (
+    COMMAND,
+    ENVIRONMENT,
+    batch,
+    results,
+    run_main,
+    script,
+    subcommand,
+    wait_for_simulators,
+    write_options,
+)
+from pogosim.batch.command_line import parser
+from pogosim.batch.subcommands import SUBCOMMANDS, subparser
+from pogosim.utils import load_dataframe
+from running import ROOT, Run, example
+from yaml import safe_load
+
+TAKEN_OUT: dict[str, object] = {"result_new_columns": None}
+CHOSEN: dict[str, object] = {**TAKEN_OUT, "pogobatch": {"result_new_columns": ["objects.robots.nb", "arena_file"]}}
+
+
+def report(run: Run) -> dict[str, Any]:
+    """Return the JSON that a command has printed, which is all of its output."""
+    assert run.output.count("\n") == 1, run.output
+    entries: dict[str, Any] = json.loads(run.output)
+    return entries
+
+
+def plan(folder: Path, *options: str) -> Run:
+    """Plan a batch of many.yaml."""
+    return run_main(folder, ["plan", "-c", "many.yaml", *options])
+
+
+def test_run_has_the_rows_of_the_flags_and_two_columns_more(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert batch(tmp_path, "-r", "2").code == 0
+    rows, metadata = load_dataframe(tmp_path / "results" / "result.feather")
+    assert sorted(results(tmp_path)) == ["result.feather"]
+    result = subcommand(tmp_path, "run", "-r", "2", folder_of="more")
+    assert (result.code, result.errors) == (0, "")
+    assert result.output.splitlines()[-1] == " - more/result.feather"
+    more, told = load_dataframe(tmp_path / "more" / "result.feather")
+    assert list(more.columns[-5:]) == ["run", "seed", "retry_attempt", "objects.robots.nb", "arena_file"]
+    pd.testing.assert_frame_equal(more.drop(columns=["seed", "retry_attempt"]), rows, check_flags=False)
+    manifest = json.loads(told.pop("pogobatch_manifest"))
+    assert (manifest["schema_version"], manifest["task_count"], len(manifest["config_hashes"])) == (1, 4, 2)
+    assert told.keys() == metadata.keys()
+    assert str({**told, "arena_polygons": 0}) == str({**metadata, "arena_polygons": 0})
+
+
+def test_bytes_of_run_do_not_depend_on_who_does_the_runs(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    written = []
+    for options in (["-j", "0"], ["--jobs", "1"], ["--workers", "3"], ["--backend", "sequential"]):
+        assert subcommand(tmp_path, "run", "--seeds", "3:5", *options).code == 0
+        written.append(results(tmp_path)["result.feather"])
+    assert len(set(written)) == 1
+
+
+def test_manifest_says_what_was_done(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert subcommand(tmp_path, "run", "--seeds", "3:5", "-j", "1").code == 0
+    assert sorted(results(tmp_path)) == ["pogobatch_run.json", "result.feather"]
+    entries = json.loads((tmp_path / "results" / "pogobatch_run.json").read_text())
+    expected = {
+        "schema_version": 1,
+        "executor": "local",
+        "task_count": 6,
+        "combinations": 2,
+        "seeds": [3, 4, 5],
+        "backend": "multiprocessing",
+        "jobs": 1,
+        "outputs": ["results/result.feather"],
+        "failures": [],
+    }
+    assert {key: entries[key] for key in expected} == expected
+
+
+def test_file_that_is_no_manifest_is_not_overwritten(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "pogobatch_run.json").write_text("[1, 2]")
+    result = subcommand(tmp_path, "run")
+    assert (result.code, result.errors.count("\n")) == (2, 1)
+    assert "results/pogobatch_run.json is there and was not written by pogobatch" in result.errors
+    assert list(results(tmp_path)) == ["pogobatch_run.json"]
+
+
+def test_plan_says_what_run_does_and_does_nothing(tmp_path: Path) -> None:
+    write_options(tmp_path, CHOSEN)
+    shown = plan(tmp_path, "--seeds", "3:4", "--show-tasks", "-o", "results")
+    assert (shown.code, shown.errors) == (0, "")
+    assert shown.output.splitlines() == [
+        "2 combinations x 2 seeds: 4 runs",
+        " - results/result.feather",
+        "run 0 of results/result.feather, seed 3, objects.robots.nb: 2",
+        "run 1 of results/result.feather, seed 4, objects.robots.nb: 2",
+        "run 0 of results/result.feather, seed 3, objects.robots.nb: 3",
+        "run 1 of results/result.feather, seed 4, objects.robots.nb: 3",
+    ]
+    assert [path.name for path in tmp_path.iterdir()] == ["many.yaml"]
+    entries = report(plan(tmp_path, "--seeds", "3:4", "-o", "results", "--json"))
+    assert list(entries) == ["operation", "ok", "config", "combinations", "seeds", "task_count", "outputs", "tasks"]
+    assert (entries["operation"], entries["ok"], entries["config"]) == ("plan", True, "many.yaml")
+    assert (entries["combinations"], entries["seeds"], entries["task_count"]) == (2, [3, 4], 4)
+    assert entries["tasks"][3] == {
+        "combination_ordinal": 1,
+        "logical_run": 1,
+        "seed": 4,
+        "output": "results/result.feather",
+        "batch_choices": {"objects.robots.nb": 3},
+    }
+    done = report(subcommand(tmp_path, "run", "--seeds", "3:4", "--json"))
+    for key in ("combinations", "seeds", "task_count", "outputs"):
+        assert done[key] == entries[key]
+    assert (done["operation"], done["ok"], done["manifest"]) == ("run", True, "results/pogobatch_run.json")
+
+
+def test_plan_warns_and_refuses_as_run_does(tmp_path: Path) -> None:
+    write_options(tmp_path, {"result_new_columns": []})
+    said = "no column tells its combinations apart; add to result_new_columns: objects.robots.nb"
+    assert said in plan(tmp_path).errors
+    write_options(tmp_path, {"result_new_columns": ["objects.robots.number"]})
+    assert (plan(tmp_path).code, subcommand(tmp_path, "run").code) == (2, 2)
+    assert "there is no key 'objects.robots.number'" in plan(tmp_path).errors
+    write_options(tmp_path)
+    assert plan(tmp_path, "--only-output", "other.feather").code == 1
+
+
+def test_json_of_failures_and_errors_says_what_is_wrong(tmp_path: Path) -> None:
+    write_options(tmp_path, {"objects.robots.nb": 2})
+    broken = script(tmp_path / "broken", '[ "$seed" = 1 ] && exit 3')
+    failed = subcommand(tmp_path, "run", "-r", "2", "-R", "1", "--retry-same-seed", "--json", program=broken)
+    entries = report(failed)
+    assert (failed.code, entries["ok"], entries["outputs"]) == (3, False, ["results/result.feather"])
+    (failure,) = entries["failures"]
+    assert failure == {
+        "ok": False,
+        "combination_ordinal": 0,
+        "logical_run": 1,
+        "seed": 1,
+        "attempts": 2,
+        "error": "exit code 3",
+    }
+    assert "1 of 2 runs failed, first run 1 with seed 1: exit code 3; what they left is in" in entries["error"]
+    assert json.loads((tmp_path / "results" / "pogobatch_run.json").read_text())["failures"] == [failure]
+
+    wrong = subcommand(tmp_path, "run", "--json", "-c", "nothing.yaml")
+    assert wrong.code == 2
+    assert report(wrong) == {
+        "operation": "run",
+        "ok": False,
+        "error": "cannot read the configuration nothing.yaml: No such file or directory",
+    }
+    flags = batch(tmp_path, "-r", "1", "--json")
+    assert report(flags)["outputs"] == ["results/result.feather"]
+    assert report(batch(tmp_path, "--list-outputs", "--json"))["outputs"] == ["results/result.feather"]
+
+
+def test_progress_is_said_where_there_is_no_terminal(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    result = subcommand(tmp_path, "run", "-r", "2", "--progress")
+    said = [line.rpartition(";")[0] for line in result.errors.splitlines()]
+    assert said == [f"pogobatch run: {n} of 4 runs are done" for n in (1, 2, 3, 4)]
+    assert subcommand(tmp_path, "run", "-r", "2").errors == ""
+
+
+def test_maps_for_batch_tools_do_what_they_say_and_reach_no_simulator(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert subcommand(tmp_path, "run", "-r", "2").code == 0
+    plain = results(tmp_path)["result.feather"]
+    maps = {
+        "result_filename_format": "swarm_{objects.robots.nb}.feather",
+        "result_new_columns": ["objects.robots.nb", "arena_file"],
+        "rundra": {"sync": {"exclude": ["*.png"]}},
+    }
+    write_options(tmp_path, {**TAKEN_OUT, "pogobatch": maps, "_rundr": {"version": 1, "seeds": 2}})
+    result = subcommand(tmp_path, "run", "--keep-temp", folder_of="mapped")
+    assert (result.code, result.errors) == (0, "")
+    written = [load_dataframe(tmp_path / "mapped" / f"swarm_{nb}.feather")[0] for nb in (2, 3)]
+    (tmp_path / "plain.feather").write_bytes(plain)
+    pd.testing.assert_frame_equal(
+        pd.concat(written, ignore_index=True), load_dataframe(tmp_path / "plain.feather")[0], check_flags=False
+    )
+    folders = list((tmp_path / "tmp").glob("sim_*"))
+    assert len(folders) == 4
+    for folder in folders:
+        assert not {"pogobatch", "_rundr"} & set(safe_load((folder / "test.yaml").read_text()))
+    # The flags read them, too.
+    assert batch(tmp_path, "--list-outputs").output.splitlines() == [f"results/swarm_{nb}.feather" for nb in (2, 3)]
+
+
+def test_map_for_results_comes_before_the_top_level_with_a_warning(tmp_path: Path) -> None:
+    maps: dict[str, object] = {"result_filename_format": "top.feather", "pogobatch": {"result_filename_format": "map.feather"}}
+    text = write_options(tmp_path, maps).read_text()
+    line = text.splitlines().index("result_filename_format: top.feather") + 1
+    result = batch(tmp_path, "--list-outputs")
+    assert result.output == "results/map.feather\n"
+    assert result.errors == (
+        f"pogobatch: many.yaml:{line}: result_filename_format: is not used: pogobatch.result_filename_format comes "
+        "first; remove one of them\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"pogobatch": 5}, "pogobatch: expected a map with result_filename_format"),
+        ({"pogobatch": {"result_filename_fromat": "a.feather"}}, "did you mean 'result_filename_format'?"),
+        ({"pogobatch": {"result_filename_format": 5}}, "pogobatch.result_filename_format: expected a name"),
+        (
+            {"pogobatch": {"result_new_columns": 5}, **TAKEN_OUT},
+            "pogobatch.result_new_columns: expected a list",
+        ),
+        ({"pogobatsh": {}}, "did you mean 'pogobatch'?"),
+        ({"_rundr": [1]}, "_rundr: expected a map with version and seeds, found [1]"),
+        ({"_rundr": {"version": 2}}, "_rundr.version: expected 1, found 2"),
+        ({"_rundr": {"seeds": "5"}}, "_rundr.seeds: expected the first and the last seed"),
+        ({"_rundr": {"seeds": 0}}, "_rundr.seeds: expected a whole number of at least 1; found 0"),
+        ({"_rundr": {"seeds": 1.5}}, '_rundr.seeds: expected a number of seeds, or "A:B", found 1.5'),
+        ({"_rundr": {"sedes": 5}}, "did you mean 'seeds'?"),
+    ],
+)
+def test_wrong_maps_are_refused_with_their_place(changes: dict[str, object], said: str, tmp_path: Path) -> None:
+    text = write_options(tmp_path, changes).read_text()
+    for result in (batch(tmp_path), subcommand(tmp_path, "run"), plan(tmp_path)):
+        assert (result.code, result.errors.count("\n")) == (2, 1), result.errors
+        assert said in result.errors
+        line = int(result.errors.split(":")[2])
+        key = next(iter(changes))
+        assert text.splitlines()[line - 1 :][0].strip().partition(":")[0] in (key, *str(changes).split("'"))
+
+
+def test_unknown_keys_of_the_maps_are_said_and_empty_maps_will_do(tmp_path: Path) -> None:
+    write_options(tmp_path, {"pogobatch": {"colour": "red"}, "_rundr": {"walltime": "1h"}})
+    result = batch(tmp_path, "--list-outputs")
+    assert result.code == 0
+    assert "pogobatch.colour: unknown key, which has no effect" in result.errors
+    assert "_rundr.walltime: unknown key, which has no effect" in result.errors
+    write_options(tmp_path)
+    with (tmp_path / "many.yaml").open("a") as file:
+        file.write("pogobatch:\n_rundr:\n")
+    assert (batch(tmp_path, "--list-outputs").errors, plan(tmp_path).code) == ("", 0)
+
+
+def test_options_in_lists_are_combined_by_every_subcommand(tmp_path: Path) -> None:
+    parameters = {"list": [1, {"batch_options": [2, 3], "default_option": 3}, [{"batch_options": [4, 5]}]]}
+    write_options(
+        tmp_path, {"objects.robots.nb": 2, "parameters": parameters, "result_new_columns": ["parameters.list"]}
+    )
+    assert report(plan(tmp_path, "--json"))["combinations"] == 4
+    assert subcommand(tmp_path, "run").code == 0
+    rows, _ = load_dataframe(tmp_path / "results" / "result.feather")
+    assert rows["parameters.list"].unique().tolist() == [f"[1, {a}, [{b}]]" for a in (2, 3) for b in (4, 5)]
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (
+            ["cluster"],
+            2,
+            "pogobatch run --slurm (jobs of SLURM) or pogobatch run --scheduler tcp://... (workers of Dask)",
+        ),
+        (["cluster", "submit", "-c", "many.yaml", "--partition", "x"], 2, "the scheduler Rundra is not used here"),
+        (["rum"], 2, "there is no subcommand 'rum'; did you mean 'run'?"),
+        (["x", "-c", "many.yaml"], 2, "there is no subcommand 'x'; see pogobatch help"),
+        (["help", "rum"], 2, "there is no subcommand 'rum'; did you mean 'run'?"),
+        (["run"], 2, "the following arguments are required: -S/--simulator-binary, -c/--config"),
+        (["task", "-c", "many.yaml"], 2, "the following arguments are required"),
+        (["merge"], 2, "the following arguments are required: FOLDER"),
+        (["plan", "--show"], 2, "required"),
+        (["plan", "-c", "many.yaml", "--show"], 2, "unrecognized arguments: --show"),
+        (["run", "-c", "many.yaml", "-S", "/bin/ls"], 2, "/bin/ls is not a simulator"),
+        (
+            ["run", "-c", "many.yaml", "-S", "x", "-j", "-1"],
+            2,
+            "--jobs: expected a whole number of at least 0; found -1",
+        ),
+    ],
+)
+def test_what_is_no_command_is_said(words: list[str], code: int, said: str, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    result = run_main(tmp_path, words)
+    assert (result.code, result.output) == (code, "")
+    assert said in result.errors
+
+
+def test_help_lists_subcommands_and_their_options(tmp_path: Path) -> None:
+    shown = run_main(tmp_path, ["help"])
+    assert shown.code == 0
+    for name in SUBCOMMANDS:
+        assert f"\n  {name} " in shown.output
+        own = run_main(tmp_path, ["help", name])
+        assert own.code == 0
+        assert own.output.startswith(f"usage: pogobatch {name} ")
+    assert "--show-tasks" in run_main(tmp_path, ["plan", "--help"]).output
+
+
+def test_page_of_batches_has_every_option_of_the_subcommands() -> None:
+    page = (ROOT / "docs" / "batches.md").read_text()
+    for name in SUBCOMMANDS:
+        for action in subparser(name, "pogobatch")._actions:
+            for flag in action.option_strings:
+                assert f"`{flag}" in page or flag in ("--help", "-h", "--verbose"), (name, flag)
+
+
+def test_run_has_every_option_of_the_flags() -> None:
+    flags = {flag for action in parser("pogobatch")._actions for flag in action.option_strings}
+    own = {flag for action in subparser("run", "pogobatch")._actions for flag in action.option_strings}
+    assert flags - own == {"--list-outputs", "-V", "--version"}
+    assert own - flags == {"--jobs"}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")
+def test_interrupted_run_is_continued_by_the_same_command(tmp_path: Path) -> None:
+    write_options(tmp_path, {"simulation_time": 300.0, "save_data_period": 10.0})
+    words = ["run", "-c", "many.yaml", "-S", str(example("helloworld")), "-t", "tmp", "-o", "results", "--seeds", "4:9"]
+    process = subprocess.Popen(
+        [*COMMAND, *words], cwd=tmp_path, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert wait_for_simulators(tmp_path, process)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == (
+        "pogobatch run: interrupted; finished runs are kept in tmp: the same command continues"
+    )
+    assert run_main(tmp_path, words).code == 0
+    rows, _ = load_dataframe(tmp_path / "results" / "result.feather")
+    assert rows[["run", "seed"]].drop_duplicates().to_numpy().tolist() == [[run, run + 4] for run in range(6)]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["many.yaml", "results"]

@@ -1,0 +1,268 @@
+"""Runs that are started one by one, each in a folder of its own, and merged into files of results."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from batches import results, run_main, script, subcommand, write_options
+from pogosim.pogobatch import PogobatchError, TaskError, discover_task_artifacts, execute_task, merge_task_artifacts
+from pogosim.utils import load_dataframe
+from running import Run, example
+from yaml import safe_load
+
+PROGRAM = str(example("helloworld"))
+
+
+def task(folder: Path, seed: int, *more: str, into: str | None = None) -> Run:
+    """Do one run of many.yaml."""
+    return subcommand(folder, "task", "--seed", str(seed), *more, folder_of=into or f"tasks/{seed}")
+
+
+def merge(folder: Path, *words: str, into: str = "results") -> Run:
+    """Merge runs in a folder."""
+    return run_main(folder, ["merge", *words, "-o", into])
+
+
+def manifest_of(folder: Path) -> dict[str, Any]:
+    """Return the manifest of a run."""
+    entries: dict[str, Any] = json.loads((folder / "pogobatch_task.json").read_text())
+    return entries
+
+
+def change(folder: Path, **entries: Any) -> None:
+    """Change entries of the manifest of a run; None takes one out."""
+    kept = {**manifest_of(folder), **entries}
+    text = json.dumps({name: value for name, value in kept.items() if value is not None})
+    (folder / "pogobatch_task.json").write_text(text)
+
+
+def test_task_is_a_run_with_the_defaults_in_a_folder_of_its_own(tmp_path: Path) -> None:
+    write_options(tmp_path, {"_rundr": {"seeds": 9}})
+    result = task(tmp_path, 7, "--run-index", "2", "--retry-attempt", "1", "--json")
+    folder = tmp_path / "tasks" / "7"
+    assert sorted(path.name for path in folder.iterdir()) == [
+        *("frames", "log.txt", "pogobatch_effective.yaml", "pogobatch_task.json")
+    ]
+    effective = safe_load((folder / "pogobatch_effective.yaml").read_text())
+    assert effective["objects"]["robots"]["nb"] == 3
+    assert not {"pogobatch", "_rundr"} & set(effective)
+    told = json.loads(result.output)
+    manifest = manifest_of(folder)
+    assert told == {
+        "operation": "task",
+        "ok": True,
+        "config": "many.yaml",
+        "output_dir": "tasks/7",
+        **manifest,
+    }
+    expected = {
+        "schema_version": 2,
+        "seed": 7,
+        "logical_run": 2,
+        "retry_attempt": 1,
+        "combination_ordinal": 0,
+        "result_filename": "result.feather",
+        "extra_columns": {"objects.robots.nb": 3, "arena_file": "disk"},
+        "batch_choices": {},
+        "data_file": "frames/data.feather",
+    }
+    assert {name: manifest[name] for name in expected} == expected
+    assert len(manifest["config_hash"]) == 64
+    assert len(load_dataframe(folder / "frames" / "data.feather")[0]) == 33
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["many.yaml", "tasks"]
+
+
+def test_failed_task_leaves_its_log_and_no_manifest(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 7).code == 0
+    broken = script(tmp_path / "broken", "echo last words; exit 3")
+    result = subcommand(tmp_path, "task", "--seed", "7", "--json", folder_of="tasks/7", program=broken)
+    assert result.code == 3
+    entries = json.loads(result.output)
+    assert (entries["ok"], entries["error"]) == (False, "the run with seed 7 failed: exit code 3: last words")
+    left = sorted(path.name for path in (tmp_path / "tasks" / "7").iterdir())
+    assert left == ["frames", "log.txt", "pogobatch_effective.yaml"]
+    assert not any((tmp_path / "tasks" / "7" / "frames").iterdir())
+    with pytest.raises(TaskError, match="exit code 3"):
+        execute_task(tmp_path / "many.yaml", broken, seed=1, output_dir=tmp_path / "api")
+
+
+@pytest.mark.parametrize(
+    ("changes", "options", "said"),
+    [
+        (
+            {"objects.robots.nb": {"batch_options": [2, 3]}},
+            [],
+            "objects.robots.nb: has batch_options and no default_option, which a single run takes; add it",
+        ),
+        ({"enable_data_logging": False}, [], "enable_data_logging: is false"),
+        ({"result_filename_format": "{x}.feather"}, [], "result_filename_format: there is no key 'x'"),
+        ({}, ["--seed", "4294967296"], "--seed: expected whole numbers from 0 to 4294967295; found 4294967296"),
+        ({}, ["--run-index", "-1"], "--run-index: expected a whole number of at least 0; found -1"),
+        ({}, ["--retry-attempt", "-1"], "--retry-attempt: expected a whole number of at least 0; found -1"),
+        ({}, ["-S", "/bin/ls"], "/bin/ls is not a simulator"),
+        ({}, ["-o", "many.yaml"], "cannot use many.yaml"),
+        ({}, ["-c", "none.yaml"], "cannot read the configuration none.yaml"),
+    ],
+)
+def test_task_that_cannot_be_done_is_one_line(
+    changes: dict[str, object], options: list[str], said: str, tmp_path: Path
+) -> None:
+    write_options(tmp_path, changes)
+    result = task(tmp_path, 1, *options)
+    assert (result.code, result.errors.count("\n")) == (2, 1), result.errors
+    assert said in result.errors
+    assert not (tmp_path / "tasks" / "1" / "pogobatch_task.json").exists()
+
+
+def test_refused_value_is_named_with_the_line_of_the_user(tmp_path: Path) -> None:
+    text = write_options(tmp_path, {"objects.robots.nb": "many"}).read_text()
+    line = text.splitlines().index("    nb: many") + 1
+    result = task(tmp_path, 1)
+    assert result.code == 3
+    assert f"Error: many.yaml:{line}: objects.robots.nb: expected an integer" in result.errors
+
+
+def test_kept_runs_merged_are_the_bytes_of_the_batch(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert subcommand(tmp_path, "run", "--seeds", "3:5", "--keep-temp").code == 0
+    result = merge(tmp_path, "tmp", "-c", "many.yaml", into="merged")
+    assert (result.code, result.errors) == (0, "")
+    assert result.output.splitlines() == ["6 runs merged. Generated output files:", " - merged/result.feather"]
+    assert (tmp_path / "merged" / "result.feather").read_bytes() == results(tmp_path)["result.feather"]
+
+
+def test_tasks_are_merged_whatever_their_order_and_depth(tmp_path: Path) -> None:
+    write_options(tmp_path, {"result_filename_format": "of_{objects.robots.nb}.feather"})
+    for run, seed in enumerate((8, 7, 9)):
+        assert task(tmp_path, seed, "--run-index", str(run), into=f"tasks/{'deep/' * run}{seed}").code == 0
+    assert merge(tmp_path, "tasks", into="a").code == 0
+    paths = [str(path) for path in sorted((tmp_path / "tasks").rglob("pogobatch_task.json"), reverse=True)]
+    report = json.loads(merge(tmp_path, *paths, "--json", into="b").output)
+    assert (report["operation"], report["ok"], report["task_count"]) == ("merge", True, 3)
+    assert report["outputs"] == ["b/of_3.feather"]
+    rows, metadata = load_dataframe(tmp_path / "a" / "of_3.feather")
+    assert (tmp_path / "b" / "of_3.feather").read_bytes() == (tmp_path / "a" / "of_3.feather").read_bytes()
+    assert rows[["run", "seed"]].drop_duplicates().to_numpy().tolist() == [[0, 8], [1, 7], [2, 9]]
+    assert metadata["combinations"][0]["seeds"] == [8, 7, 9]
+    assert metadata["configuration"]["objects"]["robots"]["nb"] == 3
+    assert json.loads(metadata["pogobatch_manifest"])["task_count"] == 3
+
+
+def test_runs_are_appended_to_results_that_are_there(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    for seed in (4, 5):
+        assert task(tmp_path, seed, "--run-index", str(seed)).code == 0
+    assert merge(tmp_path, "tasks/4").code == 0
+    assert merge(tmp_path, "tasks/5", "--append").code == 0
+    appended, metadata = load_dataframe(tmp_path / "results" / "result.feather")
+    assert appended[["run", "seed"]].drop_duplicates().to_numpy().tolist() == [[4, 4], [5, 5]]
+    assert [entry["seeds"] for entry in metadata["combinations"]] == [[4], [5]]
+    assert json.loads(metadata["pogobatch_manifest"])["task_count"] == 2
+    assert merge(tmp_path, "tasks/5").code == 0
+    replaced, _ = load_dataframe(tmp_path / "results" / "result.feather")
+    assert set(replaced["seed"]) == {5}
+
+
+def test_rows_of_a_batch_stay_when_tasks_are_appended(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert subcommand(tmp_path, "run", "--seeds", "3:4").code == 0
+    before, _ = load_dataframe(tmp_path / "results" / "result.feather")
+    assert task(tmp_path, 9, "--run-index", "2").code == 0
+    assert merge(tmp_path, "tasks", "--append", "-c", "many.yaml").code == 0
+    after, metadata = load_dataframe(tmp_path / "results" / "result.feather")
+    assert list(after.columns) == list(before.columns)
+    assert after[: len(before)].equals(before)
+    assert len(metadata["combinations"]) == 3
+    assert "batch_options" in str(metadata["configuration"])
+
+
+def test_run_that_would_count_twice_is_refused_and_results_stay(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 4).code == 0
+    shutil.copytree(tmp_path / "tasks" / "4", tmp_path / "copy" / "4")
+    twice = merge(tmp_path, "tasks", "copy")
+    assert (twice.code, results(tmp_path)) == (2, {})
+    assert "have the same logical run, 0, of one configuration, which would count twice" in twice.errors
+    change(tmp_path / "copy" / "4", logical_run=1)
+    assert "have the same seed, 4, of one configuration" in merge(tmp_path, "tasks", "copy").errors
+    assert merge(tmp_path, "tasks").code == 0
+    before = results(tmp_path)
+    again = merge(tmp_path, "tasks", "--append")
+    assert (again.code, results(tmp_path)) == (2, before)
+    assert "results/result.feather has the run of tasks/4/frames/data.feather already, with seed 4" in again.errors
+
+
+def test_manifests_of_the_first_version_can_be_read(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 4).code == 0
+    change(tmp_path / "tasks" / "4", schema_version=1, task_uuid=None, config_hash=None, retry_attempt=None)
+    assert merge(tmp_path, "tasks").code == 0
+    assert set(load_dataframe(tmp_path / "results" / "result.feather")[0]["retry_attempt"]) == {0}
+
+
+@pytest.mark.parametrize(
+    ("entries", "said"),
+    [
+        ({"schema_version": 3}, "schema_version: expected 1 or 2, found 3"),
+        ({"seed": "4"}, "seed: expected a whole number, found '4'"),
+        ({"logical_run": True}, "logical_run: expected a whole number, found True"),
+        ({"data_file": None}, "data_file: expected a text, found nothing"),
+        ({"data_file": "frames/none.feather"}, "cannot read tasks/4/frames/none.feather"),
+        ({"data_file": "log.txt"}, "tasks/4/log.txt is damaged"),
+        (
+            {"result_filename": "../out.feather"},
+            "result_filename: '../out.feather' is not in the folder of the results",
+        ),
+        ({"result_filename": "out.xyz"}, "result_filename: the format of 'out.xyz' is unknown"),
+        ({"extra_columns": [1]}, "extra_columns: expected a map, found [1]"),
+        ({"extra_columns": {"x": 5}}, "writes a column 'x'"),
+    ],
+)
+def test_wrong_manifest_is_one_line_and_nothing_is_written(entries: dict[str, Any], said: str, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 4).code == 0
+    change(tmp_path / "tasks" / "4", **entries)
+    result = merge(tmp_path, "tasks")
+    assert (result.code, result.errors.count("\n")) == (2, 1), result.errors
+    assert said in result.errors
+    assert results(tmp_path) == {}
+    assert not (tmp_path / "out.feather").exists()
+
+
+def test_what_cannot_be_merged_is_one_line(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 4).code == 0
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "result.feather").write_text("mine")
+    for words, said in (
+        (["none"], "none does not exist"),
+        (["empty"], "there is no pogobatch_task.json in empty"),
+        (["many.yaml"], "many.yaml is no manifest of a run"),
+        (["tasks", "-c", "none.yaml"], "cannot read the configuration none.yaml"),
+        (["tasks"], "it will not be overwritten"),
+    ):
+        result = merge(tmp_path, *words)
+        assert (result.code, result.errors.count("\n")) == (2, 1), result.errors
+        assert said in result.errors
+    shutil.copy(tmp_path / "tasks" / "4" / "frames" / "data.feather", tmp_path / "results" / "result.feather")
+    assert "has no columns run and seed" in merge(tmp_path, "tasks", "--append").errors
+    with pytest.raises(PogobatchError, match="no runs to merge"):
+        merge_task_artifacts([], tmp_path)
+
+
+def test_functions_do_what_the_subcommands_do(tmp_path: Path) -> None:
+    path = write_options(tmp_path)
+    done = execute_task(path, PROGRAM, seed=4, output_dir=tmp_path / "tasks" / "4", run_index=1)
+    assert done.data == tmp_path / "tasks" / "4" / "frames" / "data.feather"
+    (found,) = discover_task_artifacts([tmp_path / "tasks"])
+    assert found == done
+    (output,) = merge_task_artifacts([found], tmp_path / "results", config_path=path)
+    rows, metadata = load_dataframe(output)
+    assert rows[["run", "seed", "retry_attempt"]].drop_duplicates().to_numpy().tolist() == [[1, 4, 0]]
+    assert metadata["combinations"][0]["columns"] == {"objects.robots.nb": 3, "arena_file": "disk"}
