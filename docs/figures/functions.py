@@ -29,6 +29,7 @@ TABLES = {
         "pogolib/infrared.h",
         "pogolib/sensors.h",
         "pogolib/flash.h",
+        "pogolib/magnetometer.h",
         "pogolib/timers.h",
         "pogolib/helper.h",
         "pogolib/console.h",

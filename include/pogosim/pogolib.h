@@ -55,6 +55,7 @@ extern "C++" {
 #include "pogosim/pogolib/helper.h"
 #include "pogosim/pogolib/infrared.h"
 #include "pogosim/pogolib/leds.h"
+#include "pogosim/pogolib/magnetometer.h"
 #include "pogosim/pogolib/motors.h"
 #include "pogosim/pogolib/sensors.h"
 #include "pogosim/pogolib/timers.h"

@@ -71,6 +71,9 @@ std::span<Key<RobotSpec> const> robot_keys() {
           "Each light sensor draws a constant offset from this range once."},
         K{"photosensors_noise_stddev", &RobotSpec::photosensor_noise_stddev, between(0, 32767), "sensor counts",
           "Standard deviation of Gaussian noise on each light reading."},
+        K{"magnetometer_enabled", &RobotSpec::magnetometer_enabled, any(), "",
+          "Whether programs of these objects find a magnetometer."}
+            .only_if([](RobotSpec const& robot) { return robot.has_magnetometer; }),
         K{"temporal_noise_stddev", &RobotSpec::clock_drift_stddev_us, between(0, 1e6), "us per tick",
           "Standard deviation of the constant clock drift, drawn once per robot."},
         K{"rotate_LEDs_45_deg", &RobotSpec::rotate_leds_45_deg, any(), "",

@@ -22,6 +22,7 @@ void read_pogobject(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
     RobotSpec kind;
     kind.emitters = Emitters::centre;
+    kind.has_magnetometer = false;
     kind.has_wheels = false;
     read_robot(reader, object, kind);
     read_body(reader, object);
@@ -32,6 +33,7 @@ void read_pogowall(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, outline_geometry_keys(), object.spec.shape);
     RobotSpec kind;
     kind.emitters = Emitters::outline;
+    kind.has_magnetometer = false;
     kind.has_wheels = false;
     read_robot(reader, object, kind);
     if (object.spec.shape.kind == ShapeKind::arena) {
@@ -83,6 +85,7 @@ void read_membrane_object(MapReader& reader, ObjectConfig& object, bool segments
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
     RobotSpec kind;
     kind.emitters = Emitters::outline;
+    kind.has_magnetometer = false;
     kind.has_wheels = false;
     read_robot(reader, object, kind);
     read_body(reader, object);

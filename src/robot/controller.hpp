@@ -78,6 +78,13 @@ struct Accelerometer {
     std::int64_t current_us = 0;  // the robot's clock at the last tick
 };
 
+/// What the program has read of the magnetometer.
+struct Magnetometer {
+    std::uint64_t samples = 0;           // how often it has read new data
+    std::array<std::int16_t, 3> last{};  // x, y, z
+    std::int64_t taken = 0;              // data_number() of the last ones
+};
+
 /// How often it sends, where no main loop knows that: since the window before the present one began.
 struct SentRate {
     std::int64_t before_us = 0;  // when that was
@@ -111,6 +118,7 @@ struct Controller {
     Motors motors;
     Flash flash;
     Accelerometer accelerometer;
+    Magnetometer magnetometer;
     std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
     std::uint8_t ir_power = 1;
     std::uint64_t messages_sent = 0;  // by whatever function

@@ -287,6 +287,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     world.time_step_s = scenario.time_step_s;
     world.ignore_occlusions = scenario.ignore_occlusions;
     world.temperature_c = static_cast<float>(scenario.arena_temperature_c);
+    world.magnetometer.seed = seed;
     build_arena(scenario, world);
     warn_of_gaps(scenario);
     allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });

@@ -105,6 +105,8 @@ struct RobotSpec {
     float photosensor_noise_stddev = 0.0F;  // sensor counts per reading
     float clock_drift_stddev_us = 0.0F;     // constant drift of a robot's clock, microseconds per tick
     bool rotate_leds_45_deg = true;         // drawing only
+    bool has_magnetometer = true;           // on the board of this type of object
+    bool magnetometer_enabled = true;       // else programs find none
 };
 
 /// A soft body: bodies along the outline of the shape, joined into a ring by springs.

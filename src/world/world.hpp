@@ -36,6 +36,7 @@
 #include "base/random.hpp"
 #include "geometry/arena.hpp"
 #include "world/data_table.hpp"
+#include "world/magnetometer_spec.hpp"
 #include "world/mailbox.hpp"
 #include "world/specs.hpp"
 
@@ -175,6 +176,7 @@ struct World {
     bool periodic = false;           // wrap at the bounding box of the outer wall; no walls
     bool ignore_occlusions = false;  // IR: range only, no half-plane test of emitters, no shadows
     float temperature_c = 42.0F;
+    MagnetometerSpec magnetometer;
 
     // Things.
     std::vector<Category> categories;  // of objects, in the order of the configuration

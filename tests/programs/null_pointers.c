@@ -25,6 +25,7 @@ static void no_arguments(char const* format, ...) {
 static void user_step(void) {
     uint8_t r = 0, g = 0, b = 0;
     float three[3] = {0.0f, 0.0f, 0.0f};
+    int16_t count = 0;
     bool a_bool = false;
 
     FOR_NULL(printf.format, printf(none))
@@ -44,6 +45,9 @@ static void user_step(void) {
     FOR_NULL(pogobot_imu_read.gyro, pogobot_imu_read(three, NULL))
     FOR_NULL(read_page_flash.buf, read_page_flash(0, NULL))
     FOR_NULL(write_page_flash.data, write_page_flash(0, NULL))
+    FOR_NULL(magn_read_XYZ.x, magn_read_XYZ(NULL, &count, &count, 20))
+    FOR_NULL(magn_read_XYZ.y, magn_read_XYZ(&count, NULL, &count, 20))
+    FOR_NULL(magn_read_XYZ.z, magn_read_XYZ(&count, &count, NULL, 20))
     FOR_NULL(pogobot_infrared_recover_next_message.message, pogobot_infrared_recover_next_message(NULL))
     FOR_NULL(pogobot_infrared_sendLongMessage_omniGen.message, pogobot_infrared_sendLongMessage_omniGen(NULL, 4))
     FOR_NULL(pogobot_infrared_sendLongMessage_omniSpe.message, pogobot_infrared_sendLongMessage_omniSpe(NULL, 4))

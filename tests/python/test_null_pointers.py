@@ -19,6 +19,7 @@ HARMLESS = {
     "pogobot_infrared_sendRawLongMessage.message",
     "pogobot_infrared_sendRawShortMessage.message",
     "pogobot_infrared_get_receiver_error_counter.counter",
+    *(f"magn_read_XYZ.{axis}" for axis in "xyz"),
     "pogobot_motor_dir_mem_get.p_directions",
     "pogobot_motor_dir_mem_set.p_directions",
     "pogobot_motor_power_mem_get.p_powers",

@@ -113,6 +113,10 @@ typedef enum { p_B = 0, p_FL = 1, p_FR = 2 } photosensor_id;
 int16_t pogobot_photosensors_read(uint8_t sensor_number);
 void pogobot_imu_read(float* acc, float* gyro);
 float pogobot_imu_readTemp(void);
+uint8_t magn_init(void);
+int magn_read_XYZ(int16_t* x, int16_t* y, int16_t* z, uint16_t timeout_ms);
+void magn_begin(void);
+void magn_end(void);
 
 // Flash.
 #define POGOBOT_USER_FLASH_START_OFFSET 0x90000u

@@ -1,0 +1,115 @@
+// pogolib/magnetometer.h, and magn_check() of the SDK's magnetometer.h
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <numbers>
+#include <optional>
+
+#include "robot/context.hpp"
+#include "robot/crash_handler.hpp"
+#include "robot/magnetometer.hpp"
+#include "robot/require_robot.hpp"
+#include "robot/robot_floating_point.hpp"
+#include "robot/slip.hpp"
+#include "robot/waiting.hpp"
+
+extern "C" __attribute__((visibility("default"))) std::uint8_t magn_check();
+
+using pogosim::context;
+using pogosim::require_robot;
+
+namespace {
+
+/// False in callbacks of the whole run and walls, too.
+bool has_magnetometer() {
+    return context.has_body() && context.spec().has_magnetometer && context.spec().magnetometer_enabled;
+}
+
+bool are_given(int16_t const* x, int16_t const* y, int16_t const* z) {
+    if (x == nullptr || y == nullptr || z == nullptr) [[unlikely]] {
+        pogosim::note_slip({"magn_read_XYZ",
+                            x == nullptr   ? "x"
+                            : y == nullptr ? "y"
+                                           : "z",
+                            "an address", "nothing is read, and 1 is returned"},
+                           "NULL");
+        return false;
+    }
+    return true;
+}
+
+/// Afterwards the robot may be in another thread, see waiting.cpp.
+[[gnu::noinline]] bool wait_for_data(std::uint16_t timeout_ms) {
+    if (context.world->magnetometer.timing == pogosim::MagnetometerTiming::at_once) {
+        return true;
+    }
+    pogosim::Controller const& self = *context.controller;
+    pogosim::MagnetometerPoll const poll =
+        pogosim::poll_magnetometer(self.clock_us, self.magnetometer.taken, timeout_ms);
+    if (poll.wait_us > 0) {
+        pogosim::sleep_until(self.clock_us + poll.wait_us);
+    }
+    return poll.finds_data;
+}
+
+/// Ends the run.
+[[noreturn]] void refuse_pose(pogosim::Pose const& pose) {
+    constexpr double degrees = 180.0 / std::numbers::pi;
+    char what[256];
+    auto const end = fmt::format_to_n(
+        what, sizeof(what) - 1,
+        "magn_read_XYZ(): the pose x {:.1f} mm, y {:.1f} mm, heading {:.1f} degrees is outside magnetometer.domain, whose "
+        "policy is throw",
+        pose.position_mm.x, pose.position_mm.y, pose.heading_rad * degrees);
+    *end.out = '\0';
+    pogosim::refuse_user_code(what);
+}
+
+[[gnu::noinline]] pogosim::MagneticCounts take_data() {
+    pogosim::World const& world = *context.world;
+    pogosim::Pose const pose{.position_mm = wrapped(world, world.bodies.position_mm[context.body()]),
+                             .heading_rad = world.bodies.heading_rad[context.body()]};
+    std::optional<pogosim::Pose> const inside = pogosim::pose_in_domain(world.magnetometer.domain, pose);
+    if (!inside) {
+        refuse_pose(pose);
+    }
+    pogosim::Magnetometer& self = context.controller->magnetometer;
+    self.last = pogosim::measure_field(world.magnetometer, world.robots.id[context.robot], self.samples, *inside);
+    ++self.samples;
+    self.taken = pogosim::data_number(context.controller->clock_us);
+    return self.last;
+}
+
+}  // namespace
+
+uint8_t magn_init() {
+    require_robot(__func__);
+    return has_magnetometer() ? 1 : 0;
+}
+
+uint8_t magn_check() {
+    require_robot(__func__);
+    return has_magnetometer() ? 0 : 1;
+}
+
+int magn_read_XYZ(int16_t* x, int16_t* y, int16_t* z, uint16_t timeout_ms) {
+    require_robot(__func__);
+    pogosim::note_call();
+    pogosim::take_back_floating_point();
+    if (!are_given(x, y, z) || !has_magnetometer() || !wait_for_data(timeout_ms)) {
+        return 1;
+    }
+    pogosim::MagneticCounts const counts = take_data();
+    *x = counts[0];
+    *y = counts[1];
+    *z = counts[2];
+    return 0;
+}
+
+void magn_begin() {
+    require_robot(__func__);
+}
+
+void magn_end() {
+    require_robot(__func__);
+}
