@@ -18,8 +18,8 @@
 //
 //     ./examples/axelrod/axelrod -c conf/axelrod.yaml
 //
-// The robots stand on a grid as in the article; with `moving_robots: true` they walk around, and only cultures that have
-// nothing in common with any other remain.
+// The robots stand on a grid as in the article; with `moving_robots: true` they walk around, and only cultures that
+// have nothing in common with any other remain.
 #include "pogobase.h"
 
 #define MAX_FEATURES 8

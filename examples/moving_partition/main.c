@@ -10,8 +10,8 @@
 // slides in from a recess in the wall, at `rejoin_time` it slides back.
 //
 // The measure is the share of pairs of robots that have the same word (in genetics, identity by descent). Copying keeps
-// it high within each half. Between the halves nothing is copied, so two robots have the same word only if neither of their
-// words was replaced by an invention since the division (G. Malecot, "Les mathematiques de l'heredite", 1948):
+// it high within each half. Between the halves nothing is copied, so two robots have the same word only if neither of
+// their words was replaced by an invention since the division (G. Malecot, "Les mathematiques de l'heredite", 1948):
 //
 //     same_across(t) = same_across(division) * exp(-2 t / invention_period)
 //
@@ -198,8 +198,8 @@ static bool touches_a_robot(pogosim_pose_t const* partition) {
     return false;
 }
 
-// Out between divide_time and rejoin_time, then back. It pushes robots aside, but near the wall ahead it waits for them:
-// they would be crushed.
+// Out between divide_time and rejoin_time, then back. It pushes robots aside, but near the wall ahead it waits for
+// them: they would be crushed.
 static void move_partition(uint32_t partition) {
     double const time_s = pogosim_world_time();
     bool const is_out = time_s >= (double)divide_time && time_s < (double)rejoin_time;
