@@ -23,8 +23,8 @@ from pogosim.utils import load_dataframe
 NAMES = ("models.png",)
 NB_TRAITS = (2, 8, 30)
 MOMENTS_S = (3.0, 60.0)
-NOISES = (10.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0, 200.0)
-RUNS = 3  # for each noise
+NOISES = (10.0, 25.0, 40.0, 60.0, 80.0, 120.0, 200.0)
+RUNS = 2  # for each noise
 SETTLED_S = 60.0
 
 
