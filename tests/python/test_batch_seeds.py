@@ -183,3 +183,12 @@ def test_python_file_is_run_by_the_python_that_runs_now(tmp_path: Path) -> None:
     assert run_main(tmp_path, ["run", "-c", "many.yaml", "-S", "program.py", "-o", "results"], main).code == 0
     assert runs_in(tmp_path) == [[0, 0, 0]]
     assert Path((tmp_path / "python").read_text()).samefile(sys.executable)
+
+
+def test_configuration_that_is_refused_for_one_seed_is_tried_with_another(tmp_path: Path) -> None:
+    write_options(tmp_path, ONE)
+    refused = script(tmp_path / "refused", '[ "$seed" -lt 2 ] && { echo "Error: $2: no place for robots"; exit 2; }')
+    assert subcommand(tmp_path, "run", "-r", "2", program=refused).code == 0
+    assert runs_in(tmp_path) == [[0, 2, 1], [1, 3, 1]]
+    same = subcommand(tmp_path, "run", "-r", "2", "--retry-same-seed", program=refused)
+    assert same.errors.count("failed 1 time: exit code 2") == 2

@@ -204,8 +204,8 @@ def test_maps_for_batch_tools_do_what_they_say_and_reach_no_simulator(tmp_path: 
 
 
 def test_map_for_results_comes_before_the_top_level_with_a_warning(tmp_path: Path) -> None:
-    maps: dict[str, object] = {"result_filename_format": "top.feather", "pogobatch": {"result_filename_format": "map.feather"}}
-    text = write_options(tmp_path, maps).read_text()
+    own = {"result_filename_format": "map.feather"}
+    text = write_options(tmp_path, {"result_filename_format": "top.feather", "pogobatch": own}).read_text()
     line = text.splitlines().index("result_filename_format: top.feather") + 1
     result = batch(tmp_path, "--list-outputs")
     assert result.output == "results/map.feather\n"

@@ -56,7 +56,8 @@ def test_search_in_which_all_fail_does_not_pass_off_earlier_results_as_its_own(t
     write_search(tmp_path, objective="def objective_fn(df): raise ValueError")
     assert search(tmp_path, *QUICK).code == 3
     left = sorted(path.name for path in (tmp_path / "opt_out").iterdir())
-    assert left == ["opt_history.csv", "opt_history.feather", "search.jsonl"]
+    assert left == ["opt_history.csv", "opt_history.feather", "search.jsonl", "summary.json"]
+    assert summary(tmp_path)["status"] == "failed"
 
 
 # ---- Strange functions ----

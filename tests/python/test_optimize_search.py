@@ -294,7 +294,7 @@ def test_search_of_a_program_that_writes_no_data_is_one_line(tmp_path: Path) -> 
         (["--sigma0", "0"], "--sigma0: expected a number from 1e-06 to 10, found 0.0"),
         (["--popsize", "1"], "--popsize: expected a whole number from 2 to 100000, found 1"),
         (["--seed", "-1"], "--seed: expected a whole number from 0 to 4294967295, found -1"),
-        (["--seeds", "other"], "--seeds: expected common or fresh, found 'other'"),
+        (["--seeds", "other"], "--seeds: expected common, fresh or blocks, found 'other'"),
         (
             ["--optimizer", "sgd"],
             "--optimizer: expected one of cmaes, random, mapelites, cma_me, cma_mae, tpe; found 'sgd'",

@@ -11,7 +11,7 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, cannot
 from pogosim.batch.manifests import TASK, read_manifest
 from pogosim.batch.names import is_linked_out, leads_out
-from pogosim.batch.parts import WITH_SEEDS, Part, RunFile
+from pogosim.batch.parts import OF_CAMPAIGNS, Part, RunFile
 from pogosim.batch.result_metadata import COMBINATIONS, Earlier
 from pogosim.batch.results import check_columns, check_output, schema_of, write_results
 from pogosim.batch.single_task import TaskArtifact
@@ -82,12 +82,12 @@ def merge_task_artifacts(
         by_output.setdefault(output_of(artifact, Path(output_dir)), []).append(artifact)
     text = None if config_path is None else Configuration(config_path).text
     for artifact in artifacts:
-        check_columns(schema_of_run(artifact), list(columns_of(artifact)), str(artifact.folder), WITH_SEEDS)
+        check_columns(schema_of_run(artifact), list(columns_of(artifact)), str(artifact.folder), OF_CAMPAIGNS)
     parts = {output: parts_of(own) for output, own in by_output.items()}
     earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
     for output, own in by_output.items():
         own_text = configuration_of(own[0]) if text is None else text
-        write_results(output, parts[output], own_text, WITH_SEEDS, earlier[output])
+        write_results(output, parts[output], own_text, OF_CAMPAIGNS, earlier[output])
     return list(by_output)
 
 

@@ -48,4 +48,5 @@ class Format:
 
 
 PLAIN = Format()
-WITH_SEEDS = Format((RUN, SEED, RETRY), with_manifest=True)
+WITH_SEEDS = Format((RUN, SEED, RETRY))
+OF_CAMPAIGNS = Format((RUN, SEED, RETRY), with_manifest=True)

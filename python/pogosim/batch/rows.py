@@ -20,7 +20,7 @@ from pogosim.batch.identity import find_program, program_digest, world_digest
 from pogosim.batch.joining import file_of
 from pogosim.batch.names import ambiguous, new_columns, value_at
 from pogosim.batch.option_words import CombinationsError
-from pogosim.batch.parts import Part
+from pogosim.batch.parts import WITH_SEEDS, Part
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import check_columns, schema_of, write_results
@@ -85,6 +85,7 @@ class Runs:
         workers: The workers that do the runs.
         retries: How many times a failed run is repeated.
         keep_temp: Keep the files of single runs.
+        retry_new_seed: Repeat them with other seeds, see `pogosim.batch.seeds.replacements`.
 
     Attributes:
         simulator_s: Wall-clock time, in s, that simulators have taken, added up.
@@ -100,6 +101,7 @@ class Runs:
         workers: Workers,
         retries: int = 5,
         keep_temp: bool = False,
+        retry_new_seed: bool = False,
     ) -> None:
         self.configuration = configuration
         self.workers = workers
@@ -108,7 +110,9 @@ class Runs:
         beside = configuration.path.absolute().parent
         batch = batch_name([str(configuration.path), output_dir, program])
         self.temporary = TemporaryFolder(Path(temp_base).absolute(), batch, keep_temp)
-        self.settings = RunSettings(path, program_digest(path), beside, self.temporary, retries, gui=False)
+        self.settings = RunSettings(
+            path, program_digest(path), beside, self.temporary, retries, gui=False, retry_new_seed=retry_new_seed
+        )
         world = world_digest(configuration.entries, (Path.cwd(), beside), self.settings.digests)
         self.digests = {"configuration": world, "program": self.settings.program_digest}
         self.simulator_s = 0.0
@@ -222,12 +226,12 @@ class Runs:
         for combination in one.combinations:
             for task in combination.tasks[:1]:
                 result = task.result_of(one.finished[task.key])
-                check_columns(schema_of(result), list(combination.columns), self.program)
+                check_columns(schema_of(result), list(combination.columns), self.program, WITH_SEEDS)
             files = [file_of(task, one.finished[task.key]) for task in combination.tasks]
             parts.append(Part(combination.columns, files))
         scratch = self.temporary.done / f"joined_{one.number}.feather"
         path, text = (scratch, one.text) if target is None else target
-        write_results(str(path), parts, text)
+        write_results(str(path), parts, text, WITH_SEEDS)
         rows, _ = load_dataframe(path)
         scratch.unlink(missing_ok=True)
         return Finished(one.number, rows, "", seeds, replacement)

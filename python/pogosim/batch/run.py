@@ -355,6 +355,7 @@ def do_run(task: Task) -> Outcome:
             is_fatal = is_full or error.errno == errno.ENOEXEC
             outcome = Outcome(task.key, problem, is_fatal=is_fatal, attempts=number + 1)
         simulator_s += outcome.simulator_s
-        if not outcome.problem or outcome.is_fatal or outcome.is_certain:
+        # What is certain for one seed, such as that robots find no place, may be otherwise for another.
+        if not outcome.problem or outcome.is_fatal or (outcome.is_certain and not task.replacements):
             break
     return replace(outcome, simulator_s=simulator_s)

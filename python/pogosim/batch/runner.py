@@ -19,7 +19,7 @@ from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
 from pogosim.batch.names import COLUMNS, NamesError, ambiguous, file_name, is_linked_out, new_columns
 from pogosim.batch.option_words import CombinationsError
-from pogosim.batch.parts import PLAIN, WITH_SEEDS
+from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, report_failures
 from pogosim.batch.results import check_output
 from pogosim.batch.run import QUIET
@@ -119,7 +119,7 @@ class PogobotBatchRunner:
         self.only_output = only_output
         self.seed_from = seed_from
         self.retry_new_seed = retry_new_seed
-        self.layout = WITH_SEEDS if with_seeds else PLAIN
+        self.layout = OF_CAMPAIGNS if with_seeds else PLAIN
         self.progress = progress
         self.simulator_output = simulator_output
         self.failures: list[Failure] = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from pogosim.optimize.results import (
     ARCHIVE,
     ARCHIVE_TABLE,
     ELITES,
+    QD_ARCHIVE,
     configuration_text,
     free_name,
     remove_elites,
@@ -34,7 +36,7 @@ def write_archive(folder: Path, search: Search, configuration: Configuration) ->
     shape = search.settings.qd_shape
     names = list(search.feature_names or ())
     fitness = np.full(shape, np.nan)
-    rows = []
+    rows, plain_rows = [], []
     remove_elites(folder)
     for elite in elites:
         evaluation = search.history[elite.number - 1]
@@ -50,8 +52,16 @@ def write_archive(folder: Path, search: Search, configuration: Configuration) ->
         values = {"eval": elite.number, "fitness": evaluation.fitness}
         features = {free_name(name, {*cell, *values}): value for name, value in evaluation.features.items()}
         rows.append({**cell, **values, **features, "values": as_json(evaluation.values), "config": file})
-    table = pd.DataFrame(rows)
-    write(folder / ARCHIVE_TABLE, lambda path: table.to_csv(path, index=False))
+        plain_rows.append(
+            {
+                "fitness": evaluation.fitness,
+                **{f"feature_{i}": value for i, value in enumerate(evaluation.features.values())},
+                **{f"u_{i}": x for i, x in enumerate(evaluation.point)},
+                "values": as_json(evaluation.values),
+            }
+        )
+    for name, own in ((ARCHIVE_TABLE, rows), (QD_ARCHIVE, plain_rows)):
+        write(folder / name, partial(pd.DataFrame(own).to_csv, index=False))
     if len(shape) <= 2:
         draw_archive(folder / ARCHIVE, fitness, optimizer.ranges, names)
     filled = np.isfinite(fitness)

@@ -58,8 +58,9 @@ def parser(prog: str) -> Parser:
     add("--seed", type=int, help=f"seed of the optimiser ({usual.seed})")
     add(
         "--seeds",
-        metavar="common|fresh",
-        help="the runs of all candidates have the same seeds 0, 1, ... (common), or each its own (fresh) (common)",
+        metavar="common|fresh|blocks",
+        help="the runs of all candidates have the same seeds 0, 1, ... (common), or each its own (fresh), or its own "
+        "block, with room for --retry-new-seed (blocks) (common)",
     )
     add(
         "--final-runs",
@@ -69,14 +70,28 @@ def parser(prog: str) -> Parser:
     )
     add("--resume", action="store_true", help="continue the search that is in the folder of the results")
     add("-o", "--output-dir", metavar="FOLDER", help=f"folder of the results ({usual.output_dir})")
-    add("-t", "--temp-base", metavar="FOLDER", default="tmp_opt", help="folder for temporary files (tmp_opt)")
-    add("--keep-temp", action="store_true", help="keep the folders of single runs")
+    add("-t", "--temp-base", metavar="FOLDER", help=f"folder for temporary files ({usual.temp_base})")
+    add("--keep-temp", action=argparse.BooleanOptionalAction, help="keep the folders of single runs")
     add("-R", "--retries", type=int, metavar="N", help=f"how many times a failed run is repeated ({usual.retries})")
+    retry = options.add_mutually_exclusive_group()
+    retry.add_argument("--retry-new-seed", action="store_true", default=None, help="repeat it with another seed")
+    retry.add_argument(
+        "--retry-same-seed", action="store_false", dest="retry_new_seed", help="repeat it with the same seed"
+    )
     add("-v", "--verbose", action="store_true", help="say more")
     add("-V", "--version", action="version", version=f"{prog} {pogosim.__version__}")
     add_quality_diversity_options(options, usual)
     group = options.add_argument_group("workers")
     group.add_argument("-j", "--workers", type=int, metavar="N", help="runs at the same time (one per processor)")
+    group.add_argument(
+        "--candidate-jobs", type=int, metavar="N", help=f"candidates at the same time ({usual.candidate_jobs})"
+    )
+    group.add_argument(
+        "--batch-jobs",
+        type=int,
+        metavar="N",
+        help=f"runs of each at the same time; 0: one run per processor in all ({usual.batch_jobs})",
+    )
     group.add_argument("--backend", help="multiprocessing (default), sequential or dask")
     group.add_argument("--scheduler", metavar="tcp://...", help="let the workers of this Dask scheduler do the runs")
     add_slurm_options(options)
@@ -90,6 +105,7 @@ def add_quality_diversity_options(options: argparse.ArgumentParser, usual: Setti
     cells = ",".join(map(str, usual.qd_shape))
     add("--qd-shape", metavar="N,N", help=f"cells of the archive along each feature ({cells})")
     add("--qd-ranges", metavar="A:B,A:B", help="least and greatest value of each feature (0:1 if all are, or as seen)")
+    add("--qd-features-domain", metavar="A:B,A:B", help="the same; a candidate with features outside has failed (none)")
     add("--qd-init-samples", type=int, metavar="N", help=f"random candidates at first ({usual.qd_init_samples})")
     add("--qd-batch", type=int, metavar="N", help=f"candidates per generation afterwards ({usual.qd_batch})")
 
@@ -152,7 +168,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
     except (OptimizeError, BatchError, OutputError, NamesError) as error:
         log.error("%s", error)
     except OSError as error:
-        log.error("%s: %s", error.filename or parsed.temp_base, reason(error))
+        log.error("%s: %s", error.filename or parsed.temp_base or Settings.temp_base, reason(error))
     except UnicodeEncodeError:
         log.error("%s: a value is no text in UTF-8 (such as \\ud800)", parsed.config)
     except MemoryError:

@@ -13,7 +13,7 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
 from pogosim.batch.slurm_options import slurm_jobs
-from pogosim.batch.tasks import check_logs_data
+from pogosim.batch.tasks import check_logs_data, found_beside
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
@@ -32,14 +32,19 @@ REFRESHING = 20  # ratio of search time to the time for writing intermediate res
 log = logging.getLogger("pogosim.optimize")
 
 
-def objective_of(settings: Settings) -> Objective:
+def objective_of(settings: Settings, beside: Path) -> Objective:
     """Return the objective functions: those of the file, or else the defaults, with a warning.
+
+    Args:
+        settings: They name the file.
+        beside: Folder of the configuration, where the file is searched, too.
 
     Raises:
         OptimizeError: They cannot be had.
     """
     if settings.objective:
-        return load_objective(settings.objective, settings.objective_func, settings.features_func)
+        path = found_beside(settings.objective, beside)
+        return load_objective(path, settings.objective_func, settings.features_func, settings.objective_names)
     for name in ("objective_func", "features_func"):
         if getattr(settings, name) is not None:
             raise OptimizeError(f"--{name.replace('_', '-')} goes with --objective FILE.py")
@@ -48,6 +53,15 @@ def objective_of(settings: Settings) -> Objective:
         "Yours: --objective FILE.py"
     )
     return Objective()
+
+
+def workers_of(arguments: argparse.Namespace, settings: Settings) -> Workers:
+    """Return what does the runs; `parallelism` says how many at once on this machine, unless --workers does."""
+    jobs = slurm_jobs(arguments)
+    number = arguments.workers
+    if number is None and settings.batch_jobs and jobs is None:
+        number = settings.candidate_jobs * settings.batch_jobs
+    return Workers(settings.backend, number, arguments.scheduler, jobs)
 
 
 def say_where_it_starts(space: Space) -> None:
@@ -74,7 +88,7 @@ def optimize(
     Raises:
         OptimizeError, BatchError, OutputError: It cannot be done.
     """
-    objective = objective_of(settings)
+    objective = objective_of(settings, configuration.path.absolute().parent)
     with_features = settings.optimizer in WITH_FEATURES
     if with_features and settings.qd_init_samples + 1 >= settings.max_evals:
         log.warning(
@@ -83,17 +97,18 @@ def optimize(
             settings.qd_init_samples,
         )
     folder = Path(settings.output_dir)
-    check_outputs(folder, [arguments.config, arguments.simulator_binary, *filter(None, [settings.objective])])
+    own_files = [] if objective.path is None else [str(objective.path)]
+    check_outputs(folder, [arguments.config, arguments.simulator_binary, *own_files])
     check_logs_data(configuration.entries, configuration)
-    workers = Workers(settings.backend, arguments.workers, arguments.scheduler, slurm_jobs(arguments))
     runs = Runs(
         configuration,
         arguments.simulator_binary,
-        arguments.temp_base,
+        settings.temp_base,
         settings.output_dir,
-        workers,
+        workers_of(arguments, settings),
         settings.retries,
-        arguments.keep_temp,
+        settings.keep_temp,
+        settings.retry_new_seed,
     )
     digests = runs.digests | objective.digests
     journal = Journal(folder / JOURNAL, description_of(space, settings, digests), arguments.resume)

@@ -10,7 +10,7 @@ import contextlib
 import fcntl
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -40,6 +40,9 @@ class Evaluation:
         features: By name.
         problem: Why it has failed, or empty.
         timestamp: When it ended: "2025-01-31T12:00:00".
+        base_seeds: Seeds of its runs.
+        effective_seeds: Those that they have had in the end, after failures; empty: it is not known.
+        replacement: The greatest number of a replacement of a seed among its runs; 0: all have their own.
     """
 
     number: int
@@ -50,6 +53,9 @@ class Evaluation:
     features: Mapping[str, float]
     problem: str
     timestamp: str
+    base_seeds: Sequence[int] = ()
+    effective_seeds: Sequence[int] = ()
+    replacement: int = 0
 
     def check(self) -> None:
         """Raise ValueError if it is not what a search wrote."""
@@ -61,6 +67,7 @@ class Evaluation:
             isinstance(self.features, dict) and all(isinstance(value, float) for value in self.features.values()),
             isinstance(self.problem, str),
             isinstance(self.timestamp, str),
+            all(isinstance(seed, int) for seed in (*self.base_seeds, *self.effective_seeds, self.replacement)),
         )
         if not all(are_right):
             raise ValueError
@@ -68,7 +75,8 @@ class Evaluation:
     @property
     def judgement(self) -> Judgement:
         """What came out."""
-        return Judgement(self.fitness, dict(self.features), self.problem)
+        seeds = tuple(self.effective_seeds)
+        return Judgement(self.fitness, dict(self.features), self.problem, seeds, self.replacement)
 
 
 class Journal:

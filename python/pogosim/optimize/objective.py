@@ -8,8 +8,8 @@ import math
 import os
 import sys
 import traceback
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -21,8 +21,8 @@ from pogosim.analysis.displacement import compute_msd_per_agent
 from pogosim.batch.errors import one_line
 from pogosim.batch.identity import file_digest
 from pogosim.optimize.errors import OptimizeError
+from pogosim.optimize.settings import OBJECTIVE_NAMES
 
-OBJECTIVE_NAMES = ("objective_fn", "compute_objective")
 FEATURES_NAME = "fd_fn"
 LARGEST = 1e150  # of a fitness and of features: what is computed from their squares is finite
 
@@ -40,11 +40,23 @@ class Judgement:
         fitness: The objective, to be maximised; None: the candidate has failed.
         features: Its features, by name; empty if there are none.
         problem: Why it has failed, or empty.
+        seeds: Seeds that its runs have had in the end; empty: it is not known.
+        replacement: The greatest number of a replacement of a seed among its runs; 0: all have their own.
     """
 
     fitness: float | None
     features: Mapping[str, float]
     problem: str = ""
+    seeds: tuple[int, ...] = ()
+    replacement: int = 0
+
+    def within(self, domain: Sequence[tuple[float, float]]) -> Judgement:
+        """Return what is said of a candidate if features outside a domain are a failure; one that is empty has none."""
+        for (name, value), (low, high) in zip(self.features.items(), domain, strict=False):
+            if self.fitness is not None and not low <= value <= high:
+                problem = f"{name} is {value:.6g}, outside its domain from {low:g} to {high:g}"
+                return replace(self, fitness=None, problem=problem)
+        return self
 
 
 class WrongValueError(ValueError):
@@ -169,13 +181,16 @@ def names_of(features: Any) -> dict[str, float]:
     return named
 
 
-def load_objective(path: str, objective_name: str | None, features_name: str | None) -> Objective:
+def load_objective(
+    path: str, objective_name: str | None, features_name: str | None, usual: Sequence[str] = OBJECTIVE_NAMES
+) -> Objective:
     """Return the functions in a user's file.
 
     Args:
         path: A Python file.
-        objective_name: Name of the objective; None: `objective_fn`, or else `compute_objective`.
+        objective_name: Name of the objective; None: the first of `usual` that there is.
         features_name: Name of the feature function; None: `fd_fn`, if there is one.
+        usual: Names of objectives.
 
     Raises:
         OptimizeError: There is no such file or function, or it cannot be imported.
@@ -183,7 +198,7 @@ def load_objective(path: str, objective_name: str | None, features_name: str | N
     before = set(sys.modules)
     module = imported(Path(path))
     modules = own_modules(Path(path), set(sys.modules) - before)
-    names = (objective_name,) if objective_name is not None else OBJECTIVE_NAMES
+    names = usual if objective_name is None else (objective_name,)
     fitness = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), None)
     if fitness is None:
         raise OptimizeError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -64,19 +64,16 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
     simulator_s = search.runs.simulator_s
     if best is None:
         log.error("all %d candidates have failed; see the column problem of %s", len(search.history), folder / HISTORY)
+        write_summary(
+            folder, {**summary_of(search, "failed"), "files": {"history": HISTORY, "history_table": HISTORY_TABLE}}
+        )
         search.journal.finish(len(search.history))
         return False
     warn_if_flat(search)
     outcome = fresh_runs(folder, search, best)
     archive = write_archive(folder, search, configuration)
     summary: dict[str, Any] = {
-        "optimizer": search.settings.optimizer,
-        "max_evals": search.settings.max_evals,
-        "evaluations": len(search.history),
-        "failed": sum(e.fitness is None for e in search.history),
-        "runs": search.settings.runs,
-        "seed": search.settings.seed,
-        "seeds": search.settings.seeds,
+        **summary_of(search, "complete"),
         "best_eval": best.number,
         "best_fitness": best.fitness,
         "best_values": best.values,
@@ -106,6 +103,28 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
         log.info("Archive: %s filled; see %s and %s", cells, folder / ARCHIVE, folder / ELITES)
     log.info("Written to %s; run it: %s -c %s", folder, search.runs.program, folder / BEST)
     return True
+
+
+def summary_of(search: Search, status: str) -> dict[str, Any]:
+    """Return what a summary says of any search."""
+    settings = search.settings
+    failed = sum(e.fitness is None for e in search.history)
+    return {
+        "status": status,
+        "optimizer": settings.optimizer,
+        "max_evals": settings.max_evals,
+        "budget": settings.max_evals,
+        "evaluations": len(search.history),
+        "successful_evaluations": len(search.history) - failed,
+        "failed": failed,
+        "failed_evaluations": failed,
+        "runs": settings.runs,
+        "seed": settings.seed,
+        "seeds": settings.seeds,
+        "seed_block_offset": settings.first_seed,
+        "parallelism": {"candidate_jobs": settings.candidate_jobs, "batch_jobs": settings.batch_jobs},
+        "settings": asdict(settings),
+    }
 
 
 def warn_if_flat(search: Search) -> None:
@@ -214,7 +233,7 @@ def fresh_runs(folder: Path, search: Search, best: Evaluation) -> Outcome:
     The greatest of many noisy values is too great: only runs that had no part in choosing the candidate say what it
     does.
     """
-    seeds = search.fresh_seeds()
+    seeds = search.settings.fresh_seeds
     path = folder / BEST_ROWS
     try:
         path.unlink(missing_ok=True)

@@ -32,12 +32,13 @@ BEST_ROWS = "best_results.feather"
 SUMMARY = "summary.json"
 CONVERGENCE = "fitness_vs_eval.png"
 ARCHIVE_TABLE = "archive.csv"
+QD_ARCHIVE = "qd_archive.csv"  # the same elites, in the form that others' scripts read
 ARCHIVE = "archive.png"
 ELITES = "elites"
 ELITE = re.compile(r"\d{2,}(_\d{2,})*\.yaml")  # what configurations of elites are called
 # What a search writes; of pictures, another format, too.
 PICTURES = tuple(Path(name).with_suffix(suffix).name for name in (CONVERGENCE, ARCHIVE) for suffix in (".pdf", ".png"))
-OUTPUTS = (JOURNAL, HISTORY, HISTORY_TABLE, BEST, BEST_ROWS, SUMMARY, ARCHIVE_TABLE, *PICTURES)
+OUTPUTS = (JOURNAL, HISTORY, HISTORY_TABLE, BEST, BEST_ROWS, SUMMARY, ARCHIVE_TABLE, QD_ARCHIVE, *PICTURES)
 NOT_FOR_ONE_RUN = (SECTION, FORMAT, COLUMNS)
 
 
@@ -158,6 +159,11 @@ def write_history(folder: Path, history: Sequence[Evaluation]) -> None:
             "generation": [e.generation for e in history],
             "features": [as_json(dict(e.features)) for e in history],
             "problem": [e.problem for e in history],
+            "status": ["failed" if e.fitness is None else "success" for e in history],
+            "base_seeds": [json.dumps(list(e.base_seeds)) for e in history],
+            "effective_seeds": [json.dumps(list(e.effective_seeds)) for e in history],
+            "max_retry_attempt": [e.replacement for e in history],
+            "error": [e.problem for e in history],
         }
     )
     write(folder / HISTORY, lambda path: lines.to_csv(path, index=False))

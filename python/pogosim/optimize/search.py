@@ -16,10 +16,17 @@ from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import Evaluation, Journal
 from pogosim.optimize.objective import Judgement, Objective
 from pogosim.optimize.optimizers.base import Answer, Floats, Optimizer
-from pogosim.optimize.settings import FRESH, Settings
+from pogosim.optimize.settings import COMMON, Settings
 from pogosim.optimize.variables import Space, Values, as_json
 
 MOST_PROBLEMS = 10  # that are mentioned
+
+# Settings that do not change what a search finds; and those that journals have only where they are not the usual ones.
+IRRELEVANT = (
+    *("retries", "backend", "output_dir", "temp_base", "keep_temp", "candidate_jobs", "batch_jobs"),
+    "objective",  # its digest counts
+)
+ADDED = ("retry_new_seed", "qd_features_domain", "objective_names")
 
 log = logging.getLogger("pogosim.optimize")
 
@@ -103,9 +110,9 @@ class Search:
                 done[i] = self.recalled(known, point)
                 continue
             text = as_json(values)
-            if self.settings.seeds != FRESH and text in same:
+            if self.settings.seeds == COMMON and text in same:
                 copies[i] = same[text]
-            elif self.settings.seeds != FRESH and text in self.judged:
+            elif self.settings.seeds == COMMON and text in self.judged:
                 done[i] = self.written(first + i, generation, point, values, self.judged[text])
             else:
                 same[text] = i
@@ -120,24 +127,14 @@ class Search:
         """Yield the numbers of candidates and what is said of them, as soon as their runs are done."""
         order = list(todo)
         configurations = [self.space.configuration(todo[i]) for i in order]
-        seeds = [self.seeds_of(first + i) for i in order]
+        seeds = [self.settings.seeds_of(first + i) for i in order]
         for finished in self.runs.rows_of(configurations, seeds):
             if finished.rows is None:
                 judgement = Judgement(None, {}, finished.problem)
             else:
                 judgement = self.objective.judge(finished.rows, self.with_features)
-            yield order[finished.number], judgement
-
-    def seeds_of(self, number: int) -> list[int]:
-        """Return the seeds of a candidate's runs: 0, 1, ... as in a batch, or seeds that no other candidate has."""
-        runs = self.settings.runs
-        first = (number - 1) * runs if self.settings.seeds == FRESH else 0
-        return list(range(first, first + runs))
-
-    def fresh_seeds(self) -> list[int]:
-        """Return seeds that no candidate has had."""
-        used = self.settings.runs * (self.settings.max_evals if self.settings.seeds == FRESH else 1)
-        return list(range(used, used + self.settings.final_runs))
+                judgement = judgement.within(self.settings.qd_features_domain)
+            yield order[finished.number], replace(judgement, seeds=finished.seeds, replacement=finished.replacement)
 
     def recalled(self, known: Evaluation, point: Floats) -> Evaluation:
         """Return an evaluation of the journal; the optimiser must have asked for the same point.
@@ -159,7 +156,19 @@ class Search:
         timestamp = time.strftime("%Y-%m-%dT%H:%M:%S")
         features = dict(judgement.features)
         fitness, problem = judgement.fitness, judgement.problem
-        evaluation = Evaluation(number, generation, point.tolist(), values, fitness, features, problem, timestamp)
+        evaluation = Evaluation(
+            number,
+            generation,
+            point.tolist(),
+            values,
+            fitness,
+            features,
+            problem,
+            timestamp,
+            self.settings.seeds_of(number),
+            list(judgement.seeds),
+            judgement.replacement,
+        )
         self.journal.add(evaluation)
         self.judged[as_json(values)] = judgement
         self.progress()
@@ -207,10 +216,13 @@ class Search:
 
 def description_of(space: Space, settings: Settings, digests: dict[str, str]) -> dict[str, Any]:
     """Return what makes two searches the same, for the journal."""
+    usual = Settings()
     same = {
         name: value
         for name, value in vars(settings).items()
-        if name not in ("retries", "backend", "output_dir", "objective")
+        if name not in IRRELEVANT and not (name in ADDED and value == getattr(usual, name))
     }
+    if settings.block != settings.runs:
+        same["seeds per candidate"] = settings.block
     variables = json.loads(json.dumps({v.name: repr(v.domain) for v in space.variables}))
     return {**same, "variables": variables, **{f"{name} digest": text for name, text in digests.items()}}

@@ -10,10 +10,20 @@ from typing import Any
 
 from pogosim.batch.option_words import shown
 from pogosim.optimize.errors import OptimizeError
+from pogosim.yaml_1_2 import plain
 
 SECTION = "optimization"
+STREAM = 0x504F474F  # which random numbers the first seed of blocks is drawn from
 COMMON = "common"
 FRESH = "fresh"
+BLOCKS = "blocks"
+POLICIES = (COMMON, FRESH, BLOCKS)
+LAST_SEED = 2**32 - 1
+
+# The names that are tried for the function of an objective, in this order: those of a file, and those of a map
+# {path, func} without `func`.
+OBJECTIVE_NAMES = ("objective_fn", "compute_objective")
+NAMES_OF_MAP = ("compute_objective", "objective_fn")
 
 
 @dataclass(frozen=True)
@@ -25,12 +35,15 @@ class Settings:
         max_evals: Evaluations, at least 1.
         runs: Runs of each candidate, per combination of the options that remain.
         seed: Seed of the optimiser, 0 to 2^32-1.
-        seeds: "common": all candidates have the runs 0, 1, ... with these seeds. "fresh": each has its own.
+        seeds: "common": all candidates have the runs 0, 1, ... with these seeds. "fresh": each has its own. "blocks":
+            each has a block of its own, with room for replacements; where they begin, the seed of the optimiser says.
+        retry_new_seed: Repeat a failed run with another seed; otherwise, with the same one.
         final_runs: Runs of the best candidate at the end, with seeds that the search has not seen; 0: none.
         sigma0: Standard deviation with which CMA-ES starts, in the unit cube.
         popsize: Candidates per generation; None: as usual for the optimiser.
         qd_shape: Cells of the archive along each feature.
         qd_ranges: Least and greatest value of each feature; empty: see `feature_ranges`.
+        qd_features_domain: The same, and a candidate with features outside has failed; empty: none.
         qd_init_samples: Random candidates at the beginning.
         qd_batch: Candidates per generation afterwards.
         qd_mut_pb: Probability that a mutation changes a variable.
@@ -38,8 +51,13 @@ class Settings:
         retries: How many times a failed run is repeated.
         backend: See `pogosim.batch.backends.Workers`.
         output_dir: Folder of the results.
+        temp_base: Folder for files of single runs.
+        keep_temp: Keep them.
+        candidate_jobs: Candidates that are evaluated at the same time, if `batch_jobs` is not 0.
+        batch_jobs: Runs of each at the same time; 0: one run per processor in all.
         objective: File with the objective; empty: the default one.
-        objective_func: Name of the objective; None: the usual ones.
+        objective_func: Name of the objective; None: the first of `objective_names` that there is.
+        objective_names: See there.
         features_func: Name of the feature function; None: the usual one.
     """
 
@@ -48,11 +66,13 @@ class Settings:
     runs: int = 1
     seed: int = 42
     seeds: str = COMMON
+    retry_new_seed: bool = False
     final_runs: int = 10
     sigma0: float = 0.3
     popsize: int | None = None
     qd_shape: tuple[int, ...] = (48, 48)
     qd_ranges: tuple[tuple[float, float], ...] = ()
+    qd_features_domain: tuple[tuple[float, float], ...] = ()
     qd_init_samples: int = 64
     qd_batch: int = 32
     qd_mut_pb: float = 0.2
@@ -60,9 +80,46 @@ class Settings:
     retries: int = 5
     backend: str = "multiprocessing"
     output_dir: str = "opt_out"
+    temp_base: str = "tmp_opt"
+    keep_temp: bool = False
+    candidate_jobs: int = 1
+    batch_jobs: int = 0
     objective: str = ""
     objective_func: str | None = None
+    objective_names: tuple[str, ...] = OBJECTIVE_NAMES
     features_func: str | None = None
+
+    @property
+    def block(self) -> int:
+        """Seeds that belong to a candidate: those of its runs, and of their replacements."""
+        has_room = self.retry_new_seed or self.seeds == BLOCKS
+        return self.runs * (self.retries + 1 if has_room else 1)
+
+    @property
+    def first_seed(self) -> int:
+        """The first seed of all: 0, or one below 2^31 that follows from the seed of the optimiser."""
+        if self.seeds != BLOCKS:
+            return 0
+        from numpy.random import SeedSequence  # takes a while
+
+        return int(SeedSequence([self.seed, STREAM]).generate_state(1)[0]) >> 1
+
+    def seeds_of(self, candidate: int) -> list[int]:
+        """Return the seeds of the runs of a candidate; candidates are numbered from 1 on."""
+        first = self.first_seed + (0 if self.seeds == COMMON else (candidate - 1) * self.block)
+        return list(range(first, first + self.runs))
+
+    @property
+    def fresh_seeds(self) -> list[int]:
+        """Seeds that no candidate has."""
+        first = self.first_seed + self.block * (1 if self.seeds == COMMON else self.max_evals)
+        return list(range(first, first + self.final_runs))
+
+    @property
+    def seed_count(self) -> int:
+        """Seeds from the first one of all to the last that may be needed, whatever the policy."""
+        of_final = self.final_runs * (self.retries + 1 if self.retry_new_seed else 1)
+        return self.first_seed + self.max_evals * self.block + of_final
 
 
 def whole(least: int, most: int) -> Callable[[Any], int]:
@@ -86,6 +143,13 @@ def real(least: float, most: float) -> Callable[[Any], float]:
         return float(value)
 
     return check
+
+
+def flag(value: Any) -> bool:
+    """Check true or false."""
+    if not isinstance(plain(value), bool):
+        raise ValueError("expected true or false")
+    return bool(plain(value))
 
 
 def text(value: Any) -> str:
@@ -133,7 +197,14 @@ KEYS: dict[tuple[str, ...], tuple[str, Callable[[Any], Any]]] = {
     ("retries",): ("retries", whole(0, 1000)),
     ("backend",): ("backend", text),
     ("output_dir",): ("output_dir", text),
+    ("temp_base",): ("temp_base", text),
+    ("keep_temp",): ("keep_temp", flag),
+    ("retry_new_seed",): ("retry_new_seed", flag),
+    ("parallelism", "candidate_jobs"): ("candidate_jobs", whole(1, 100_000)),
+    ("parallelism", "batch_jobs"): ("batch_jobs", whole(0, 100_000)),
     ("objective",): ("objective", text),
+    ("objective", "path"): ("objective", text),
+    ("objective", "func"): ("objective_func", text),
     ("objective_func",): ("objective_func", text),
     ("features_func",): ("features_func", text),
     ("cmaes", "sigma0"): ("sigma0", real(1e-6, 10.0)),
@@ -141,12 +212,14 @@ KEYS: dict[tuple[str, ...], tuple[str, Callable[[Any], Any]]] = {
     ("popsize",): ("popsize", whole(2, 100_000)),
     ("qd", "shape"): ("qd_shape", shape),
     ("qd", "ranges"): ("qd_ranges", ranges),
+    ("qd", "features_domain"): ("qd_features_domain", ranges),
     ("qd", "init_samples"): ("qd_init_samples", COUNT),
     ("qd", "batch"): ("qd_batch", COUNT),
     ("qd", "mut_pb"): ("qd_mut_pb", real(0.0, 1.0)),
     ("qd", "eta"): ("qd_eta", real(0.0, 1000.0)),
 }
 CHECKS = dict(KEYS.values())
+MAPS = {path[0] for path in KEYS if len(path) > 1}
 # Options by the name that they have on the command line.
 KEYS.update({(name,): (name, check) for name, check in CHECKS.items() if (name,) not in KEYS})
 # Settings of the optimiser in other tools, without a meaning in ours.
@@ -157,7 +230,7 @@ def flattened(section: Mapping[str, Any]) -> dict[tuple[str, ...], Any]:
     """Return the entries of the section by their path; maps below it are opened once."""
     flat: dict[tuple[str, ...], Any] = {}
     for key, value in section.items():
-        if isinstance(value, dict) and key in ("cmaes", "qd"):
+        if isinstance(value, dict) and key in MAPS:
             flat.update({(str(key), str(name)): entry for name, entry in value.items()})
         else:
             flat[(str(key),)] = value
@@ -196,10 +269,14 @@ def settings_from(
         value = options.get(field.name)
         if value is not None:
             chosen[field.name] = checked(CHECKS[field.name], value, f"--{field.name.replace('_', '-')}")
+    if isinstance((section or {}).get("objective"), dict):
+        chosen["objective_names"] = NAMES_OF_MAP
     settings = Settings(**chosen)
-    if settings.seeds not in (COMMON, FRESH):
-        raise OptimizeError(f"--seeds: expected {COMMON} or {FRESH}, found '{settings.seeds}'")
-    if settings.max_evals * settings.runs + settings.final_runs >= 2**32:
+    if settings.seeds not in POLICIES:
+        raise OptimizeError(f"--seeds: expected {', '.join(POLICIES[:-1])} or {BLOCKS}, found '{settings.seeds}'")
+    if settings.qd_ranges and settings.qd_features_domain:
+        raise OptimizeError("--qd-ranges and --qd-features-domain both say the range of features; remove one of them")
+    if settings.seed_count > LAST_SEED:
         raise OptimizeError(
             f"--max-evals: {settings.max_evals} times {settings.runs} runs need more seeds than there are"
         )

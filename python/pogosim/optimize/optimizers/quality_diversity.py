@@ -45,7 +45,7 @@ def feature_ranges(features: Floats, settings: Settings) -> list[tuple[float, fl
 
     Args:
         features: Features of the first candidates, of shape (candidates, features).
-        settings: See `qd_ranges`, `qd_shape`.
+        settings: See `qd_ranges`, `qd_features_domain`, `qd_shape`.
 
     Raises:
         OptimizeError: The settings are for another number of features.
@@ -54,11 +54,12 @@ def feature_ranges(features: Floats, settings: Settings) -> list[tuple[float, fl
     if len(settings.qd_shape) != count:
         example = ",".join(["20"] * count)
         raise OptimizeError(f"--qd-shape: there are {count} features, so expected as many numbers, such as {example}")
-    if settings.qd_ranges:
-        if len(settings.qd_ranges) != count:
+    if known := settings.qd_features_domain or settings.qd_ranges:
+        if len(known) != count:
+            name = "--qd-features-domain" if settings.qd_features_domain else "--qd-ranges"
             example = ",".join(["0:1"] * count)
-            raise OptimizeError(f"--qd-ranges: there are {count} features, so expected as many, such as {example}")
-        return list(settings.qd_ranges)
+            raise OptimizeError(f"{name}: there are {count} features, so expected as many, such as {example}")
+        return list(known)
     if features.min() >= 0.0 and features.max() <= 1.0:
         return [(0.0, 1.0)] * count
     low, high = features.min(axis=0), features.max(axis=0)
