@@ -82,11 +82,12 @@ def test_wrong_seeds_are_refused(options: list[str], said: str, tmp_path: Path) 
 
 
 def test_replacement_seeds_follow_all_seeds_and_no_two_attempts_share_one() -> None:
-    assert [replacements(range(4), run, 3) for run in range(4)] == [(4 + r, 8 + r, 12 + r) for r in range(4)]
-    assert replacements([10, 3, 7], 1, 2) == (12, 15)
-    every = [seed for run in range(50) for seed in (run, *replacements(range(50), run, 5))]
+    assert replacements(range(4), 3) == [(4 + r, 8 + r, 12 + r) for r in range(4)]
+    assert replacements([10, 3, 7], 2) == [(11, 14), (12, 15), (13, 16)]
+    every = [*range(50), *(seed for own in replacements(range(50), 5) for seed in own)]
     assert sorted(every) == list(range(300))
-    assert replacements([LARGEST - 1], 0, 5) == (LARGEST,)
+    assert replacements([LARGEST - 1], 5) == [(LARGEST,)]
+    assert replacements([LARGEST], 5) == [()]
 
 
 def test_run_that_fails_has_another_seed_which_its_row_says(tmp_path: Path) -> None:

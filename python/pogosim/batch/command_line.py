@@ -64,7 +64,7 @@ def run_batch(arguments: argparse.Namespace) -> Report:
     runner.run_all()
     tell_outputs(runner.generated)
     if runner.failures:
-        raise RunsFailedError(entries_of(runner))
+        raise RunsFailedError("runs failed", entries_of(runner))
     return entries_of(runner)
 
 

@@ -25,13 +25,13 @@ class RunsFailedError(Exception):
 
     Attributes:
         report: What the command prints as JSON.
-        said: What is to be said of it; empty: all is said.
+        is_said: Whether the message has been said already.
     """
 
-    def __init__(self, report: Report, said: str = "") -> None:
-        super().__init__(said or "runs failed")
+    def __init__(self, message: str, report: Report, is_said: bool = True) -> None:
+        super().__init__(message)
         self.report = report
-        self.said = said
+        self.is_said = is_said
 
 
 def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
@@ -81,8 +81,8 @@ def called(command: Callable[[], Report], report: Report, folder: str) -> tuple[
         return DONE, ""
     except RunsFailedError as error:
         report.update(error.report)
-        if error.said:
-            log.error("%s", error.said)
+        if not error.is_said:
+            log.error("%s", error)
         return RUNS_FAILED, str(error)
     except NothingSelectedError as error:
         code, message = NO_SUCH_OUTPUT, str(error)

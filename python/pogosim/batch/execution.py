@@ -46,6 +46,7 @@ class Execution:
         self.configuration = configuration
         self.tasks = {task.key: task for combination in combinations for task in combination.tasks}
         self.first_of = {task.key: combination for combination in reversed(combinations) for task in combination.tasks}
+        self.numbers = {id(combination): number for number, combination in enumerate(combinations)}
         self.program = program  # its name in messages
         self.layout = layout
         self.shows_warnings = shows_warnings
@@ -112,7 +113,7 @@ class Execution:
 
     def number_of(self, combination: Combination) -> int:
         """Return which one a combination is, from 0 on."""
-        return next(i for i, one in enumerate(self.combinations) if one is combination)
+        return self.numbers[id(combination)]
 
     def options_of(self, number: int) -> dict[str, Any]:
         """Return what tells a combination from the others: keys and their values."""

@@ -63,18 +63,23 @@ def listed_seeds(seeds: Iterable[int], name: str) -> Sequence[int]:
             raise BatchError(f"{expected}; found {shown(seed)}")
     if not found:
         raise BatchError(f"{expected}; found none")
-    if len(set(found)) < len(found):
-        twice = next(seed for number, seed in enumerate(found) if seed in found[:number])
-        raise BatchError(f"{name}: seed {twice} is there twice; its runs would be the same")
+    known: set[int] = set()
+    for seed in found:
+        if seed in known:
+            raise BatchError(f"{name}: seed {seed} is there twice; its runs would be the same")
+        known.add(seed)
     return found
 
 
-def replacements(seeds: Sequence[int], run: int, retries: int) -> tuple[int, ...]:
-    """Return the seeds of the second, third, ... attempt of a run whose earlier ones failed.
+def replacements(seeds: Sequence[int], retries: int) -> list[tuple[int, ...]]:
+    """Return the seeds of the second, third, ... attempt of each run, after failures.
 
     The replacement `a` = 1, 2, ... of run `r` of `n` is max(seeds) + 1 + (a - 1) n + r: the seeds that follow all those
     of the batch, so no two attempts have the same one. With the seeds 0 to n - 1, that is r + a n. There are none above
     2^32 - 1: such a run has fewer attempts.
     """
-    first = max(seeds) + 1 + run
-    return tuple(seed for seed in (first + a * len(seeds) for a in range(retries)) if seed <= LARGEST)
+    first, count = max(seeds) + 1, len(seeds)
+    return [
+        tuple(seed for seed in (first + run + a * count for a in range(retries)) if seed <= LARGEST)
+        for run in range(count)
+    ]

@@ -116,7 +116,8 @@ def task(arguments: argparse.Namespace) -> Report:
             gui=arguments.gui,
         )
     except TaskError as error:
-        raise RunsFailedError({"config": arguments.config, "seed": arguments.seed}, str(error)) from None
+        report = {"config": arguments.config, "seed": arguments.seed}
+        raise RunsFailedError(str(error), report, is_said=False) from None
     tell(f"Done: {artifact.data}")
     return {"config": arguments.config, "output_dir": str(artifact.folder), **artifact.manifest}
 
@@ -149,7 +150,8 @@ def run(arguments: argparse.Namespace) -> Report:
         manifest = run_campaign(runner).manifest_path
     except LocalCampaignError as error:
         tell_outputs(runner.generated)
-        raise RunsFailedError({**entries_of(runner), "manifest": str(error.result.manifest_path)}, str(error)) from None
+        report = {**entries_of(runner), "manifest": str(error.result.manifest_path)}
+        raise RunsFailedError(str(error), report) from None
     tell_outputs(runner.generated)
     return {**entries_of(runner), "manifest": str(manifest)}
 

@@ -71,9 +71,7 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
         outputs[MESSAGE_LOG] = basename(entries[MESSAGE_LOG], "messages.feather")
     text = dump_configuration(world) if world else ""
     digest = world_digest(world, (Path.cwd(), settings.configuration_folder), settings.digests)
-    others = [
-        replacements(seeds, run, settings.retries) if settings.retry_new_seed else () for run in range(len(seeds))
-    ]
+    others = replacements(seeds, settings.retries) if settings.retry_new_seed else [()] * len(seeds)
     return [
         Task(
             key=run_key(digest, settings.program_digest, seed),
