@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
-from batches import results, run_main, script, subcommand, write_options
+from batches import COMMAND, ENVIRONMENT, results, run_main, script, subcommand, write_options
 from pogosim.pogobatch import PogobatchError, TaskError, discover_task_artifacts, execute_task, merge_task_artifacts
 from pogosim.utils import load_dataframe
 from running import Run, example
@@ -266,3 +271,44 @@ def test_functions_do_what_the_subcommands_do(tmp_path: Path) -> None:
     rows, metadata = load_dataframe(output)
     assert rows[["run", "seed", "retry_attempt"]].drop_duplicates().to_numpy().tolist() == [[1, 4, 0]]
     assert metadata["combinations"][0]["columns"] == {"objects.robots.nb": 3, "arena_file": "disk"}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")
+def test_interrupted_task_ends_its_simulator_and_has_no_manifest(tmp_path: Path) -> None:
+    write_options(tmp_path, {"simulation_time": 1e6})
+    words = ["task", "-c", "many.yaml", "-S", PROGRAM, "--seed", "1", "-o", "one"]
+    process = subprocess.Popen([*COMMAND, *words], cwd=tmp_path, env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
+    configuration = str(tmp_path / "one" / "pogobatch_effective.yaml")
+    for _ in range(600):
+        if processes_with(configuration):
+            break
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert (process.returncode, errors) == (130, "pogobatch task: interrupted\n")
+    assert processes_with(configuration) == []
+    assert not (tmp_path / "one" / "pogobatch_task.json").exists()
+
+
+def processes_with(text: str) -> list[str]:
+    """Return the processes whose command line has a text."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        with contextlib.suppress(OSError):
+            if text.encode() in path.read_bytes():
+                found.append(path.parent.name)
+    return found
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_results_in_other_formats_are_merged_but_not_appended_to(suffix: str, tmp_path: Path) -> None:
+    write_options(tmp_path, {"result_filename_format": f"all.{suffix}"})
+    for seed in (1, 2):
+        assert task(tmp_path, seed, "--run-index", str(seed)).code == 0
+    assert merge(tmp_path, "tasks").code == 0
+    rows, metadata = load_dataframe(tmp_path / "results" / f"all.{suffix}")
+    assert rows[["run", "seed"]].drop_duplicates().to_numpy().tolist() == [[1, 1], [2, 2]]
+    assert '"task_count": 2' in str(metadata["pogobatch_manifest"])
+    result = merge(tmp_path, "tasks", "--append")
+    assert (result.code, result.errors.count("\n")) == (2, 1)
+    assert "--append needs results in Feather; join all runs anew, without it" in result.errors

@@ -89,8 +89,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
         do = run_batch
     start_logging(getattr(parsed, "verbose", False), prog)
     catch_signals()
-    folder: str = getattr(parsed, "temp_base", "") or getattr(parsed, "output_dir", ".")
-    return ended(name or "run", lambda: do(parsed), getattr(parsed, "json", False), folder)
+    return ended(name or "run", lambda: do(parsed), getattr(parsed, "json", False), getattr(parsed, "temp_base", None))
 
 
 def help_of(words: Sequence[str], prog: str) -> int:

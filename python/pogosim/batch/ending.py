@@ -55,25 +55,25 @@ def start_logging(verbose: bool, prog: str) -> None:
     log.setLevel(logging.DEBUG if verbose else logging.INFO)
 
 
-def ended(operation: str, command: Callable[[], Report], as_json: bool, folder: str) -> int:
+def ended(operation: str, command: Callable[[], Report], as_json: bool, kept: str | None) -> int:
     """Run a command to its end; returns its exit code.
 
     Args:
         operation: Its name.
         command: Returns what it has done.
         as_json: Print that as JSON, with `operation`, `ok` and perhaps `error`.
-        folder: Where it keeps files; for messages.
+        kept: Folder of finished runs, which stay if it is interrupted; None: there are none.
     """
     report: Report = {}
     with contextlib.redirect_stdout(sys.stderr) if as_json else contextlib.nullcontext():
-        code, error = called(command, report, folder)
+        code, error = called(command, report, kept)
     if as_json:
         problem = {"error": error} if error else {}
         tell(json.dumps({"operation": operation, "ok": code == DONE, **report, **problem}, ensure_ascii=False))
     return code
 
 
-def called(command: Callable[[], Report], report: Report, folder: str) -> tuple[int, str]:
+def called(command: Callable[[], Report], report: Report, kept: str | None) -> tuple[int, str]:
     """Call a command, and say what keeps it from ending well; returns the exit code, and the message."""
     code = WRONG
     try:
@@ -89,7 +89,7 @@ def called(command: Callable[[], Report], report: Report, folder: str) -> tuple[
     except BatchError as error:
         message = str(error)
     except OSError as error:
-        message = f"{error.filename or folder}: {reason(error)}"
+        message = f"{error.filename or kept or 'the files'}: {reason(error)}"
     except RuntimeError as error:
         if "start new thread" not in str(error):
             raise
@@ -97,6 +97,7 @@ def called(command: Callable[[], Report], report: Report, folder: str) -> tuple[
     except MemoryError:
         message = "not enough memory for this many combinations and runs; make several batches"
     except KeyboardInterrupt:
-        code, message = INTERRUPTED, f"interrupted; finished runs are kept in {folder}: the same command continues"
+        advice = f"; finished runs are kept in {kept}: the same command continues" if kept else ""
+        code, message = INTERRUPTED, f"interrupted{advice}"
     log.error("%s", message)
     return code, message
