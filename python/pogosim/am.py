@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from pogosim.analysis.bond_order import bond_order
 from pogosim.analysis.correlations import correlation_length, pair_correlation, vector_correlation
@@ -17,6 +18,7 @@ from pogosim.analysis.milling import centre_of_mass, milling
 from pogosim.analysis.motion import velocity
 from pogosim.analysis.order import local_alignment, nematic_order, polar_order
 from pogosim.analysis.structure_factor import structure_factor
+from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
 __all__ = [
@@ -40,6 +42,11 @@ __all__ = [
     "velocity_field",
     "velocity_fields",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Find a function of `pogosim.compat`."""
+    return attribute("am", name)
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.am") -> int:

@@ -7,12 +7,19 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from pogosim.analysis.coverage import coverage_over_time, covered_area
 from pogosim.analysis.voronoi import voronoi_areas, voronoi_cells
+from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
 __all__ = ["coverage_over_time", "covered_area", "main", "voronoi_areas", "voronoi_cells"]
+
+
+def __getattr__(name: str) -> Any:
+    """Find a function of `pogosim.compat`."""
+    return attribute("coverage", name)
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.coverage") -> int:

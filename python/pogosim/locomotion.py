@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from pogosim.analysis.density import count_density, kernel_density
 from pogosim.analysis.displacement import (
@@ -26,6 +27,7 @@ from pogosim.analysis.persistence import (
     persistence_time,
     velocity_autocorrelation,
 )
+from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
 __all__ = [
@@ -51,6 +53,11 @@ __all__ = [
     "velocity",
     "velocity_autocorrelation",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Find a function of `pogosim.compat`."""
+    return attribute("locomotion", name)
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "locomotion") -> int:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
 from pogosim.analysis.neighbourhood import (
@@ -18,6 +19,7 @@ from pogosim.analysis.neighbourhood import (
     neighbour_pairs,
     neighbours,
 )
+from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
 __all__ = [
@@ -32,6 +34,11 @@ __all__ = [
     "neighbour_pairs",
     "neighbours",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Find a function of `pogosim.compat`."""
+    return attribute("neighbors", name)
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.neighbors") -> int:

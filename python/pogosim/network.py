@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from pogosim.analysis.laplacian import Spectrum, largest_component, spectrum
 from pogosim.analysis.network import averaged_spectra, contact_time_s, graph_over_time, instantaneous_spectra
+from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
 __all__ = [
@@ -22,6 +24,11 @@ __all__ = [
     "main",
     "spectrum",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Find a function of `pogosim.compat`."""
+    return attribute("network", name)
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "python -m pogosim.network") -> int:

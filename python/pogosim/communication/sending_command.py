@@ -26,9 +26,17 @@ def parser(prog: str) -> Parser:
         description="Prints the chance to send, per tick, at which most messages arrive in a cluster of robots that "
         "all send as often: the maximum of c p P(p), with P of a law of reception (docs/communication.md).",
     )
-    made.add_argument("-c", "--cluster", type=cluster, required=True, help="robots in the cluster, the sender included")
     made.add_argument(
-        "-m", "--msg-size", type=positive, required=True, help="size of messages with their header, bytes"
+        "-c",
+        "--cluster",
+        "--cluster-size",
+        "--cluster_size",
+        type=cluster,
+        required=True,
+        help="robots in the cluster, the sender included",
+    )
+    made.add_argument(
+        "-m", "--msg-size", "--msg_size", type=positive, required=True, help="size of messages with their header, bytes"
     )
     made.add_argument(
         "--law",
@@ -48,7 +56,9 @@ def parser(prog: str) -> Parser:
         metavar="HZ",
         help="ticks per second (%(default)g, as in the article; a program that does not set main_loop_hz has 60)",
     )
-    made.add_argument("-u", "--no-clip", action="store_true", help="print the maximum of the formula even if above 1")
+    made.add_argument(
+        "-u", "--no-clip", "--no_clip", action="store_true", help="print the maximum of the formula even if above 1"
+    )
     return made
 
 

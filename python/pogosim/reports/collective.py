@@ -16,7 +16,7 @@ from pogosim.analysis.trajectories import Trajectories, need_columns
 from pogosim.command.parser import warn
 from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
 from pogosim.reports.collective_metrics import METRICS, Metric
-from pogosim.reports.collective_summary import write_summaries
+from pogosim.reports.collective_summary import write_details, write_summaries
 from pogosim.reports.collective_swarm import Settings, Swarm, Vortices
 from pogosim.reports.figures import groups_of
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
@@ -82,9 +82,11 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
             write_table(joined[metric.key], folder / f"{metric.key}.csv", options.input)
         draw_metric(metric, runs, tables[metric.key], folder)
     draw_vorticity_fields(first, fields, folder)
-    write_summaries(folder, runs, tables, settings)
-    with (folder / "metrics.pkl").open("wb") as file:
-        pickle.dump(joined, file, protocol=4)
+    write_summaries(folder, runs, tables)
+    if not options.no_extended_infos:
+        write_details(folder, runs, settings)
+        with (folder / "metrics.pkl").open("wb") as file:
+            pickle.dump(joined, file, protocol=4)
 
 
 def joined_table(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame]) -> pd.DataFrame:

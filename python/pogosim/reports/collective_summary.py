@@ -15,10 +15,8 @@ from pogosim.reports.collective_swarm import Settings
 from pogosim.reports.figures import groups_of
 
 
-def write_summaries(
-    folder: Path, runs: Sequence[Trajectories], tables: Mapping[str, Sequence[pd.DataFrame]], settings: Settings
-) -> None:
-    """Write what all runs have in common, what the runs of each combination have, and what the numbers mean."""
+def write_summaries(folder: Path, runs: Sequence[Trajectories], tables: Mapping[str, Sequence[pd.DataFrame]]) -> None:
+    """Write what all runs have in common, and what the runs of each combination have."""
     numbers = [
         {
             (metric.key, name): value
@@ -34,6 +32,10 @@ def write_summaries(
         members = [numbers[index] for index, run in enumerate(runs) if any(run is other for other in own)]
         per_arena += [f"{name}: {counted(len(own), 'run')}", *lines(members), ""]
     write(folder / "SUMMARY_per_arena.txt", per_arena[:-1])
+
+
+def write_details(folder: Path, runs: Sequence[Trajectories], settings: Settings) -> None:
+    """Write what the numbers mean."""
     write(folder / "SUMMARY_metric_details.txt", details(runs, settings))
 
 

@@ -15,12 +15,15 @@ def analysis_parser(prog: str, description: str) -> Parser:
     parser.add_argument(
         "-i",
         "--input",
+        "--inputFile",
         nargs="+",
         default=["results/result.feather"],
         metavar="FILE",
         help="data file of a run or a batch, several, or a pattern in quotes (results/result.feather)",
     )
-    parser.add_argument("-o", "--output-dir", default=".", metavar="DIR", help="folder for tables and figures (.)")
+    parser.add_argument(
+        "-o", "--output-dir", "--outputDir", default=".", metavar="DIR", help="folder for tables and figures (.)"
+    )
     parser.add_argument("--category", metavar="NAME", help="objects to analyse (robots, or all with a program)")
     parser.add_argument(
         "--rc", type=positive, metavar="MM", help="neighbours are closer than this (communication_radius + 2 radius)"
@@ -145,6 +148,7 @@ def collective(prog: str) -> Parser:
     add("--aligncorr-dr", type=positive, default=2.0, metavar="MM", help="width of its bins (%(default)g)")
     add("--aligncorr-fluctuations", action="store_true", help="subtract the mean of all robots first")
     add("-N", "--no-csv", action="store_true", help="do not write CSV files")
+    add("--no-extended-infos", action="store_true", help="do not write SUMMARY_metric_details.txt and metrics.pkl")
     return own
 
 
@@ -154,12 +158,15 @@ def messages(prog: str) -> Parser:
     parser.add_argument(
         "-i",
         "--input",
+        "--inputFile",
         nargs="+",
         required=True,
         metavar="FILE",
         help="message log of a run (message_log of its configuration), several, or a pattern in quotes",
     )
-    parser.add_argument("-o", "--output-dir", default=".", metavar="DIR", help="folder for tables and figures (.)")
+    parser.add_argument(
+        "-o", "--output-dir", "--outputDir", default=".", metavar="DIR", help="folder for tables and figures (.)"
+    )
     parser.add_argument("--category", metavar="NAME", help="senders to analyse (all)")
     parser.add_argument(
         "--bin", type=positive, default=10.0, metavar="MM", help="width of the bins of distance (%(default)g)"
