@@ -32,10 +32,18 @@ def say(*lines: object) -> None:
     Raises:
         OSError: The standard output cannot be written. Nothing more is written to it, then.
     """
+    say_text("\n".join(map(printable, lines)))
+
+
+def say_text(text: str) -> None:
+    """Print a text as it is, however long; what the terminal cannot show is escaped.
+
+    Raises:
+        OSError: The standard output cannot be written. Nothing more is written to it, then.
+    """
     if sys.stdout is None:
         return
     encoding = sys.stdout.encoding or "utf-8"
-    text = "\n".join(map(printable, lines))
     try:
         print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
     except OSError:

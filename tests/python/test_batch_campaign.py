@@ -85,8 +85,10 @@ def test_failures_are_an_error_that_lists_them_and_the_results_have_the_others(t
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"seeds": []}, "--seeds: expected whole numbers from 0 to 4294967295; found none"),
-        ({"seeds": [1, 1]}, "--seeds: seed 1 is there twice"),
+        ({"seeds": []}, "seeds: expected whole numbers from 0 to 4294967295; found none"),
+        ({"seeds": [1, 1]}, "seeds: seed 1 is there twice"),
+        ({"seeds": None}, "seeds: expected whole numbers from 0 to 4294967295, such as range(10); found None"),
+        ({"seeds": "configured"}, "seeds: expected whole numbers"),
         ({"seeds": [2**32]}, "found 4294967296"),
         ({"jobs": -1}, "jobs: expected a whole number of at least 0; found -1"),
         ({"retries": -1}, "--retries: expected a whole number of at least 0"),
@@ -104,6 +106,22 @@ def test_wrong_arguments_are_refused_before_anything_is_written(
         campaign(tmp_path, **wrong)
     assert said in str(caught.value)
     assert results(tmp_path) == {}
+
+
+@pytest.mark.parametrize("wrong", [5, None, "", b"x", ["a"], "a\0b"])
+def test_arguments_of_another_kind_are_refused_by_name(wrong: Any, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    paths = dict.fromkeys(("config_path", "simulator_binary", "output_dir", "temp_base"), "x")
+    for name in paths:
+        with pytest.raises(PogobatchError, match=rf"^{name}: expected the path of a file"):
+            run_local_campaign(**{**paths, name: wrong}, seeds=[1])
+    for function in (pogobatch.build_combinations, lambda path: pogobatch.discover_task_artifacts([path])):
+        with pytest.raises(PogobatchError, match="expected the path of a file"):
+            function(wrong)
+    functions = (expand_combinations, count_combinations, resolve_batch_defaults, compute_result_filename)
+    for read in (*functions, compute_extra_columns):
+        with pytest.raises(PogobatchError, match=r"^config: expected a map of keys and values"):
+            read(wrong)
 
 
 @pytest.mark.parametrize("wanted", ["normal", "quiet", "verbose"])

@@ -131,9 +131,19 @@ def test_launcher_runs_one_configuration_with_chosen_seeds(folder: Path) -> None
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"runs": 0}, {"runs": True}, {"retries": -1}, {"backend": "none"}, {"workers": 0}, {"seed_from": "x"}],
+    [
+        {"runs": 0},
+        {"runs": True},
+        {"runs": None},
+        {"runs": 2, "seeds": [1, 2, 3]},
+        {"seeds": [2, 2], "runs": None},
+        {"retries": -1},
+        {"backend": "none"},
+        {"workers": 0},
+        {"seed_from": "x"},
+    ],
 )
 def test_wrong_argument_is_an_error(wrong: dict[str, Any], folder: Path) -> None:
     arguments: dict[str, Any] = {"runs": 1, **wrong}
-    with pytest.raises(BatchError, match="expected"):
+    with pytest.raises(BatchError, match=r"expected|twice"):
         PogobotBatchRunner(str(folder / "many.yaml"), simulator_binary="x", temp_base="t", output_dir="o", **arguments)

@@ -129,6 +129,18 @@ def test_plan_says_what_run_does_and_does_nothing(tmp_path: Path) -> None:
     assert (done["operation"], done["ok"], done["manifest"]) == ("run", True, "results/pogobatch_run.json")
 
 
+def test_json_is_whole_however_many_runs_there_are_and_whatever_their_names(tmp_path: Path) -> None:
+    columns = ["label"]
+    write_options(
+        tmp_path, {"label": {"batch_options": ["a\x1b[2J\u202e", "\U000e0001"]}, "result_new_columns": columns}
+    )
+    shown = plan(tmp_path, "-r", "500", "--json")
+    entries = report(shown)
+    assert (len(entries["tasks"]), entries["task_count"]) == (2000, 2000)
+    assert entries["tasks"][0]["batch_choices"]["label"] == "a\x1b[2J\u202e"
+    assert shown.output.isascii()
+
+
 def test_plan_warns_and_refuses_as_run_does(tmp_path: Path) -> None:
     write_options(tmp_path, {"result_new_columns": []})
     said = "no column tells its combinations apart; add to result_new_columns: objects.robots.nb"

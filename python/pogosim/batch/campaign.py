@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pogosim
-from pogosim.batch.errors import BatchError, at_least
+from pogosim.batch.errors import BatchError, at_least, given
 from pogosim.batch.manifests import CAMPAIGN, CAMPAIGN_VERSION, check_campaign, write_json
 from pogosim.batch.runner import PogobotBatchRunner
+from pogosim.batch.seeds import listed_seeds
 from pogosim.outputs import PathLike
 
 
@@ -101,18 +102,18 @@ def run_local_campaign(
         LocalCampaignError: Runs failed.
     """
     runner = PogobotBatchRunner(
-        str(config_path),
+        str(given.path("config_path", config_path)),
         None,
-        str(simulator_binary),
-        str(temp_base),
-        str(output_dir),
+        str(given.path("simulator_binary", simulator_binary)),
+        str(given.path("temp_base", temp_base)),
+        str(given.path("output_dir", output_dir)),
         backend=backend,
         keep_temp=keep_temp,
         retries=retries,
         gui=gui,
         only_output=only_output or "",
         workers=at_least(0, jobs, "jobs") or None,
-        seeds=seeds,
+        seeds=listed_seeds(seeds, "seeds"),
         retry_new_seed=retry_new_seed,
         with_seeds=True,
         progress=progress,

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any, NoReturn
 
-from pogosim.batch.errors import BatchError, NothingSelectedError, reason, tell
+from pogosim.batch.errors import BatchError, NothingSelectedError, reason
 from pogosim.batch.run_options import DONE, INTERRUPTED, NO_SUCH_OUTPUT, RUNS_FAILED, WRONG
-from pogosim.lines import LineFormatter
+from pogosim.lines import LineFormatter, say_text
 
 log = logging.getLogger("pogobatch")
 
@@ -69,7 +69,8 @@ def ended(operation: str, command: Callable[[], Report], as_json: bool, kept: st
         code, error = called(command, report, kept)
     if as_json:
         problem = {"error": error} if error else {}
-        tell(json.dumps({"operation": operation, "ok": code == DONE, **report, **problem}, ensure_ascii=False))
+        with contextlib.suppress(OSError):  # the reader has gone
+            say_text(json.dumps({"operation": operation, "ok": code == DONE, **report, **problem}))
     return code
 
 

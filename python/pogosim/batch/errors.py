@@ -7,6 +7,7 @@ import errno
 import operator
 import os
 from pathlib import Path
+from typing import Any
 
 from pogosim.arguments import Arguments, shown
 from pogosim.lines import say
@@ -55,7 +56,7 @@ def tell(text: str) -> None:
         say(text)
 
 
-def at_least(smallest: int, value: int, name: str) -> int:
+def at_least(smallest: int, value: Any, name: str) -> int:
     """Return a whole number.
 
     Raises:

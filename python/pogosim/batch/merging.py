@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError, cannot
+from pogosim.batch.errors import BatchError, cannot, given
 from pogosim.batch.manifests import TASK, read_manifest
 from pogosim.batch.names import is_linked_out, leads_out
 from pogosim.batch.parts import OF_CAMPAIGNS, Part, RunFile
@@ -31,12 +31,13 @@ def discover_task_artifacts(inputs: Iterable[PathLike]) -> list[TaskArtifact]:
         BatchError: One is not there, or damaged; or there are no runs in it.
     """
     found: dict[Path, TaskArtifact] = {}
-    for given in map(Path, [inputs] if isinstance(inputs, (str, Path)) else inputs):
-        if not given.exists():
-            raise BatchError(f"{given} does not exist; expected a folder with runs, or a {TASK}")
-        paths = sorted(given.rglob(TASK)) if given.is_dir() else [given]
+    for name in [inputs] if isinstance(inputs, (str, Path)) else inputs:
+        place = given.path("inputs", name)
+        if not place.exists():
+            raise BatchError(f"{place} does not exist; expected a folder with runs, or a {TASK}")
+        paths = sorted(place.rglob(TASK)) if place.is_dir() else [place]
         if not paths:
-            raise BatchError(f"there is no {TASK} in {given}; expected a folder with runs of pogobatch")
+            raise BatchError(f"there is no {TASK} in {place}; expected a folder with runs of pogobatch")
         for path in paths:
             if path.resolve() not in found:
                 found[path.resolve()] = TaskArtifact(path.parent, read_manifest(path))
@@ -77,10 +78,11 @@ def merge_task_artifacts(
     if not artifacts:
         raise BatchError("there are no runs to merge")
     refuse_same_runs(artifacts)
+    folder = given.path("output_dir", output_dir)
     by_output: dict[str, list[TaskArtifact]] = {}
     for artifact in artifacts:
-        by_output.setdefault(output_of(artifact, Path(output_dir)), []).append(artifact)
-    text = None if config_path is None else Configuration(config_path).text
+        by_output.setdefault(output_of(artifact, folder), []).append(artifact)
+    text = None if config_path is None else Configuration(given.path("config_path", config_path)).text
     for artifact in artifacts:
         check_columns(schema_of_run(artifact), list(columns_of(artifact)), str(artifact.folder), OF_CAMPAIGNS)
     parts = {output: parts_of(own) for output, own in by_output.items()}

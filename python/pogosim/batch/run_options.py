@@ -100,15 +100,19 @@ def check_names(arguments: argparse.Namespace) -> None:
             raise BatchError(f"{flag}: the name {value!a} has a line break or bytes that are not UTF-8; rename it")
 
 
-def asked_seeds(arguments: argparse.Namespace) -> Sequence[int] | None:
-    """Return the seeds that --seed or --seeds ask for; None: neither was given.
+def asked_seeds(arguments: argparse.Namespace) -> Sequence[int] | str | None:
+    """Return the seeds that --seed or --seeds ask for, or, if there is no --runs either, the configuration.
 
     Raises:
         BatchError: They are wrong.
     """
+    from pogosim.batch.runner import CONFIGURED
+
     if arguments.seeds is not None:
         return seeds_between(arguments.seeds, "--seeds")
-    return None if arguments.seed is None else [arguments.seed]
+    if arguments.seed is not None:
+        return [arguments.seed]
+    return CONFIGURED if arguments.runs is None else None
 
 
 def runner_of(arguments: argparse.Namespace, is_campaign: bool) -> PogobotBatchRunner:

@@ -37,6 +37,9 @@ SIMULATOR_OUTPUTS = {"normal": QUIET, "quiet": QUIET, "verbose": ("-v",)}
 log = logging.getLogger("pogobatch")
 
 
+CONFIGURED = "configured"  # in place of seeds: see PogobotBatchRunner
+
+
 class PogobotBatchRunner:
     """Runs a program with every combination of the options in a configuration, several times each.
 
@@ -46,7 +49,7 @@ class PogobotBatchRunner:
 
     Args:
         multi_config_file: YAML file with options (`batch_options` and others).
-        runs: Runs per combination, at least 1; None: as many as there are seeds.
+        runs: Runs per combination, at least 1; None where `seeds` says it.
         simulator_binary: Program compiled for Pogosim.
         temp_base: Folder for files of single runs. Finished runs of an unfinished batch are kept there.
         output_dir: Folder of the results.
@@ -61,8 +64,8 @@ class PogobotBatchRunner:
         workers: Runs at the same time; None: one per processor.
         scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
         slurm_jobs: Jobs of SLURM that do the runs.
-        seeds: Seed of each run; None: those of `_rundr` in the configuration if `runs` is None, too, or else as
-            `seed_from` says.
+        seeds: Seed of each run; None: as `seed_from` says; CONFIGURED: those of `_rundr` in the configuration, or else
+            one run.
         retry_new_seed: Repeat a failed run with another seed, see `pogosim.batch.seeds.replacements`; otherwise, with
             the same one.
         with_seeds: Add the columns `seed` and `retry_attempt` to the results, and a manifest to their metadata.
@@ -99,15 +102,22 @@ class PogobotBatchRunner:
         workers: int | None = None,
         scheduler: str | None = None,
         slurm_jobs: SlurmJobs | None = None,
-        seeds: Iterable[int] | None = None,
+        seeds: Iterable[int] | str | None = None,
         retry_new_seed: bool = False,
         with_seeds: bool = False,
         progress: bool = False,
         simulator_output: str = "normal",
     ) -> None:
         self.multi_config_file = str(given.path("multi_config_file", multi_config_file))
-        self.seeds = None if seeds is None else listed_seeds(seeds, "--seeds")
-        self.runs = len(self.seeds or ()) if runs is None else at_least(1, runs, "--runs")
+        self.seeds: Sequence[int] | None = None
+        self.runs = 0
+        if seeds is None:
+            self.runs = at_least(1, runs, "--runs")
+        elif not (isinstance(seeds, str) and seeds == CONFIGURED):
+            self.seeds = listed_seeds(seeds, "--seeds")
+            self.runs = len(self.seeds)
+            if runs is not None and runs != self.runs:
+                raise BatchError(f"--runs: expected {self.runs}, as many as there are seeds; found {runs}")
         self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
         self.temp_base = str(given.path("temp_base", temp_base))
         self.output_dir = str(given.path("output_dir", output_dir))

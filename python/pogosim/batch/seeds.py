@@ -46,7 +46,7 @@ def checked(seeds: range, name: str) -> range:
     return seeds
 
 
-def listed_seeds(seeds: Iterable[int], name: str) -> Sequence[int]:
+def listed_seeds(seeds: Iterable[int] | str, name: str) -> Sequence[int]:
     """Return seeds that a caller gives: whole numbers from 0 to 2^32-1, each once, at least one.
 
     Raises:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError, at_least, cannot
+from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program
 from pogosim.batch.manifests import TASK, task_entries, write_json
 from pogosim.batch.names import NamesError, file_name, new_columns
@@ -81,7 +81,8 @@ def execute_task(
     (seed,) = listed_seeds([seed], "--seed")
     at_least(0, run_index, "--run-index")
     at_least(0, retry_attempt, "--retry-attempt")
-    configuration = Configuration(config_path)
+    program = str(given.path("simulator_binary", simulator_binary))
+    configuration = Configuration(given.path("config_path", config_path))
     try:
         entries = resolved(configuration.entries)
         name, columns = file_name(entries), new_columns(entries)
@@ -90,8 +91,8 @@ def execute_task(
     except NamesError as error:
         raise BatchError(f"{configuration.where((error.key,))}{str(error).removeprefix(error.key)}") from None
     check_logs_data(entries, configuration)
-    folder = Path(output_dir)
-    task = task_in(folder, configuration, entries, str(simulator_binary), seed, run_index, gui)
+    folder = given.path("output_dir", output_dir)
+    task = task_in(folder, configuration, entries, program, seed, run_index, gui)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for left in (TASK, f"{FRAMES}/{task.data}"):
@@ -104,7 +105,7 @@ def execute_task(
         said = in_the_users_file(outcome.log, task, entries, configuration)
         last = next((f": {line}" for line in reversed(said.splitlines()) if line.strip()), "")
         raise TaskError(f"the run with seed {seed} failed: {outcome.problem}{last}", outcome)
-    check_columns(schema_of(folder / FRAMES / task.data), list(columns), str(simulator_binary), WITH_SEEDS)
+    check_columns(schema_of(folder / FRAMES / task.data), list(columns), program, WITH_SEEDS)
     combination = Combination("", columns, entries, [task], name)
     manifest = task_entries(combination, task, 0, 0, entries.get(CHOICES, {})) | {"retry_attempt": retry_attempt}
     write_json(folder / TASK, manifest)

@@ -10,7 +10,7 @@ from typing import Any
 
 from pogosim.batch.combinations import alternatives_of, combinations_of, overlay
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError, at_least
+from pogosim.batch.errors import BatchError, at_least, given
 from pogosim.batch.names import NamesError, file_name, new_columns
 from pogosim.batch.option_words import (
     CHOICES,
@@ -41,7 +41,7 @@ def build_combinations(config_path: str | Path) -> list[Entries]:
     Raises:
         BatchError: The file cannot be read, or its options are wrong.
     """
-    configuration = Configuration(config_path)
+    configuration = Configuration(given.path("config_path", config_path))
     try:
         return combinations_of(configuration.entries)
     except CombinationsError as error:
@@ -214,4 +214,6 @@ def plain_entries(config: Mapping[str, Any]) -> Entries:
     Raises:
         CombinationsError: They are wrong.
     """
+    if not isinstance(config, Mapping):
+        raise given.refused("config", "a map of keys and values", config)
     return without_tool_maps(dict(config), lambda path, text: log.warning("%s: %s", ".".join(path), text)).entries
