@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-from pogosim.batch.results import Part, RunFile, write_results
+from pogosim.batch.parts import Part, RunFile
+from pogosim.batch.results import write_results
 from pogosim.film.making import frame_times
 from pogosim.picture.swarm import read_recording
 from pogosim.times import as_float64
