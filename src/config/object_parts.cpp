@@ -82,6 +82,90 @@ std::span<Key<RobotSpec> const> robot_keys() {
     return keys;
 }
 
+/// Sets the defaults of all others.
+std::span<Key<SensorSpec> const> sensor_model_keys() {
+    using K = Key<SensorSpec>;
+    static Choice<SensorSpec> const model = [] {
+        Choice<SensorSpec> choice =
+            one_of(&SensorSpec::model, {{"ideal", SensorModel::ideal}, {"robot", SensorModel::robot}});
+        choice.set = [](SensorSpec& into, std::size_t index) { into = index == 0 ? SensorSpec() : kRobotSensors; };
+        return choice;
+    }();
+    static std::array const keys{
+        K{"sensor_model", model, any(), "",
+          "ideal: sensors give exact numbers, and light up to 32767. robot: those of a real robot's chips, with light up "
+          "to 1023, gravity, noise and whole counts; the keys that begin with photosensors_bits and imu_ may change each."},
+    };
+    return keys;
+}
+
+std::span<Key<SensorSpec> const> sensor_keys() {
+    using K = Key<SensorSpec>;
+    static std::array const keys{
+        K{"photosensors_bits", &SensorSpec::photosensor_bits, between(1, kLightBits), "bits",
+          "Bits of the light sensors' converter: it gives 0 to 2^bits - 1, which is 32767 in the light map. The real "
+          "robot has 10."},
+        K{"imu_gravity", &SensorSpec::imu_gravity, any(), "",
+          "The accelerometer feels gravity, 9.80665 m/s2 on z at rest."},
+        K{"imu_quantization", &SensorSpec::imu_quantization, any(), "",
+          "Accelerometer and gyroscope give whole counts of 0.0047886 m/s2 and 0.00106528 rad/s."},
+        K{"imu_acceleration_noise_stddev", &SensorSpec::acceleration_noise_m_s2, between(0, 1000), "m/s2",
+          "Standard deviation of Gaussian noise on each reading and axis of the accelerometer."},
+        K{"imu_angular_noise_stddev", &SensorSpec::angular_noise_rad_s, between(0, 1000), "rad/s",
+          "Standard deviation of Gaussian noise on each reading and axis of the gyroscope."},
+        K{"imu_acceleration",
+          one_of(&SensorSpec::acceleration,
+                 {{"robot", ImuAcceleration::robot}, {"original", ImuAcceleration::original}}),
+          any(), "",
+          "robot: m/s2, between the last two ticks. original: dm/s2 over the last physics step, as in the original "
+          "simulator."},
+    };
+    return keys;
+}
+
+constexpr std::string_view kBatteryMap = "a map of keys, such as {capacity_mah: 250, idle_ma: 100}";
+
+std::span<Key<BatterySpec> const> battery_keys() {
+    using K = Key<BatterySpec>;
+    static std::array const keys{
+        K{"capacity_mah", &BatterySpec::capacity_mah, above(0).up_to(1e9), "mAh", "Charge of a full battery."},
+        K{"idle_ma", &BatterySpec::idle_ma, between(0, 1e6), "mA",
+          "Current of the processor and all that is always on."},
+        K{"motor_ma", &BatterySpec::motor_ma, between(0, 1e6), "mA",
+          "Current of one motor at full power; in proportion to its power below."},
+        K{"led_ma", &BatterySpec::led_ma, between(0, 1e6), "mA",
+          "Current of one LED that is white at full brightness (255, 255, 255); in proportion to the sum of its colours "
+          "below."},
+        K{"initial_percent", &BatterySpec::initial_percent, above(0).up_to(100), "%",
+          "Charge at the start of the run."},
+    };
+    return keys;
+}
+
+std::span<Key<RobotSpec> const> battery_map_keys() {
+    using K = Key<RobotSpec>;
+    static std::array const keys{
+        K{"battery", Elsewhere{kBatteryMap}, any(), "",
+          "Battery that empties, see its own table; an empty one switches the robot off. Default: always full."},
+    };
+    return keys;
+}
+
+std::optional<BatterySpec> read_battery(MapReader& robot) {
+    Node const* const map = robot.find("battery");
+    if (map == nullptr) {
+        return std::nullopt;
+    }
+    if (map->kind != Node::Kind::map) {
+        fail_expected({*map, robot.path_of("battery")}, kBatteryMap);
+    }
+    MapReader reader(*map, robot.path_of("battery"), robot.is_strict());
+    BatterySpec const battery = read_battery_map(reader);
+    reader.finish();
+    robot.set_value("battery", reader.values());
+    return battery;
+}
+
 std::span<Key<ObjectSpec> const> colormap_keys() {
     using K = Key<ObjectSpec>;
     static std::array const keys{
@@ -112,6 +196,12 @@ std::span<Key<Position> const> position_keys() {
 
 }  // namespace
 
+BatterySpec read_battery_map(MapReader& reader) {
+    BatterySpec battery;
+    reader.read(battery_keys(), battery);
+    return battery;
+}
+
 void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Shape& shape) {
     reader.read(geometry_keys, shape);
     reader.read(size_keys(), shape);
@@ -124,6 +214,10 @@ void read_body(MapReader& reader, ObjectConfig& object) {
 void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind) {
     RobotSpec& robot = object.spec.robot.emplace(kind);
     reader.read(robot_keys(), robot);
+    reader.read(sensor_model_keys(), robot.sensors);
+    reader.read(sensor_keys(), robot.sensors);
+    reader.read(battery_map_keys(), robot);
+    robot.battery = read_battery(reader);
     reader.read(ir_keys(), robot.ir);
     robot.ir.reception = read_reception(reader);
 }

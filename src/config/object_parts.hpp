@@ -19,6 +19,9 @@ void read_body(MapReader& reader, ObjectConfig& object);
 /// emitters.
 void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind = {});
 
+/// The map `battery` of a robot; the caller finishes the reader.
+BatterySpec read_battery_map(MapReader& reader);
+
 /// `x` and `y`, both or neither.
 void read_position(MapReader& reader, ObjectConfig& object);
 

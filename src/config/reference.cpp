@@ -1,5 +1,6 @@
 #include "config/reference.hpp"
 
+#include "config/object_parts.hpp"
 #include "config/object_types.hpp"
 #include "config/placement_keys.hpp"
 #include "config/reception_keys.hpp"
@@ -32,6 +33,10 @@ std::vector<KeyGroup> configuration_reference() {
     MapReader reception(nothing, "objects.<category>.msg_success_rate", false);
     read_reception_map(reception);
     groups.push_back({"objects.<category>.msg_success_rate", "", "Reception of messages.", reception.known_keys()});
+
+    MapReader battery(nothing, "objects.<category>.battery", false);
+    read_battery_map(battery);
+    groups.push_back({"objects.<category>.battery", "", "A battery that empties.", battery.known_keys()});
     return groups;
 }
 

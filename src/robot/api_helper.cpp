@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "pogosim/program.h"
+#include "robot/chips.hpp"
 #include "robot/context.hpp"
 #include "robot/crash_handler.hpp"
 #include "robot/crash_message.hpp"
@@ -16,8 +17,6 @@ using pogosim::context;
 using pogosim::require_robot;
 
 namespace {
-
-constexpr std::int16_t kFullBattery = 32767;
 
 /// The stream of srand(seed): the same numbers for the same seed on every robot, as on the real ones.
 pogosim::RandomStream stream_of_seed(unsigned seed) {
@@ -99,5 +98,12 @@ void pogobot_helper_print_version() {
 }
 
 int16_t pogobot_battery_voltage_read() {
-    return kFullBattery;
+    if (!context.has_robot()) {
+        return pogosim::voltmeter_mv(pogosim::kFullBatteryMv, pogosim::SensorModel::ideal);
+    }
+    pogosim::RobotSpec const& spec = context.spec();
+    double const voltage_mv =
+        spec.battery ? pogosim::cell_voltage_mv(pogosim::charge_left(context.controller->battery, *spec.battery))
+                     : pogosim::kFullBatteryMv;
+    return pogosim::voltmeter_mv(voltage_mv, spec.sensors.model);
 }

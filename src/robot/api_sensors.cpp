@@ -1,9 +1,10 @@
 // pogolib/sensors.h
 #include <algorithm>
 #include <cstdint>
-#include <numbers>
 
+#include "robot/chips.hpp"
 #include "robot/context.hpp"
+#include "robot/imu.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"
@@ -15,16 +16,6 @@ using pogosim::context;
 using pogosim::require_argument;
 using pogosim::require_robot;
 using pogosim::Vec2;
-
-namespace {
-
-// Ranges of the ICM-20689 on the robot: +-16 g, +-2000 degrees per second, -40 to 85 degrees Celsius.
-constexpr float kMaxAcceleration = 16.0F * 9.80665F;
-constexpr float kMaxAngularVelocity = 2000.0F * std::numbers::pi_v<float> / 180.0F;
-constexpr float kMinTemperature = -40.0F;
-constexpr float kMaxTemperature = 85.0F;
-
-}  // namespace
 
 int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     require_robot(__func__);
@@ -52,6 +43,7 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     if (noise > 0.0F) {
         level += static_cast<int>(noise * world.robots.stream[context.robot].normal());
     }
+    level = pogosim::converted_light(level, context.spec().sensors.photosensor_bits);
     return static_cast<int16_t>(std::clamp<int>(level, INT16_MIN, INT16_MAX));
 }
 
@@ -66,15 +58,16 @@ void pogobot_imu_read(float* acc, float* gyro) {
     if (!context.has_body()) {
         return;
     }
-    Vec2 const acceleration =
-        pogosim::acceleration_m_s2(*context.world, context.body(), context.controller->accelerometer);
-    acc[0] = std::clamp(acceleration.y, -kMaxAcceleration, kMaxAcceleration);
-    acc[1] = std::clamp(acceleration.x, -kMaxAcceleration, kMaxAcceleration);
-    gyro[2] = std::clamp(0.0F - pogosim::observed_motion(*context.world, context.body()).angular_velocity_rad_s,
-                         -kMaxAngularVelocity, kMaxAngularVelocity);
+    pogosim::Controller& self = *context.controller;
+    Vec2 const acceleration = pogosim::acceleration_m_s2(*context.world, context.body(), self.accelerometer);
+    float const turning_rad_s = pogosim::observed_motion(*context.world, context.body()).angular_velocity_rad_s;
+    auto const reading = pogosim::imu_reading(context.spec().sensors, acceleration, turning_rad_s, self.imu_noise);
+    std::ranges::copy(reading.acceleration, acc);
+    std::ranges::copy(reading.angular_velocity, gyro);
 }
 
 float pogobot_imu_readTemp() {
     require_robot(__func__);
-    return std::clamp(context.world->temperature_c, kMinTemperature, kMaxTemperature);
+    return pogosim::thermometer_c(context.world->temperature_c,
+                                  context.has_robot() ? context.spec().sensors.model : pogosim::SensorModel::ideal);
 }

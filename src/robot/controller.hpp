@@ -11,6 +11,7 @@
 
 #include "base/random.hpp"
 #include "interface/pogobase_inside.hpp"
+#include "robot/battery.hpp"
 #include "robot/flash.hpp"
 #include "robot/phase.hpp"
 #include "world/observed_motion.hpp"
@@ -69,13 +70,14 @@ struct Motors {
 
 inline constexpr int kPhotosensorCount = 3;  // back, front left, front right
 
-/// How the body moved at the last two ticks, for the accelerometer.
+/// How the body moved at the last two ticks, or in the last two steps, for the accelerometer.
 struct Accelerometer {
     BodyStep previous;
     BodyStep current;
-    float interval_s = 0.0F;  // between the two; 0 before the second tick
+    float interval_s = 0.0F;  // between the two; 0 before the second
     bool has_measured = false;
-    std::int64_t current_us = 0;  // the robot's clock at the last tick
+    bool at_each_step = false;    // not at ticks
+    std::int64_t current_us = 0;  // the robot's clock at the last tick, or the time of the step
 };
 
 /// What the program has read of the magnetometer.
@@ -119,7 +121,9 @@ struct Controller {
     Flash flash;
     Accelerometer accelerometer;
     Magnetometer magnetometer;
+    Battery battery;
     std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
+    RandomStream imu_noise;
     std::uint8_t ir_power = 1;
     std::uint64_t messages_sent = 0;  // by whatever function
     SendResults send_results;

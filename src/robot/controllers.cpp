@@ -49,6 +49,7 @@ constexpr char const* kSystemCategory = "__system";
 // Ids of random streams for purposes other than the noise of one robot's body.
 constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
+constexpr std::uint64_t kImuStreams = std::uint64_t{7} << 32U;
 
 /// Bytes from one robot's user data to the next one's.
 std::size_t stride_of(std::size_t user_data_bytes) {
@@ -122,6 +123,7 @@ Controllers::Controllers(ProgramImage image, World& world, RunServices& services
     allocate_for(purpose, static_cast<double>(count * sizeof(Controller)), [&] { controllers_.resize(count); });
     allocate_user_data();
     draw_individual_differences(seed);
+    note_chips();
 }
 
 Controllers::~Controllers() {
@@ -199,6 +201,7 @@ void Controllers::draw_individual_differences(std::uint64_t seed) {
         RandomStream& stream = world_.robots.stream[i];
         self.random = RandomStream(seed, kRandStreams + i);
         self.seeds = RandomStream(seed, kSeedStreams + i);
+        self.imu_noise = RandomStream(seed, kImuStreams + i);
         self.first_seed = scatter_id(id_on_air(world_.robots.id[i]), key);
         self.motors.bias = static_cast<float>(draw_between(spec.motor_bias, stream));
         for (std::int32_t& bias : self.photosensor_bias) {
@@ -463,6 +466,8 @@ void Controllers::end_step() const {
 
 void Controllers::begin_step() {
     step_us_ = now_us();
+    measure_each_step();
+    drain_batteries();
     warn_of_unreturned_calls_if_due();
     if (callback_global_step != nullptr && step_us_ >= system_.clock_us) {
         enter(kNone, Phase::global_step);
@@ -522,7 +527,7 @@ std::int64_t Controllers::now_us() const {
 
 void Controllers::tick(std::uint32_t robot) {
     Controller& self = controllers_[robot];
-    measure_velocity(world_, robot, self);
+    measure_at_tick(world_, robot, self);
     enter(robot, Phase::user_step);
     if (are_odd(self.loop, most_loop_hz_)) [[unlikely]] {
         without_exceptions([&] { note_loop_globals(world_, self.loop, most_loop_hz_); });

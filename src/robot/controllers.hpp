@@ -202,6 +202,10 @@ private:
     void wake(SwitchedOff const& self);
     void rest(SwitchedOff& self);
     void hold_switched_off();
+    void note_chips();
+    void measure_each_step();
+    void drain_batteries();
+    void drain_battery(std::uint32_t robot, double duration_s);
     void call_as_system(std::uint32_t robot, Phase phase, void (*function)());
     void tick(std::uint32_t robot);
     static void drift(Controller& self, std::int64_t since_us);
@@ -216,8 +220,12 @@ private:
     World& world_;
     RunServices& services_;
     std::vector<Controller> controllers_;
-    Controller system_;                      // of the global step
-    std::vector<SwitchedOff> switched_off_;  // by robot, ascending
+    Controller system_;                              // of the global step
+    std::vector<SwitchedOff> switched_off_;          // by robot, ascending
+    std::vector<std::uint32_t> measured_each_step_;  // robots with such an accelerometer
+    std::vector<std::uint32_t> with_battery_;        // robots whose battery empties
+    bool has_warned_of_battery_ = false;
+    std::int64_t drained_us_ = 0;  // time up to which these have been emptied
     GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step

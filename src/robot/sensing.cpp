@@ -36,18 +36,17 @@ double light_of(World const& world, Object const& object) {
     return has_sensors ? mean_light(world, object.body) : world.light.at(wrapped(world, centre_mm(world, object)));
 }
 
-void measure_velocity(World const& world, std::uint32_t robot, Controller& self) {
+void measure_velocity(World const& world, std::uint32_t robot, std::int64_t now_us, Accelerometer& meter) {
     constexpr float seconds_per_us = 1e-6F;
     std::uint32_t const body = world.robots.body[robot];
     if (body == kNone) {
         return;
     }
-    Accelerometer& meter = self.accelerometer;
     meter.previous = meter.current;
     meter.current = last_step(world, body);
     bool const first = !std::exchange(meter.has_measured, true);
-    meter.interval_s = first ? 0.0F : static_cast<float>(self.clock_us - meter.current_us) * seconds_per_us;
-    meter.current_us = self.clock_us;
+    meter.interval_s = first ? 0.0F : static_cast<float>(now_us - meter.current_us) * seconds_per_us;
+    meter.current_us = now_us;
 }
 
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter) {

@@ -18,11 +18,17 @@ double mean_light(World const& world, std::uint32_t body);
 /// Light at an object, sensor counts, without noise: mean of the sensors of a rigid robot; of others, in the middle.
 double light_of(World const& world, Object const& object);
 
-/// The accelerometer of a robot notes its velocity, at a time of the robot's own clock: its ticks are evenly spaced
-/// there, and do not coincide with steps.
-void measure_velocity(World const& world, std::uint32_t robot, Controller& self);
+/// An accelerometer notes the velocity of its robot at this time.
+void measure_velocity(World const& world, std::uint32_t robot, std::int64_t now_us, Accelerometer& meter);
 
-/// Mean acceleration over the last tick in the frame of the robot with this body, m/s2: x forward, y to the right.
+/// The same at a tick, by the robot's own clock: its ticks are evenly spaced there, and do not coincide with steps.
+inline void measure_at_tick(World const& world, std::uint32_t robot, Controller& self) {
+    if (!self.accelerometer.at_each_step) {
+        measure_velocity(world, robot, self.clock_us, self.accelerometer);
+    }
+}
+
+/// Mean acceleration between the last two measurements in the frame of the robot with this body, m/s2: x forward, y to the right.
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter);
 
 }  // namespace pogosim

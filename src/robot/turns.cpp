@@ -88,7 +88,7 @@ void Controllers::wait() {
 
 void Controllers::go_on(std::uint32_t robot) {
     Controller& self = controllers_[robot];
-    measure_velocity(world_, robot, self);
+    measure_at_tick(world_, robot, self);
     int const calls = self.calls;
     enter(robot, self.waits_in);
     if (!can_change_threads() && pthread_equal(self.waits_on, pthread_self()) == 0) {

@@ -129,6 +129,16 @@ void add_own_memory(Hash& hash, Controllers const& controllers) {
     std::ranges::for_each(controllers.own_memory()->changed_parts(kNone), add_part);
 }
 
+/// What is left in an emptying battery, and the noise that an inertial unit would have next.
+void add_chips(Hash& hash, Controller const& controller, RobotSpec const& spec) {
+    if (spec.battery) {
+        hash.add(static_cast<float>(controller.battery.used_mas));
+    }
+    if (spec.sensors.acceleration_noise_m_s2 > 0.0F || spec.sensors.angular_noise_rad_s > 0.0F) {
+        hash.add(controller.imu_noise);
+    }
+}
+
 }  // namespace
 
 std::uint64_t state_hash(World const& world, Controllers const& controllers) {
@@ -141,6 +151,9 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
     // Adds nothing where none of these has changed.
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
         add_flash(hash, all[robot].flash, robot);
+    }
+    for (std::size_t robot = 0; robot < all.size(); ++robot) {
+        add_chips(hash, all[robot], world.spec_of(robot));
     }
     for (Controllers::SwitchedOff const& off : controllers.switched_off()) {
         hash.add(off.robot);

@@ -28,10 +28,13 @@ struct BodySpec {
     bool fixed = false;            // never moves
 };
 
+/// No wall makes a body faster than this, mm/s.
+inline constexpr float kMostBounceMmS = 10000.0F;
+
 /// The walls of a solid arena.
 struct WallSpec {
     float friction = 0.05F;    // Coulomb coefficient
-    float restitution = 0.5F;  // 0 to 1
+    float restitution = 0.5F;  // 0 to 1; above 1, walls add energy
 };
 
 enum class ReceptionLaw {
@@ -85,6 +88,48 @@ struct IntRange {
     int max = 0;
 };
 
+enum class SensorModel {
+    ideal,  // exact numbers
+    robot,  // what the chips of a real robot can tell
+};
+
+/// The acceleration that a program reads.
+enum class ImuAcceleration {
+    robot,     // m/s2, between the last two ticks
+    original,  // dm/s2, over the last physics step, as in the original simulator
+};
+
+inline constexpr int kLightBits = 15;  // of the levels of light in the world, 0 to 32767
+
+/// What a robot's sensors make of the world.
+struct SensorSpec {
+    SensorModel model = SensorModel::ideal;  // of the defaults, of the thermometer and of the battery's voltage
+    int photosensor_bits = kLightBits;       // of the converter of the light sensors
+    bool imu_gravity = false;                // the accelerometer feels gravity
+    bool imu_quantization = false;           // accelerometer and gyroscope give whole counts
+    float acceleration_noise_m_s2 = 0.0F;    // standard deviation, per reading and axis
+    float angular_noise_rad_s = 0.0F;        // of the gyroscope: standard deviation, per reading and axis
+    ImuAcceleration acceleration = ImuAcceleration::robot;
+};
+
+/// The sensors of a real robot: constants of its library, and the noise of the ICM-20689 by its data sheet
+/// (DS-000143): 150 ug and 0.006 degrees per second per root of Hz, behind a low-pass filter of 218 Hz.
+inline constexpr SensorSpec kRobotSensors{.model = SensorModel::robot,
+                                          .photosensor_bits = 10,
+                                          .imu_gravity = true,
+                                          .imu_quantization = true,
+                                          .acceleration_noise_m_s2 = 0.0217F,
+                                          .angular_noise_rad_s = 0.00155F};
+
+/// A battery that empties. Currents in mA.
+struct BatterySpec {
+    double capacity_mah = 250.0;     // > 0
+    double idle_ma = 100.0;          // processor, sensors and infrared receivers
+    double motor_ma = 100.0;         // a motor at full power; in proportion below
+    double led_ma = 36.0;            // an LED that is white at full brightness; in proportion below
+    double initial_percent = 100.0;  // charge at the start of the run
+};
+
 enum class Emitters {
     rim,      // four, on the bounding disk at the front, right, back and left
     centre,   // four, facing the same directions from the centre
@@ -107,6 +152,9 @@ struct RobotSpec {
     bool rotate_leds_45_deg = true;         // drawing only
     bool has_magnetometer = true;           // on the board of this type of object
     bool magnetometer_enabled = true;       // else programs find none
+    SensorSpec sensors;
+    std::optional<BatterySpec> battery{};  // absent: always full
+    bool rotate_leds_45_deg = true;        // drawing only
 };
 
 /// A soft body: bodies along the outline of the shape, joined into a ring by springs.

@@ -56,7 +56,7 @@ READ = "[SYSTEM] [PRINTF] read 1 -8 -1600 -320000 200 60000 4000000000 0.5 1e+10
 PRINTED = [
     "sum 0",
     "rainbow 25 0 0, light 0, temperature 42.0",
-    "directions 010 status 2 powers 512 512 0 battery 32767",
+    "directions 010 status 2 powers 512 512 0 battery 4200",
     "rand positive repeats",
     "std 1",
     "puts",

@@ -202,14 +202,5 @@ TEST(Imu, ArenaIsAt42DegreesUnlessTheConfigurationSaysOtherwise) {
     EXPECT_EQ(temperature, 42.0F);
 }
 
-TEST(Battery, IsFullForEver) {
-    static std::vector<int16_t> voltages_mv;
-    voltages_mv.clear();
-    run_alone(
-        testing::article_robot(), full_ahead, [] { voltages_mv.push_back(pogobot_battery_voltage_read()); }, 1.0);
-    ASSERT_FALSE(voltages_mv.empty());
-    EXPECT_TRUE(std::all_of(voltages_mv.begin(), voltages_mv.end(), [](int16_t mv) { return mv == 32767; }));
-}
-
 }  // namespace
 }  // namespace pogosim

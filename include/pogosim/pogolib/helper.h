@@ -24,7 +24,8 @@ int16_t pogobot_helper_getRandSeed(void);
 /// Prints the version of the SDK, #POGOLIB_RELEASE_VERSION.
 void pogobot_helper_print_version(void);
 
-/// Battery voltage, mV. A simulated battery is always full: 32767.
+/// Battery voltage, mV. A simulated battery is always full, 4200, unless the configuration gives the robot a `battery`
+/// that empties: down to 3000, and then the robot is switched off.
 /// @range returns mV, up to 32767
 int16_t pogobot_battery_voltage_read(void);
 
