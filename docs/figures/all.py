@@ -32,6 +32,7 @@ try:
     import mistakes
     import models
     import moving_partition
+    import original
     import parameter_study
     import printed
     import reception
@@ -62,6 +63,7 @@ SCRIPTS: dict[str, ModuleType] = {
         mistakes,
         models,
         moving_partition,
+        original,
         parameter_study,
         printed,
         reception,

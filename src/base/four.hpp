@@ -26,6 +26,10 @@ inline Four smaller(Four a, Four b) {
     return b < a ? b : a;
 }
 
+inline Four larger(Four a, Four b) {
+    return a < b ? b : a;
+}
+
 /// The smallest lane, in all lanes.
 inline Four smallest(Four x) {
     Four const pairs = smaller(x, __builtin_shufflevector(x, x, 2, 3, 0, 1));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -60,7 +61,8 @@ void Visibility::update(World const& world) {
                               .bodies = world.bodies.size(),
                               .outlines = world.outlines.size(),
                               .periodic = world.periodic,
-                              .ignore_occlusions = world.ignore_occlusions};
+                              .ignore_occlusions = world.ignore_occlusions,
+                              .original_wall_copies = world.original_wall_copies};
     if (structure != structure_) {
         structure_ = structure;
         allocate_for([&] { return fmt::format("the neighbour grid of {}", counted(world.robots.size(), "robot")); },
@@ -146,7 +148,8 @@ void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t
         std::sort(receivers.begin() + first, receivers.end(),
                   [](Receiver const& a, Receiver const& b) { return a.robot < b.robot; });
     } else if ((emitters & 1U) != 0) {
-        add_robots_near(world, outline_of(world, robot), range_mm, search.pieces, receivers);
+        bool const repeats = world.original_wall_copies && emitters != kAllFaces;
+        add_robots_near(world, outline_of(world, robot), range_mm, repeats, search.pieces, receivers);
     }
     if (!world.switched_off.empty()) {
         receivers.erase(std::remove_if(receivers.begin() + first, receivers.end(),
@@ -251,7 +254,7 @@ std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std
     return static_cast<std::uint8_t>(faces);
 }
 
-void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm,
+void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm, bool repeats,
                                  std::vector<OutlineIndex::Piece>& pieces, std::vector<Receiver>& receivers) const {
     Box const& box = outlines_.box(outline);
     Vec2 const middle = box.centre();
@@ -266,7 +269,9 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
             continue;
         }
         if (std::uint8_t const faces = faces_near(world, robot, outline, both_range_mm, pieces); faces != 0) {
-            receivers.push_back({.robot = robot, .faces = faces, .emitters = 1, .is_along_outline = true});
+            int const times = repeats ? std::popcount(faces) : 1;
+            receivers.insert(receivers.end(), static_cast<std::size_t>(times),
+                             {.robot = robot, .faces = faces, .emitters = 1, .is_along_outline = true});
         }
     }
 }

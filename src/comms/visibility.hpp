@@ -32,7 +32,8 @@ public:
 
     /// Appends the robots that the given emitters of `robot` (bit d: emitter d) reach at a range of `range_mm`: each
     /// once, through the nearest emitter that sees it, in the order of their indices. An outline has a single emitter,
-    /// number 0. Robots that are switched off hide others, but receive nothing.
+    /// number 0. Robots that are switched off hide others, but receive nothing. With World::original_wall_copies, a
+    /// robot stands in the list of an outline once for each face that hears it, unless all emitters send together.
     void find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                         std::vector<Receiver>& receivers);
 
@@ -71,6 +72,7 @@ private:
         std::size_t outlines = 0;
         bool periodic = false;
         bool ignore_occlusions = false;
+        bool original_wall_copies = false;
 
         friend bool operator==(Structure const&, Structure const&) = default;
     };
@@ -84,7 +86,7 @@ private:
                             EmitterView& view, std::vector<Receiver>& receivers) const;
     void add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                            Search& search, std::vector<Receiver>& receivers) const;
-    void add_robots_near(World const& world, std::uint32_t outline, float range_mm,
+    void add_robots_near(World const& world, std::uint32_t outline, float range_mm, bool repeats,
                          std::vector<OutlineIndex::Piece>& pieces, std::vector<Receiver>& receivers) const;
     std::uint8_t faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm,
                             std::vector<OutlineIndex::Piece>& pieces) const;

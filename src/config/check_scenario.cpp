@@ -169,6 +169,16 @@ void check_arena(Scenario const& scenario) {
     }
 }
 
+void check_walls(Scenario const& scenario) {
+    if (scenario.boundary == BoundaryCondition::solid && scenario.walls.restitution > 1.0F) {
+        Place const place = place_of(scenario, "wall_restitution");
+        log().warn(
+            "{}: wall_restitution: at {}, above 1, walls add energy: what has no motors leaves a wall faster than it "
+            "came, up to {} mm/s; real walls have less than 1 (default: {})",
+            place.node.where(), scenario.walls.restitution, kMostBounceMmS, WallSpec().restitution);
+    }
+}
+
 void check_formation(Scenario const& scenario) {
     constexpr std::array<std::string_view, 3> kArena{"arena", "null", ""};
     std::string const& root = scenario.formation.root_object;
@@ -191,6 +201,7 @@ void check_scenario(Scenario const& scenario) {
     check_recorded_categories(scenario);
     check_frames_name(scenario);
     check_arena(scenario);
+    check_walls(scenario);
     check_formation(scenario);
 }
 

@@ -128,7 +128,8 @@ constexpr std::string_view kBatteryMap = "a map of keys, such as {capacity_mah: 
 std::span<Key<BatterySpec> const> battery_keys() {
     using K = Key<BatterySpec>;
     static std::array const keys{
-        K{"capacity_mah", &BatterySpec::capacity_mah, above(0).up_to(1e9), "mAh", "Charge of a full battery."},
+        K{"capacity_mah", &BatterySpec::capacity_mah, above(0).up_to(1e9), "mAh", "Charge of a full battery.",
+          /*required=*/true},
         K{"idle_ma", &BatterySpec::idle_ma, between(0, 1e6), "mA",
           "Current of the processor and all that is always on."},
         K{"motor_ma", &BatterySpec::motor_ma, between(0, 1e6), "mA",

@@ -18,6 +18,11 @@ struct ConfigSource;
 
 enum class BoundaryCondition { solid, periodic };
 enum class LogFormat { dated, minimal };
+/// Which copies of a message that a wall or a membrane sends arrive.
+enum class WallCopies { one_per_face, original };
+/// When rows are recorded: at the first step at or after each multiple of the period, or as in the original simulator,
+/// see sim/row_times.hpp.
+enum class RowTiming { multiples, original };
 
 /// Largest length and coordinate, mm. A float still tells 0.06 mm apart there.
 inline constexpr double kMaxLength = 1.0e6;
@@ -73,7 +78,8 @@ struct ViewConfig {
 struct OutputConfig {
     bool enable_data_logging = true;
     std::string data_filename = "data.feather";
-    double save_data_period_s = 1.0;                     // <= 0: only the rows of time 0
+    double save_data_period_s = 1.0;  // <= 0: only the rows of time 0
+    RowTiming row_timing = RowTiming::multiples;
     std::optional<std::vector<std::string>> fields;      // data_logger_fields; absent: all columns
     std::optional<std::vector<std::string>> categories;  // data_logger_category; absent: all categories
     std::int64_t flush_row_count = 1048576;              // rows per record batch
@@ -102,6 +108,7 @@ struct Scenario {
     BoundaryCondition boundary = BoundaryCondition::solid;
     WallSpec walls;
     bool ignore_occlusions = false;
+    WallCopies wall_copies = WallCopies::one_per_face;
     double arena_temperature_c = 42.0;
     double simulation_time_s = 100.0;
     double time_step_s = 0.01;

@@ -39,6 +39,13 @@ std::span<Key<Scenario> const> scenario_keys() {
           "Temperature that the robots' thermometers read."},
         K{"communication_ignore_occlusions", &Scenario::ignore_occlusions, any(), "",
           "Infrared links depend on distance only, ignoring occlusion and the direction of emitters and receivers."},
+        K{"wall_message_copies",
+          one_of(&Scenario::wall_copies,
+                 {{"one_per_face", WallCopies::one_per_face}, {"original", WallCopies::original}}),
+          any(), "",
+          "Copies that a robot gets of a message from a wall or a membrane. one_per_face: one at each face that hears it. "
+          "original: as many as in the original simulator, where sending in four directions or one by one reaches a robot "
+          "with k such faces k x k times."},
         K{"light_map_nb_bin_x", &Scenario::light_map_columns, between(1, 10000), "cells", "Columns of the light map."},
         K{"light_map_nb_bin_y", &Scenario::light_map_rows, between(1, 10000), "cells", "Rows of the light map."},
         // Time and chance.
@@ -78,11 +85,14 @@ std::span<Key<Scenario> const> scenario_keys() {
     return keys;
 }
 
+constexpr double kMostRestitution = 10.0;
+
 std::span<Key<WallSpec> const> wall_keys() {
     using K = Key<WallSpec>;
     static std::array const keys{
         K{"wall_friction", &WallSpec::friction, between(0, 1000), "", "Coulomb friction coefficient of the walls."},
-        K{"wall_restitution", &WallSpec::restitution, between(0, 1), "", "Coefficient of restitution of the walls."},
+        K{"wall_restitution", &WallSpec::restitution, between(0, kMostRestitution), "",
+          "Coefficient of restitution of the walls; above 1, they add energy."},
     };
     return keys;
 }
@@ -156,6 +166,12 @@ std::span<Key<OutputConfig> const> output_keys() {
             .needing_a_name(),
         K{"save_data_period", &OutputConfig::save_data_period_s, between(-1e9, 1e9), "s",
           "Time between records; shorter than time_step: a record at every step; 0 or less: only record time 0."}
+            .only_if(has_data),
+        K{"save_data_times",
+          one_of(&OutputConfig::row_timing, {{"multiples", RowTiming::multiples}, {"original", RowTiming::original}}),
+          any(), "",
+          "multiples: records at the first step at or after each multiple of the period. original: as in the original "
+          "simulator, whose period begins anew at each record and whose sum of time steps is rounded: 0, 1.01, 2.02, ..."}
             .only_if(has_data),
         K{"data_logger_fields", &OutputConfig::fields, any(), "", "Columns to record; default: all."},
         K{"data_logger_category", &OutputConfig::categories, any(), "",

@@ -313,8 +313,23 @@ private:
         sweep_if_fast(body, bodies.velocity_mm_s[i], bodies.radius_mm[i], world.time_step_s);
     }
 
+    /// Walls that add energy would make bodies faster without end.
+    void limit_bounces() {
+        if (!walls_add_energy_) {
+            return;
+        }
+        constexpr float most = kMostBounceMmS / kMmPerUnit;
+        for (b2Body* const body : bodies_) {
+            float const speed = body->GetLinearVelocity().Length();
+            if (speed > most) {
+                body->SetLinearVelocity((most / speed) * body->GetLinearVelocity());
+            }
+        }
+    }
+
     /// A pose that is not finite becomes the last one, at rest.
     void hold_in_walls() {
+        limit_bounces();
         for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
             b2Body& body = *bodies_[i];
             if (!body.IsAwake() || body.GetType() == b2_staticBody) {
@@ -341,6 +356,7 @@ private:
     }
 
     void add_walls(Arena const& arena, WallSpec const& walls) {
+        walls_add_energy_ = walls.restitution > 1.0F;
         b2BodyDef definition;
         b2Body* const ground = engine_->CreateBody(&definition);
         for (std::size_t i = 0; i < arena.polygons.size(); ++i) {
@@ -464,6 +480,7 @@ private:
     std::optional<MembraneSides> sides_;                     // when there are membranes
     KnownMotion known_;
     bool any_awake_ = true;
+    bool walls_add_energy_ = false;
     bool others_set_velocities_ = false;  // up to now, something other than the motors has set some
     std::vector<MembraneArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies

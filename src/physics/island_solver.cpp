@@ -148,7 +148,8 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
         Places const places = find_places(world, contacts, four, first);
         Four const speed_mm_s = places.speed_mm_s;
         Four const gap_mm = places.gap_mm;
-        Four const bouncing_mm_s = -places.restitution * speed_mm_s;
+        Four const bouncing_mm_s =
+            smaller(-places.restitution * speed_mm_s, larger(-speed_mm_s, all_four(kMostBounceMmS)));
         Four const meeting_mm_s = -gap_mm * times.per_h;
         Four const pushed_mm_s = smaller(-times.push_rate * gap_mm, all_four(kFastestPushMmS));
         FourInts const is_elastic = places.restitution > 0.0F;

@@ -286,6 +286,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     World world;
     world.time_step_s = scenario.time_step_s;
     world.ignore_occlusions = scenario.ignore_occlusions;
+    world.original_wall_copies = scenario.wall_copies == WallCopies::original;
     world.temperature_c = static_cast<float>(scenario.arena_temperature_c);
     world.magnetometer.seed = seed;
     build_arena(scenario, world);

@@ -33,8 +33,8 @@ std::int32_t packed_rgb(Rgb color) {
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 /// A rigid body has a place and a heading, a membrane the place of its first body, a wall its centre and heading 0.
-ObjectRow row_of(World const& world, Object const& object, std::optional<std::int64_t> ticks) {
-    ObjectRow row{.time_s = world.time_s(),
+ObjectRow row_of(World const& world, Object const& object, double time_s, std::optional<std::int64_t> ticks) {
+    ObjectRow row{.time_s = time_s,
                   .category = world.categories[object.category].name,
                   .id = static_cast<std::int32_t>(object.id),
                   .ticks = ticks,
@@ -81,7 +81,7 @@ Recorder::Recorder(Scenario const& scenario, World const& world, Controllers& co
       export_(data),
       seed_(seed),
       category_is_recorded_(recorded_categories(scenario, world)),
-      row_times_(output().save_data_period_s, /*first=*/0) {
+      row_times_(output().row_timing, output().save_data_period_s) {
     if (output().enable_data_logging) {
         check_table_format(scenario, Setting::data_filename, output().data_filename);
         reserved_ = DataFile::reserve(output().data_filename);
@@ -155,7 +155,12 @@ std::optional<UserFailure> Recorder::record_if_due() {
     if (messages_) {
         messages_->record();
     }
-    return data_file_ && row_times_.reached(world_.time_s()) > 0 ? record_rows() : std::nullopt;
+    if (!data_file_) {
+        return std::nullopt;
+    }
+    std::optional<double> const due_s = row_times_.due(world_);
+    row_time_s_ = due_s.value_or(row_time_s_);
+    return due_s ? record_rows() : std::nullopt;
 }
 
 std::optional<UserFailure> Recorder::record_rows() {
@@ -210,7 +215,7 @@ void Recorder::write_table() {
     };
     for (std::size_t row = 0; row < count; ++row) {
         Object const& object = world_.objects[table_.object[row]];
-        built_in_.push_back(row_of(world_, object, ticks_of(object)));
+        built_in_.push_back(row_of(world_, object, row_time_s_, ticks_of(object)));
         if (has_subparts(world_.categories[object.category])) {
             write_until(row + 1);
             record_subparts(object, built_in_.back());
@@ -225,7 +230,7 @@ std::optional<std::int64_t> Recorder::ticks_of(Object const& object) const {
 }
 
 void Recorder::show_table() {
-    shown_->begin(world_.time_s());
+    shown_->begin(row_time_s_);
     for (std::size_t row = 0; row < table_.object.size(); ++row) {
         Object const& object = world_.objects[table_.object[row]];
         if (object.robot != kNone) {

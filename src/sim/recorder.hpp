@@ -14,8 +14,8 @@
 #include "robot/controllers.hpp"
 #include "robot/crash_handler.hpp"
 #include "sim/message_recorder.hpp"
-#include "sim/multiples.hpp"
 #include "sim/recorded_rows.hpp"
+#include "sim/row_times.hpp"
 #include "sim/saved_columns.hpp"
 #include "world/world.hpp"
 
@@ -105,7 +105,8 @@ private:
     DataTable table_;                     // of the present save
     std::vector<ObjectRow> built_in_;     // of its rows
     std::vector<CellValue> empty_cells_;  // user columns of subparts
-    Multiples row_times_;
+    RowTimes row_times_;
+    double row_time_s_ = 0.0;  // that of the last rows
 };
 
 }  // namespace pogosim

@@ -123,7 +123,7 @@ inline constexpr SensorSpec kRobotSensors{.model = SensorModel::robot,
 
 /// A battery that empties. Currents in mA.
 struct BatterySpec {
-    double capacity_mah = 250.0;     // > 0
+    double capacity_mah = 1.0;       // > 0; a configuration has to say it
     double idle_ma = 100.0;          // processor, sensors and infrared receivers
     double motor_ma = 100.0;         // a motor at full power; in proportion below
     double led_ma = 36.0;            // an LED that is white at full brightness; in proportion below
@@ -154,7 +154,6 @@ struct RobotSpec {
     bool magnetometer_enabled = true;       // else programs find none
     SensorSpec sensors;
     std::optional<BatterySpec> battery{};  // absent: always full
-    bool rotate_leds_45_deg = true;        // drawing only
 };
 
 /// A soft body: bodies along the outline of the shape, joined into a ring by springs.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <numbers>
 #include <vector>
@@ -67,6 +68,30 @@ void expect_limit(Vec2 centre, float limit_mm, std::vector<Polygon> const& polyg
     constexpr float margin_mm = 0.05F;
     EXPECT_EQ(is_linked(centre + Vec2{limit_mm - margin_mm, 0}, 0.0F, polygons), linked_below) << limit_mm;
     EXPECT_EQ(is_linked(centre + Vec2{limit_mm + margin_mm, 0}, 0.0F, polygons), !linked_below) << limit_mm;
+}
+
+TEST(Outline, OriginalCopiesAreThoseOfEachFaceForEachFace) {
+    World world = square_world(2000.0F);
+    add_robot(world, {60, 60}, kPi / 4.0F);  // in the corner: two faces or more
+    add_robot(world, {1000, 60});            // one wall
+    add_robot(world, {1000, 1000});          // out of reach
+    std::uint32_t const wall = add_wall(world, {box({0, 0}, {2000, 2000})});
+    auto const times = [&world, wall](std::uint32_t robot, std::uint8_t emitters) {
+        Visibility visibility;
+        visibility.update(world);
+        return std::ranges::count(visibility.receivers(world, wall, emitters, kRange), robot, &Receiver::robot);
+    };
+    for (std::uint32_t robot = 0; robot < 3; ++robot) {
+        EXPECT_EQ(times(robot, kFront), robot < 2 ? 1 : 0);
+    }
+    world.original_wall_copies = true;
+    for (std::uint32_t robot = 0; robot < 3; ++robot) {
+        int const faces = std::popcount(hears(world, robot, wall));
+        EXPECT_EQ(faces > 1, robot < 2);
+        EXPECT_EQ(times(robot, kFront), faces);  // each of these then arrives at each face
+        EXPECT_EQ(times(robot, kRight), 0);
+        EXPECT_EQ(times(robot, kAllFaces), faces > 0 ? 1 : 0);
+    }
 }
 
 TEST(Outline, StraightWallIsHeardWithinTheRangeOfAnEmitter) {

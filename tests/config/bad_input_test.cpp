@@ -43,6 +43,9 @@ std::string head_for(KeyGroup const& group) {
     if (group.path == "objects.<category>.msg_success_rate") {
         return kRobots + "    msg_success_rate:\n      type: dynamic\n      ";
     }
+    if (group.path == "objects.<category>.battery") {
+        return kRobots + "    battery:\n      capacity_mah: 1\n      ";
+    }
     std::string const geometry = group.type == "pogowall" ? "arena" : "disk";
     return "objects:\n  robots: {type: pogobot, geometry: disk}\n  thing:\n    type: " + group.type +
            "\n    geometry: " + geometry + "\n    ";

@@ -796,3 +796,80 @@ TEST(Scenario, SettingAKeyOfACategoryThatIsNotThereNamesThoseThatAre) {
     Scenario const s = load(kRobots, {.overrides = {"objects.lamp.type=static_light", "objects.lamp.geometry=global"}});
     EXPECT_EQ(s.objects.at(1).type, "static_light");
 }
+
+TEST(Scenario, SensorsAreIdealUnlessTheConfigurationSaysOtherwise) {
+    SensorSpec const ideal = robot("").sensors;
+    EXPECT_EQ(ideal.model, SensorModel::ideal);
+    EXPECT_EQ(ideal.photosensor_bits, 15);
+    EXPECT_FALSE(ideal.imu_gravity);
+    EXPECT_FALSE(ideal.imu_quantization);
+    EXPECT_EQ(ideal.acceleration_noise_m_s2, 0.0F);
+    EXPECT_EQ(ideal.acceleration, ImuAcceleration::robot);
+    EXPECT_FALSE(robot("").battery);
+}
+
+TEST(Scenario, SensorModelSetsTheDefaultsOfItsKeys) {
+    SensorSpec const sensors = robot("    sensor_model: robot\n").sensors;
+    EXPECT_EQ(sensors.photosensor_bits, 10);
+    EXPECT_TRUE(sensors.imu_gravity);
+    EXPECT_TRUE(sensors.imu_quantization);
+    EXPECT_GT(sensors.acceleration_noise_m_s2, 0.0F);
+    EXPECT_GT(sensors.angular_noise_rad_s, 0.0F);
+    SensorSpec const own =
+        robot("    photosensors_bits: 12\n    sensor_model: robot\n    imu_gravity: false\n").sensors;
+    EXPECT_EQ(own.photosensor_bits, 12);
+    EXPECT_FALSE(own.imu_gravity);
+    EXPECT_TRUE(own.imu_quantization);
+}
+
+TEST(Scenario, ReadsTheBatteryOfARobot) {
+    auto const battery = robot("    battery: {capacity_mah: 300, idle_ma: 80, motor_ma: 120, led_ma: 10}\n").battery;
+    ASSERT_TRUE(battery);
+    EXPECT_EQ(battery->capacity_mah, 300.0);
+    EXPECT_EQ(battery->idle_ma, 80.0);
+    EXPECT_EQ(battery->motor_ma, 120.0);
+    EXPECT_EQ(battery->led_ma, 10.0);
+    EXPECT_EQ(battery->initial_percent, 100.0);
+    EXPECT_EQ(robot("    battery: {capacity_mah: 1}\n").battery->idle_ma, BatterySpec().idle_ma);
+    EXPECT_FALSE(robot("    battery:\n").battery);
+}
+
+TEST(Scenario, RefusesWrongBatteriesAndSensors) {
+    EXPECT_EQ(
+        load_error(kRobots + "    battery: 250\n"),
+        "x.yaml:6: objects.robots.battery: expected a map of keys, such as {capacity_mah: 250, idle_ma: 100}, found "
+        "250");
+    EXPECT_EQ(
+        load_error(kRobots + "    battery: {capacity_mah: 0}\n"),
+        "x.yaml:6: objects.robots.battery.capacity_mah: expected a number above 0, at most 1000000000 (mAh), found 0");
+    EXPECT_NE(load_error(kRobots + "    battery: {idle_ma: 80}\n").find("capacity_mah"), std::string::npos);
+    EXPECT_EQ(load_error(kRobots + "    photosensors_bits: 16\n"),
+              "x.yaml:6: objects.robots.photosensors_bits: expected an integer from 1 to 15 (bits), found 16");
+    EXPECT_EQ(load_error(kRobots + "    sensor_model: real\n"),
+              "x.yaml:6: objects.robots.sensor_model: expected ideal or robot, found 'real'");
+    EXPECT_EQ(load_error(kRobots + "    imu_acceleration: new\n"),
+              "x.yaml:6: objects.robots.imu_acceleration: expected robot or original, found 'new'");
+    Warnings const warnings;
+    load(kRobots + "    battery: {capacity_mah: 250, idle_m: 3}\n");
+    EXPECT_NE(warnings.text().find("did you mean 'idle_ma'?"), std::string::npos) << warnings.text();
+}
+
+TEST(Scenario, WallsThatAddEnergyGetAWarning) {
+    Warnings const warnings;
+    EXPECT_EQ(load("wall_restitution: 1.8\n" + kRobots).walls.restitution, 1.8F);
+    EXPECT_NE(warnings.text().find("x.yaml:1: wall_restitution: at 1.8, above 1, walls add energy"), std::string::npos)
+        << warnings.text();
+    EXPECT_EQ(warnings.lines().size(), 1U);
+    load("wall_restitution: 1\n" + kRobots);
+    load("boundary_condition: periodic\nwall_restitution: 1.8\n" + kRobots);
+    EXPECT_EQ(warnings.lines().size(), 1U) << warnings.text();
+    EXPECT_EQ(load_error("wall_restitution: 18\n" + kRobots),
+              "x.yaml:1: wall_restitution: expected a number from 0 to 10, found 18");
+}
+
+TEST(Scenario, TakesCopiesAndTimesOfTheOriginalSimulator) {
+    EXPECT_EQ(load(kRobots).wall_copies, WallCopies::one_per_face);
+    EXPECT_EQ(load("wall_message_copies: original\n" + kRobots).wall_copies, WallCopies::original);
+    EXPECT_EQ(load(kRobots).output.row_timing, RowTiming::multiples);
+    EXPECT_EQ(load("save_data_times: original\n" + kRobots).output.row_timing, RowTiming::original);
+}

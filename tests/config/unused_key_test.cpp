@@ -33,7 +33,7 @@ std::vector<Case> const kCases{
      "initial_formation_center: middle"},
     {"initial_formation: imported\nformation_filename: f.csv", "initial_formation: random",
      "imported_formation_min_coords: [.inf, 0]", "imported_formation_min_coords: all"},
-    {"boundary_condition: solid", "boundary_condition: periodic", "wall_restitution: 1.8", "wall_restitution: high"},
+    {"boundary_condition: solid", "boundary_condition: periodic", "wall_restitution: 18", "wall_restitution: high"},
     {"boundary_condition: solid", "boundary_condition: periodic", "wall_friction: -1", "wall_friction: low"},
     {"enable_data_logging: true", "enable_data_logging: false", "data_logger_flush_row_count: 0",
      "data_logger_flush_row_count: all"},

@@ -31,14 +31,16 @@ Node robots_of(std::string const& keys) {
     return *find_path(load(kRobots + keys).source->values, "objects.robots");
 }
 
-/// A configuration that holds all its values gives the same values, without a warning.
+/// A configuration that holds all its values gives the same values, without a warning but that of walls that add energy.
 void expect_complete(Scenario const& scenario) {
     Warnings const warnings;
     Folder const folder;
     std::string const text = to_yaml(scenario.source->values);
     Folder::write("values.yaml", text);
     EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}).source->values), text);
-    EXPECT_EQ(warnings.text(), "");
+    std::vector<std::string> lines = warnings.lines();
+    std::erase_if(lines, [](std::string const& line) { return line.find("walls add energy") != std::string::npos; });
+    EXPECT_EQ(lines, std::vector<std::string>());
 }
 
 }  // namespace

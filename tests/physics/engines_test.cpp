@@ -127,6 +127,33 @@ TEST_P(Motion, CollisionKeepsMomentumAndLosesSpeedByTheRestitution) {
     EXPECT_NEAR(b.x - a.x, 50.0F, 0.5F);  // the larger of both restitutions
 }
 
+TEST_P(Motion, WallThrowsABodyBackFasterIfItsRestitutionIsAboveOne) {
+    for (float const restitution : {1.2F, 1.8F, 3.0F}) {
+        World world = square_world(1000.0F);
+        add_robot(world, {500, 500}, 0.0F, body(0.0F));
+        world.bodies.velocity_mm_s[0] = {100, 0};
+        run(world, 4.9, {.friction = 0.0F, .restitution = restitution});
+        EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, -100.0F * restitution, 0.5F);
+        EXPECT_NEAR(world.bodies.velocity_mm_s[0].y, 0.0F, 0.1F);
+    }
+}
+
+TEST_P(Motion, WallsThatAddEnergyHoldABodyAndLimitItsSpeed) {
+    World world = square_world(1000.0F);
+    add_robot(world, {500, 500}, 0.0F, body(0.0F));
+    world.bodies.velocity_mm_s[0] = {100, 37};
+    auto const engine = make_engine(world, {.friction = 0.0F, .restitution = 1.8F});
+    float fastest_mm_s = 0.0F;
+    for (int i = 0; i < 2000; ++i) {
+        engine->advance(world);
+        Vec2 const place = world.bodies.position_mm[0];
+        ASSERT_TRUE(place.x > 20.0F && place.x < 980.0F && place.y > 20.0F && place.y < 980.0F);
+        fastest_mm_s = std::max(fastest_mm_s, length(world.bodies.velocity_mm_s[0]));
+    }
+    EXPECT_GT(fastest_mm_s, 1000.0F);
+    EXPECT_LT(fastest_mm_s, 1.5F * kMostBounceMmS);  // each axis
+}
+
 TEST_P(Motion, WallThrowsABodyBackByItsRestitution) {
     for (Vec2 const velocity : {Vec2{100, 0}, Vec2{-100, 0}, Vec2{0, 100}, Vec2{0, -100}}) {
         World world = square_world(300.0F);

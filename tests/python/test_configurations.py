@@ -86,8 +86,8 @@ def test_resolved_configuration_says_that_the_arena_file_is_periodic(tmp_path: P
 
 
 def test_every_configuration_is_named_by_an_example() -> None:
-    of_batches = {"conf/test.yaml"}
-    assert {f"conf/{path.name}" for path in CONFIGURATIONS} == set(NAMED.values()) | of_batches
+    others = {"conf/test.yaml", "conf/original.yaml"}  # of batches, and of a page
+    assert {f"conf/{path.name}" for path in CONFIGURATIONS} == set(NAMED.values()) | others
 
 
 @pytest.mark.parametrize("program", PROGRAMS)

@@ -1,0 +1,60 @@
+// When rows are recorded, and the times that they bear.
+#pragma once
+
+#include <optional>
+
+#include "config/scenario.hpp"
+#include "sim/multiples.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// As the original simulator does it: it sums its time steps in single precision, records at the end of a step, under the
+/// time at which that step began, and counts the next period from there. With 10 ms and 1 s, the rows are those of 0,
+/// 1.01, 2.02, 3.03 s, ...
+class OriginalRowTimes {
+public:
+    explicit OriginalRowTimes(double period_s) : period_s_(static_cast<float>(period_s)) {}
+
+    /// To be called before the first step and after each one. The time of the rows, if they are due.
+    std::optional<double> due(World const& world) {
+        if (world.step == 0) {
+            return 0.0;
+        }
+        float const now_s = began_s_;
+        began_s_ += static_cast<float>(world.time_step_s);
+        if (period_s_ <= 0.0F || now_s < last_s_ + period_s_) {
+            return std::nullopt;
+        }
+        last_s_ = now_s;
+        return now_s;
+    }
+
+private:
+    float period_s_;
+    float began_s_ = 0.0F;  // of the next step
+    float last_s_ = 0.0F;   // of the last rows
+};
+
+class RowTimes {
+public:
+    RowTimes(RowTiming timing, double period_s) : multiples_(period_s, /*first=*/0) {
+        if (timing == RowTiming::original) {
+            original_.emplace(period_s);
+        }
+    }
+
+    /// The same, for either of them.
+    std::optional<double> due(World const& world) {
+        if (original_) {
+            return original_->due(world);
+        }
+        return multiples_.reached(world.time_s()) > 0 ? std::optional(world.time_s()) : std::nullopt;
+    }
+
+private:
+    Multiples multiples_;
+    std::optional<OriginalRowTimes> original_;
+};
+
+}  // namespace pogosim
