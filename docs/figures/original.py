@@ -195,8 +195,8 @@ def measured(folder: Path) -> pd.DataFrame:
 
 
 def with_spread(values: pd.Series[float]) -> str:
-    """Return the mean and the standard deviation of runs."""
-    return f"{values.mean():.3g} +- {values.std():.1g}"
+    """Return the mean and the standard deviation of runs, which has one digit."""
+    return f"{values.mean():.3g} +- {float(f'{values.std():.1g}'):g}"
 
 
 def table(found: pd.DataFrame) -> Quote:
