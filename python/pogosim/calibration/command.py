@@ -20,6 +20,7 @@ from pogosim.installation import InstallationError
 from pogosim.outputs import OutputError, told
 
 INTERRUPTED = 130
+MAGNETOMETER = "magnetometer"  # in place of a file: the fit of a magnetometer
 
 
 def parser(prog: str) -> Parser:
@@ -27,7 +28,7 @@ def parser(prog: str) -> Parser:
     made = Parser(
         prog=prog,
         description="Fits speed, noise and bias of simulated robots to tracks of real ones (docs/calibration.md), and "
-        "prints the lines for a configuration.",
+        "prints the lines for a configuration. pogosim calibrate magnetometer TABLE.csv: that of a magnetometer.",
     )
     made.add_argument(
         "tracks", nargs="?", metavar="TRACKS", help="CSV file with the columns time, id, x, y, angle; or a data file"
@@ -67,8 +68,13 @@ def parser(prog: str) -> Parser:
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate") -> int:
     """Run the command. Returns its exit code: 0 done, 2 nothing could be fitted, or written, 130 interrupted."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if given[:1] == [MAGNETOMETER]:
+        from pogosim.magnetometer import command as magnetometer
+
+        return magnetometer.main(given[1:], f"{prog} {MAGNETOMETER}")
     made = parser(prog)
-    options = made.parse_args(arguments)
+    options = made.parse_args(given)
     try:
         if options.protocol is not None:
             write_protocol(Path(options.protocol))

@@ -1,0 +1,182 @@
+"""The curve of a magnetometer: harmonics of the angle of the field in the robot's frame, and the ellipse in them.
+
+The simulator fits the same curve to a table (`magnetometer: {source: csv}`, src/robot/magnetometer_fit.cpp).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pogosim.calibration.errors import CalibrationError
+from pogosim.calibration.tracks import Floats
+from pogosim.magnetometer.table import ReadingTable
+
+HIGHEST_ORDER = 32  # as in the simulator
+LARGEST_CONDITION = 1e8  # of the squares of the basis
+DIFFERENT_RAD = 1e-3
+SIGNIFICANT = 4.0  # standard errors
+
+
+@dataclass(frozen=True)
+class CurveFit:
+    """A fitted curve.
+
+    Attributes:
+        coefficients: Of 1, cos a, sin a, cos 2a, sin 2a, ...; shape (1 + 2 order, 3), counts.
+        covariance: Of the coefficients of an axis, for readings with noise of variance 1.
+        noise: Standard deviation of the residuals of each axis, counts.
+        angle_rad: Of the field in the robot's frame, for each row.
+        residual: Shape (rows, 3), counts.
+    """
+
+    coefficients: Floats
+    covariance: Floats
+    noise: Floats
+    angle_rad: Floats
+    residual: Floats
+
+    @property
+    def order(self) -> int:
+        """Harmonics in use."""
+        return (len(self.coefficients) - 1) // 2
+
+    @property
+    def rms_error(self) -> Floats:
+        """Root of the mean squared residual of each axis, counts."""
+        return np.asarray(np.sqrt(np.mean(self.residual**2, axis=0)), dtype=np.float64)
+
+    def errors(self) -> Floats:
+        """Return the standard errors of the coefficients, in their shape."""
+        return np.sqrt(np.outer(np.diag(self.covariance), self.noise**2))
+
+    def readings(self, angle_rad: Floats) -> Floats:
+        """Return the readings at angles of the field in the robot's frame, shape (angles, 3)."""
+        return np.asarray(basis(angle_rad, self.order) @ self.coefficients)
+
+
+@dataclass(frozen=True)
+class Ellipse:
+    """The first harmonic, as the configuration describes it. Angles in rad, the rest in counts."""
+
+    major: float
+    minor: float
+    rotation: float
+    phase: float
+
+
+def basis(angle_rad: Floats, order: int) -> Floats:
+    """Return 1, cos a, sin a, cos 2a, ... at each angle; shape (angles, 1 + 2 order)."""
+    columns = [np.ones_like(angle_rad)]
+    for k in range(1, order + 1):
+        columns += [np.cos(k * angle_rad), np.sin(k * angle_rad)]
+    return np.column_stack(columns)
+
+
+def fit_curve(table: ReadingTable, order: int, field_angle_rad: float) -> CurveFit:
+    """Fit the curve by least squares.
+
+    Args:
+        table: Readings.
+        order: Harmonics.
+        field_angle_rad: Direction of the field where they were taken.
+
+    Raises:
+        CalibrationError: The headings do not determine the coefficients.
+    """
+    angle = field_angle_rad - table.angle_rad
+    matrix = basis(angle, order)
+    rows, count = matrix.shape
+    different = len(np.unique(np.rint(np.mod(angle, 2.0 * math.pi) / DIFFERENT_RAD)))
+    squares = matrix.T @ matrix
+    if rows <= count or different < count or np.linalg.cond(squares) > LARGEST_CONDITION:
+        covered = math.degrees(2.0 * math.pi - largest_gap(angle))
+        raise CalibrationError(
+            f"{table.source} has {rows} rows at {different} different headings, which cover {covered:.0f} of 360 "
+            f"degrees; a curve of {order} harmonics needs more than {count} rows, at {count} headings or more all "
+            "around the turn: take readings at more headings, or lower --harmonics"
+        )
+    coefficients = np.asarray(np.linalg.solve(squares, matrix.T @ table.reading), dtype=np.float64)
+    covariance = np.asarray(np.linalg.inv(squares), dtype=np.float64)
+    residual = table.reading - matrix @ coefficients
+    noise = np.sqrt(np.sum(residual**2, axis=0) / (rows - count))
+    return CurveFit(coefficients, covariance, noise, angle, residual)
+
+
+def largest_gap(angle_rad: Floats) -> float:
+    """Return the largest angle between neighbouring headings around the turn."""
+    sorted_angles = np.sort(np.mod(angle_rad, 2.0 * math.pi))
+    return float(np.diff(np.append(sorted_angles, sorted_angles[0] + 2.0 * math.pi)).max())
+
+
+def ellipse_of(coefficients: Floats) -> Ellipse:
+    """Return the ellipse of x and y: M (cos a, sin a) with M = rotation(rotation) diag(major, minor) rotation(phase).
+
+    Raises:
+        CalibrationError: The curve runs against the angle.
+    """
+    matrix = coefficients[1:3, :2].T
+    if np.linalg.det(matrix) < 0.0:
+        raise CalibrationError(
+            "as the angle of the table grows, readings run around the ellipse the other way; if its angles are "
+            "counter-clockwise, add --y-up"
+        )
+    left, (major, minor), right = np.linalg.svd(matrix)
+    if np.linalg.det(left) < 0.0:  # both are reflections
+        left, right = left * [1.0, -1.0], right * [[1.0], [-1.0]]
+    rotation = math.atan2(left[1, 0], left[0, 0])
+    if abs(rotation) > math.pi / 2.0:  # the same axis, the other end of it
+        rotation, right = rotation - math.copysign(math.pi, rotation), -right
+    return Ellipse(float(major), float(minor), rotation, math.atan2(right[1, 0], right[0, 0]))
+
+
+def check_ellipse(fitted: CurveFit, source: str) -> None:
+    """Raise CalibrationError if readings do not go around an ellipse."""
+    size = math.sqrt(float(np.sum(fitted.coefficients[1:3, :2] ** 2)))
+    error = math.sqrt(float(np.sum(fitted.errors()[1:3, :2] ** 2)))
+    if size <= SIGNIFICANT * error or size < 1e-9 * (1.0 + float(np.abs(fitted.coefficients[0]).max())):
+        raise CalibrationError(
+            f"{source}: x and y hardly depend on the heading: the first harmonic has {size:.3g} +- {error:.2g} counts; "
+            "check that the angles belong to the readings"
+        )
+
+
+def about_phase(fitted: CurveFit, phase: float) -> Floats:
+    """Return the coefficients by the angle of the field plus a phase, as the ellipse of the configuration counts it."""
+    turned = fitted.coefficients.copy()
+    for k in range(1, fitted.order + 1):
+        cosine, sine = math.cos(k * phase), math.sin(k * phase)
+        a, b = fitted.coefficients[2 * k - 1], fitted.coefficients[2 * k]
+        turned[2 * k - 1], turned[2 * k] = a * cosine - b * sine, a * sine + b * cosine
+    return turned
+
+
+def propagated(fitted: CurveFit, function: Callable[[Floats], Floats]) -> Floats:
+    """Return the standard errors of functions of the coefficients, to first order; axes are independent."""
+    start = function(fitted.coefficients)
+    variance = np.zeros_like(start)
+    step = 1e-4 * (1.0 + float(np.abs(fitted.coefficients[1:]).max()))
+    for axis in range(fitted.coefficients.shape[1]):
+        slopes = np.zeros((len(fitted.coefficients), len(start)))
+        for row in range(len(fitted.coefficients)):
+            moved = fitted.coefficients.copy()
+            moved[row, axis] += step
+            slopes[row] = (function(moved) - start) / step
+        variance += fitted.noise[axis] ** 2 * np.einsum("ij,ik,kj->j", slopes, fitted.covariance, slopes)
+    return np.sqrt(variance)
+
+
+def ellipse_errors(fitted: CurveFit) -> Ellipse:
+    """Return the standard errors of the ellipse."""
+    at = ellipse_of(fitted.coefficients)
+
+    def parts(coefficients: Floats) -> Floats:
+        ellipse = ellipse_of(coefficients)
+        rotation = at.rotation + math.remainder(ellipse.rotation - at.rotation, math.pi)
+        phase = at.phase + math.remainder(ellipse.phase - at.phase, math.pi)
+        return np.array([ellipse.major, ellipse.minor, rotation, phase])
+
+    return Ellipse(*propagated(fitted, parts).tolist())
