@@ -28,6 +28,7 @@ try:
     import functions
     import gallery
     import lamps
+    import magnetometer
     import messages
     import mistakes
     import models
@@ -59,6 +60,7 @@ SCRIPTS: dict[str, ModuleType] = {
         functions,
         gallery,
         lamps,
+        magnetometer,
         messages,
         mistakes,
         models,

@@ -74,7 +74,8 @@ int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 /// step, "bodies.radius" (n) mm. Arrays of robots (rows: objects that run the program): "robots.id", "robots.category"
 /// (index into pogosim_run_categories), "robots.body" (index of its body; 2^32 - 1: none), "robots.led" (n, 5, 3),
 /// "robots.ticks", "robots.clock" (us; at least 2^62: switched off), "robots.messages_sent",
-/// "robots.messages_received", "robots.user_data". Light on the floor: "light" (rows, columns), sensor counts. Columns
+/// "robots.messages_received", "robots.magnetometer" (n, 3), counts read last, "robots.magnetometer_samples" (n), how
+/// often it was read, "robots.user_data". Light on the floor: "light" (rows, columns), sensor counts. Columns
 /// that the program has added to the data file, by robot, as set by data_set_value_* at the last save: "columns.NAME",
 /// and "columns_absent.NAME", true for robots that set no value or wrote no row; for them "columns.NAME" has NaN, 0 or
 /// false. A column of strings has the type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only

@@ -14,6 +14,7 @@ NOT_SHOWN = {
     "pogosim/pogolib.h",
     "sdk/generated/csr.h",
     "sdk/hw/common.h",
+    "sdk/magnetometer.h",
     "sdk/pogosim_sdk_program.h",
 }
 # Modules of the package that are commands, or other names of commands.

@@ -71,7 +71,8 @@ template <class T>
 using Field = std::variant<bool T::*, int T::*, std::int64_t T::*, float T::*, double T::*, std::string T::*, Vec2 T::*,
                            IntRange T::*, std::optional<float> T::*, std::optional<std::uint32_t> T::*,
                            std::optional<std::array<float, 3>> T::*, std::optional<std::vector<std::string>> T::*,
-                           Choice<T>, NumberOr<T>, NumberOr<T, int>, Elsewhere>;
+                           Interval T::*, std::optional<Interval> T::*, Axes T::*, std::optional<double> T::*,
+                           std::optional<std::uint64_t> T::*, Choice<T>, NumberOr<T>, NumberOr<T, int>, Elsewhere>;
 
 /// One line of a table.
 template <class T>

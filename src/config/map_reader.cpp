@@ -98,6 +98,22 @@ std::optional<MapReader::LoneKey> MapReader::lone_key(std::string_view one, std:
     return has_one ? LoneKey{one, other} : LoneKey{other, one};
 }
 
+void MapReader::add_map(std::string_view key, MapReader const& inner) {
+    KeyDescription map;
+    map.name = key;
+    map.expected = kMapOfKeysBelow;
+    map.doc = fmt::format("See the keys {}.* below.", key);
+    known_.push_back(std::move(map));
+    for (KeyDescription description : inner.known_) {
+        description.name = fmt::format("{}.{}", key, description.name);
+        description.required = false;  // in the map alone, where it has been asked for
+        known_.push_back(std::move(description));
+    }
+    if (!inner.values_.entries.empty()) {
+        set_value(key, inner.values_);
+    }
+}
+
 std::string MapReader::path_of(std::string_view key) const {
     return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }

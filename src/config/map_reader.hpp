@@ -17,6 +17,9 @@
 
 namespace pogosim {
 
+/// What MapReader::read_map() expects.
+inline constexpr std::string_view kMapOfKeysBelow = "a map";
+
 class MapReader {
 public:
     /// `path` is the key path of the map, empty at the top level. A null node is an empty map; throws ConfigError for
@@ -31,6 +34,11 @@ public:
     /// Reads a table whose keys have no effect here: only the types of their values have to be right.
     template <class T>
     void read_unused(std::span<Key<T> const> keys, T& into);
+
+    /// Reads the map under a key with `read`, which gets a reader of it and takes tables; a key that is absent or null
+    /// is an empty map. Its keys are known as "key.inner".
+    template <class Read>
+    void read_map(std::string_view key, Read const& read);
 
     /// The value under a key, or nullptr when it is absent or null.
     Node const* find(std::string_view key) const;
@@ -81,6 +89,7 @@ private:
     template <class T>
     Node value_of(Key<T> const& key, T const& from) const;
 
+    void add_map(std::string_view key, MapReader const& inner);
     void refuse_both_names(std::string_view name, std::string_view other_name) const;
     void refuse_missing_keys() const;
     void report_unknown(std::string const& key, Node const& value) const;
@@ -100,6 +109,16 @@ void MapReader::read(std::span<Key<T> const> keys, T& into) {
         read_one(key, key.has_effect(into), into);
     }
     note_values(keys, into);
+}
+
+template <class Read>
+void MapReader::read_map(std::string_view key, Read const& read) {
+    static Node const empty;
+    Node const* const map = find(key);
+    MapReader inner(map == nullptr ? empty : *map, path_of(key), strict_);
+    read(inner);
+    inner.finish();
+    add_map(key, inner);
 }
 
 template <class T>

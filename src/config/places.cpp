@@ -65,7 +65,7 @@ std::string key_of(Scenario const& scenario, ObjectConfig const& object, ObjectS
 
 std::string line_of_key(Scenario const& scenario, std::string const& key) {
     Node const& tree = source_of(scenario).tree;
-    Node const* const value = tree.find(key);
+    Node const* const value = find_path(tree, key);
     return (value != nullptr ? *value : tree).where();
 }
 
@@ -91,6 +91,10 @@ std::string key_of(Setting setting) {
             return "initial_formation_root_object";
         case Setting::frames_name:
             return "frames_name";
+        case Setting::magnetometer:
+            return "magnetometer";
+        case Setting::magnetometer_table:
+            return "magnetometer.csv.file";
         case Setting::message_log:
             return "message_log";
         case Setting::physics_engine:
@@ -127,7 +131,7 @@ std::string place_of(Scenario const& scenario, ObjectConfig const& object, Objec
 }
 
 bool is_written(Scenario const& scenario, Setting setting) {
-    return source_of(scenario).tree.find(key_of(setting)) != nullptr;
+    return find_path(source_of(scenario).tree, key_of(setting)) != nullptr;
 }
 
 }  // namespace pogosim

@@ -19,6 +19,8 @@ enum class Setting {
     formation_filename,
     formation_root,
     frames_name,
+    magnetometer,
+    magnetometer_table,
     message_log,
     physics_engine,
     save_data_period,

@@ -1,5 +1,6 @@
 #include "config/reference.hpp"
 
+#include "config/magnetometer_keys.hpp"
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
 #include "config/placement_keys.hpp"
@@ -37,6 +38,10 @@ std::vector<KeyGroup> configuration_reference() {
     MapReader battery(nothing, "objects.<category>.battery", false);
     read_battery_map(battery);
     groups.push_back({"objects.<category>.battery", "", "A battery that empties.", battery.known_keys()});
+
+    MapReader magnetometer(nothing, "magnetometer", false);
+    read_magnetometer_map(magnetometer);
+    groups.push_back({"magnetometer", "", "What the magnetometers of robots measure.", magnetometer.known_keys()});
     return groups;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "config/magnetometer_config.hpp"
 #include "geometry/formation.hpp"
 #include "world/specs.hpp"
 
@@ -121,6 +122,7 @@ struct Scenario {
     int light_map_columns = 100;
     int light_map_rows = 100;
     FormationSpec formation;
+    MagnetometerConfig magnetometer;
     ViewConfig view;
     OutputConfig output;
     std::vector<ObjectConfig> objects;           // in the order of the file

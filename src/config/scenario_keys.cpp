@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "config/magnetometer_keys.hpp"
 #include "config/shape_keys.hpp"
 #include "physics/physics_engine.hpp"
 
@@ -48,6 +49,8 @@ std::span<Key<Scenario> const> scenario_keys() {
           "with k such faces k x k times."},
         K{"light_map_nb_bin_x", &Scenario::light_map_columns, between(1, 10000), "cells", "Columns of the light map."},
         K{"light_map_nb_bin_y", &Scenario::light_map_rows, between(1, 10000), "cells", "Rows of the light map."},
+        K{"magnetometer", Elsewhere{kMagnetometerMap}, any(), "",
+          "What the magnetometers of robots measure; see its own table. Default: an ellipse with typical numbers."},
         // Time and chance.
         K{"simulation_time", &Scenario::simulation_time_s, between(0, 1e9), "s", "Simulated duration of the run."},
         K{"time_step", &Scenario::time_step_s, above(0).up_to(1), "s", "Simulation step."},
@@ -237,6 +240,7 @@ void read_top_level(MapReader& reader, Scenario& scenario) {
         reader.read_unused(wall_keys(), scenario.walls);
     }
     reader.read(formation_keys(), scenario.formation);
+    scenario.magnetometer = read_magnetometer(reader);
     reader.read(output_keys(), scenario.output);
     reader.read(view_keys(), scenario.view);
 }

@@ -260,6 +260,21 @@ void read_value(Place const& place, Limits const& limits, std::int64_t& value) {
 void read_value(Place const& place, Limits const& limits, std::uint32_t& value) {
     read_integer(place, limits, value);
 }
+/// All 64 bits, of which a double would round some away.
+void read_value(Place const& place, Limits const& limits, std::uint64_t& value) {
+    std::string const& text = place.node.scalar;
+    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    bool const is_whole = place.node.kind == Node::Kind::scalar && error == std::errc() &&
+                          end == text.data() + text.size() && !text.empty();
+    if (is_whole) {
+        return;
+    }
+    std::optional<double> const number = number_of(place.node);
+    if (!number || !limits_of_type<std::uint64_t>(limits).range.contains(std::trunc(*number))) {
+        fail_expected(place, expected_text(limits, value));
+    }
+    value = static_cast<std::uint64_t>(*number);
+}
 void read_value(Place const& place, Limits const& limits, float& value) {
     read_real(place, limits, value);
 }
@@ -285,6 +300,24 @@ void read_value(Place const& place, Limits const& limits, IntRange& value) {
         fail_at(place, fmt::format("expected [smallest, largest], found [{}, {}]", min, max));
     }
     value = {min, max};
+}
+
+void read_value(Place const& place, Limits const& limits, Interval& value) {
+    std::string const expected = expected_text(limits, value);
+    if (place.node.kind == Node::Kind::sequence && place.node.items.size() == 1) {
+        auto const [both] = read_tuple<double, 1>(place, limits, expected);
+        value = {both, both};
+        return;
+    }
+    auto const [min, max] = read_tuple<double, 2>(place, limits, expected);
+    if (min > max) {
+        fail_at(place, fmt::format("expected [smallest, largest], found [{}, {}]", number_text(min), number_text(max)));
+    }
+    value = {min, max};
+}
+
+void read_value(Place const& place, Limits const& limits, Axes& value) {
+    value = read_tuple<double, 3>(place, limits, expected_text(limits, value));
 }
 
 void read_value(Place const& place, Limits const& limits, std::array<float, 3>& value) {
@@ -364,6 +397,10 @@ std::string expected_text(Limits const& limits, std::int64_t) {
 std::string expected_text(Limits const& limits, std::uint32_t) {
     return expected_integer<std::uint32_t>(limits);
 }
+std::string expected_text(Limits const& limits, std::uint64_t) {
+    return with_unit(limits.range.text().empty() ? "an integer of at least 0" : "an integer" + limits.range.text(),
+                     limits.unit);
+}
 std::string expected_text(Limits const& limits, float) {
     return expected_number(limits);
 }
@@ -378,6 +415,12 @@ std::string expected_text(Limits const& limits, Vec2) {
 }
 std::string expected_text(Limits const& limits, IntRange) {
     return with_unit("a list [smallest, largest] of two integers" + limits.range.text(), limits.unit);
+}
+std::string expected_text(Limits const& limits, Interval) {
+    return with_unit("a list [value] or [smallest, largest] of numbers" + limits.range.text(), limits.unit);
+}
+std::string expected_text(Limits const& limits, Axes const& /*unused*/) {
+    return with_unit("a list [x, y, z] of numbers" + limits.range.text(), limits.unit);
 }
 std::string expected_text(Limits const& limits, std::array<float, 3> const& /*unused*/) {
     return with_unit("a list of three numbers" + limits.range.text(), limits.unit);
@@ -398,6 +441,9 @@ std::string value_text(std::int64_t value) {
 std::string value_text(std::uint32_t value) {
     return std::to_string(value);
 }
+std::string value_text(std::uint64_t value) {
+    return std::to_string(value);
+}
 std::string value_text(float value) {
     return std::isfinite(value) ? fmt::format("{:g}", value) : number_text(value);
 }
@@ -412,6 +458,13 @@ std::string value_text(Vec2 value) {
 }
 std::string value_text(IntRange value) {
     return fmt::format("[{}, {}]", value.min, value.max);
+}
+std::string value_text(Interval value) {
+    return value.min == value.max ? fmt::format("[{}]", number_text(value.min))
+                                  : fmt::format("[{}, {}]", number_text(value.min), number_text(value.max));
+}
+std::string value_text(Axes const& value) {
+    return fmt::format("[{:g}]", fmt::join(value, ", "));
 }
 std::string value_text(std::array<float, 3> const& value) {
     return fmt::format("[{:g}]", fmt::join(value, ", "));
@@ -439,6 +492,9 @@ Node value_node(std::int64_t value) {
 Node value_node(std::uint32_t value) {
     return plain_node(value_text(value));
 }
+Node value_node(std::uint64_t value) {
+    return plain_node(value_text(value));
+}
 Node value_node(float value) {
     return plain_node(shortest_text(value));
 }
@@ -455,6 +511,12 @@ Node value_node(Vec2 value) {
 }
 Node value_node(IntRange value) {
     return sequence(std::array{value.min, value.max});
+}
+Node value_node(Interval value) {
+    return value.min == value.max ? sequence(std::array{value.min}) : sequence(std::array{value.min, value.max});
+}
+Node value_node(Axes const& value) {
+    return sequence(value);
 }
 Node value_node(std::array<float, 3> const& value) {
     return sequence(value);

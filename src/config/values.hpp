@@ -13,6 +13,7 @@
 #include "base/vec2.hpp"
 #include "config/range.hpp"
 #include "config/tree.hpp"
+#include "world/magnetometer_spec.hpp"
 #include "world/specs.hpp"
 
 namespace pogosim {
@@ -56,11 +57,14 @@ void read_value(Place const& place, Limits const& limits, bool& value);
 void read_value(Place const& place, Limits const& limits, int& value);
 void read_value(Place const& place, Limits const& limits, std::int64_t& value);
 void read_value(Place const& place, Limits const& limits, std::uint32_t& value);
+void read_value(Place const& place, Limits const& limits, std::uint64_t& value);
 void read_value(Place const& place, Limits const& limits, float& value);
 void read_value(Place const& place, Limits const& limits, double& value);
 void read_value(Place const& place, Limits const& limits, std::string& value);
 void read_value(Place const& place, Limits const& limits, Vec2& value);
 void read_value(Place const& place, Limits const& limits, IntRange& value);
+void read_value(Place const& place, Limits const& limits, Interval& value);
+void read_value(Place const& place, Limits const& limits, Axes& value);
 void read_value(Place const& place, Limits const& limits, std::array<float, 3>& value);
 void read_value(Place const& place, Limits const& limits, std::vector<std::string>& value);
 
@@ -96,18 +100,22 @@ void warn_of_slips(Place const& place, Limits const& limits, bool is_integer);
 template <class T>
 inline constexpr bool kReadsIntegers =
     std::is_same_v<T, int> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::uint32_t> ||
-    std::is_same_v<T, std::optional<std::uint32_t>> || std::is_same_v<T, IntRange>;
+    std::is_same_v<T, std::optional<std::uint32_t>> || std::is_same_v<T, std::optional<std::uint64_t>> ||
+    std::is_same_v<T, IntRange>;
 
 /// expected_text: what a key of that type takes, "a number above 0 (mm)".
 std::string expected_text(Limits const& limits, bool);
 std::string expected_text(Limits const& limits, int);
 std::string expected_text(Limits const& limits, std::int64_t);
 std::string expected_text(Limits const& limits, std::uint32_t);
+std::string expected_text(Limits const& limits, std::uint64_t);
 std::string expected_text(Limits const& limits, float);
 std::string expected_text(Limits const& limits, double);
 std::string expected_text(Limits const& limits, std::string const&);
 std::string expected_text(Limits const& limits, Vec2);
 std::string expected_text(Limits const& limits, IntRange);
+std::string expected_text(Limits const& limits, Interval);
+std::string expected_text(Limits const& limits, Axes const&);
 std::string expected_text(Limits const& limits, std::array<float, 3> const&);
 std::string expected_text(Limits const& limits, std::vector<std::string> const&);
 
@@ -121,11 +129,14 @@ std::string value_text(bool value);
 std::string value_text(int value);
 std::string value_text(std::int64_t value);
 std::string value_text(std::uint32_t value);
+std::string value_text(std::uint64_t value);
 std::string value_text(float value);
 std::string value_text(double value);
 std::string value_text(std::string const& value);
 std::string value_text(Vec2 value);
 std::string value_text(IntRange value);
+std::string value_text(Interval value);
+std::string value_text(Axes const& value);
 std::string value_text(std::array<float, 3> const& value);
 std::string value_text(std::vector<std::string> const& value);
 
@@ -142,11 +153,14 @@ Node value_node(bool value);
 Node value_node(int value);
 Node value_node(std::int64_t value);
 Node value_node(std::uint32_t value);
+Node value_node(std::uint64_t value);
 Node value_node(float value);
 Node value_node(double value);
 Node value_node(std::string const& value);
 Node value_node(Vec2 value);
 Node value_node(IntRange value);
+Node value_node(Interval value);
+Node value_node(Axes const& value);
 Node value_node(std::array<float, 3> const& value);
 Node value_node(std::vector<std::string> const& value);
 

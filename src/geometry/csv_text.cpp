@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -18,20 +19,31 @@ namespace {
 
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{256} << 20U;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::string_view kBlanks = " \t\v\f";
 
-std::string_view trimmed(std::string_view text) {
-    std::size_t const first = text.find_first_not_of(kBlanks);
+/// Blanks around fields; a character that separates them is none.
+std::string_view blanks(char delimiter) {
+    switch (delimiter) {
+        case '\t':
+            return " \v\f";
+        case ' ':
+            return "\t\v\f";
+        default:
+            return " \t\v\f";
+    }
+}
+
+std::string_view trimmed(std::string_view text, char delimiter) {
+    std::size_t const first = text.find_first_not_of(blanks(delimiter));
     if (first == std::string_view::npos) {
         return {};
     }
-    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+    return text.substr(first, text.find_last_not_of(blanks(delimiter)) - first + 1);
 }
 
-/// Where the field that begins at `start` ends: at one of the characters `ends` outside double quotes, or with the
-/// text. npos: its quotes are not closed.
-std::size_t end_of_field(std::string_view text, std::size_t start, std::string_view ends) {
-    std::size_t next = text.find_first_not_of(kBlanks, start);
+/// Where the field that begins at `start` ends: at a delimiter or the end of the line outside double quotes, or with
+/// the text. npos: its quotes are not closed.
+std::size_t end_of_field(std::string_view text, std::size_t start, char delimiter) {
+    std::size_t next = text.find_first_not_of(blanks(delimiter), start);
     if (next < text.size() && text[next] == '"') {
         do {
             std::size_t const closing = text.find('"', next + 1);
@@ -43,18 +55,23 @@ std::size_t end_of_field(std::string_view text, std::size_t start, std::string_v
     } else {
         next = start;
     }
-    return std::min(text.find_first_of(ends, next), text.size());
+    std::array const ends{delimiter, '\r', '\n'};
+    return std::min(text.find_first_of(ends.data(), next, ends.size()), text.size());
+}
+
+bool is_comment(std::string_view line, CsvStyle const& style) {
+    return !style.comment_prefix.empty() && line.starts_with(style.comment_prefix);
 }
 
 /// Where the first line ends, which texts in double quotes may continue below. npos: their quotes are not closed.
-std::size_t end_of_line(std::string_view text) {
-    std::size_t const first = text.find_first_not_of(kBlanks);
-    if (first < text.size() && text[first] == '#') {
+std::size_t end_of_line(std::string_view text, CsvStyle const& style) {
+    std::size_t const first = text.find_first_not_of(blanks(style.delimiter));
+    if (first < text.size() && is_comment(text.substr(first), style)) {
         return std::min(text.find_first_of("\r\n"), text.size());
     }
-    std::size_t end = end_of_field(text, 0, ",\r\n");
-    while (end < text.size() && text[end] == ',') {
-        end = end_of_field(text, end + 1, ",\r\n");
+    std::size_t end = end_of_field(text, 0, style.delimiter);
+    while (end < text.size() && text[end] == style.delimiter) {
+        end = end_of_field(text, end + 1, style.delimiter);
     }
     return end;
 }
@@ -71,7 +88,7 @@ std::string without_quotes(std::string_view field) {
     if (field.size() < 2 || !field.starts_with('"') || !field.ends_with('"')) {
         return std::string(field);
     }
-    std::string text(trimmed(field.substr(1, field.size() - 2)));
+    std::string text(trimmed(field.substr(1, field.size() - 2), ','));
     for (std::size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1)) {
         text.erase(at, 1);
     }
@@ -101,7 +118,7 @@ std::string read_text(std::filesystem::path const& path) {
 
 }  // namespace
 
-CsvText read_csv(std::filesystem::path const& path) {
+CsvText read_csv(std::filesystem::path const& path, CsvStyle const& style) {
     std::string const text = read_text(path);
     std::string_view rest = text;
     if (rest.starts_with(kByteOrderMark)) {
@@ -109,14 +126,15 @@ CsvText read_csv(std::filesystem::path const& path) {
     }
     CsvText csv;
     for (std::size_t number = 1; !rest.empty();) {
-        std::size_t const end = end_of_line(rest);
+        std::size_t const end = end_of_line(rest, style);
         if (end == std::string_view::npos) {
             throw ConfigError(fmt::format("{}:{}: a text in double quotes begins on this line and does not end",
                                           path.string(), number));
         }
-        std::string_view const line = trimmed(rest.substr(0, end));
-        if (line.starts_with('#')) {
-            csv.comments.push_back({number, std::string(trimmed(line.substr(1)))});
+        std::string_view const line = trimmed(rest.substr(0, end), style.delimiter);
+        if (is_comment(line, style)) {
+            csv.comments.push_back(
+                {number, std::string(trimmed(line.substr(style.comment_prefix.size()), style.delimiter))});
         } else {
             csv.lines.push_back({number, std::string(line)});
         }
@@ -127,11 +145,11 @@ CsvText read_csv(std::filesystem::path const& path) {
     return csv;
 }
 
-std::vector<std::string> split_fields(std::string_view line) {
+std::vector<std::string> split_fields(std::string_view line, char delimiter) {
     std::vector<std::string> fields;
     for (std::size_t start = 0; start <= line.size();) {
-        std::size_t const end = std::min(end_of_field(line, start, ","), line.size());
-        fields.push_back(without_quotes(trimmed(line.substr(start, end - start))));
+        std::size_t const end = std::min(end_of_field(line, start, delimiter), line.size());
+        fields.push_back(without_quotes(trimmed(line.substr(start, end - start), delimiter)));
         start = end + 1;
     }
     return fields;

@@ -9,6 +9,12 @@
 
 namespace pogosim {
 
+/// What separates fields, and begins lines that are no data.
+struct CsvStyle {
+    char delimiter = ',';
+    std::string_view comment_prefix = "#";  // empty: there are no comments
+};
+
 struct CsvLine {
     std::size_t number = 0;  // from 1
     std::string text;        // without spaces and tabs at either end; empty for a blank line; more lines if in quotes
@@ -16,17 +22,17 @@ struct CsvLine {
 
 struct CsvText {
     std::vector<CsvLine> lines;
-    std::vector<CsvLine> comments;  // lines that start with '#', without it
+    std::vector<CsvLine> comments;  // lines that start with the prefix, without it
 };
 
 /// All lines of a text file. Accepts a UTF-8 byte order mark and line ends of every kind; a field in double quotes may
 /// have line ends (RFC 4180). Throws ConfigError when it is not a regular file that can be read, is larger than
 /// 256 MiB, or does not close its quotes.
-CsvText read_csv(std::filesystem::path const& path);
+CsvText read_csv(std::filesystem::path const& path, CsvStyle const& style = {});
 
-/// Fields between commas, without spaces and tabs at either end, nor one pair of double quotes around them. In these,
-/// commas are text, and two quotes stand for one.
-std::vector<std::string> split_fields(std::string_view line);
+/// Fields between delimiters, without spaces and tabs at either end, nor one pair of double quotes around them. In
+/// these, delimiters are text, and two quotes stand for one.
+std::vector<std::string> split_fields(std::string_view line, char delimiter = ',');
 
 /// A finite decimal number ("-1.5e3", "+2"), or nothing.
 std::optional<double> parse_number(std::string_view field);

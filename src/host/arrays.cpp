@@ -59,6 +59,14 @@ pogosim_array members(Simulation const& simulation, T const& of_first) {
     return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(all.size())}, {sizeof(Controller)});
 }
 
+pogosim_array magnetometers(Simulation const& simulation, Magnetometer const& of_first) {
+    pogosim_array array = members(simulation, of_first.last.front());
+    array.dimensions = 2;
+    array.shape[1] = kAxisCount;
+    array.stride_bytes[1] = sizeof(of_first.last.front());
+    return array;
+}
+
 pogosim_array user_data(Simulation const& simulation) {
     Controllers const& controllers = simulation.controllers();
     auto const all = controllers.all();
@@ -100,6 +108,10 @@ constexpr std::array kArrays{
                [](Simulation const& s) { return members(s, first_controller(s).messages_sent); }},
     NamedArray{"robots.messages_received",
                [](Simulation const& s) { return members(s, first_controller(s).messages_received); }},
+    NamedArray{"robots.magnetometer",
+               [](Simulation const& s) { return magnetometers(s, first_controller(s).magnetometer); }},
+    NamedArray{"robots.magnetometer_samples",
+               [](Simulation const& s) { return members(s, first_controller(s).magnetometer.samples); }},
     NamedArray{"robots.user_data", user_data},
     NamedArray{"light", [](Simulation const& s) { return light(s.world().light); }},
 };

@@ -34,16 +34,18 @@ struct Inspection {
     double moved_during_s = 0.0;       // duration of that motion: 1 s, or the whole run if it is shorter
     std::vector<std::string> touches;  // "wall", "robot 7", "obstacles 3"
     std::uint32_t ticks = 0;
-    double clock_s = 0.0;                  // the robot's own: when its next tick is due
-    std::array<int, 3> motor_power{};      // right, left, back; 0 to 1023
-    std::array<int, 3> motor_direction{};  // 0 or 1
-    Leds led{};                            // as set, 0 to 255
-    std::array<int, 3> light{};            // without noise and bias: back, front left, front right; sensor counts
-    Vec2 acceleration_m_s2;                // in the robot's frame, without noise
-    std::vector<Neighbour> neighbours;     // by id
-    std::uint64_t messages_sent = 0;       // by any function; a message in all directions counts once
-    std::uint64_t messages_received = 0;   // that its program has read
-    std::size_t messages_waiting = 0;      // in its queue
+    double clock_s = 0.0;                    // the robot's own: when its next tick is due
+    std::array<int, 3> motor_power{};        // right, left, back; 0 to 1023
+    std::array<int, 3> motor_direction{};    // 0 or 1
+    Leds led{};                              // as set, 0 to 255
+    std::array<int, 3> light{};              // without noise and bias: back, front left, front right; sensor counts
+    Vec2 acceleration_m_s2;                  // in the robot's frame, without noise
+    std::array<int, 3> magnetometer{};       // x, y and z that its program has read last, counts
+    std::uint64_t magnetometer_samples = 0;  // how often it has
+    std::vector<Neighbour> neighbours;       // by id
+    std::uint64_t messages_sent = 0;         // by any function; a message in all directions counts once
+    std::uint64_t messages_received = 0;     // that its program has read
+    std::size_t messages_waiting = 0;        // in its queue
     std::vector<std::pair<std::string, std::string>> variables;  // of its program, now: name and value
     std::string no_variables{};                                  // why there are none; empty: the program has none
     std::vector<std::pair<std::string, std::string>> columns;    // its last row of the data file: name and value

@@ -58,8 +58,8 @@ bool are_given(int16_t const* x, int16_t const* y, int16_t const* z) {
     char what[256];
     auto const end = fmt::format_to_n(
         what, sizeof(what) - 1,
-        "magn_read_XYZ(): the pose x {:.1f} mm, y {:.1f} mm, heading {:.1f} degrees is outside magnetometer.domain, whose "
-        "policy is throw",
+        "magn_read_XYZ(): the pose x {:.1f} mm, y {:.1f} mm, heading {:.1f} degrees is outside magnetometer.domain, "
+        "whose policy is throw",
         pose.position_mm.x, pose.position_mm.y, pose.heading_rad * degrees);
     *end.out = '\0';
     pogosim::refuse_user_code(what);

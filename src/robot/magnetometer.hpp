@@ -29,8 +29,8 @@ struct MagnetometerProfile {
     Axes noise_stddev{};
 };
 
-/// The profile of the robot with this id. Each value has its own place in the robot's random stream: another width of one
-/// interval changes no other value.
+/// The profile of the robot with this id. Each value has its own place in the robot's random stream: another width of
+/// one interval changes no other value.
 MagnetometerProfile profile_of(MagnetometerSpec const& spec, std::uint32_t id);
 
 Axes field_at(MagneticField const& field, Vec2 position_mm);

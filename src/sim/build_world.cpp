@@ -23,6 +23,7 @@
 #include "physics/coinciding_centres.hpp"
 #include "sim/find_file.hpp"
 #include "sim/imported_objects.hpp"
+#include "sim/magnetometers.hpp"
 #include "sim/make_membrane.hpp"
 #include "sim/place_objects.hpp"
 #include "world/assert_world.hpp"
@@ -288,7 +289,7 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     world.ignore_occlusions = scenario.ignore_occlusions;
     world.original_wall_copies = scenario.wall_copies == WallCopies::original;
     world.temperature_c = static_cast<float>(scenario.arena_temperature_c);
-    world.magnetometer.seed = seed;
+    world.magnetometer = magnetometers_of(scenario, seed);
     build_arena(scenario, world);
     warn_of_gaps(scenario);
     allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });

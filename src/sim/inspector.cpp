@@ -36,6 +36,8 @@ void add_controller(Controller const& controller, Inspection& inspection) {
     std::ranges::copy(controller.motors.direction, inspection.motor_direction.begin());
     inspection.messages_sent = controller.messages_sent;
     inspection.messages_received = controller.messages_received;
+    std::ranges::copy(controller.magnetometer.last, inspection.magnetometer.begin());
+    inspection.magnetometer_samples = controller.magnetometer.samples;
 }
 
 void add_sensors(World const& world, std::uint32_t body, Controller const& controller, Inspection& inspection) {

@@ -109,6 +109,17 @@ void add_flash(Hash& hash, Flash const& flash, std::size_t robot) {
     }
 }
 
+void add_magnetometer(Hash& hash, Magnetometer const& magnetometer, std::size_t robot) {
+    if (magnetometer.samples > 0) {
+        hash.add(robot);
+        hash.add(magnetometer.samples);
+        hash.add(magnetometer.taken);
+        for (std::int16_t const count : magnetometer.last) {
+            hash.add(count);
+        }
+    }
+}
+
 /// Hashes what robots have changed in their own memory. Addresses differ from run to run: for an address in the
 /// program, its offset counts; for any other, only that it is an address.
 void add_own_memory(Hash& hash, Controllers const& controllers) {
@@ -150,6 +161,7 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
     }
     // Adds nothing where none of these has changed.
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
+        add_magnetometer(hash, all[robot].magnetometer, robot);
         add_flash(hash, all[robot].flash, robot);
     }
     for (std::size_t robot = 0; robot < all.size(); ++robot) {

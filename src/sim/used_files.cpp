@@ -50,6 +50,8 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     OutputConfig const& output = scenario.output;
     add_input(Setting::arena_file, scenario.arena_file, true);
     add_input(Setting::formation_filename, scenario.formation.filename, scenario.formation.name == kImportedFormation);
+    add_input(Setting::magnetometer_table, scenario.magnetometer.table.file,
+              scenario.magnetometer.source == MagnetometerSource::csv);
     add_output(Setting::data_filename, output.data_filename, output.enable_data_logging);
     add_output(Setting::console_filename, output.console_filename, output.enable_console_logging);
     add_output(Setting::message_log, output.message_log, true);

@@ -106,6 +106,16 @@ void draw_motion(Inspection const& robot) {
     row("motor back", fmt::format("{} (direction {})", robot.motor_power[2], robot.motor_direction[2]));
 }
 
+/// The magnetometer is shown once the program has read it.
+void draw_sensors(Inspection const& robot) {
+    row("light", fmt::format("{} back, {} left, {} right", robot.light[0], robot.light[1], robot.light[2]));
+    if (robot.magnetometer_samples > 0) {
+        row("magnetometer",
+            fmt::format("{}, {}, {}, read {} time{}", robot.magnetometer[0], robot.magnetometer[1],
+                        robot.magnetometer[2], robot.magnetometer_samples, robot.magnetometer_samples == 1 ? "" : "s"));
+    }
+}
+
 void draw_leds(Inspection const& robot) {
     static constexpr std::array kNames{"head", "front", "right", "back", "left"};
     for (std::size_t i = 0; i < robot.led.size(); ++i) {
@@ -175,7 +185,7 @@ void draw_inspector(Inspection const& robot) {
     if (ImGui::CollapsingHeader("LEDs and sensors")) {
         table("leds", [&] {
             draw_leds(robot);
-            row("light", fmt::format("{} back, {} left, {} right", robot.light[0], robot.light[1], robot.light[2]));
+            draw_sensors(robot);
         });
     }
 }

@@ -1,6 +1,6 @@
 // The magnetometers of robots, as far as the configuration says what they are like: the same for all. The formulas are
-// in robot/magnetometer.hpp. Magnetic field in any unit, for only ratios count; readings in counts of the sensor; angles
-// in the frame of the world, clockwise on the screen.
+// in robot/magnetometer.hpp. Magnetic field in any unit, for only ratios count; readings in counts of the sensor;
+// angles in the frame of the world, clockwise on the screen.
 #pragma once
 
 #include <array>
@@ -81,7 +81,7 @@ struct MagneticEllipse {
     Interval z_sine{-10.0, -10.0};
 };
 
-/// Readings by the angle of the field in the robot's frame: constant + sum of cosine[k-1] cos(k a) + sine[k-1] sin(k a).
+/// Readings by the angle a of the field in the robot's frame: constant + sum of cosine[k-1] cos ka + sine[k-1] sin ka.
 struct MagneticCurve {
     Axes constant{};
     int order = 0;  // how many harmonics are in use

@@ -25,7 +25,7 @@ HEADINGS = np.radians(np.arange(0.0, 360.0, 5.0))
 
 
 def coefficients(major: float, minor: float, rotation: float, phase: float) -> Floats:
-    """Of an ellipse with a second harmonic."""
+    """Return the coefficients of an ellipse with a second harmonic."""
     cosine, sine = math.cos(rotation), math.sin(rotation)
     matrix = np.array([[cosine, -sine], [sine, cosine]]) @ np.diag([major, minor])
     matrix = matrix @ [[math.cos(phase), -math.sin(phase)], [math.sin(phase), math.cos(phase)]]

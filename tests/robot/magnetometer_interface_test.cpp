@@ -20,7 +20,7 @@ struct Read {
     std::int64_t time_us = 0;
 };
 
-/// Of all robots, in the order of the calls.
+/// The reads of all robots, in the order of the calls.
 std::vector<Read> reads;
 uint16_t timeout_ms = 20;
 
@@ -176,6 +176,24 @@ TEST(MagnetometerInterface, NullPointerReadsNothing) {
     ASSERT_FALSE(simulation.start());
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
     EXPECT_EQ(reinterpret_cast<TestData const*>(simulation.controllers().controller_of(0).user_data)->number[0], 1);
+}
+
+TEST(MagnetometerInterface, InspectorAndHashKnowWhatWasReadLast) {
+    testing::use_program([] {}, read_once);
+    Simulation simulation(testing::test_program(), lone_robot_scene(), {});
+    ASSERT_FALSE(simulation.start());
+    EXPECT_EQ(simulation.inspector().inspect(0).magnetometer_samples, 0U);
+    reads.clear();
+    EXPECT_FALSE(testing::run_for(simulation, 0.5));
+    Inspection const inspection = simulation.inspector().inspect(0);
+    EXPECT_EQ(inspection.magnetometer_samples, reads.size());
+    EXPECT_TRUE(std::ranges::equal(inspection.magnetometer, reads.back().counts));
+
+    testing::use_program([] {}, [] {});
+    Simulation other(testing::test_program(), lone_robot_scene(), {});
+    ASSERT_FALSE(other.start());
+    EXPECT_FALSE(testing::run_for(other, 0.5));
+    EXPECT_NE(simulation.hash(), other.hash());
 }
 
 TEST(MagnetometerInterface, PoseOutsideTheDomainEndsTheRunIfItsPolicyIsToThrow) {

@@ -18,7 +18,7 @@ from pogosim.yaml_1_2 import plain
 
 OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
 MESSAGE_LOG = "message_log"  # an output only of runs that ask for it
-FILES_BESIDE = ("arena_file", "formation_filename")
+FILES_BESIDE = ("arena_file", "formation_filename", "magnetometer.csv.file")
 
 
 @dataclass
@@ -61,9 +61,7 @@ def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> No
 def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings) -> list[Task]:
     """Return the runs of a configuration, one per seed."""
     world = {key: value for key, value in entries.items() if key not in OUTPUTS and key != MESSAGE_LOG}
-    for key in FILES_BESIDE:
-        if key in world:
-            world[key] = found_beside(world[key], settings.configuration_folder)
+    world = with_files_beside(world, settings.configuration_folder)
     outputs = {key: basename(entries.get(key), default) for key, default in OUTPUTS.items()}
     if format_of(outputs["data_filename"]) != FEATHER:  # that of the results is another matter
         outputs["data_filename"] = f"{Path(outputs['data_filename']).stem}.feather"
@@ -93,6 +91,21 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
         )
         for run, seed in enumerate(seeds)
     ]
+
+
+def with_files_beside(entries: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a configuration for another folder: with the paths of files that a single run finds beside it."""
+    result = dict(entries)
+    for path in FILES_BESIDE:
+        *maps, key = path.split(".")
+        node: Any = result
+        for name in maps:
+            if isinstance(node, dict) and isinstance(node.get(name), dict):
+                node[name] = dict(node[name])  # the given one stays as it is
+            node = node.get(name) if isinstance(node, dict) else None
+        if isinstance(node, dict) and key in node:
+            node[key] = found_beside(node[key], folder)
+    return result
 
 
 def found_beside(name: Any, folder: Path) -> Any:

@@ -26,10 +26,10 @@ class CurveFit:
     """A fitted curve.
 
     Attributes:
-        coefficients: Of 1, cos a, sin a, cos 2a, sin 2a, ...; shape (1 + 2 order, 3), counts.
-        covariance: Of the coefficients of an axis, for readings with noise of variance 1.
+        coefficients: Factors of 1, cos a, sin a, cos 2a, sin 2a, ...; shape (1 + 2 order, 3), counts.
+        covariance: That of the coefficients of an axis, for readings with noise of variance 1.
         noise: Standard deviation of the residuals of each axis, counts.
-        angle_rad: Of the field in the robot's frame, for each row.
+        angle_rad: Angle of the field in the robot's frame, for each row.
         residual: Shape (rows, 3), counts.
     """
 

@@ -17,7 +17,7 @@ from pogosim.batch.combinations import overlay
 from pogosim.batch.configuration import dump_configuration
 from pogosim.batch.errors import cannot
 from pogosim.batch.names import COLUMNS, FORMAT
-from pogosim.batch.tasks import FILES_BESIDE, found_beside
+from pogosim.batch.tasks import with_files_beside
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Evaluation
 from pogosim.optimize.settings import SECTION
@@ -195,10 +195,10 @@ def configuration_text(space: Space, values: Values, folder: Path, notes: Sequen
     """
     entries = space.configuration(values, is_flat=True)
     own = {key: value for key, value in entries.items() if key not in NOT_FOR_ONE_RUN}
-    named = {key: found_beside(own[key], folder.absolute()) for key in FILES_BESIDE if key in own}
+    own = with_files_beside(own, folder.absolute())
     kept = {key: entries[key] for key in (FORMAT, COLUMNS) if key in entries}
     comments = "".join(f"# {line}\n" for line in notes)
-    return comments + dump_configuration(overlay(overlay(own, named), kept))
+    return comments + dump_configuration(overlay(own, kept))
 
 
 def write_text(path: Path, text: str) -> None:

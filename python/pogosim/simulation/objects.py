@@ -94,6 +94,15 @@ class WorldObject:
         return float(self._state().light)
 
     @property
+    def magnetometer(self) -> tuple[int, int, int] | None:
+        """What its program has read last of its magnetometer: x, y, z, counts; None before, or without a program."""
+        robot, run = self.robot, self._simulation._run
+        if robot is None or not run.array("robots.magnetometer_samples")[robot]:
+            return None
+        x, y, z = run.array("robots.magnetometer")[robot].tolist()
+        return x, y, z
+
+    @property
     def is_alive(self) -> bool:
         """Whether it is switched on; true for what runs no program."""
         return bool(self._state().is_alive)

@@ -404,6 +404,16 @@ class Simulation:
         return self._run.array("robots.messages_received")
 
     @property
+    def magnetometer(self) -> npt.NDArray[Any]:
+        """What each robot's program has read last of its magnetometer, counts; 0 before. Shape (robots, 3)."""
+        return self._run.array("robots.magnetometer")
+
+    @property
+    def magnetometer_samples(self) -> npt.NDArray[Any]:
+        """How often each robot's program has read new data of its magnetometer. Shape (robots,)."""
+        return self._run.array("robots.magnetometer_samples")
+
+    @property
     def light_map(self) -> npt.NDArray[Any]:
         """Light on the floor, sensor counts. Shape (rows, columns), the first row along the top; read-only."""
         return self._run.array("light")
