@@ -12,6 +12,7 @@ NO_PARAMETERS = (
     "message_log",
     "console_filename",
     "frames_name",
+    "flash_state.output_file",
     "result_filename_format",
     "result_new_columns",
 )

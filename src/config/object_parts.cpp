@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "config/flash_keys.hpp"
 #include "config/lamp_keys.hpp"
 #include "config/reception_keys.hpp"
 #include "config/shape_keys.hpp"
@@ -76,6 +77,10 @@ std::span<Key<RobotSpec> const> robot_keys() {
             .only_if([](RobotSpec const& robot) { return robot.has_magnetometer; }),
         K{"temporal_noise_stddev", &RobotSpec::clock_drift_stddev_us, between(0, 1e6), "us per tick",
           "Standard deviation of the constant clock drift, drawn once per robot."},
+        K{"flash", one_of(&RobotSpec::flash, flash_writes()), any(), "",
+          "A write to a page of flash memory. overwrite: it replaces the page. nor: as on the robot, it only clears "
+          "bits, so the program must erase before it writes again. Default: `flash` of the top level, else overwrite."}
+            .only_if([](RobotSpec const& robot) { return robot.flash.has_value(); }),
         K{"rotate_LEDs_45_deg", &RobotSpec::rotate_leds_45_deg, any(), "",
           "Drawing only: rotate the LEDs by 45 degrees."},
     };

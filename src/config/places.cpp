@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "config/dotted_path.hpp"
 #include "config/source.hpp"
 
 namespace pogosim {
@@ -85,6 +86,10 @@ std::string key_of(Setting setting) {
             return "data_filename";
         case Setting::delete_old_files:
             return "delete_old_files";
+        case Setting::flash_input_file:
+            return "flash_state.input_file";
+        case Setting::flash_output_file:
+            return "flash_state.output_file";
         case Setting::formation_filename:
             return "formation_filename";
         case Setting::formation_root:

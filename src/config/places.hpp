@@ -16,6 +16,8 @@ enum class Setting {
     console_filename,
     data_filename,
     delete_old_files,
+    flash_input_file,
+    flash_output_file,
     formation_filename,
     formation_root,
     frames_name,

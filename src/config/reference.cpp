@@ -1,5 +1,6 @@
 #include "config/reference.hpp"
 
+#include "config/flash_keys.hpp"
 #include "config/magnetometer_keys.hpp"
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
@@ -42,6 +43,10 @@ std::vector<KeyGroup> configuration_reference() {
     MapReader magnetometer(nothing, "magnetometer", false);
     read_magnetometer_map(magnetometer);
     groups.push_back({"magnetometer", "", "What the magnetometers of robots measure.", magnetometer.known_keys()});
+
+    MapReader flash_state(nothing, "flash_state", false);
+    read_flash_state_map(flash_state);
+    groups.push_back({"flash_state", "", "Flash memory from one run to the next.", flash_state.known_keys()});
     return groups;
 }
 

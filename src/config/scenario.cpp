@@ -114,6 +114,11 @@ Scenario load_scenario(std::string const& path, LoadOptions const& options) {
     read_top_level(reader, scenario);
     reader.finish(batch_names(written));
     reader.set_value("objects", read_objects(reader.find("objects"), options.strict, scenario.objects));
+    for (ObjectConfig& object : scenario.objects) {
+        if (object.spec.robot && !object.spec.robot->flash) {
+            object.spec.robot->flash = scenario.flash;
+        }
+    }
     require_map(reader.find("parameters"));
     source.values = reader.values();
     scenario.source = std::make_shared<ConfigSource const>(std::move(source));

@@ -101,6 +101,13 @@ enum class RobotMemoryKind {
     own,        // each robot has its own
 };
 
+/// `flash_state`: archives that keep the flash memory of robots from one run to the next.
+struct FlashStateConfig {
+    std::string input_file;   // empty: robots start with blank flash memory
+    std::string output_file;  // empty: it is lost with the run
+    bool create_if_missing = true;
+};
+
 struct Scenario {
     std::filesystem::path file;                       // the configuration; relative names are also looked for beside it
     std::string arena_file;                           // needed
@@ -119,6 +126,8 @@ struct Scenario {
     double user_code_timeout_s = 10.0;    // processor time one call of user code may take; 0: no limit
     int robot_stack_kib = 8192;           // of the stack of each robot that waits in the middle of its program
     RobotMemoryKind robot_memory = RobotMemoryKind::automatic;
+    std::optional<FlashWrites> flash;  // of categories that do not say; absent: overwrite
+    FlashStateConfig flash_state;
     int light_map_columns = 100;
     int light_map_rows = 100;
     FormationSpec formation;

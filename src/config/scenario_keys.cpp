@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "config/flash_keys.hpp"
 #include "config/magnetometer_keys.hpp"
 #include "config/shape_keys.hpp"
 #include "physics/physics_engine.hpp"
@@ -74,6 +75,11 @@ std::span<Key<Scenario> const> scenario_keys() {
           "for programs written for the robots' SDK (pogobot.h), else shared."},
         K{"robot_stack_size", &Scenario::robot_stack_kib, between(64, 1 << 20), "KiB",
           "Stack on which the program of a robot runs. Only what is used of it takes memory."},
+        K{"flash", one_of(&Scenario::flash, flash_writes()), any(), "",
+          "How robots of all categories write flash memory, see `flash` of objects; default: overwrite."}
+            .only_if([](Scenario const& scenario) { return scenario.flash.has_value(); }),
+        K{"flash_state", Elsewhere{kFlashStateMap}, any(), "",
+          "Files that keep the flash memory of robots from one run to the next; see its own table."},
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "",
           "Everything in the arena, by category; see the tables below."},
@@ -234,6 +240,7 @@ std::span<Key<ViewConfig> const> view_keys() {
 
 void read_top_level(MapReader& reader, Scenario& scenario) {
     reader.read(scenario_keys(), scenario);
+    scenario.flash_state = read_flash_state(reader);
     if (scenario.boundary == BoundaryCondition::solid) {
         reader.read(wall_keys(), scenario.walls);
     } else {

@@ -18,6 +18,20 @@ bool is_page(char const* function, std::uint16_t page, char const* outcome) {
     return known;
 }
 
+/// The global step is no robot; it has the simulator's way.
+bool clears_bits_only() {
+    return context.has_robot() && context.spec().flash == pogosim::FlashWrites::nor;
+}
+
+/// Once for each category.
+void note_lost_bits(std::uint16_t page) {
+    context.services->warn_once_of(
+        {.text = "was not erased", .function = "write_page_flash", .argument = get_current_robot_category()},
+        "write_page_flash(): page {} was not erased before, and a write only clears bits (flash: nor), so the page does "
+        "not contain what was written; call erase_write_section_flash() first, which erases all pages",
+        page);
+}
+
 }  // namespace
 
 void read_page_flash(uint16_t page, char* buf) {
@@ -34,7 +48,12 @@ void write_page_flash(uint16_t page, void const* data) {
     if (!is_page(__func__, page, "nothing is written")) {
         return;
     }
-    pogosim::overwrite_page(context.controller->flash, page, static_cast<std::byte const*>(data));
+    auto const* const bytes = static_cast<std::byte const*>(data);
+    if (!clears_bits_only()) {
+        pogosim::overwrite_page(context.controller->flash, page, bytes);
+    } else if (!pogosim::program_page(context.controller->flash, page, bytes)) {
+        note_lost_bits(page);
+    }
 }
 
 void erase_write_section_flash() {

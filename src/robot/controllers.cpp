@@ -600,11 +600,20 @@ void Controllers::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_unused_messages(world_, controllers_, arrivals);
     warn_of_undecoded_messages(controllers_);
     warn_of_send_results(controllers_);
+    tell_of_lost_flash_writes(world_, controllers_);
     tell_of_ended_programs(controllers_);
 }
 
 void Controllers::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
     pogosim::tell_of_unset_columns(services_.data, fields);
+}
+
+void Controllers::restore(std::size_t robot, Flash&& flash, std::array<std::uint8_t, kMotorCount> const& directions,
+                          std::array<std::uint16_t, kMotorCount> const& powers) {
+    Controller& self = controllers_[robot];
+    self.flash = std::move(flash);
+    self.motors.stored_direction = directions;
+    self.motors.stored_power = powers;
 }
 
 void Controllers::watch_loop_rates() {

@@ -139,6 +139,10 @@ public:
 
     /// The state of this robot's controller between two of its ticks.
     Controller const& controller_of(std::size_t robot) const { return controllers_[robot]; }
+
+    /// Gives a robot what it has kept while it was off. Call it before start().
+    void restore(std::size_t robot, Flash&& flash, std::array<std::uint8_t, kMotorCount> const& directions,
+                 std::array<std::uint16_t, kMotorCount> const& powers);
     std::span<Controller const> all() const { return controllers_; }
 
     /// The user data of all robots: bytes from one robot's to the next one's.

@@ -57,8 +57,7 @@ bool program_page(Flash& flash, std::uint16_t page, std::byte const* data) {
                            [](std::byte old, std::byte wanted) { return old & wanted; });
     bool const is_as_written = std::equal(stored.begin(), stored.end(), data);
     if (!is_as_written) {
-        flash.lost.page = flash.lost.count == 0 ? page : flash.lost.page;
-        ++flash.lost.count;
+        ++flash.lost_writes;
     }
     return is_as_written;
 }

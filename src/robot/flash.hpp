@@ -18,16 +18,10 @@ inline constexpr std::byte kErased{0xFF};
 
 using FlashPage = std::array<std::byte, kFlashPageBytes>;
 
-/// What was written to pages that had not been erased, under `flash: nor`.
-struct LostWrites {
-    std::uint64_t count = 0;  // writes after which a page did not contain what was written
-    std::uint16_t page = 0;   // of the first
-};
-
 struct Flash {
     std::vector<std::uint16_t> slot{};  // of each page: 1 + its index in `pages`, 0 for a blank one; empty: all blank
     std::vector<FlashPage> pages{};     // in the order of their first write
-    LostWrites lost{};
+    std::uint64_t lost_writes = 0;      // after which a page did not contain what was written, see program_page()
 };
 
 /// All of these take a page below kFlashPageCount.

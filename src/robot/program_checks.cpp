@@ -230,6 +230,28 @@ void warn_of_undecoded_messages(std::span<Controller const> controllers) {
     }
 }
 
+void tell_of_lost_flash_writes(World const& world, std::span<Controller const> controllers) {
+    struct Lost {
+        std::uint64_t writes = 0;
+        std::uint64_t robots = 0;
+    };
+    std::vector<Lost> lost(world.categories.size());
+    for (std::size_t robot = 0; robot < controllers.size(); ++robot) {
+        if (std::uint64_t const count = controllers[robot].flash.lost_writes; count > 0) {
+            Lost& of_category = lost[world.robots.category[robot]];
+            of_category.writes += count;
+            ++of_category.robots;
+        }
+    }
+    for (std::size_t category = 0; category < lost.size(); ++category) {
+        if (lost[category].writes > 1) {  // else it was said when it happened
+            log().warn("{} of category '{}' wrote pages of flash that were not erased, {} in all (flash: nor)",
+                       counted(lost[category].robots, "robot"), world.categories[category].name,
+                       counted(lost[category].writes, "write"));
+        }
+    }
+}
+
 void tell_of_ended_programs(std::span<Controller const> controllers) {
     auto const has_returned = [](Controller const& controller) { return controller.program.returned; };
     auto const ended = std::ranges::count_if(controllers, has_returned);

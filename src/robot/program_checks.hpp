@@ -61,6 +61,9 @@ void warn_of_unused_messages(World const& world, std::span<Controller const> con
 /// A program that reads messages and never has them decoded.
 void warn_of_undecoded_messages(std::span<Controller const> controllers);
 
+/// Under `flash: nor`, writes to pages that were not erased, by category, if there were several.
+void tell_of_lost_flash_writes(World const& world, std::span<Controller const> controllers);
+
 /// Programs for the SDK whose main() has returned.
 void tell_of_ended_programs(std::span<Controller const> controllers);
 

@@ -53,11 +53,18 @@ std::optional<fs::path> free_name(fs::path const& path, bool is_folder) {
     return first_taken(path, is_folder, [](fs::path const&) { return true; });
 }
 
+/// The archive of flash memory that the run writes; empty if it is its input, too.
+std::string own_archive(FlashStateConfig const& files) {
+    bool const is_input = !files.input_file.empty() && real_path(files.input_file) == real_path(files.output_file);
+    return is_input ? "" : files.output_file;
+}
+
 /// Resolves symbolic links, so that they still lead to the new files.
 std::vector<fs::path> single_files(Scenario const& scenario, std::string const& film) {
     OutputConfig const& output = scenario.output;
     std::vector<fs::path> files;
-    for (std::string const& name : {output.enable_data_logging ? output.data_filename : "", output.message_log, film}) {
+    for (std::string const& name : {output.enable_data_logging ? output.data_filename : "", output.message_log, film,
+                                    own_archive(scenario.flash_state)}) {
         std::error_code error;
         fs::path const path = name.empty() ? fs::path() : real_path(name);
         if (!name.empty() && fs::is_regular_file(path, error) && fs::file_size(path, error) > 0) {

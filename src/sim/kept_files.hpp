@@ -16,7 +16,8 @@ struct KeptFile {
     std::vector<std::filesystem::path> moved{};  // the frames, where they were
 };
 
-/// The data file, the message log and the film (--video) if they exist, and the folder of frames if there are some.
+/// The data file, the message log, the film (--video) and the archive of flash memory if they exist (but no archive that
+/// is read, too), and the folder of frames if there are some.
 /// Frames whose folder depends on the time are not looked for.
 std::vector<KeptFile> earlier_files(Scenario const& scenario, std::string const& film);
 

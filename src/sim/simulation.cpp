@@ -88,6 +88,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       controllers_(std::move(program), world_, services_, seed_,
                    static_cast<std::size_t>(scenario_.robot_stack_kib) * 1024),
+      flash_state_(scenario_, world_, controllers_),
       lighting_(make_lighting(scenario_, world_)),
       workers_(thread_count(scenario_, world_)),
       physics_(make_physics(scenario_, world_, workers_)),
@@ -173,6 +174,9 @@ Outcome Simulation::attempt(std::function<std::optional<UserFailure>()> const& p
 
 ExitCode Simulation::conclude(Outcome const& outcome) {
     Thread const thread(*this);
+    if (outcome.failed()) {
+        flash_state_.release();
+    }
     if (outcome.shortage) {
         std::string const message = fmt::format("t = {:.4f} s: {}", world_.time_s(), *outcome.shortage);
         try {
@@ -181,7 +185,7 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
             log().error("{}", message);
             throw;
         }
-        throw OutOfMemory(message + recorder_.note());
+        throw OutOfMemory(message + note_of_files());
     }
     std::optional<UserFailure> const& failure = outcome.failure;
     if (failure) {
@@ -209,13 +213,20 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     }
     report_unread_parameters();
     if (interrupted()) {
-        log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), recorder_.note());
+        log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), note_of_files());
     }
     if (!all_pictures_written) {
         return ExitCode::usage;
     }
     is_complete_ = !interrupted();
+    if (is_complete_) {
+        flash_state_.save(controllers_);
+    }
     return is_complete_ ? ExitCode::done : ExitCode::interrupted;
+}
+
+std::string Simulation::note_of_files() const {
+    return recorder_.note() + flash_state_.note();
 }
 
 void Simulation::report_unread_parameters() const {
@@ -514,11 +525,11 @@ void Simulation::report(UserFailure const& failure) const {
         fmt::format("{}, t = {:.4f} s{}", failure.in_other_thread ? "a thread that it started" : current_place(),
                     world_.time_s(), source.empty() ? "" : ", " + source);
     if (failure.refused) {
-        log().error("{} (called from {}){}", failure.what, where, recorder_.note());
+        log().error("{} (called from {}){}", failure.what, where, note_of_files());
         return;
     }
     if (failure.code == ExitCode::interrupted) {
-        log().warn("the run was interrupted in {}: {}{}", where, failure.what, recorder_.note());
+        log().warn("the run was interrupted in {}: {}{}", where, failure.what, note_of_files());
         return;
     }
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
@@ -527,7 +538,7 @@ void Simulation::report(UserFailure const& failure) const {
                                  !failure.too_long && context.phase == Phase::main && !controllers_.image().is_for_sdk;
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
               failed ? "failed" : "ended", where, failure.what,
-              may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", recorder_.note());
+              may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", note_of_files());
 }
 
 }  // namespace pogosim

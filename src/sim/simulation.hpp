@@ -20,6 +20,7 @@
 #include "robot/crash_handler.hpp"
 #include "robot/program_image.hpp"
 #include "robot/shared_steps.hpp"
+#include "sim/flash_state.hpp"
 #include "sim/inspector.hpp"
 #include "sim/observed_motions.hpp"
 #include "sim/pictures.hpp"
@@ -89,7 +90,10 @@ public:
     ExitCode conclude(Outcome const& outcome);
 
     /// After conclude(): other runs may write the files of this one.
-    void release_files() { recorder_.release(); }
+    void release_files() {
+        recorder_.release();
+        flash_state_.release();
+    }
 
     /// Whether the simulated time is over, or the run was asked to end.
     bool is_over() const;
@@ -193,6 +197,7 @@ private:
     void put(std::uint32_t object, Vec2 centre_mm, float heading_rad);
     void report(UserFailure const& failure) const;
     void report_unread_parameters() const;
+    std::string note_of_files() const;
 
     Scenario scenario_;
     RunOptions options_;
@@ -202,6 +207,7 @@ private:
     CrashHandler crash_handler_;
     RunServices services_;
     Controllers controllers_;
+    FlashState flash_state_;
     Lighting lighting_;
     IrChannel channel_;
     std::optional<SharedSteps> shared_steps_;  // when robots may run on several threads

@@ -52,6 +52,11 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     add_input(Setting::formation_filename, scenario.formation.filename, scenario.formation.name == kImportedFormation);
     add_input(Setting::magnetometer_table, scenario.magnetometer.table.file,
               scenario.magnetometer.source == MagnetometerSource::csv);
+    std::error_code error;
+    if (std::filesystem::exists(scenario.flash_state.input_file, error)) {
+        files.push_back({Setting::flash_input_file, scenario.flash_state.input_file});
+    }
+    add_output(Setting::flash_output_file, scenario.flash_state.output_file, true);
     add_output(Setting::data_filename, output.data_filename, output.enable_data_logging);
     add_output(Setting::console_filename, output.console_filename, output.enable_console_logging);
     add_output(Setting::message_log, output.message_log, true);
@@ -74,9 +79,10 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     return files;
 }
 
-/// A file, and the temporary one beside it in which it is written.
-bool are_named_together(UsedFile const& a, UsedFile const& b) {
-    return a.setting == b.setting && a.is_output == b.is_output;
+/// A file, and the temporary one beside it in which it is written; or an archive of flash memory that is replaced.
+bool may_be_same(UsedFile const& a, UsedFile const& b) {
+    bool const is_archive = a.setting == Setting::flash_output_file && b.setting == Setting::flash_input_file;
+    return is_archive || (a.setting == b.setting && a.is_output == b.is_output);
 }
 
 /// A device may be used twice: /dev/stdin and /dev/stdout are often one terminal.
@@ -128,7 +134,7 @@ void check_used_files(Scenario const& scenario, std::string const& film) {
         for (std::size_t j = 0; j < i; ++j) {
             UsedFile const& written = files[i];
             UsedFile const& other = files[j];
-            if (written.is_output && !are_named_together(written, other) && are_same(written.path, other.path)) {
+            if (written.is_output && !may_be_same(written, other) && are_same(written.path, other.path)) {
                 throw ConfigError(fmt::format("{}: '{}'{} is the same file as {}, {}; choose another file",
                                               where_it_is_named(scenario, written), written.path.string(),
                                               written.purpose, described(scenario, other), fate(other)));

@@ -136,6 +136,12 @@ enum class Emitters {
     outline,  // one, all along the object's outline; no half planes, no shadows
 };
 
+/// What a write does to a page of flash memory that has been written before.
+enum class FlashWrites {
+    overwrite,  // it replaces the page
+    nor,        // it clears bits and sets none, as on the robot
+};
+
 /// The part of an object that runs user code.
 struct RobotSpec {
     IrSpec ir;
@@ -149,6 +155,7 @@ struct RobotSpec {
     IntRange photosensor_bias;              // sensor counts, drawn once per sensor
     float photosensor_noise_stddev = 0.0F;  // sensor counts per reading
     float clock_drift_stddev_us = 0.0F;     // constant drift of a robot's clock, microseconds per tick
+    std::optional<FlashWrites> flash{};     // absent: that of the top level, else overwrite
     bool rotate_leds_45_deg = true;         // drawing only
     bool has_magnetometer = true;           // on the board of this type of object
     bool magnetometer_enabled = true;       // else programs find none

@@ -40,6 +40,7 @@ PAGES_WITH_COMMANDS = [
             "command_line",
             "data_file",
             "examples",
+            "flash",
             "installing",
             "learning",
             "message_log",

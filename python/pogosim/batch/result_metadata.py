@@ -10,6 +10,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from pogosim.batch.identity import without_flash_output
 from pogosim.batch.parts import Part
 from pogosim.yaml_1_2 import dump_yaml, parse_yaml
 
@@ -77,7 +78,9 @@ def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
         entries = parse_yaml(metadata.get(RESOLVED.encode(), b"").decode())
     except (ValueError, RecursionError):
         return {}
-    return {key: value for key, value in entries.items() if key not in OF_ONE_RUN} if isinstance(entries, dict) else {}
+    if not isinstance(entries, dict):
+        return {}
+    return {key: value for key, value in without_flash_output(entries).items() if key not in OF_ONE_RUN}
 
 
 def shared_entries(maps: Sequence[dict[str, Any]]) -> dict[str, Any]:

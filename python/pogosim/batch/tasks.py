@@ -9,7 +9,7 @@ from typing import Any
 
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError
-from pogosim.batch.identity import run_key, world_digest
+from pogosim.batch.identity import FLASH_OUTPUT, FLASH_STATE, run_key, without_flash_output, world_digest
 from pogosim.batch.run import QUIET, Task
 from pogosim.batch.seeds import replacements
 from pogosim.batch.temporary import TemporaryFolder
@@ -60,13 +60,17 @@ def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> No
 
 def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings) -> list[Task]:
     """Return the runs of a configuration, one per seed."""
-    world = {key: value for key, value in entries.items() if key not in OUTPUTS and key != MESSAGE_LOG}
+    world = without_flash_output(entries)
+    world = {key: value for key, value in world.items() if key not in OUTPUTS and key != MESSAGE_LOG}
     world = with_files_beside(world, settings.configuration_folder)
     outputs = {key: basename(entries.get(key), default) for key, default in OUTPUTS.items()}
     if format_of(outputs["data_filename"]) != FEATHER:  # that of the results is another matter
         outputs["data_filename"] = f"{Path(outputs['data_filename']).stem}.feather"
     if entries.get(MESSAGE_LOG):
         outputs[MESSAGE_LOG] = basename(entries[MESSAGE_LOG], "messages.feather")
+    state = entries.get(FLASH_STATE)
+    if isinstance(state, dict) and state.get(FLASH_OUTPUT):
+        outputs[f"{FLASH_STATE}.{FLASH_OUTPUT}"] = basename(state[FLASH_OUTPUT], "robots.flash")
     text = dump_configuration(world) if world else ""
     digest = world_digest(world, (Path.cwd(), settings.configuration_folder), settings.digests)
     others = replacements(seeds, settings.retries) if settings.retry_new_seed else [()] * len(seeds)

@@ -37,6 +37,7 @@ SUBCOMMANDS = {
     "picture": Subcommand("pogosim.picture.command", "draw the trajectories of a run"),
     "film": Subcommand("pogosim.film.command", "make a film of a run, or a page to replay it in a browser"),
     "recover": Subcommand("pogosim.command.recover", "make a complete data file of a run that was killed"),
+    "flash": Subcommand("pogosim.command.flash", "look into archives of robots' flash memory, and make them"),
     "arena": Subcommand("pogosim.geometry.command", "draw, check, scale and convert arenas"),
     "calibrate": Subcommand("pogosim.calibration.command", "fit the motion of simulated robots to tracks of real ones"),
     "fit-comm": Subcommand("pogosim.communication.fit_command", "fit a law of reception to measurements"),

@@ -1,0 +1,231 @@
+"""`pogosim flash`: looks into archives of robots' flash memory (`flash_state`), and makes them."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from pogosim.command.parser import Parser, complain
+from pogosim.flash_archive import FLASH_BYTES, PAGE_COUNT, ArchiveError, Record, records_of, write_archive
+from pogosim.lines import say
+from pogosim.outputs import OutputError, partial_output, real_output, told
+
+IDS = 65536
+DAMAGED = 1  # exit code of show: a checksum is wrong
+
+
+class FlashError(Exception):
+    """What was asked for cannot be done; says why."""
+
+
+def parser(prog: str) -> Parser:
+    """Return the command line."""
+    made = Parser(prog=prog, description="Looks into archives of robots' flash memory (docs/flash.md), and makes them.")
+    actions = made.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
+    show = actions.add_parser("show", help="list the robots of an archive, and check it")
+    extract = actions.add_parser("extract", help="write the flash memory of one robot to a binary file")
+    make = actions.add_parser("make", help="make an archive: blank, or with the flash memory of binary files")
+    for action in (show, extract):
+        action.add_argument("archive", metavar="FILE", help="archive")
+    make.add_argument("archive", metavar="FILE", help="archive to write; it is replaced")
+    extract.add_argument("-r", "--robot", metavar="ID", type=int, required=True, help="id of the robot")
+    extract.add_argument("--category", metavar="NAME", help="its category, if several have a robot of this id")
+    extract.add_argument("-o", "--output", metavar="OUT.bin", required=True, help=f"file to write, {FLASH_BYTES} bytes")
+    make.add_argument(
+        "-c", "--config", metavar="CONFIG", help="configuration whose robots the archive is for; their memory is blank"
+    )
+    make.add_argument(
+        "--from",
+        dest="binaries",
+        metavar=("CATEGORY", "ID", "FILE.bin"),
+        nargs=3,
+        action="append",
+        default=[],
+        help="flash memory of a robot, from page 0 on; the rest is blank. May be given several times",
+    )
+    for action in (show, extract, make):
+        action.add_argument("--json", action="store_true", help="print one JSON object")
+    return made
+
+
+def read_records(name: str) -> list[tuple[Record, bool]]:
+    """Return the records of an archive, and whether the checksum of each is right."""
+    with Path(name).open("rb") as file:
+        try:
+            return list(records_of(file))
+        except ArchiveError as error:
+            raise FlashError(f"{name}: {error}") from None
+
+
+def show(options: argparse.Namespace) -> int:
+    """List the records of an archive."""
+    rows = [
+        {
+            "category": record.category,
+            "id": record.identifier,
+            "written_pages": len(record.written_pages()),
+            "directions": list(record.directions),
+            "powers": list(record.powers),
+            "checksum": "right" if is_right else "wrong",
+        }
+        for record, is_right in read_records(options.archive)
+    ]
+    damaged = sum(row["checksum"] == "wrong" for row in rows)
+    if options.json:
+        say(json.dumps({"file": options.archive, "ok": damaged == 0, "flash_bytes": FLASH_BYTES, "records": rows}))
+        return DAMAGED if damaged else 0
+    say(f"{options.archive}: {counted(len(rows), 'record')}, each of {PAGE_COUNT} pages of 256 bytes")
+    if rows:
+        titles = ("category", "id", "written pages", "directions", "powers (right, left, back)", "checksum")
+        cells = [[text_of(value) for value in row.values()] for row in rows]
+        widths = [max(map(len, column)) for column in zip(titles, *cells, strict=True)]
+        for line in (titles, *cells):
+            say("  ".join(f"{cell:{width}}" for cell, width in zip(line, widths, strict=True)).rstrip())
+    if damaged:
+        say(f"{counted(damaged, 'record')} damaged: the simulator refuses this archive")
+    return DAMAGED if damaged else 0
+
+
+def extract(options: argparse.Namespace) -> int:
+    """Write the flash memory of one robot."""
+    output = real_output(options.output)
+    found = [
+        (record, is_right)
+        for record, is_right in read_records(options.archive)
+        if record.identifier == options.robot and options.category in (None, record.category)
+    ]
+    name = f"robot #{options.robot}" + (f" of category '{options.category}'" if options.category else "")
+    if not found:
+        raise FlashError(f"{options.archive} has no record of {name}; pogosim flash show lists those it has")
+    if len(found) > 1:
+        categories = ", ".join(record.category for record, _ in found)
+        raise FlashError(
+            f"{options.archive} has robots #{options.robot} of several categories; add --category, one of {categories}"
+        )
+    record, is_right = found[0]
+    if not is_right:
+        raise FlashError(f"{options.archive}: the record of {name} is damaged: its checksum is wrong")
+    with partial_output(output) as partial:
+        partial.write_bytes(record.flash)
+    pages = len(record.written_pages())
+    if options.json:
+        about = {"file": options.output, "category": record.category, "id": record.identifier, "written_pages": pages}
+        say(json.dumps(about))
+    else:
+        say(f"{options.output}: {FLASH_BYTES} bytes, {counted(pages, 'page')} not blank")
+    return 0
+
+
+def make(options: argparse.Namespace) -> int:
+    """Write an archive."""
+    output = real_output(options.archive)
+    if options.config is None and not options.binaries:
+        raise FlashError("expected the robots of the archive: -c CONFIG, or --from CATEGORY ID FILE.bin")
+    owners = robots_of(options.config) if options.config is not None else []
+    memories: dict[tuple[str, int], bytes | None] = dict.fromkeys(owners)
+    given = set()
+    for category, identifier, file in options.binaries:
+        owner = (category, id_of(identifier))
+        if owner in given:
+            raise FlashError(f"--from {category} {identifier} is given twice")
+        if owners and owner not in memories:
+            raise FlashError(f"{options.config} has no robot #{identifier} of category '{category}'")
+        given.add(owner)
+        memories[owner] = flash_of(file)
+    records = [
+        Record(category, identifier) if flash is None else Record(category, identifier, flash=flash)
+        for (category, identifier), flash in sorted(
+            memories.items(), key=lambda item: (item[0][0].encode(), item[0][1])
+        )
+    ]
+    with partial_output(output) as partial, partial.open("wb") as file:
+        write_archive(file, records)
+    if options.json:
+        listed = [{"category": record.category, "id": record.identifier} for record in records]
+        say(json.dumps({"file": options.archive, "records": listed}))
+    else:
+        say(f"{options.archive}: {counted(len(records), 'record')}")
+    return 0
+
+
+def robots_of(configuration: str) -> list[tuple[str, int]]:
+    """Return category and id of all robots and other objects with a program, as the simulator numbers them."""
+    from pogosim.batch.configuration import Configuration
+    from pogosim.batch.errors import BatchError
+    from pogosim.batch.option_words import OptionsError
+    from pogosim.batch.options import single_value
+    from pogosim.object_categories import UnknownCategoriesError, ids_of
+    from pogosim.scene import RAYS, SPOTS, entries, type_of
+
+    try:
+        tree = Configuration(configuration).entries
+        categories = single_value(tree.get("objects"))
+        objects = {name: single_value(own) for name, own in categories.items()} if isinstance(categories, dict) else {}
+        bodies = [
+            (name, {key: single_value(own.get(key)) for key in ("type", "nb", "poses") if own.get(key) is not None})
+            for name, own in entries({"objects": objects})
+        ]
+        is_periodic = single_value(tree.get("boundary_condition")) == "periodic"
+    except (BatchError, OptionsError) as error:
+        raise FlashError(f"{configuration}: {error}" if isinstance(error, OptionsError) else str(error)) from None
+    bodies = [(name, {**own, "nb": own.get("nb", len(own.get("poses") or [0]))}) for name, own in bodies]
+    bodies = [(name, own) for name, own in bodies if type_of(own) not in SPOTS + RAYS]
+    try:
+        ids = ids_of(bodies, is_periodic)
+    except UnknownCategoriesError:
+        raise FlashError(
+            f"{configuration} does not say how many objects of each category there are; run the program with "
+            "--set simulation_time=0 --set flash_state.output_file=FILE instead"
+        ) from None
+    with_program = [type_of(own) != "passive_object" for _, own in bodies]
+    robots = [
+        (name, identifier)
+        for (name, first, last), runs in zip(ids, with_program, strict=True)
+        if runs
+        for identifier in range(first, last + 1)
+    ]
+    if any(identifier >= IDS for _, identifier in robots):
+        raise FlashError(f"{configuration} has more than {IDS} objects; ids in an archive have 16 bits")
+    return robots
+
+
+def id_of(text: str) -> int:
+    """Return the id of a robot."""
+    if not text.isascii() or not text.isdigit() or int(text) >= IDS:
+        raise FlashError(f"--from: expected an id from 0 to {IDS - 1}, found '{text}'")
+    return int(text)
+
+
+def flash_of(name: str) -> bytes:
+    """Return flash memory that begins with the bytes of a file."""
+    with Path(name).open("rb") as file:
+        data = file.read(FLASH_BYTES + 1)
+    if len(data) > FLASH_BYTES:
+        raise FlashError(f"{name} is longer than flash memory, which has {FLASH_BYTES} bytes")
+    return data.ljust(FLASH_BYTES, b"\xff")
+
+
+def text_of(value: object) -> str:
+    """Return a cell of the table."""
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def counted(count: int, one: str) -> str:
+    """Return "1 record", "3 records"."""
+    return f"{count} {one}" + ("" if count == 1 else "s")
+
+
+ACTIONS = {"show": show, "extract": extract, "make": make}
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "pogosim flash") -> int:
+    """Run the command. Returns its exit code: 0 done, 1 a record is damaged, 2 nothing could be done."""
+    options = parser(prog).parse_args(arguments)
+    try:
+        return ACTIONS[options.action](options)
+    except (FlashError, OutputError) as error:
+        return complain(prog, error)
+    except OSError as error:
+        return complain(prog, told(error, options.archive))

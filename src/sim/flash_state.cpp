@@ -1,0 +1,288 @@
+#include "sim/flash_state.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string_view>
+#include <system_error>
+
+#include "base/counted.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/scratch_file.hpp"
+#include "config/places.hpp"
+
+namespace pogosim {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t kPermissions = 0777;
+
+/// Throws ConfigError if the archive cannot name all robots.
+RobotsByOwner robots_by_owner(Scenario const& scenario, World const& world) {
+    RobotsByOwner robots;
+    for (std::uint32_t robot = 0; robot < world.robots.size(); ++robot) {
+        std::uint32_t const id = world.robots.id[robot];
+        std::string const& category = world.categories[world.robots.category[robot]].name;
+        if (id >= kIdsOnAir || category.size() > std::numeric_limits<std::uint16_t>::max()) {
+            throw ConfigError(
+                fmt::format("{}: expected at most {} objects and categories with short names: the ids of robots have "
+                            "16 bits in an archive of flash memory",
+                            line_of(scenario, Setting::flash_input_file), kIdsOnAir));
+        }
+        robots.emplace(FlashOwner{.category = category, .id = id_on_air(id)}, robot);
+    }
+    return robots;
+}
+
+FlashRecord record_of(FlashOwner const& owner, Controller const& controller) {
+    return {.owner = owner,
+            .directions = controller.motors.stored_direction,
+            .powers = controller.motors.stored_power,
+            .flash = controller.flash};
+}
+
+void write_all(int descriptor, std::string_view bytes) {
+    while (!bytes.empty()) {
+        ssize_t const written = write(descriptor, bytes.data(), bytes.size());
+        if (written < 0 && errno != EINTR) {
+            fail_with_errno(errno);
+        }
+        bytes.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
+    }
+}
+
+void make_parent_folder(fs::path const& path) {
+    std::error_code error;
+    if (!path.parent_path().empty() && !fs::create_directories(path.parent_path(), error) && error) {
+        throw FileError(fmt::format("cannot make the folder '{}': {}", path.parent_path().string(), error.message()));
+    }
+}
+
+/// A file of its own name beside another one, whose place it takes when it is complete.
+class NewFile {
+public:
+    explicit NewFile(fs::path const& target) : target_(target) {
+        constexpr mode_t kNewFile = 0666;  // reduced by the umask
+        constexpr int kMostAttempts = 100;
+        std::random_device nonce;
+        for (int i = 0; i < kMostAttempts && descriptor_ < 0 && (i == 0 || errno == EEXIST); ++i) {
+            path_ = fmt::format("{}.tmp.{:08x}", target.native(), nonce());
+            descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewFile);
+        }
+        if (descriptor_ < 0) {
+            fail_with_errno(errno);
+        }
+        scratch_.emplace(path_);
+    }
+    ~NewFile() {
+        scratch_.reset();
+        close(descriptor_);
+    }
+    NewFile(NewFile const&) = delete;
+    NewFile& operator=(NewFile const&) = delete;
+
+    int descriptor() const { return descriptor_; }
+
+    /// Replaces the other file, and has its permissions then.
+    void replace(LockedFile const& other) {
+        struct stat before = {};
+        must_succeed(fstat(other.descriptor(), &before));
+        must_succeed(fchmod(descriptor_, before.st_mode & kPermissions));
+        must_succeed(fsync(descriptor_));
+        must_succeed(std::rename(path_.c_str(), target_.c_str()));
+        scratch_->release();
+        sync_folder();
+    }
+
+    /// Takes the place if it is free; else whatever stands there stays.
+    void take_free_place() {
+        must_succeed(fsync(descriptor_));
+        if (link(path_.c_str(), target_.c_str()) != 0 && errno != EEXIST) {  // some file systems have no links
+            must_succeed(std::rename(path_.c_str(), target_.c_str()));
+            scratch_->release();
+        }
+        sync_folder();
+    }
+
+private:
+    static void must_succeed(int result) {
+        if (result != 0) {
+            fail_with_errno(errno);
+        }
+    }
+
+    void sync_folder() const {
+        int const folder = open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (folder >= 0) {
+            fsync(folder);
+            close(folder);
+        }
+    }
+
+    fs::path target_;
+    std::string path_;
+    std::optional<ScratchFile> scratch_;
+    int descriptor_ = -1;
+};
+
+[[noreturn]] void refuse_input(Scenario const& scenario, std::string const& reason) {
+    throw ConfigError(fmt::format("{}: '{}': {}", place_of(scenario, Setting::flash_input_file),
+                                  scenario.flash_state.input_file, reason));
+}
+
+/// Where there is no input, and there may be none, writes one without records.
+void provide_input(Scenario const& scenario) {
+    std::string const& name = scenario.flash_state.input_file;
+    std::error_code error;
+    if (fs::exists(name, error)) {
+        return;
+    }
+    if (!scenario.flash_state.create_if_missing) {
+        refuse_input(scenario, fmt::format("there is no such file in '{}' (create_if_missing: false); write one with "
+                                           "output_file, or with: pogosim flash make",
+                                           fs::current_path(error).string()));
+    }
+    try {
+        fs::path const path = real_path(name);
+        make_parent_folder(path);
+        NewFile file(path);
+        write_all(file.descriptor(), flash_archive_head(0));
+        file.take_free_place();
+    } catch (FileError const& failure) {
+        throw OutputError(fmt::format("{}: cannot write '{}' (create_if_missing): {}",
+                                      place_of(scenario, Setting::flash_input_file), name, failure.what()));
+    }
+    log().info("{}: there was no '{}': it is now an archive without records, and flash memory is blank",
+               place_of(scenario, Setting::flash_input_file), name);
+}
+
+std::ifstream open_input(Scenario const& scenario) {
+    std::error_code error;
+    if (!fs::is_regular_file(scenario.flash_state.input_file, error)) {
+        refuse_input(scenario, "it is not a file");
+    }
+    std::ifstream file(scenario.flash_state.input_file, std::ios::binary);
+    if (!file) {
+        refuse_input(scenario, "it cannot be read: " + std::generic_category().message(errno));
+    }
+    return file;
+}
+
+/// Returns the number of records. Throws ConfigError if some robots have none, unless there are none at all.
+std::uint32_t restore(Scenario const& scenario, std::istream& file, RobotsByOwner robots, Controllers& controllers) {
+    std::size_t const count = robots.size();
+    std::uint32_t records = 0;
+    try {
+        records = read_flash_archive(file, [&](FlashRecord&& record) {
+            if (auto const robot = robots.extract(record.owner)) {
+                controllers.restore(robot.mapped(), std::move(record.flash), record.directions, record.powers);
+            }
+        });
+    } catch (FileError const& error) {
+        refuse_input(scenario, error.what());
+    }
+    if (records > 0 && !robots.empty()) {
+        refuse_input(scenario,
+                     fmt::format("it has no record of {}{} ({} in all, for {}); take an archive of these robots, or "
+                                 "make one with: pogosim flash make",
+                                 described(robots.begin()->first),
+                                 robots.size() > 1 ? fmt::format(", and of {} more", robots.size() - 1) : "",
+                                 counted(records, "record"), counted(count, "robot")));
+    }
+    return records;
+}
+
+}  // namespace
+
+FlashState::FlashState(Scenario const& scenario, World const& world, Controllers& controllers)
+    : files_(scenario.flash_state) {
+    if (files_.input_file.empty() && files_.output_file.empty()) {
+        return;
+    }
+    robots_ = robots_by_owner(scenario, world);
+    if (!files_.input_file.empty()) {
+        provide_input(scenario);
+    }
+    // Reserved first: if it is the input, too, no other run changes it from here on.
+    if (!files_.output_file.empty()) {
+        try {
+            reserve_output();
+        } catch (FileError const& error) {
+            throw OutputError(fmt::format("{}: cannot write '{}': {}", place_of(scenario, Setting::flash_output_file),
+                                          files_.output_file, error.what()));
+        }
+    }
+    if (!files_.input_file.empty()) {
+        input_ = open_input(scenario);
+        input_records_ = restore(scenario, input_, robots_, controllers);
+    }
+}
+
+void FlashState::reserve_output() {
+    fs::path const path = real_path(files_.output_file);
+    std::error_code error;
+    if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+        throw FileError("it is not a file");
+    }
+    make_parent_folder(path);
+    output_ = LockedFile(path);
+    if (fs::file_size(path, error) == 0) {
+        write_all(output_.descriptor(), flash_archive_head(0));
+    }
+    NewFile const trial(path);  // a folder in which nothing can be written is known before the run
+}
+
+void FlashState::save(Controllers const& controllers) {
+    if (files_.output_file.empty()) {
+        return;
+    }
+    try {
+        NewFile file(output_.path());
+        auto const write = [&](FlashRecord const& record) {
+            write_all(file.descriptor(), flash_archive_record(record));
+        };
+        auto const state_of = [&](FlashOwner const& owner, std::uint32_t robot) {
+            return record_of(owner, controllers.controller_of(robot));
+        };
+        write_all(file.descriptor(),
+                  flash_archive_head(static_cast<std::uint32_t>(input_records_ > 0 ? input_records_ : robots_.size())));
+        if (input_records_ > 0) {
+            input_.clear();
+            input_.seekg(0);
+            read_flash_archive(input_, [&](FlashRecord&& record) {
+                auto const robot = robots_.find(record.owner);
+                write(robot == robots_.end() ? record : state_of(record.owner, robot->second));
+            });
+        } else {
+            for (auto const& [owner, robot] : robots_) {
+                write(state_of(owner, robot));
+            }
+        }
+        file.replace(output_);
+    } catch (FileError const& error) {
+        throw OutputError(
+            fmt::format("cannot write the archive of flash memory '{}' (flash_state.output_file): {}. It "
+                        "is as before",
+                        files_.output_file, error.what()));
+    }
+}
+
+std::string FlashState::note() const {
+    return files_.output_file.empty()
+               ? ""
+               : fmt::format(". Flash memory is not saved; '{}' (flash_state.output_file) is as before",
+                             files_.output_file);
+}
+
+}  // namespace pogosim
