@@ -6,6 +6,8 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from pogosim.flash_archive import checksum_of
+
 PAGE = 256
 PAGES = 5888
 FLASH = PAGE * PAGES
@@ -34,7 +36,7 @@ class Record:
 
 
 def checksum(data: bytes) -> int:
-    """Return FNV-1a of 64 bits, byte by byte."""
+    """Return FNV-1a of 64 bits, byte by byte: slow, but simple enough to be right."""
     value = 14695981039346656037
     for byte in data:
         value = ((value ^ byte) * 1099511628211) % 2**64
@@ -44,7 +46,8 @@ def checksum(data: bytes) -> int:
 def archive(records: Sequence[Record], count: int | None = None) -> bytes:
     """Return an archive; `count`: what it says of its records, if that is wrong."""
     head = b"PGFLASH\0" + struct.pack("<HII", 1, FLASH, len(records) if count is None else count)
-    return head + b"".join(record.body + struct.pack("<Q", checksum(record.body)) for record in records)
+    bodies = [record.body for record in records]
+    return head + b"".join(body + struct.pack("<Q", checksum_of(body[:-FLASH], body[-FLASH:])) for body in bodies)
 
 
 def mark(identifier: int, page: int) -> bytes:

@@ -12,10 +12,13 @@ from pathlib import Path
 
 import pogosim
 import pytest
+import yaml
 from batches import batch, write_options
 from conftest import Compile
+from display import Display, shown
 from flash_files import EMPTY, FLASH, Record, archive, checksum, mark, written
 from running import PROGRAMS, ROOT, Run, Settings, compile_program, run, run_command, start, write_scene
+from searches import search, write_search
 
 WALLS = {"type": "pogowall", "geometry": "arena", "nb": 1}
 RECORD = len(archive([Record(0)])) - len(EMPTY)  # bytes, of category robots
@@ -445,3 +448,37 @@ def test_checksum_of_the_archive_is_in_little_endian(program: Compile, tmp_path:
     assert data[18:28] == b"\0\0\x06\0robots"
     assert data[28:37] == bytes([1, 0, 1, 0xF4, 0x01, 0x58, 0x02, 0xBC, 0x02])
     assert int.from_bytes(data[-8:], "little") == checksum(data[18:-8])
+
+
+def test_search_leaves_the_archive_of_the_user(program: Compile, tmp_path: Path) -> None:
+    (tmp_path / "x").write_bytes(archive(ROBOTS[:2]))
+    state = {"input_file": "x", "output_file": "x"}
+    write_search(tmp_path, {"parameters.kind": "write", "flash_state": state})
+    result = search(tmp_path, "--optimizer", "random", "--max-evals", "2", "-r", "1", program=program("flash.c"))
+    assert result.code == 0, result.text
+    assert (tmp_path / "x").read_bytes() == archive(ROBOTS[:2])
+    best = yaml.safe_load((tmp_path / "opt_out" / "best_config.yaml").read_text())
+    assert best["flash_state"] == state
+
+
+# ---- The window ----
+
+
+def test_closed_window_saves(display: Display, program: Compile, tmp_path: Path) -> None:
+    (tmp_path / "x").write_bytes(GOOD)
+    settings: dict[str, object] = {"simulation_time": 1e4, "parameters.kind": "write"}
+    settings["flash_state"] = {"input_file": "x", "output_file": "x"}
+    with shown(display, program("flash.c"), tmp_path, settings) as window:
+        window.keys("Escape")
+        assert window.end()[0] == 0
+    assert (tmp_path / "x").read_bytes() == archive([written(robot) for robot in range(3)])
+
+
+def test_watched_run_keeps_the_archive_of_an_earlier_one(display: Display, program: Compile, tmp_path: Path) -> None:
+    (tmp_path / "x.flash").write_bytes(GOOD)
+    settings: dict[str, object] = {"simulation_time": 1.0, "GUI_speed_up": 100.0, "parameters.kind": "write"}
+    settings["flash_state"] = {"output_file": "x.flash"}
+    with shown(display, program("flash.c"), tmp_path, settings, ["--close-at-end"]) as window:
+        assert window.end()[0] == 0
+    assert (tmp_path / "x.flash").read_bytes() == archive([written(robot) for robot in range(3)])
+    assert (tmp_path / "x.1.flash").read_bytes() == GOOD

@@ -1,0 +1,206 @@
+"""`pogosim flash` looks into archives, takes the memory of a robot out, and makes archives that programs accept."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+import pytest
+import yaml
+from conftest import Compile
+from flash_files import EMPTY, FLASH, PAGE, Record, archive, checksum, written
+from pogosim.command.main import main
+from pogosim.flash_archive import checksum_of
+from running import SCENE, run
+
+RECORDS = [written(0), Record(1), Record(0, "ants", pages={5: bytes(PAGE)})]
+
+
+@pytest.fixture(autouse=True)
+def _in_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("x.flash").write_bytes(archive(RECORDS))
+
+
+def flash(*arguments: str) -> int:
+    try:
+        return main(["flash", *arguments])
+    except SystemExit as error:
+        assert isinstance(error.code, int)
+        return error.code
+
+
+def configuration(objects: dict[str, object], **more: object) -> str:
+    Path("c.yaml").write_text(yaml.safe_dump({**SCENE, "objects": objects, **more}, sort_keys=False))
+    return "c.yaml"
+
+
+# ---- show ----
+
+
+def test_show_lists_robots_pages_and_motors(capsys: pytest.CaptureFixture[str]) -> None:
+    assert flash("show", "x.flash") == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "x.flash: 3 records, each of 5888 pages of 256 bytes",
+        "category  id  written pages  directions  powers (right, left, back)  checksum",
+        "robots    0   2              1, 0, 1     500, 600, 700               right",
+        "robots    1   0              0, 1, 0     512, 512, 0                 right",
+        "ants      0   1              0, 1, 0     512, 512, 0                 right",
+    ]
+
+
+def test_show_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert flash("show", "x.flash", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["ok"], found["flash_bytes"], len(found["records"])) == (True, FLASH, 3)
+    assert found["records"][2] == {
+        "category": "ants",
+        "id": 0,
+        "written_pages": 1,
+        "directions": [0, 1, 0],
+        "powers": [512, 512, 0],
+        "checksum": "right",
+    }
+
+
+def test_show_of_an_archive_without_records(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("x.flash").write_bytes(EMPTY)
+    assert flash("show", "x.flash") == 0
+    assert capsys.readouterr().out == "x.flash: 0 records, each of 5888 pages of 256 bytes\n"
+
+
+def test_show_tells_which_record_is_damaged(capsys: pytest.CaptureFixture[str]) -> None:
+    data = bytearray(archive(RECORDS))
+    data[2_000_000] ^= 1
+    Path("x.flash").write_bytes(data)
+    assert flash("show", "x.flash") == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[-1] for line in lines[2:5]] == ["right", "wrong", "right"]
+    assert lines[5] == "1 record damaged: the simulator refuses this archive"
+    assert flash("show", "x.flash", "--json") == 1
+    assert json.loads(capsys.readouterr().out)["ok"] is False
+
+
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        (b"", "it is not an archive of flash memory: it does not begin with PGFLASH"),
+        (EMPTY[:12], "it ends in its first 18 bytes"),
+        (EMPTY[:8] + b"\2" + EMPTY[9:], "its version is 2, expected 1"),
+        (
+            EMPTY[:10] + b"\0\0\1\0" + EMPTY[14:],
+            "its robots have 65536 bytes of flash memory, expected 1507328; it is of robots before version 3",
+        ),
+        (archive(RECORDS)[:-1], "it ends in record 3 of 3"),
+        (archive(RECORDS) + b"x", "bytes follow its last record"),
+        (archive([Record(1), Record(1)]), "it has two records of robot #1 of category 'robots'"),
+    ],
+)
+def test_files_that_are_no_archives_are_refused(data: bytes, reason: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("x.flash").write_bytes(data)
+    assert flash("show", "x.flash") == 2
+    assert capsys.readouterr().err.startswith(f"pogosim flash: x.flash: {reason}")
+
+
+def test_missing_file_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert flash("show", "y.flash") == 2
+    assert capsys.readouterr().err == "pogosim flash: y.flash: no such file or directory\n"
+
+
+def test_checksum_is_that_of_all_bytes_whatever_is_known_of_blank_pages() -> None:
+    chance = random.Random(1)
+    body = Record(3, pages={page: chance.randbytes(PAGE) for page in (0, 7, 5887)}).body
+    assert checksum_of(body[:-FLASH], body[-FLASH:]) == checksum(body)
+
+
+# ---- extract and make ----
+
+
+def test_memory_goes_out_and_in_again(capsys: pytest.CaptureFixture[str]) -> None:
+    assert flash("extract", "x.flash", "-r", "0", "--category", "ants", "-o", "ant.bin") == 0
+    assert capsys.readouterr().out == "ant.bin: 1507328 bytes, 1 page not blank\n"
+    assert Path("ant.bin").read_bytes() == RECORDS[2].body[-FLASH:]
+    assert flash("make", "y.flash", "--from", "ants", "0", "ant.bin") == 0
+    assert Path("y.flash").read_bytes() == archive([RECORDS[2]])
+
+
+def test_extract_asks_for_the_category_if_it_has_to(capsys: pytest.CaptureFixture[str]) -> None:
+    assert flash("extract", "x.flash", "-r", "1", "-o", "a.bin", "--json") == 0
+    about = {"file": "a.bin", "category": "robots", "id": 1, "written_pages": 0}
+    assert json.loads(capsys.readouterr().out) == about
+    assert flash("extract", "x.flash", "-r", "0", "-o", "b.bin") == 2
+    assert "several categories; add --category, one of robots, ants" in capsys.readouterr().err
+    assert flash("extract", "x.flash", "-r", "7", "-o", "b.bin") == 2
+    assert "x.flash has no record of robot #7; pogosim flash show lists" in capsys.readouterr().err
+    assert not Path("b.bin").exists()
+
+
+def test_extract_refuses_damaged_memory(capsys: pytest.CaptureFixture[str]) -> None:
+    data = bytearray(archive(RECORDS))
+    data[100] ^= 1
+    Path("x.flash").write_bytes(data)
+    assert flash("extract", "x.flash", "-r", "0", "--category", "robots", "-o", "b.bin") == 2
+    assert "the record of robot #0 of category 'robots' is damaged" in capsys.readouterr().err
+
+
+def test_short_binary_is_followed_by_blank_memory() -> None:
+    Path("a.bin").write_bytes(b"abc")
+    assert flash("make", "y.flash", "--from", "robots", "2", "a.bin") == 0
+    page = b"abc".ljust(PAGE, b"\xff")
+    assert Path("y.flash").read_bytes() == archive([Record(2, pages={0: page})])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ((), "expected the robots of the archive: -c CONFIG, or --from CATEGORY ID FILE.bin"),
+        (("--from", "robots", "x", "a.bin"), "--from: expected an id from 0 to 65535, found 'x'"),
+        (("--from", "robots", "65536", "a.bin"), "expected an id from 0 to 65535, found '65536'"),
+        (("--from", "robots", "1", "b.bin"), "b.bin: no such file or directory"),
+        (("--from", "robots", "1", "long.bin"), "long.bin is longer than flash memory, which has 1507328 bytes"),
+        (("--from", "r", "1", "a.bin", "--from", "r", "1", "a.bin"), "--from r 1 is given twice"),
+        (("-c", "missing.yaml"), "cannot read the configuration missing.yaml"),
+        (("-c", "c.yaml", "--from", "robots", "9", "a.bin"), "c.yaml has no robot #9 of category 'robots'"),
+    ],
+)
+def test_wrong_makings_are_refused(arguments: tuple[str, ...], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("a.bin").write_bytes(b"a")
+    Path("long.bin").write_bytes(bytes(FLASH + 1))
+    configuration({"robots": {"type": "pogobot", "nb": 2}})
+    assert flash("make", "y.flash", *arguments) == 2
+    assert reason in capsys.readouterr().err
+    assert not Path("y.flash").exists()
+
+
+def test_made_archive_fits_the_robots_of_its_configuration(program: Compile, tmp_path: Path) -> None:
+    """Numbered as the simulator does, over all types of objects; and the run's own archive has the same owners."""
+    objects: dict[str, object] = {
+        "lamp": {"type": "static_light", "nb": 1, "geometry": "global", "value": 100},
+        "walls": {"type": "pogowall", "nb": 2, "geometry": "arena"},
+        "robots": {"type": "pogobot", "nb": {"default_option": 3, "batch_options": [3, 4]}, "radius": 10},
+        "balls": {"type": "passive_object", "nb": 2, "geometry": "disk", "radius": 10},
+        "ring": {"type": "membrane", "nb": 1, "geometry": "disk", "radius": 60, "num_dots": 30, "dot_radius": 5},
+        "heads": {"type": "pogobject", "nb": 1, "geometry": "disk", "radius": 20},
+        "rest": [
+            {"type": "active_object", "nb": 1, "geometry": "disk", "radius": 10},
+            {"type": "pogobot", "poses": [[100, 0, 0], [0, 100, 0]], "radius": 10},
+        ],
+    }
+    arena = {"arena_file": "arenas/disk.csv", "arena_surface": 1e6}
+    assert flash("make", "made.flash", "-c", configuration(objects, **arena)) == 0
+    changes = {"objects": objects, "parameters.kind": "x", "flash_state.input_file": "made.flash", "simulation_time": 0}
+    result = run(program("flash.c"), tmp_path, {**changes, "flash_state.output_file": "left.flash"})
+    assert result.code == 0, result.text
+    del changes["flash_state.input_file"]
+    result = run(program("flash.c"), tmp_path, {**changes, "flash_state.output_file": "own.flash"})
+    assert result.code == 0, result.text
+    assert Path("made.flash").read_bytes() == Path("own.flash").read_bytes() == Path("left.flash").read_bytes()
+
+
+def test_make_replaces_an_archive_as_a_whole(capsys: pytest.CaptureFixture[str]) -> None:
+    assert flash("make", "x.flash", "-c", configuration({"robots": {"type": "pogobot", "nb": 2}}), "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found == {"file": "x.flash", "records": [{"category": "robots", "id": i} for i in range(2)]}
+    assert Path("x.flash").read_bytes() == archive([Record(0), Record(1)])
+    assert sorted(path.name for path in Path().iterdir()) == ["c.yaml", "x.flash"]
