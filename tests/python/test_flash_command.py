@@ -184,7 +184,7 @@ def test_made_archive_fits_the_robots_of_its_configuration(program: Compile, tmp
         "heads": {"type": "pogobject", "nb": 1, "geometry": "disk", "radius": 20},
         "rest": [
             {"type": "active_object", "nb": 1, "geometry": "disk", "radius": 10},
-            {"type": "pogobot", "poses": [[100, 0, 0], [0, 100, 0]], "radius": 10},
+            {"type": "pogobot", "poses": [[500, 500, 0], [600, 600, 0]], "radius": 10},
         ],
     }
     arena = {"arena_file": "arenas/disk.csv", "arena_surface": 1e6}
