@@ -4,7 +4,6 @@
 
 #include <variant>
 
-#include "config/dotted_path.hpp"
 #include "config/source.hpp"
 
 namespace pogosim {
