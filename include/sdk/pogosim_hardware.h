@@ -1,0 +1,19 @@
+// Marks functions of the robot's hardware that are not simulated. A program may include their headers, and call them
+// between `#ifndef SIMULATOR` and `#endif`; elsewhere, a call does not compile.
+#ifndef POGOSIM_SDK_HARDWARE_H
+#define POGOSIM_SDK_HARDWARE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define POGO_NOT_SIMULATED                                                                                        \
+    POGO_NOT_SIMULATED_BECAUSE(                                                                                   \
+        "it is a part of the robot's hardware that is not simulated: put the call between #ifndef SIMULATOR and " \
+        "#endif (docs/porting.md)")
+#if defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)
+#define POGO_NOT_SIMULATED_BECAUSE(reason) __attribute__((unavailable(reason)))
+#else
+#define POGO_NOT_SIMULATED_BECAUSE(reason) __attribute__((error(reason)))
+#endif
+
+#endif
