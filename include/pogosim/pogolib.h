@@ -28,7 +28,7 @@ extern "C++" {
 #include <time.h>
 
 /// Version of the SDK that these functions follow.
-#define POGOLIB_RELEASE_VERSION "v2.6"
+#define POGOLIB_RELEASE_VERSION "v2.7"
 
 // A variable that each robot has for itself: the simulator stores the value of the running robot in it.
 // Thread-local, so that robots can run on several threads; the model makes each access a single instruction, in shared

@@ -46,6 +46,14 @@ void pogosim_exit(int status) __attribute__((noreturn));
 void pogosim_usleep(int microseconds);
 void pogosim_sleep(int seconds);
 
+struct pogosim_slip_descriptor;
+/// What raw packets are sent with (slip.h). Programs declare it themselves.
+extern struct pogosim_slip_descriptor const slip_send_descriptor;
+
+/// A program that declares `mydata` by hand, as a pointer like any other, says where it is. It points to the user data
+/// of the robot that runs.
+void pogosim_give_mydata(void** mydata);
+
 /// Replaces msleep() at the end of a tick in the simulator's main loop, after which nothing of the tick is left to do.
 void pogosim_sleep_after_tick(int milliseconds);
 

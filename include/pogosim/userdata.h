@@ -32,18 +32,42 @@
 
 /// Declares `mydata`, a pointer to the T of the current robot; in each file of the program that uses it.
 #define DECLARE_USERDATA(T)             \
-    extern POGO_PER_ROBOT T* mydata;    \
+    POGO_IS_DECLARED                    \
+    POGO_MYDATA_OF_THREAD(T)            \
     extern char REGISTER_USERDATA_once; \
     POGO_ASK_FOR_USERDATA(__COUNTER__)  \
     POGO_MAYBE_SEMICOLON
 /// Tells the simulator how large user data are; once per program. Without it, the linker reports
-/// `REGISTER_USERDATA_once` as undefined. The constant tells readers of debug information the type.
+/// `REGISTER_USERDATA_once` as undefined. The constant tells readers of debug information the type. In a file without
+/// DECLARE_USERDATA, it declares `mydata`, too, as one for all threads: then the robots run on one.
 #define REGISTER_USERDATA(T)                                                \
+    POGO_PLAIN_MYDATA(T)                                                    \
     POGO_SHARED char REGISTER_USERDATA_once = 0;                            \
     POGO_SHARED size_t UserdataSize = sizeof(T);                            \
     __attribute__((used)) static T const* const pogo_user_data_type = NULL; \
     POGO_CONSTRUCT_USERDATA(T)                                              \
     POGO_MAYBE_SEMICOLON
+
+// There are two variables `mydata`. DECLARE_USERDATA declares one that each thread has for itself, by another name for
+// the linker; all other declarations of a program, such as `extern USERDATA* mydata;`, mean the plain one, which is a
+// part of the program (user_data.c). In a file, the first macro decides: what REGISTER_USERDATA declares after
+// DECLARE_USERDATA, and the other way round, is on a stack of definitions.
+#define POGO_MYDATA_OF_ROBOT(T) \
+    extern POGO_PER_ROBOT T* mydata __asm__(POGO_SYMBOL_PREFIX(__USER_LABEL_PREFIX__) "pogosim_mydata");
+#define POGO_MYDATA_OF_PROGRAM(T) extern T* mydata;
+#define POGO_IS_DECLARED _Pragma("pop_macro(\"POGO_PLAIN_MYDATA\")") _Pragma("push_macro(\"POGO_PLAIN_MYDATA\")")
+#define POGO_IS_REGISTERED \
+    _Pragma("pop_macro(\"POGO_MYDATA_OF_THREAD\")") _Pragma("push_macro(\"POGO_MYDATA_OF_THREAD\")")
+// After DECLARE_USERDATA; before it, see below.
+#define POGO_PLAIN_MYDATA(T)
+#pragma push_macro("POGO_PLAIN_MYDATA")
+#undef POGO_PLAIN_MYDATA
+#define POGO_PLAIN_MYDATA(T) POGO_IS_REGISTERED POGO_MYDATA_OF_PROGRAM(T)
+// After REGISTER_USERDATA alone; before it, see below.
+#define POGO_MYDATA_OF_THREAD(T) POGO_MYDATA_OF_PROGRAM(T)
+#pragma push_macro("POGO_MYDATA_OF_THREAD")
+#undef POGO_MYDATA_OF_THREAD
+#define POGO_MYDATA_OF_THREAD(T) POGO_MYDATA_OF_ROBOT(T)
 
 // In C++ the user data of each robot are constructed, as the global of a real robot is.
 #ifdef __cplusplus

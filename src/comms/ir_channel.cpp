@@ -170,8 +170,8 @@ void IrChannel::deliver_shared(World& world, WorkerPool& workers) {
                 Arrival const& arrival = arrivals[k];
                 world.mailboxes.expect_push(arrivals[std::min(k + kAhead, arrivals.size() - 1)].receiver);
                 Transmission const& transmission = world.air.transmissions[arrival.transmission];
-                world.mailboxes.push_copies(arrival.receiver, transmission.header, world.air.payload_of(transmission),
-                                            arrival.faces);
+                world.mailboxes.receive(arrival.receiver, transmission.header, world.air.payload_of(transmission),
+                                        transmission.kind, arrival.faces);
             }
         }
     });
@@ -254,7 +254,8 @@ void IrChannel::deliver_one(World& world, std::uint32_t index, std::span<Receive
         }
         ++receptions_;
         std::uint8_t const faces = visibility_.faces_of(world, receiver, transmission.range_mm);
-        unsigned const queued = world.mailboxes.push_copies(receiver.robot, transmission.header, payload, faces);
+        unsigned const queued =
+            world.mailboxes.receive(receiver.robot, transmission.header, payload, transmission.kind, faces);
         observer.received(world, receiver, faces, static_cast<std::uint8_t>(queued));
     }
 }

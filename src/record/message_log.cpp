@@ -17,7 +17,8 @@ namespace {
 
 constexpr TableKind kKind{.name = "message log", .key = "message_log", .how_to_do_without = "leave message_log out"};
 
-constexpr std::array<std::string_view, 3> kOutcomes{"heard", "lost", "queue_full"};
+constexpr std::array<std::string_view, 4> kOutcomes{"heard", "lost", "queue_full", "malformed"};
+constexpr std::array<std::string_view, 4> kTypes{"long", "short", "command", "other"};
 constexpr std::string_view kNobodyInReach = "nobody_in_reach";
 
 /// Appends the cells of a robot, or nulls.
@@ -110,7 +111,7 @@ struct Cells {
         ARROW_RETURN_NOT_OK(message.Append(row.message));
         ARROW_RETURN_NOT_OK(sender.append(row.sender));
         ARROW_RETURN_NOT_OK(sender_faces.Append(static_cast<std::int8_t>(row.faces)));
-        ARROW_RETURN_NOT_OK(kind.Append(row.is_short ? "short" : "long"));
+        ARROW_RETURN_NOT_OK(kind.Append(kTypes[static_cast<std::size_t>(row.type)]));
         ARROW_RETURN_NOT_OK(payload.Append(reinterpret_cast<std::uint8_t const*>(row.payload.data()),
                                            static_cast<std::int32_t>(row.payload.size())));
         ARROW_RETURN_NOT_OK(message_bytes.Append(row.message_bytes));

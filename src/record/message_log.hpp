@@ -30,7 +30,9 @@ struct LoggedRobot {
     std::string_view category;
 };
 
-enum class MessageOutcome { heard, lost, queue_full };
+enum class MessageOutcome { heard, lost, queue_full, malformed };
+
+enum class MessageType { long_message, short_message, command, other };
 
 /// The fate of a transmission at one robot in reach.
 struct LoggedReception {
@@ -50,7 +52,7 @@ struct MessageRow {
     std::int64_t message = 0;  // number of the transmission in the run
     LoggedRobot sender;
     std::uint8_t faces = 0;  // bit d: emitter d radiates
-    bool is_short = false;
+    MessageType type = MessageType::long_message;
     std::span<std::byte const> payload{};
     std::int32_t message_bytes = 0;              // header and payload as the law of reception counts them
     float send_probability = 0.0F;               // of the sender, per tick

@@ -44,6 +44,7 @@ struct Inspection {
     std::uint64_t magnetometer_samples = 0;  // how often it has
     std::vector<Neighbour> neighbours;       // by id
     std::uint64_t messages_sent = 0;         // by any function; a message in all directions counts once
+    bool is_muted = false;                   // it sends nothing
     std::uint64_t messages_received = 0;     // that its program has read
     std::size_t messages_waiting = 0;        // in its queue
     std::vector<std::pair<std::string, std::string>> variables;  // of its program, now: name and value

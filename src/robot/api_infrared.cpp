@@ -1,5 +1,6 @@
 // pogolib/infrared.h: messages sent by user code are put on the air; comms delivers them after every robot has run.
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -8,6 +9,7 @@
 #include "base/log.hpp"
 #include "pogosim/program.h"
 #include "robot/context.hpp"
+#include "robot/controllers.hpp"
 #include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
@@ -18,7 +20,9 @@ using pogosim::context;
 using pogosim::FrameHeader;
 using pogosim::kAllFaces;
 using pogosim::kFaceCount;
+using pogosim::kind_of_packet;
 using pogosim::note_slip;
+using pogosim::PacketKind;
 using pogosim::require_argument;
 using pogosim::require_robot;
 
@@ -27,6 +31,10 @@ namespace {
 // The article's library adds these to a message's size: 3 bytes in front of a short payload, 8 in front of a long one.
 constexpr std::uint16_t kShortHeaderBytes = 3;
 constexpr std::uint16_t kLongHeaderBytes = 8;
+
+// What a receiver sees of a short message.
+constexpr std::uint16_t kNoSender = 0xFF;
+constexpr std::uint8_t kNoSenderIndex = 0xF;
 
 constexpr std::uint32_t kSent = 0;
 constexpr std::uint32_t kNotSent = 1;
@@ -55,8 +63,30 @@ float send_probability() {
                               static_cast<float>(watched_us));
 }
 
-/// Puts one transmission on the air.
-std::uint32_t emit(char const* function, std::uint8_t emitters, std::uint8_t power, FrameHeader header,
+/// Puts one transmission on the air. Robots that receive it pass a packet on unless it is malformed.
+void transmit(std::uint8_t emitters, std::uint8_t power, PacketKind kind, FrameHeader const& header,
+              std::uint16_t header_bytes, std::uint8_t const* payload) {
+    pogosim::note_call();
+    if (!context.has_robot() || emitters == 0 || power == 0) {
+        return;
+    }
+    pogosim::take_back_floating_point();
+    ++context.controller->messages_sent;
+    pogosim::TransmissionQueue& air = pogosim::current_air();
+    air.transmissions.push_back({.robot = context.robot,
+                                 .emitters = emitters,
+                                 .kind = kind,
+                                 .message_bytes = static_cast<std::uint16_t>(header_bytes + header.payload_length),
+                                 .send_probability = send_probability(),
+                                 .range_mm = context.spec().ir.range_at_mm(power),
+                                 .header = header,
+                                 .payload_offset = air.payloads.size()});
+    auto const bytes = std::as_bytes(std::span(payload, header.payload_length));
+    air.payloads.insert(air.payloads.end(), bytes.begin(), bytes.end());
+}
+
+/// Sends a message, unless something is wrong with it or the robot is muted.
+std::uint32_t send(char const* function, std::uint8_t emitters, std::uint8_t power, FrameHeader const& header,
                    std::uint16_t header_bytes, std::uint8_t const* payload) {
     if (header.payload_length > MAX_PAYLOAD_SIZE_BYTES) [[unlikely]] {
         static_assert(MAX_PAYLOAD_SIZE_BYTES == 382);
@@ -68,22 +98,14 @@ std::uint32_t emit(char const* function, std::uint8_t emitters, std::uint8_t pow
         note_slip({function, "message", kMessage, kNothingSent}, "NULL");
         return kNotSent;
     }
-    pogosim::note_call();
-    if (!context.has_robot() || emitters == 0 || power == 0) {
-        return kSent;
+    pogosim::InfraredState& infrared = context.controller->infrared;
+    if (infrared.is_muted != 0) [[unlikely]] {
+        ++infrared.muted_messages;
+        pogosim::note_call();
+        return kNotSent;
     }
-    pogosim::take_back_floating_point();
-    ++context.controller->messages_sent;
-    pogosim::TransmissionQueue& air = pogosim::current_air();
-    air.transmissions.push_back({.robot = context.robot,
-                                 .emitters = emitters,
-                                 .message_bytes = static_cast<std::uint16_t>(header_bytes + header.payload_length),
-                                 .send_probability = send_probability(),
-                                 .range_mm = context.spec().ir.range_at_mm(power),
-                                 .header = header,
-                                 .payload_offset = air.payloads.size()});
-    auto const bytes = std::as_bytes(std::span(payload, header.payload_length));
-    air.payloads.insert(air.payloads.end(), bytes.begin(), bytes.end());
+    PacketKind const kind = kind_of_packet(header, std::as_bytes(std::span(payload, header.payload_length)));
+    transmit(emitters, power, kind, header, header_bytes, payload);
     return kSent;
 }
 
@@ -123,28 +145,54 @@ std::uint8_t sender_index(std::uint8_t emitters) {
 }
 
 std::uint32_t send_long(char const* function, std::uint8_t emitters, std::uint8_t list, std::uint8_t const* payload,
-                        std::uint16_t size) {
-    FrameHeader const header{.packet_type = ir_t_user,
+                        std::uint16_t size, std::uint8_t type = ir_t_user) {
+    FrameHeader const header{.packet_type = type,
                              .emitting_power_list = list,
                              .sender_id = pogobot_helper_getid(),
                              .sender_ir_index = sender_index(emitters),
                              .receiver_ir_index = 0,
                              .payload_length = size};
-    return emit(function, emitters, highest_power(list), header, kLongHeaderBytes, payload);
+    return send(function, emitters, highest_power(list), header, kLongHeaderBytes, payload);
+}
+
+/// A raw message that is a command. Real robots send it as a message of users: their remote control sends commands.
+bool is_command_of_remote_control(message_t const& message) {
+    auto const header = std::bit_cast<FrameHeader>(message.header);
+    std::size_t const size = std::min<std::size_t>(header.payload_length, MAX_PAYLOAD_SIZE_BYTES);
+    if (kind_of_packet(header, std::as_bytes(std::span(message.payload, size))) == PacketKind::message) [[likely]] {
+        return false;
+    }
+    context.services->warn_once(
+        "pogobot_infrared_sendRawLongMessage() sends a command (type ir_t_cmd), which robots that hear it obey; a real "
+        "robot would send it as a message of type ir_t_user: there, commands come from the remote control");
+    return true;
+}
+
+/// Emitters with a power that is not 0.
+std::uint8_t emitters_in(std::uint8_t list) {
+    std::uint8_t emitters = 0;
+    for (unsigned face = 0; face < kFaceCount; ++face) {
+        if (get_infrared_emitter_dir(face, list) != 0) {
+            emitters = static_cast<std::uint8_t>(emitters | 1U << face);
+        }
+    }
+    return emitters;
 }
 
 std::uint32_t send_short(char const* function, std::uint8_t emitters, std::uint8_t const* payload, std::uint16_t size) {
     // A short header carries neither sender nor emitter.
     FrameHeader const header{.packet_type = ir_t_short,
                              .emitting_power_list = 0,
-                             .sender_id = 0xFF,
-                             .sender_ir_index = 0xF,
+                             .sender_id = kNoSender,
+                             .sender_ir_index = kNoSenderIndex,
                              .receiver_ir_index = 0,
                              .payload_length = size};
-    return emit(function, emitters, context.controller->ir_power, header, kShortHeaderBytes, payload);
+    return send(function, emitters, context.controller->ir_power, header, kShortHeaderBytes, payload);
 }
 
 }  // namespace
+
+struct pogosim_slip_descriptor const slip_send_descriptor = {};
 
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
@@ -184,21 +232,18 @@ uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
         note_slip({__func__, "message", kMessage, kNothingSent}, "NULL");
         return kNotSent;
     }
-    message->header._packet_type = ir_t_user;
+    bool const is_command = is_command_of_remote_control(*message);
+    message->header._packet_type = is_command ? ir_t_cmd : ir_t_user;
     message->header._sender_id = pogobot_helper_getid();
     std::uint8_t const list = message->header._emitting_power_list;
-    std::uint8_t emitters = 0;
-    for (unsigned face = 0; face < kFaceCount; ++face) {
-        if (get_infrared_emitter_dir(face, list) != 0) {
-            emitters = static_cast<std::uint8_t>(emitters | 1U << face);
-        }
-    }
+    std::uint8_t const emitters = emitters_in(list);
     if (emitters == 0) [[unlikely]] {
         note_slip({__func__, "_emitting_power_list", "a power that is not 0 for at least one emitter",
                    "nothing is sent, as on a real robot"},
                   list);
     }
-    return send_long(__func__, emitters, list, message->payload, message->header.payload_length);
+    return send_long(__func__, emitters, list, message->payload, message->header.payload_length,
+                     message->header._packet_type);
 }
 
 uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t* const message) {
@@ -211,6 +256,39 @@ uint32_t pogobot_infrared_sendRawShortMessage(ir_direction dir, short_message_t*
     return send_short(__func__, emitters_of(__func__, dir), message->payload, message->header.payload_length);
 }
 
+int pogosim_send_packet(void const* descriptor, uint8_t const* data, uint32_t size, int64_t declared_length) {
+    constexpr auto function = "slip_send_message";
+    require_robot(function);
+    require_argument(data, function, "data");
+    if (descriptor != &slip_send_descriptor) {
+        pogosim::refuse_user_code(
+            "slip_send_message(): only the descriptor of the infrared emitters, slip_send_descriptor, is simulated");
+    }
+    bool const is_short = size > 0 && data[0] == ir_t_short;
+    std::size_t const header_bytes = is_short ? sizeof(message_short_header_t) : sizeof(message_header_t);
+    FrameHeader header{.packet_type = ir_t_short, .sender_id = kNoSender, .sender_ir_index = kNoSenderIndex};
+    if (size >= header_bytes && is_short) {
+        message_short_header_t given;
+        std::memcpy(&given, data, header_bytes);
+        header.payload_length = given.payload_length;
+    } else if (size >= header_bytes) {
+        std::memcpy(&header, data, header_bytes);
+    }
+    std::uint8_t const list =
+        is_short || header.emitting_power_list == 0 ? power_list(kAllFaces) : header.emitting_power_list;
+    std::size_t const payload_bytes = size - std::min<std::size_t>(size, header_bytes);
+    bool const is_whole = size >= header_bytes && header.payload_length == payload_bytes &&
+                          (declared_length < 0 || declared_length == header.payload_length) &&
+                          payload_bytes <= MAX_PAYLOAD_SIZE_BYTES;
+    std::uint8_t const* const payload = data + (size - payload_bytes);
+    header.payload_length = static_cast<std::uint16_t>(std::min<std::size_t>(payload_bytes, MAX_PAYLOAD_SIZE_BYTES));
+    PacketKind const kind = is_whole ? kind_of_packet(header, std::as_bytes(std::span(payload, header.payload_length)))
+                                     : PacketKind::malformed;
+    transmit(emitters_in(list), highest_power(list), kind, header, is_short ? kShortHeaderBytes : kLongHeaderBytes,
+             payload);
+    return 0;
+}
+
 void pogobot_infrared_set_power(uint8_t power) {
     require_robot(__func__);
     if (power > pogobot_infrared_emitter_power_max) [[unlikely]] {
@@ -220,10 +298,16 @@ void pogobot_infrared_set_power(uint8_t power) {
 }
 
 void pogobot_infrared_update() {
-    if (context.controller != nullptr) {
-        context.controller->program.decodes_messages = true;
-        pogosim::note_call();
+    if (context.controller == nullptr) {
+        return;
     }
+    context.controller->program.decodes_messages = true;
+    if (context.has_robot() && context.world->mailboxes.has_commands(context.robot)) [[unlikely]] {
+        if (obey_commands(context.world->mailboxes, context.robot, context.controller->infrared)) {
+            context.services->access.controllers->ask_for_restart();
+        }
+    }
+    pogosim::note_call();
 }
 
 int pogobot_infrared_message_available() {
@@ -278,7 +362,38 @@ void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const cou
 
 void pogobot_infrared_reset_receiver_error_counter() {}
 
-void pogobot_infrared_ll_init() {}
+uint32_t pogobot_infrared_get_queue_drop_count() {
+    require_robot(__func__);
+    return context.has_robot()
+               ? drops_since_start(context.world->mailboxes, context.robot, context.controller->infrared)
+               : 0;
+}
+
+uint32_t pogobot_infrared_get_malformed_count() {
+    require_robot(__func__);
+    return context.has_robot()
+               ? malformed_since_start(context.world->mailboxes, context.robot, context.controller->infrared)
+               : 0;
+}
+
+void pogobot_infrared_ll_init() {
+    require_robot(__func__);
+    if (context.has_robot()) {
+        initialise_infrared(context.world->mailboxes, context.robot, context.controller->infrared);
+    }
+}
+
+int is_muted() {
+    require_robot(__func__);
+    return context.controller->infrared.is_muted != 0 ? 1 : 0;
+}
+
+uint8_t* pogosim_master_mute() {
+    require_robot("_master_mute");
+    return &context.controller->infrared.is_muted;
+}
+
+void IR_reset_interrupt_flags() {}
 
 bool pogosim_call_msg_tx_fn(bool (*send)()) {
     if (context.controller == nullptr) {

@@ -14,6 +14,7 @@
 #include "robot/battery.hpp"
 #include "robot/flash.hpp"
 #include "robot/phase.hpp"
+#include "robot/remote_control.hpp"
 #include "world/observed_motion.hpp"
 #include "world/world.hpp"
 
@@ -96,6 +97,12 @@ struct SentRate {
     std::uint32_t present = 0;
 };
 
+/// The stream of rand() with which a robot's program starts.
+inline RandomStream random_of_program(std::uint64_t seed, std::uint32_t robot) {
+    constexpr std::uint64_t first_stream = std::uint64_t{1} << 32U;
+    return {seed, first_stream + robot};
+}
+
 class Fiber;
 
 // What a clock shows of a robot that is not due, us.
@@ -109,6 +116,7 @@ struct Controller {
     int calls = 0;                    // of what programs wait with in a loop, see waiting.hpp
     Fiber* fiber = nullptr;           // on which its program waits in the middle; null: it does not
     Phase waits_in = Phase::none;
+    bool restarts = false;             // at the beginning of the next step
     int waits = 0;                     // in the call of its program that runs
     std::int64_t call_began_us = 0;    // when that began; time of the step
     std::uint32_t call_ticks = 0;      // pogobot_ticks then
@@ -125,6 +133,7 @@ struct Controller {
     std::array<std::int32_t, kPhotosensorCount> photosensor_bias{};
     RandomStream imu_noise;
     std::uint8_t ir_power = 1;
+    InfraredState infrared;
     std::uint64_t messages_sent = 0;  // by whatever function
     SendResults send_results;
     SentRate sent_rate;

@@ -27,8 +27,8 @@
 #include "robot/velocity_command.hpp"
 
 extern "C" {
-// Programs declare it as a pointer to their own type of user data.
-__attribute__((visibility("default"))) POGO_PER_ROBOT void* mydata = nullptr;
+// `mydata` of programs with DECLARE_USERDATA, a pointer to their own type of user data.
+__attribute__((visibility("default"))) POGO_PER_ROBOT void* pogosim_mydata = nullptr;
 
 POGO_PER_ROBOT void (*callback_global_setup)() = nullptr;
 POGO_PER_ROBOT void (*callback_create_data_schema)() = nullptr;
@@ -47,7 +47,6 @@ constexpr double kMicrosecondsPerSecond = 1e6;
 constexpr char const* kSystemCategory = "__system";
 
 // Ids of random streams for purposes other than the noise of one robot's body.
-constexpr std::uint64_t kRandStreams = std::uint64_t{1} << 32U;
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
 constexpr std::uint64_t kImuStreams = std::uint64_t{7} << 32U;
 
@@ -199,7 +198,7 @@ void Controllers::draw_individual_differences(std::uint64_t seed) {
         Controller& self = controllers_[i];
         RobotSpec const& spec = world_.spec_of(i);
         RandomStream& stream = world_.robots.stream[i];
-        self.random = RandomStream(seed, kRandStreams + i);
+        self.random = random_of_program(seed, i);
         self.seeds = RandomStream(seed, kSeedStreams + i);
         self.imu_noise = RandomStream(seed, kImuStreams + i);
         self.first_seed = scatter_id(id_on_air(world_.robots.id[i]), key);
@@ -209,7 +208,7 @@ void Controllers::draw_individual_differences(std::uint64_t seed) {
         }
         self.clock_drift_us = std::lround(spec.clock_drift_stddev_us * stream.normal());
     }
-    system_.random = RandomStream(seed, kRandStreams + kNone);
+    system_.random = random_of_program(seed, kNone);
     system_.seeds = RandomStream(seed, kSeedStreams + kNone);
 }
 
@@ -232,7 +231,10 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
     if (own_memory_) {
         without_exceptions([&] { own_memory_->load(robot); });
     }
-    mydata = self.user_data;
+    pogosim_mydata = self.user_data;
+    if (image_.plain_mydata != nullptr) [[unlikely]] {
+        *image_.plain_mydata = image_.user_data_bytes > 0 ? self.user_data : nullptr;
+    }
     self.calls = 0;
     load_globals(self.loop);
     restart_watch();
@@ -307,7 +309,7 @@ void Controllers::construct_static_objects() {
 void Controllers::construct_user_data(std::uint32_t robot) {
     if (image_.construct_user_data != nullptr) {
         enter(robot, Phase::construct_user_data);
-        image_.construct_user_data(mydata);
+        image_.construct_user_data(pogosim_mydata);
         leave();
     }
 }
@@ -466,6 +468,9 @@ void Controllers::end_step() const {
 
 void Controllers::begin_step() {
     step_us_ = now_us();
+    if (is_restart_due_.exchange(false)) [[unlikely]] {
+        restart_robots();
+    }
     measure_each_step();
     drain_batteries();
     warn_of_unreturned_calls_if_due();
@@ -597,6 +602,7 @@ void Controllers::warn_of_stacks() const {
 
 void Controllers::warn_of_messages(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, controllers_);
+    warn_of_commands(world_, controllers_);
     warn_of_unused_messages(world_, controllers_, arrivals);
     warn_of_undecoded_messages(controllers_);
     warn_of_send_results(controllers_);

@@ -48,6 +48,10 @@ public:
 
     ProgramImage const& image() const { return image_; }
 
+    /// The running robot restarts at the beginning of the next step: main() and user_init run anew, with variables as
+    /// the program starts with. Returns in callbacks and in user_init, which end first; else it does not return.
+    void ask_for_restart();
+
     /// The running robot waits: its program goes on in the first step in which its clock is reached. Returns then.
     void wait();
 
@@ -199,6 +203,8 @@ private:
     bool is_waiting(std::uint32_t robot) const;
     struct Turns;
     void take_turns(Turns& turns);
+    void restart_robots();
+    void restart(std::uint32_t robot);
     void run_global_setup();
     void call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world = false);
     std::int64_t now_us() const;
@@ -235,8 +241,9 @@ private:
     std::int64_t step_us_ = 0;  // time of the step
     int most_loop_hz_ = 255;    // the highest main_loop_hz at which robots skip no ticks
     std::atomic<bool> has_waited_ = false;
-    std::int64_t next_look_us_ = 0;  // at calls that do not return
-    std::vector<bool> is_warned_;    // of them, for each category
+    std::atomic<bool> is_restart_due_ = false;  // of some robot
+    std::int64_t next_look_us_ = 0;             // at calls that do not return
+    std::vector<bool> is_warned_;               // of them, for each category
     std::vector<std::span<std::byte>> own_variables_;
     std::unique_ptr<RobotMemory> own_memory_;  // copies: of each robot, and of the global step
     struct MainArguments {

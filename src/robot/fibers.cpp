@@ -93,11 +93,7 @@ void swap_handled_exceptions(HandledExceptions& other) {
 
 class Fiber {
 public:
-    explicit Fiber(std::size_t stack_bytes) : stack_(stack_bytes) {
-        std::span const bytes = stack_.bytes();
-        inside_ = make_fcontext(bytes.data() + bytes.size(), bytes.size(), main_of_fiber);
-        tsan_fiber_ = __tsan_create_fiber != nullptr ? __tsan_create_fiber(0) : nullptr;
-    }
+    explicit Fiber(std::size_t stack_bytes) : stack_(stack_bytes) { reset(); }
     ~Fiber() {
         if (tsan_fiber_ != nullptr) {
             __tsan_destroy_fiber(tsan_fiber_);
@@ -106,6 +102,7 @@ public:
     Fiber(Fiber const&) = delete;
     Fiber& operator=(Fiber const&) = delete;
 
+    void reset();
     void call(void (*body)(void*), void* argument) {
         body_ = body;
         argument_ = argument;
@@ -148,6 +145,22 @@ namespace {
 constinit thread_local Fiber* running = nullptr;
 
 }  // namespace
+
+/// Makes the stack one on which no code runs.
+void Fiber::reset() {
+    std::span const bytes = stack_.bytes();
+    if (__asan_unpoison_memory_region != nullptr) {
+        __asan_unpoison_memory_region(bytes.data(), bytes.size());
+    }
+    inside_ = make_fcontext(bytes.data() + bytes.size(), bytes.size(), main_of_fiber);
+    has_returned_ = true;
+    handled_ = {};
+    fake_stack_ = nullptr;
+    if (tsan_fiber_ != nullptr) {
+        __tsan_destroy_fiber(tsan_fiber_);
+    }
+    tsan_fiber_ = __tsan_create_fiber != nullptr ? __tsan_create_fiber(0) : nullptr;
+}
 
 void Fiber::main_of_fiber(transfer_t from) {
     Fiber& self = *static_cast<Fiber*>(from.data);
@@ -260,6 +273,11 @@ Fiber& FiberPool::take() {
     Fiber& fiber = *unused_.back();
     unused_.pop_back();
     return fiber;
+}
+
+void FiberPool::discard(Fiber& fiber) {
+    fiber.reset();
+    put_back(fiber);
 }
 
 void FiberPool::put_back(Fiber& fiber) {

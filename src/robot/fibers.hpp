@@ -30,6 +30,9 @@ public:
     Fiber& take();
     void put_back(Fiber& fiber);
 
+    /// The same for a fiber whose suspended code is not to be resumed.
+    void discard(Fiber& fiber);
+
     /// How much of a stack code has used so far, at most, in whole pages; 0 where that is not known.
     std::size_t deepest_bytes() const;
 

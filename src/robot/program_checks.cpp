@@ -158,6 +158,26 @@ void warn_of_lost_messages(World const& world, std::span<Controller const> contr
     }
 }
 
+void warn_of_commands(World const& world, std::span<Controller const> controllers) {
+    std::vector<std::uint64_t> muted(world.categories.size());
+    std::vector<std::uint64_t> restarts(world.categories.size());
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        muted[world.robots.category[i]] += controllers[i].infrared.muted_messages;
+        restarts[world.robots.category[i]] += controllers[i].infrared.restarts;
+    }
+    for (std::size_t category = 0; category < muted.size(); ++category) {
+        std::string const& name = world.categories[category].name;
+        if (muted[category] > 0) {
+            log().warn("{} of robots of category '{}' {} not sent because they were muted (command DEADCAFE)",
+                       counted(muted[category], "message"), name, muted[category] == 1 ? "was" : "were");
+        }
+        if (restarts[category] > 0) {
+            log().warn("{} of robots of category '{}' by the command DEADBEEF", counted(restarts[category], "restart"),
+                       name);
+        }
+    }
+}
+
 void warn_of_unused_messages(World const& world, std::span<Controller const> controllers, std::uint64_t arrivals) {
     auto const mute = categories_where_all(world, controllers, sends_never);
     auto const deaf = categories_where_all(world, controllers, receives_never);

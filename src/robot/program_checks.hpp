@@ -54,6 +54,9 @@ void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std
 /// Messages dropped because the queue of a robot that reads messages was full, by category.
 void warn_of_lost_messages(World const& world, std::span<Controller const> controllers);
 
+/// Messages that robots did not send because they were muted, and restarts, by category.
+void warn_of_commands(World const& world, std::span<Controller const> controllers);
+
 /// Messages that are never read, or that a program intends to send and read but cannot. `arrivals`: messages that
 /// reached robots in the whole run.
 void warn_of_unused_messages(World const& world, std::span<Controller const> controllers, std::uint64_t arrivals);

@@ -31,6 +31,9 @@ namespace pogosim {
 
 namespace {
 
+/// What the program has said that was loaded last in this thread, or is linked in.
+constinit thread_local void** given_mydata = nullptr;
+
 constexpr std::uint32_t kVersionsPerMinor = 1000;  // POGOSIM_VERSION_ENCODE: patches do not change the interface
 
 std::string version_text(std::uint32_t encoded) {
@@ -86,6 +89,7 @@ private:
 void* loaded(std::filesystem::path const& file) {
     WithoutRobot const nobody;
     StandardFloatingPoint const mode;  // which constructors may change
+    given_mydata = nullptr;
     return dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 void unload(void* library) {
@@ -239,6 +243,7 @@ ProgramImage linked_program(pogosim_program const& program, std::string name) {
     image.main = program.main;
     image.user_data_bytes = *program.user_data_bytes;
     image.construct_user_data = *program.construct_user_data;
+    image.plain_mydata = is_in_any(image.variables, given_mydata) ? given_mydata : nullptr;
     image.constructors = constructors_of(program);
     // One of its files may include pogobot.h, and the one with main() pogobase.h.
     image.is_for_sdk = program.for_sdk != nullptr && image.user_data_bytes == 0;
@@ -296,3 +301,7 @@ ProgramImage load_program(std::filesystem::path const& file) {
 }
 
 }  // namespace pogosim
+
+void pogosim_give_mydata(void** mydata) {
+    pogosim::given_mydata = mydata;
+}

@@ -21,7 +21,8 @@ struct ProgramImage {
     std::vector<std::span<std::byte>> variables{};  // memory that it can write: its .data and .bss
     int (*main)() = nullptr;
     std::size_t user_data_bytes = 0;
-    void (*construct_user_data)(void*) = nullptr;            // null in C
+    void (*construct_user_data)(void*) = nullptr;  // null in C
+    void** plain_mydata = nullptr;  // its `mydata`, if it has one that is not of the library; null: it has none
     std::shared_ptr<Constructors const> constructors{};      // of its static objects; null: there are none
     bool is_for_sdk = false;                                 // its main() does not return
     std::shared_ptr<void> loaded{};                          // keeps a loaded program in memory; null: it is linked in

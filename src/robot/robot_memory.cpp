@@ -136,6 +136,13 @@ void RobotMemory::load(std::uint32_t copy) {
     }
 }
 
+void RobotMemory::begin_anew(std::uint32_t robot) {
+    load(robot);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        put(blocks_[i], first_.data() + i * kBlockBytes);
+    }
+}
+
 /// Switches from or to the copy that belongs to no robot, in which any block may differ.
 void RobotMemory::load_all(std::uint32_t copy) {
     save();

@@ -27,6 +27,9 @@ public:
     /// Puts a copy into the program: that of a robot, or kNone. What is in the program belongs to the copy before.
     void load(std::uint32_t copy);
 
+    /// Puts a robot's copy into the program, as it was in the beginning.
+    void begin_anew(std::uint32_t robot);
+
     /// Reads what a robot's copy has at a place in the program, without loading the copy. Bytes outside variables are
     /// as the program has them.
     void read(std::uint32_t copy, std::byte const* place, std::span<std::byte> to) const;

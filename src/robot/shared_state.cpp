@@ -190,6 +190,10 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     for (ProgramSymbols::Variable const& variable : symbols.variables) {
         if (!is_own(variable.name) &&
             (variable.is_of_thread || !is_configured(address_in(image, variable), variable.bytes, bound))) {
+            if (variable.name == "mydata") {
+                return "the program declares 'mydata' as one for all threads (by hand, or with REGISTER_USERDATA "
+                       "alone): write DECLARE_USERDATA in its place, or before it";
+            }
             bool const is_constant_of_first = symbols.has_guard(variable.name);
             return fmt::format("all robots share the variable '{}' ({})", name_by_symbol(variable.name),
                                is_constant_of_first

@@ -36,6 +36,7 @@ void add_controller(Controller const& controller, Inspection& inspection) {
     std::ranges::copy(controller.motors.direction, inspection.motor_direction.begin());
     inspection.messages_sent = controller.messages_sent;
     inspection.messages_received = controller.messages_received;
+    inspection.is_muted = controller.infrared.is_muted != 0;
     std::ranges::copy(controller.magnetometer.last, inspection.magnetometer.begin());
     inspection.magnetometer_samples = controller.magnetometer.samples;
 }

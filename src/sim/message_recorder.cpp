@@ -15,7 +15,20 @@ LoggedRobot named(World const& world, std::uint32_t robot) {
             .category = world.categories[world.robots.category[robot]].name};
 }
 
-LoggedReception reception_of(World const& world, Delivery const& delivery) {
+MessageType type_of(FrameHeader const& header) {
+    switch (header.packet_type) {
+        case ir_t_user:
+            return MessageType::long_message;
+        case ir_t_short:
+            return MessageType::short_message;
+        case ir_t_cmd:
+            return MessageType::command;
+        default:
+            return MessageType::other;
+    }
+}
+
+LoggedReception reception_of(World const& world, Delivery const& delivery, PacketKind kind) {
     LoggedReception reception{.receiver = named(world, delivery.receiver),
                               .emitters = delivery.emitters,
                               .faces = delivery.faces,
@@ -27,6 +40,8 @@ LoggedReception reception_of(World const& world, Delivery const& delivery) {
     }
     if (!delivery.is_received) {
         reception.outcome = MessageOutcome::lost;
+    } else if (kind == PacketKind::malformed) {
+        reception.outcome = MessageOutcome::malformed;
     } else if (delivery.queued == 0) {
         reception.outcome = MessageOutcome::queue_full;
     }
@@ -51,12 +66,12 @@ void MessageRecorder::record() {
                        .message = messages_ + delivery.transmission,
                        .sender = named(world_, transmission.robot),
                        .faces = transmission.emitters,
-                       .is_short = transmission.header.packet_type == ir_t_short,
+                       .type = type_of(transmission.header),
                        .payload = air.payload_of(transmission),
                        .message_bytes = transmission.message_bytes,
                        .send_probability = transmission.send_probability};
         if (delivery.receiver != kNone) {
-            row.reception = reception_of(world_, delivery);
+            row.reception = reception_of(world_, delivery, transmission.kind);
         }
         log_->append(row);
     }

@@ -172,6 +172,12 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
         hash.add(off.clock_us);
         add_leds(hash, off.leds);
     }
+    for (std::size_t robot = 0; robot < all.size(); ++robot) {
+        if (all[robot].infrared.is_muted != 0 || world.mailboxes.has_commands(robot)) {
+            hash.add(robot);
+            hash.add(all[robot].infrared.is_muted);
+        }
+    }
     for (std::size_t lamp = 0; lamp < world.lamps.size(); ++lamp) {
         LampSetting const& setting = world.lamps[lamp].setting;
         if (setting != LampSetting()) {

@@ -154,7 +154,7 @@ void draw_variables(Inspection const& robot) {
 }
 
 void draw_messages(Inspection const& robot) {
-    row("sent", std::to_string(robot.messages_sent));
+    row("sent", std::to_string(robot.messages_sent) + (robot.is_muted ? ", muted" : ""));
     row("received", std::to_string(robot.messages_received));
     row("in its queue", std::to_string(robot.messages_waiting));
     row("in reach", std::to_string(robot.neighbours.size()));

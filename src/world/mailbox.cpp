@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <utility>
 
 namespace pogosim {
 
@@ -45,7 +46,11 @@ void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::span
 }
 
 Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes)
-    : queues_(queue_sizes.size()), far_(queue_sizes.size()), dropped_(queue_sizes.size()) {
+    : queues_(queue_sizes.size()),
+      far_(queue_sizes.size()),
+      dropped_(queue_sizes.size()),
+      malformed_(queue_sizes.size()),
+      commands_(queue_sizes.size()) {
     std::size_t total = 0;
     for (std::size_t i = 0; i < queues_.size(); ++i) {
         queues_[i].max_count = static_cast<std::uint32_t>(queue_sizes[i]);
@@ -93,6 +98,28 @@ unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader header, std::span
         append(queue, robot, header, payload);
     }
     return queue.waiting - before;
+}
+
+unsigned Mailboxes::receive_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
+                                    PacketKind kind, unsigned faces) {
+    if (kind == PacketKind::malformed) {
+        malformed_[robot] += static_cast<unsigned>(std::popcount(faces));
+        return 0;
+    }
+    Commands& commands = commands_[robot];
+    if (kind == PacketKind::restart) {
+        commands.restart = true;
+    } else {
+        commands.mute = kind == PacketKind::mute;
+        commands.unmute = kind == PacketKind::unmute;
+    }
+    queues_[robot].has_commands = 1;
+    return push_copies(robot, header, payload, faces);
+}
+
+Mailboxes::Commands Mailboxes::take_commands(std::size_t robot) {
+    queues_[robot].has_commands = 0;
+    return std::exchange(commands_[robot], {});
 }
 
 bool Mailboxes::pop(std::size_t robot, FrameHeader& header, std::span<std::byte> payload) {

@@ -20,13 +20,17 @@ struct FrameHeader {
     std::uint16_t payload_length = 0;
 };
 
+/// What a packet means to the receiver's library, apart from its program, which gets all but malformed ones.
+enum class PacketKind : std::uint8_t { message, malformed, mute, unmute, restart };
+
 inline constexpr int kFaceCount = 4;            // front, right, back, left
 inline constexpr std::uint8_t kAllFaces = 0xF;  // bit d: emitter d
 
 /// One transmission of one robot during this step.
 struct Transmission {
-    std::uint32_t robot = 0;          // index of the sender
-    std::uint8_t emitters = 0;        // bit d: emitter d radiates
+    std::uint32_t robot = 0;    // index of the sender
+    std::uint8_t emitters = 0;  // bit d: emitter d radiates
+    PacketKind kind = PacketKind::message;
     std::uint16_t message_bytes = 0;  // header and payload as the reception law counts them
     float send_probability = 0.0F;    // of the sender, per tick
     float range_mm = 0.0F;            // from an emitter to the receiver's border
@@ -67,6 +71,25 @@ public:
     /// number of copies that found room; the others count as dropped.
     unsigned push_copies(std::size_t robot, FrameHeader header, std::span<std::byte const> payload, unsigned faces);
 
+    /// Copies of a packet that arrive, one for each of the faces, as push_copies(): malformed ones are counted and not
+    /// appended; of a command, the robot's library gets to know, too, even if the queue is full.
+    unsigned receive(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload, PacketKind kind,
+                     unsigned faces) {
+        if (kind != PacketKind::message) [[unlikely]] {
+            return receive_special(robot, header, payload, kind, faces);
+        }
+        return push_copies(robot, header, payload, faces);
+    }
+
+    /// Commands that have arrived and that the robot's library has not looked at.
+    struct Commands {
+        bool mute = false;  // the last one of these two counts: the other one is false
+        bool unmute = false;
+        bool restart = false;
+    };
+    bool has_commands(std::size_t robot) const { return queues_[robot].has_commands != 0; }
+    Commands take_commands(std::size_t robot);
+
     /// Prefetches the robot's counters and the start of its near block for a coming push.
     void expect_push(std::size_t robot) const { __builtin_prefetch(&queues_[robot], 1); }
 
@@ -84,6 +107,9 @@ public:
     /// Messages lost to full queues since the start.
     std::uint64_t dropped(std::size_t robot) const { return dropped_[robot]; }
 
+    /// Malformed packets that have arrived since the start.
+    std::uint64_t malformed(std::size_t robot) const { return malformed_[robot]; }
+
 private:
     /// Messages in a block of bytes.
     struct Fifo {
@@ -99,12 +125,13 @@ private:
     };
 
     static constexpr std::size_t kCacheLine = 64;
-    static constexpr std::size_t kNearBytes = 4 * kCacheLine - sizeof(Fifo) - 2 * sizeof(std::uint32_t);
+    static constexpr std::size_t kNearBytes = 4 * kCacheLine - sizeof(Fifo) - 3 * sizeof(std::uint32_t);
 
     /// The data that most messages touch: a short message lies in the same cache line as the counters.
     struct alignas(kCacheLine) Queue {
         std::uint32_t waiting = 0;  // messages, near and far ones
         std::uint32_t max_count = 0;
+        std::uint32_t has_commands = 0;  // 1: some in commands_
         Fifo near;
         std::array<std::byte, kNearBytes> near_block;
     };
@@ -116,11 +143,15 @@ private:
         std::size_t capacity = 0;  // bytes
     };
 
+    unsigned receive_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
+                             PacketKind kind, unsigned faces);
     void append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
 
     std::vector<Queue> queues_;
     std::vector<FarQueue> far_;
     std::vector<std::uint64_t> dropped_;
+    std::vector<std::uint64_t> malformed_;
+    std::vector<Commands> commands_;
     std::unique_ptr<std::byte[]> far_blocks_;
 };
 

@@ -275,6 +275,6 @@ def test_printf_writes_numbers_as_on_the_robot_where_long_has_32_bits(program: C
         "1.50 -0.25 1.000000e+03 text c % %lu",
         "    -1|2   |3.1",
         "x" * 1999 + "1",
-        " Pogolib Version : v2.6",
+        " Pogolib Version : v2.7",
         "the last words, without end of line",
     ]

@@ -298,7 +298,7 @@ def test_library_shows_users_the_interface_and_nothing_else() -> None:
     of_box2d = {"_Z15b2Alloc_Defaulti", "_ZN7b2TimerC1Ev", "_ZN7b2Timer5ResetEv", "_ZNK7b2Timer15GetMillisecondsEv"}
     renamed = {"pogosim_hsv_to_rgb"}  # hsv_to_rgb of the interface, which the simulated one calls
     assert {name for name in names - of_libc - of_box2d - renamed if name not in headers} == set()
-    assert {"pogobot_ticks", "pogosim_printf", "mydata", "pogosim_run_program", "pogosim_run_open"} <= names
+    assert {"pogobot_ticks", "pogosim_printf", "pogosim_mydata", "pogosim_run_program", "pogosim_run_open"} <= names
 
 
 def test_interface_layer_is_short_enough_to_be_read() -> None:

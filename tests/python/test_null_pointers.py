@@ -40,6 +40,8 @@ NOT_FOR_PROGRAMS = {"host.h", "program.h"}
 NOT_CALLED_BY_PROGRAMS = {
     "data_set_value_int.name",  # data_set_value_int8() and others call it
     "recover_next_message.message",
+    "send_packet.descriptor",  # slip.h calls it
+    "send_packet.data",
     "init_unsupported.variable",
     "init_unsupported.name",
     "first.note",

@@ -29,7 +29,7 @@ MessageRow row_to_nobody(int step) {
             .message = step,
             .sender = {.index = 4, .id = 40, .category = "robots"},
             .faces = 0b1111,
-            .is_short = true,
+            .type = MessageType::short_message,
             .payload = kPayload,
             .message_bytes = 6,
             .send_probability = 0.5F};
@@ -37,7 +37,7 @@ MessageRow row_to_nobody(int step) {
 
 MessageRow row_to_a_wall(int step) {
     MessageRow row = row_to_nobody(step);
-    row.is_short = false;
+    row.type = MessageType::long_message;
     row.reception = {.receiver = {.index = 5, .id = 65535, .category = "walls"},
                      .emitters = 0b0010,
                      .faces = 0b0001,

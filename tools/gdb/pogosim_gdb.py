@@ -313,24 +313,26 @@ class MyData(gdb.Function):
 
     def invoke(self) -> gdb.Value:
         pointer = registered_type().pointer()
-        return gdb.parse_and_eval("&'mydata'").cast(pointer.pointer()).dereference()
+        return gdb.parse_and_eval("&'pogosim_mydata'").cast(pointer.pointer()).dereference()
 
 
-def is_declared(kind: gdb.Type) -> bool:
-    """Tell whether debug information has the type of `mydata`. The library itself declares it as a void pointer."""
-    declared = gdb.lookup_global_symbol("mydata")
+def is_declared(name: str, kind: gdb.Type) -> bool:
+    """Tell whether debug information has the type of a variable. The library itself declares it as a void pointer."""
+    declared = gdb.lookup_global_symbol(name)
     return declared is not None and declared.type.strip_typedefs().target().unqualified() == kind
 
 
 def name_mydata(_: object = None) -> None:
-    """Let `mydata` mean $mydata() where it is not declared. Conditions may have it before the library is loaded."""
+    """Let `mydata` mean the variable with its type. Conditions may have it before the library is loaded."""
     kind = user_data_type()
-    if kind and not is_declared(kind):
+    if not kind or is_declared("mydata", kind):  # by hand
+        gdb.execute("macro undef mydata")
+    elif is_declared("pogosim_mydata", kind):  # what DECLARE_USERDATA calls it
+        gdb.execute("macro define mydata pogosim_mydata")
+    else:
         # Conditions may be read as C, which needs "struct" and has no namespaces, before the program runs.
         name = re.sub(r"^(\w+ )?(.*[:<].*)$", r"'\2'", str(kind))
         gdb.execute(f"macro define mydata (({name}*)$mydata())")
-    else:
-        gdb.execute("macro undef mydata")
 
 
 gdb.printing.register_pretty_printer(gdb.current_objfile(), Printers(), replace=True)

@@ -54,6 +54,12 @@ typedef struct short_message_t {
     uint8_t payload[MAX_PAYLOAD_SIZE_BYTES];  ///< payload_length bytes of it count
 } short_message_t;
 
+// The type of slip_send_descriptor, which stands for the infrared emitters in slip.h.
+struct pogosim_slip_descriptor {
+    uint32_t crc_seed;                    ///< of the checksum
+    uint8_t (*write_byte)(uint8_t byte);  ///< sends one byte
+};
+
 /// Error counters of one receiver of a real robot. All zero in the simulator, which loses whole messages.
 typedef struct {
     uint32_t overflow_counter;              ///< messages longer than the buffer
@@ -113,7 +119,8 @@ extern "C" {
 #endif
 POGO_BEGIN_API
 
-// Sending. These functions return 0 on success, whereas msg_tx_fn returns true if it sent a message.
+// Sending. These functions return 0 on success, whereas msg_tx_fn returns true if it sent a message. While the robot is
+// muted, they send nothing and return the number of messages that were not sent.
 
 /// Sends a long message (8 bytes of header and `message_size` of payload) through all emitters at once; receivers see
 /// `_sender_ir_index` 4. Returns 0, or 1 if nothing was sent because the payload is longer than 382 bytes or NULL.
@@ -135,7 +142,8 @@ uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t
 /// @range message_size: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size);
 /// Sends a long message unchanged, through the emitters whose power in `_emitting_power_list` is not 0. If all are 0,
-/// nothing is sent, with a warning. The range is that of the largest of these powers. Sets type and sender. Returns 0,
+/// nothing is sent, with a warning. The range is that of the largest of these powers. Sets type and sender; a command
+/// of type ir_t_cmd (see is_muted()) remains one, with a warning, as on a real robot it does not. Returns 0,
 /// or 1 if nothing was sent because the message is NULL or `payload_length` is above 382.
 /// @range payload_length: bytes, 0 to 382; returns 0: sent, 1: not
 uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message);
@@ -170,8 +178,32 @@ void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const cou
 /// Resets the error counters of a real robot; does nothing in the simulator.
 void pogobot_infrared_reset_receiver_error_counter(void);
 
-/// Initialises the hardware of a real robot; does nothing in the simulator.
+/// Messages that were lost because the queue was full, since the infrared hardware was initialised.
+/// @range returns from 0
+uint32_t pogobot_infrared_get_queue_drop_count(void);
+/// Packets that were not passed on because the lengths in them were wrong, since the infrared hardware was initialised:
+/// one for each receiver. Only raw packets (slip.h) can be malformed.
+/// @range returns from 0
+uint32_t pogobot_infrared_get_malformed_count(void);
+
+/// Initialises the infrared hardware: empties the queue, unmutes the robot and sets the counters of lost and malformed
+/// messages to 0. A robot does this when it starts.
 void pogobot_infrared_ll_init(void);
+
+/// 1 if the robot is muted, i.e. sends no messages, else 0. pogobot_infrared_update() obeys commands of the remote
+/// control, packets of type ir_t_cmd whose payload begins with `DEADCAFE` (mute), `BASECAFE` (unmute) or `DEADBEEF`
+/// (restart: the program begins anew). The program receives these packets, too.
+/// @range returns 0 or 1
+int is_muted(void);
+/// What is_muted() tells, as a variable: not 0 mutes the robot.
+#define _master_mute (*pogosim_master_mute())
+uint8_t* pogosim_master_mute(void);
+
+/// Clears interrupt flags of a real robot; does nothing in the simulator.
+void IR_reset_interrupt_flags(void);
+
+// What slip.h sends with. `declared_length`: of the payload; -1: as its header says.
+int pogosim_send_packet(void const* descriptor, uint8_t const* data, uint32_t size, int64_t declared_length);
 
 POGO_END_API
 

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POGOLIB_RELEASE_VERSION "v2.6"
+#define POGOLIB_RELEASE_VERSION "v2.7"
 #ifndef MAX_PAYLOAD_SIZE_BYTES
 #define MAX_PAYLOAD_SIZE_BYTES 382
 #endif

@@ -1,0 +1,87 @@
+// Robots that restart, as real ones do when the remote control resets them: the program begins anew with its memory as
+// it starts with. What the hardware keeps, stays: its place, its calibration, its flash, the stored settings of motors.
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "robot/controllers.hpp"
+#include "robot/crash_handler.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// What a processor loses that is reset.
+void forget(Controller& self) {
+    self.program = {};
+    self.loop = {};
+    self.calls = self.waits = 0;
+    self.motors.power = {};
+    self.motors.direction = self.motors.stored_direction;
+    self.ir_power = Controller{}.ir_power;
+    self.sent_rate = {};
+}
+
+}  // namespace
+
+void Controllers::ask_for_restart() {
+    Controller& self = controllers_[context.robot];
+    self.restarts = is_restart_due_ = true;
+    if (context.waiting != Waiting::always) {
+        return;
+    }
+    self.clock_us = step_us_ + 1;
+    self.fiber = running_fiber();
+    leave();
+    leave_fiber();
+    std::abort();  // nothing resumes it
+}
+
+void Controllers::restart_robots() {
+    for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
+        if (controllers_[i].restarts && is_alive(world_, i)) {
+            restart(i);
+        }
+        is_restart_due_ = is_restart_due_ || controllers_[i].restarts;  // of robots that are switched off: later
+    }
+}
+
+/// As start_programs() does for all. Robots share variables unless they have their own memory: those stay as they are.
+void Controllers::restart(std::uint32_t robot) {
+    Controller& self = controllers_[robot];
+    if (Fiber* const fiber = std::exchange(self.fiber, nullptr)) {
+        fibers_.discard(*fiber);
+    }
+    forget(self);
+    self.restarts = false;
+    ++self.infrared.restarts;
+    initialise_infrared(world_.mailboxes, robot, self.infrared);
+    self.random = random_of_program(services_.seed, robot);
+    self.clock_us = step_us_;
+    world_.robots.led[robot] = {};
+    std::memset(self.user_data, 0, user_data_bytes());
+    if (own_memory_) {
+        without_exceptions([&] {
+            own_memory_->begin_anew(robot);
+            for (BoundVariable const& bound : services_.bound_variables) {
+                bound.read(*services_.parameters, bound.name, bound.variable, bound.size);
+            }
+        });
+        if (image_.constructors) {
+            enter(robot, Phase::construct_static_objects);
+            construct_again(*image_.constructors, own_variables_);
+            leave();
+        }
+    }
+    if (image_.is_for_sdk) {
+        run_on_fiber(robot, &Controllers::run_sdk_main);
+        self.program.registered = true;
+    } else {
+        construct_user_data(robot);
+        run_main(robot);
+        run_on_fiber(robot, &Controllers::run_init);
+    }
+    command_motors(robot);
+}
+
+}  // namespace pogosim
