@@ -67,6 +67,7 @@ function(pogosim_build_settings folder)
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${folder}/pogosim.pc" @ONLY)
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim-sdk.pc.in" "${folder}/pogosim-sdk.pc" @ONLY)
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.mk.in" "${folder}/pogosim.mk" @ONLY)
+    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim-original.mk.in" "${folder}/pogosim-original.mk" @ONLY)
 endfunction()
 
 if(APPLE)
@@ -81,7 +82,7 @@ set(shared_state "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-shared-state")
 set(template "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/template_prj")
 pogosim_build_settings("${PROJECT_BINARY_DIR}/cmake")
 install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" "${PROJECT_BINARY_DIR}/cmake/pogosim-sdk.pc"
-        "${PROJECT_BINARY_DIR}/cmake/pogosim.mk"
+        "${PROJECT_BINARY_DIR}/cmake/pogosim.mk" "${PROJECT_BINARY_DIR}/cmake/pogosim-original.mk"
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 set(includedir "${PROJECT_SOURCE_DIR}/include")

@@ -20,7 +20,8 @@ endif
 LAYER := $(sort $(wildcard $(POGOSIM_INTERFACE_DIR)/*.c))
 PROGRAM_OBJECTS := $(SOURCES:%=$(BIN_DIR)/%.o)
 LAYER_OBJECTS := $(patsubst $(POGOSIM_INTERFACE_DIR)/%,$(BIN_DIR)/pogosim/%.o,$(LAYER))
-OBJECTS := $(PROGRAM_OBJECTS) $(LAYER_OBJECTS)
+UTILS_OBJECTS := $(patsubst %,$(BIN_DIR)/utils/%.o,$(notdir $(UTILS_SOURCES)))
+OBJECTS := $(PROGRAM_OBJECTS) $(UTILS_OBJECTS) $(LAYER_OBJECTS)
 # Whether the program uses the layer: one with pogobot.h alone does not, and may have variables of the same names.
 USES_LAYER = grep -q 'pogobase\.h' $(PROGRAM_OBJECTS:.o=.d)
 
@@ -31,7 +32,7 @@ CPP_FLAGS := $(filter-out -std=% -fexceptions -Wstrict-prototypes -Wold-style-de
     -std=gnu++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics
 CFLAGS += $(ROBOT_FLAGS)
 COMPILE_CPP = $(TRIPLE)-g++ -c $(CPP_FLAGS) $(ROBOT_FLAGS) $< -o $@
-LINK = $(CC) $(CPUFLAGS) -Os -flto $(PROGRAM_OBJECTS) $$($(USES_LAYER) && echo $(LAYER_OBJECTS)) -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -Wl,--gc-sections \
+LINK = $(CC) $(CPUFLAGS) -Os -flto $(PROGRAM_OBJECTS) $(UTILS_OBJECTS) $$($(USES_LAYER) && echo $(LAYER_OBJECTS)) -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -Wl,--gc-sections \
     -L$(POGO_SDK)/libs -Wl,--start-group -lcompiler_rt -lc -lpogobot -Wl,--end-group
 
 bin: $(FIRMWARE).bin
@@ -55,6 +56,13 @@ $(BIN_DIR)/%.cpp.o: %.cpp $(BIN_DIR)/.compile
 
 $(BIN_DIR)/pogosim/%.c.o: $(POGOSIM_INTERFACE_DIR)/%.c $(BIN_DIR)/.compile
 	$(compile)
+
+define UTILS_RULE
+$(BIN_DIR)/utils/$(notdir $(1)).o: $(1) $(BIN_DIR)/.compile
+	@mkdir -p $$(@D)
+	$$(compile)
+endef
+$(foreach file,$(UTILS_SOURCES),$(eval $(call UTILS_RULE,$(file))))
 
 # As in the Makefile: rebuilt when options, category, SDK or the list of sources change.
 $(BIN_DIR)/.compile: COMMANDS = $(CC) $(CFLAGS) $(CPP_FLAGS)

@@ -32,6 +32,7 @@ class Installation:
 
     Attributes:
         folder: What the Makefile of a project calls POGOSIM_DIR.
+        original: What make reads first in projects that were written for the original simulator.
         version: Version of the simulator, such as "0.11.0".
         library: Folder of the library.
         template: Folder of the project template.
@@ -40,6 +41,7 @@ class Installation:
     """
 
     folder: Path
+    original: Path
     version: str
     library: Path
     template: Path
@@ -70,7 +72,8 @@ def installation_in(folder: Path) -> Installation | None:
             for name in ("POGOSIM_LIBRARY_DIR", "POGOSIM_TEMPLATE_DIR", "SHARED_STATE_TOOL")
         )
         flags = (*settings["POGOSIM_CFLAGS"], *settings["POGOSIM_SDK_CFLAGS"], *settings["POGOSIM_LIBS"])
-        return Installation(folder, settings["POGOSIM_VERSION"][0], library, template, shared_state, flags)
+        original = file.with_name("pogosim-original.mk")
+        return Installation(folder, original, settings["POGOSIM_VERSION"][0], library, template, shared_state, flags)
     except (KeyError, IndexError, ValueError):
         raise InstallationError(f"{file} is of another version, or damaged: build that Pogosim again") from None
 

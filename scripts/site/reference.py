@@ -52,7 +52,7 @@ def room_pages(folder: Path) -> dict[str, str]:
     """Return a page for each folder of src/."""
     headers = read_headers(ROOMS_SETTINGS, ROOT, folder)
     pages = {}
-    for room in sorted(path for path in (ROOT / "src").iterdir() if path.is_dir()):
+    for room in sorted(path for path in (ROOT / "src").iterdir() if path.is_dir() and not path.is_symlink()):
         text = f"# {room.name}\n\nHeaders of `src/{room.name}/`. Private members are left out.\n\n"
         for path in sorted(room.rglob("*.hpp")):
             name = path.relative_to(ROOT / "src").as_posix()

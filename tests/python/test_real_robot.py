@@ -246,6 +246,19 @@ def test_category_that_no_controller_is_for_is_an_error(project: Path, sdk: Path
     assert "ROBOT_CATEGORY must be one word, found 'my robots'" in words.errors
 
 
+def test_library_of_pogoutils_include_dir_is_in_the_firmware(project: Path, sdk: Path) -> None:
+    library = project.parent / "utils" / "src" / "util"
+    library.mkdir(parents=True)
+    (library / "sums.h").write_text("int sum_of(int a, int b);\n")
+    (library / "sums.c").write_text('#include "sums.h"\nint sum_of(int a, int b) { return a + b; }\n')
+    main = project / "main.c"
+    text = main.read_text().replace('#include "pogobase.h"', '#include "pogobase.h"\n#include "util/sums.h"', 1)
+    main.write_text(text.replace("pogobot_init();", "pogobot_init();\n    srand(sum_of(rand(), 1));", 1))
+    result = make(project, "bin", f"POGO_SDK={sdk}", f"POGOSIM_DIR={ROOT}", "POGOUTILS_INCLUDE_DIR=../utils/src")
+    assert result.code == 0, result.text
+    assert "sums.c" in compiled(result)
+
+
 def test_cpp_program_becomes_firmware(project: Path, sdk: Path) -> None:
     header = (PROGRAMS / "two_files" / "userdata.h").read_text()
     count = (PROGRAMS / "two_files" / "count.c").read_text()

@@ -50,7 +50,7 @@ def test_all_headers_may_be_included_in_every_language(
     assert check_syntax(tmp_path / f"main{suffix}", text, name, [standard, *STRICT]) == ""
 
 
-@pytest.mark.parametrize("header", HEADERS)
+@pytest.mark.parametrize("header", [header for header in HEADERS if header != "magnetometer.h"])  # includes pogobot.h
 def test_each_header_may_be_included_first_and_alone(header: str, tmp_path: Path) -> None:
     text = f'#include "{header}"\n#include "pogobase.h"\nint main(void) {{ return 0; }}\n'
     assert "error" not in check_syntax(tmp_path / "main.c", text, "cc", ["-std=c11", "-Wall"])

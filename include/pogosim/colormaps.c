@@ -1,0 +1,1 @@
+../../src/interface/colormaps.c

@@ -1,0 +1,1 @@
+../../src/interface/main_loop.c
