@@ -22,6 +22,7 @@ from types import ModuleType
 
 try:
     import analysis_tour
+    import compass
     import extras
     import first_program
     import formations
@@ -54,6 +55,7 @@ SCRIPTS: dict[str, ModuleType] = {
     script.__name__: script
     for script in (
         analysis_tour,
+        compass,
         extras,
         first_program,
         formations,
