@@ -98,8 +98,9 @@ std::span<Key<SensorSpec> const> sensor_model_keys() {
     }();
     static std::array const keys{
         K{"sensor_model", model, any(), "",
-          "ideal: sensors give exact numbers, and light up to 32767. robot: those of a real robot's chips, with light up "
-          "to 1023, gravity, noise and whole counts; the keys that begin with photosensors_bits and imu_ may change each."},
+          "ideal: sensors give exact numbers, and light up to 32767. robot: numbers of a real robot's chips, with "
+          "light up to 1023, gravity, noise and whole counts; photosensors_bits and the keys that begin with imu_ may change "
+          "each."},
     };
     return keys;
 }
@@ -140,8 +141,8 @@ std::span<Key<BatterySpec> const> battery_keys() {
         K{"motor_ma", &BatterySpec::motor_ma, between(0, 1e6), "mA",
           "Current of one motor at full power; in proportion to its power below."},
         K{"led_ma", &BatterySpec::led_ma, between(0, 1e6), "mA",
-          "Current of one LED that is white at full brightness (255, 255, 255); in proportion to the sum of its colours "
-          "below."},
+          "Current of one LED that is white at full brightness (255, 255, 255); in proportion to the sum of its "
+          "colours below."},
         K{"initial_percent", &BatterySpec::initial_percent, above(0).up_to(100), "%",
           "Charge at the start of the run."},
     };

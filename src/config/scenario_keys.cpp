@@ -45,9 +45,9 @@ std::span<Key<Scenario> const> scenario_keys() {
           one_of(&Scenario::wall_copies,
                  {{"one_per_face", WallCopies::one_per_face}, {"original", WallCopies::original}}),
           any(), "",
-          "Copies that a robot gets of a message from a wall or a membrane. one_per_face: one at each face that hears it. "
-          "original: as many as in the original simulator, where sending in four directions or one by one reaches a robot "
-          "with k such faces k x k times."},
+          "Copies that a robot gets of a message from a wall or a membrane. one_per_face: one at each face that hears "
+          "it. original: as many as in the original simulator, where sending in four directions or one by one reaches "
+          "a robot with k such faces k x k times."},
         K{"light_map_nb_bin_x", &Scenario::light_map_columns, between(1, 10000), "cells", "Columns of the light map."},
         K{"light_map_nb_bin_y", &Scenario::light_map_rows, between(1, 10000), "cells", "Rows of the light map."},
         K{"magnetometer", Elsewhere{kMagnetometerMap}, any(), "",
@@ -180,7 +180,8 @@ std::span<Key<OutputConfig> const> output_keys() {
           one_of(&OutputConfig::row_timing, {{"multiples", RowTiming::multiples}, {"original", RowTiming::original}}),
           any(), "",
           "multiples: records at the first step at or after each multiple of the period. original: as in the original "
-          "simulator, whose period begins anew at each record and whose sum of time steps is rounded: 0, 1.01, 2.02, ..."}
+          "simulator, whose period begins anew at each record and whose sum of time steps is rounded: 0, 1.01, 2.02, "
+          "..."}
             .only_if(has_data),
         K{"data_logger_fields", &OutputConfig::fields, any(), "", "Columns to record; default: all."},
         K{"data_logger_category", &OutputConfig::categories, any(), "",

@@ -27,8 +27,8 @@ bool clears_bits_only() {
 void note_lost_bits(std::uint16_t page) {
     context.services->warn_once_of(
         {.text = "was not erased", .function = "write_page_flash", .argument = get_current_robot_category()},
-        "write_page_flash(): page {} was not erased before, and a write only clears bits (flash: nor), so the page does "
-        "not contain what was written; call erase_write_section_flash() first, which erases all pages",
+        "write_page_flash(): page {} was not erased before, and a write only clears bits (flash: nor), so the page "
+        "does not contain what was written; call erase_write_section_flash() first, which erases all pages",
         page);
 }
 

@@ -30,8 +30,8 @@ void drain(Battery& battery, BatterySpec const& spec, double drawn_ma, double du
 /// 1: full, 0: empty.
 double charge_left(Battery const& battery, BatterySpec const& spec);
 
-/// Voltage of the cell with so much of its charge left, mV: 4200 when full, 3000 when empty, and mostly flat in between,
-/// by a table of typical values of lithium-polymer cells at rest.
+/// Voltage of the cell with so much of its charge left, mV: 4200 when full, 3000 when empty, and mostly flat in
+/// between, by a table of typical values of lithium-polymer cells at rest.
 double cell_voltage_mv(double charge);
 
 }  // namespace pogosim

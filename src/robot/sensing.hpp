@@ -28,7 +28,8 @@ inline void measure_at_tick(World const& world, std::uint32_t robot, Controller&
     }
 }
 
-/// Mean acceleration between the last two measurements in the frame of the robot with this body, m/s2: x forward, y to the right.
+/// Mean acceleration between the last two measurements in the frame of the robot with this body, m/s2: x forward, y to
+/// the right.
 Vec2 acceleration_m_s2(World const& world, std::uint32_t body, Accelerometer const& meter);
 
 }  // namespace pogosim

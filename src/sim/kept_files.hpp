@@ -16,9 +16,9 @@ struct KeptFile {
     std::vector<std::filesystem::path> moved{};  // the frames, where they were
 };
 
-/// The data file, the message log, the film (--video) and the archive of flash memory if they exist (but no archive that
-/// is read, too), and the folder of frames if there are some.
-/// Frames whose folder depends on the time are not looked for.
+/// The data file, the message log, the film (--video) and the archive of flash memory if they exist (but no archive
+/// that is read, too), and the folder of frames if there are some. Frames whose folder depends on the time are not
+/// looked for.
 std::vector<KeptFile> earlier_files(Scenario const& scenario, std::string const& film);
 
 /// Renames them; no file is ever replaced. Frames move to a new folder, other files stay. Files that another run is

@@ -9,9 +9,9 @@
 
 namespace pogosim {
 
-/// As the original simulator does it: it sums its time steps in single precision, records at the end of a step, under the
-/// time at which that step began, and counts the next period from there. With 10 ms and 1 s, the rows are those of 0,
-/// 1.01, 2.02, 3.03 s, ...
+/// As the original simulator does it: it sums its time steps in single precision, records at the end of a step, under
+/// the time at which that step began, and counts the next period from there. With 10 ms and 1 s, the rows are those of
+/// 0, 1.01, 2.02, 3.03 s, ...
 class OriginalRowTimes {
 public:
     explicit OriginalRowTimes(double period_s) : period_s_(static_cast<float>(period_s)) {}

@@ -31,7 +31,8 @@ Node robots_of(std::string const& keys) {
     return *find_path(load(kRobots + keys).source->values, "objects.robots");
 }
 
-/// A configuration that holds all its values gives the same values, without a warning but that of walls that add energy.
+/// A configuration that holds all its values gives the same values, without a warning but that of walls that add
+/// energy.
 void expect_complete(Scenario const& scenario) {
     Warnings const warnings;
     Folder const folder;

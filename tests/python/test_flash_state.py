@@ -206,7 +206,7 @@ def test_unfit_archive_is_refused_before_any_program_runs(
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_damage_goes_unnoticed(program: Compile, tmp_path: Path, seed: int) -> None:
-    """Of one byte that is changed, or a piece that is taken out or put in."""
+    """One byte is changed, or a piece is taken out or put in."""
     chance = random.Random(seed)
     data = bytearray(archive([written(robot) for robot in range(3)]))
     place = chance.choice([chance.randrange(60), chance.randrange(len(data))])

@@ -210,7 +210,11 @@ def test_pose_outside_the_domain_ends_the_run_if_asked(reader: Path, tmp_path: P
 WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
     "no file": ("", {"file": "absent.csv"}, "there is no file 'absent.csv'; searched"),
     "no column": ("heading,mag_x,mag_y,mag_z\n1,2,3,4\n", {}, "there is no column 'angle'"),
-    "misspelt column": ("angle,mag_x,mag_y,magz\n1,2,3,4\n", {}, "'mag_z' in 'angle,mag_x,mag_y,magz'; did you mean 'magz'?"),
+    "misspelt column": (
+        "angle,mag_x,mag_y,magz\n1,2,3,4\n",
+        {},
+        "'mag_z' in 'angle,mag_x,mag_y,magz'; did you mean 'magz'?",
+    ),
     "empty": ("", {}, "has 0 valid rows at 0 different headings"),
     "header alone": ("angle,mag_x,mag_y,mag_z\n", {}, "has 0 valid rows"),
     "too few rows": ("angle,mag_x,mag_y,mag_z\n0,1,2,3\n90,1,2,3\n", {}, "needs at least 5, all around the turn"),

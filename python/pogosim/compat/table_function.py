@@ -47,9 +47,9 @@ def table_function(name: str, parser: Callable[[str], Parser], of_runs: OfRuns) 
     compute.__doc__ = f"""Return the table {name.removeprefix("compute_")}.csv of all runs, see `pogosim.compat`.
 
         Args:
-            rows: As of `pogosim.utils.load_dataframe`.
+            rows: As `pogosim.utils.load_dataframe` returns them.
             metadata: See `trajectories_of`.
-            options: Of the command line, by their names there.
+            options: Those that the command line has, by their names there.
 
         Raises:
             AnalysisError: The rows do not allow it.
