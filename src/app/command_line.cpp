@@ -25,6 +25,11 @@ std::string is_not_empty(std::string const& text) {
     return text.empty() ? "expected the name of a file, found ''" : "";
 }
 
+std::string is_picture(std::string const& text) {
+    return text.ends_with(".png") && text.size() > 4 ? ""
+                                                     : "expected the name of a picture, .png, found '" + text + "'";
+}
+
 /// CLI11 parses "-nr" as "-n -r", so it is replaced by the long name.
 std::vector<std::string> normalised_arguments(int argc, char const* const* argv) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -58,6 +63,16 @@ void declare_options(CLI::App& app, CommandLine& options) {
         ->type_name("N")
         ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()));
     app.add_flag("--strict", options.strict, "treat unknown configuration keys as errors");
+    app.add_flag(
+        "--strict-config", options.strict_config,
+        "treat values of another type than expected as errors, never as the default; unknown keys are allowed");
+    CLI::Option* const check =
+        app.add_flag("--check-config", options.check_config,
+                     "check the configuration, its arena, formation, files and parameters; run and write nothing");
+    app.add_option("--picture", options.picture, "with --check-config: draw the start of the run (.png)")
+        ->type_name("FILE")
+        ->check(is_picture)
+        ->needs(check);
     app.set_version_flag("-V,--version", "pogosim " POGOSIM_VERSION_STRING, "print the version and exit");
     app.set_help_flag("-h,--help", "print this help and exit");
 }

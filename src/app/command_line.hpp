@@ -17,7 +17,10 @@ struct CommandLine {
     bool quiet = false;
     bool hide_robot_lines = false;
     bool progress_bar = false;
-    bool strict = false;
+    bool strict = false;         // unknown keys and unread parameters are errors
+    bool strict_config = false;  // values that would be cut, or replaced by a default, are errors
+    bool check_config = false;   // nothing is run
+    std::string picture;         // file of a picture of the start, with check_config; empty: none
     std::optional<std::uint32_t> seed;
     std::string video;                   // file of a film; empty: none
     std::int64_t hash_period_steps = 0;  // 0: no hashes

@@ -23,6 +23,7 @@
 #include "base/floating_point.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "base/problems.hpp"
 #include "config/scenario.hpp"
 #include "pogosim/program.h"
 #include "robot/crash_handler.hpp"
@@ -30,6 +31,7 @@
 #include "robot/forked_child.hpp"
 #include "robot/process.hpp"
 #include "robot/program_image.hpp"
+#include "sim/check_run.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/kept_files.hpp"
 #include "sim/simulation.hpp"
@@ -67,8 +69,19 @@ char const* process_name() {
 #endif
 }
 
-Scenario read_scenario(CommandLine const& options) {
-    return load_scenario(options.config, {.overrides = options.overrides, .strict = options.strict});
+LoadOptions load_options(CommandLine const& options) {
+    return {.overrides = options.overrides,
+            .strict = options.strict,
+            .strict_values = options.strict_config,
+            .checks_unused = options.check_config || options.strict_config};
+}
+
+Scenario scenario_of(CommandLine const& options) {
+    return load_scenario(options.config, load_options(options));
+}
+
+Conversions conversions(CommandLine const& options) {
+    return options.strict_config ? Conversions::exact : options.strict ? Conversions::typed : Conversions::lenient;
 }
 
 void tell_of(std::vector<KeptFile> const& files) {
@@ -94,7 +107,7 @@ RestartCheck check_restart(CommandLine const& options, std::filesystem::path con
         return check;
     }
     try {
-        for (KeptFile const& file : earlier_files(read_scenario(options), options.video)) {
+        for (KeptFile const& file : earlier_files(scenario_of(options), options.video)) {
             check.overwritten.push_back(fmt::format("{} -> {}", escaped(file.path.filename().string()),
                                                     escaped(file.kept.filename().string())));
         }
@@ -104,17 +117,44 @@ RestartCheck check_restart(CommandLine const& options, std::filesystem::path con
     return check;
 }
 
-Ended simulate(pogosim_program const& program, CommandLine const& options, std::filesystem::path const& folder,
-               std::optional<Restart> const& restarted) {
-    ignore_broken_outputs();
-    // Until the configuration is read, the console follows the command line.
+LogOptions logging_of(CommandLine const& options) {
     LogOptions logging;
     logging.verbose = options.verbose;
-    logging.quiet = options.quiet;
-    logging.show_robot_lines = !options.hide_robot_lines;
+    logging.quiet = options.quiet || (options.check_config && !options.verbose);  // one line is its result
+    logging.show_robot_lines = !options.hide_robot_lines && !options.check_config;
+    return logging;
+}
+
+/// --check-config.
+Ended check(pogosim_program const& program, CommandLine const& options) {
+    start_logging(logging_of(options));
+    CheckOptions check_options;
+    check_options.run.strict = options.strict;
+    check_options.run.conversions = conversions(options);
+    check_options.run.film = options.video;
+    check_options.picture = options.picture;
+    Problems problems;
+    Scenario scenario = read_scenario(options.config, load_options(options), problems);
+    if (options.seed) {
+        scenario.seed = options.seed;
+    }
+    CheckResult const result = check_run(linked_program(program, process_name()), scenario, check_options, problems);
+    problems.throw_if_any();
+    flush_logs();
+    if (interrupted()) {
+        return {.code = ExitCode::interrupted, .user_code_was_aborted = result.user_code_was_aborted};
+    }
+    std::printf("%s: no mistakes found: %s\n", escaped(options.config).c_str(), result.summary.c_str());
+    return {.code = ExitCode::done, .user_code_was_aborted = result.user_code_was_aborted};
+}
+
+Ended simulate(pogosim_program const& program, CommandLine const& options, std::filesystem::path const& folder,
+               std::optional<Restart> const& restarted) {
+    // Until the configuration is read, the console follows the command line.
+    LogOptions logging = logging_of(options);
     start_logging(logging);
 
-    Scenario scenario = read_scenario(options);
+    Scenario scenario = scenario_of(options);
     if (options.seed) {
         scenario.seed = options.seed;
     }
@@ -135,6 +175,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     RunOptions run_options{.progress_bar = options.progress_bar,
                            .measure_stages = false,
                            .strict = options.strict,
+                           .conversions = conversions(options),
                            .hash_period_steps = options.hash_period_steps,
                            .film = options.video,
                            .window = window,
@@ -198,7 +239,9 @@ int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
     Ended ended;
     ExitCode& code = ended.code;
     try {
-        ended = simulate(*program, parsed.options, folder, take_restart());
+        ignore_broken_outputs();
+        ended = parsed.options.check_config ? check(*program, parsed.options)
+                                            : simulate(*program, parsed.options, folder, take_restart());
         check_logs();
     } catch (OutOfMemory const& error) {
         end_short_of_memory(error.what());
@@ -206,6 +249,11 @@ int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
         end_short_of_memory(kOutOfMemory);
     } catch (std::length_error const&) {  // more than any machine has
         end_short_of_memory(kOutOfMemory);
+    } catch (ConfigErrors const& errors) {
+        for (std::string const& message : errors.messages()) {
+            report(escaped(message).c_str(), code);
+        }
+        code = ExitCode::usage;
     } catch (std::exception const& error) {
         code = report(escaped(error.what()).c_str(), code);
     }

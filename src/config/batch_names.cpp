@@ -47,18 +47,26 @@ void add_fields(std::string_view format, std::vector<std::string>& names) {
     }
 }
 
+void add_names_of_results(Node const& settings, std::vector<std::string>& names) {
+    for (char const* key : {kBatchChoices, "result_new_columns"}) {
+        if (Node const* node = settings.find(key)) {
+            add_texts(*node, names);
+        }
+    }
+    if (Node const* format = settings.find("result_filename_format")) {
+        add_fields(format->scalar, names);
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> batch_names(Node const& root) {
     std::vector<std::string> names;
     add_names_of_alternatives(root, names);
-    for (char const* key : {kBatchChoices, "result_new_columns"}) {
-        if (Node const* node = root.find(key)) {
-            add_texts(*node, names);
+    for (Node const* const settings : {&root, root.find(kBatchSettings)}) {
+        if (settings != nullptr) {
+            add_names_of_results(*settings, names);
         }
-    }
-    if (Node const* format = root.find("result_filename_format")) {
-        add_fields(format->scalar, names);
     }
     return names;
 }

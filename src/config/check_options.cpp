@@ -191,9 +191,15 @@ void check_range(Node const& range, std::string const& path) {
 
 class OptionsCheck {
 public:
-    explicit OptionsCheck(Node const& root) : names_of_batches_(batch_names(root)) {}
+    OptionsCheck(Node const& root, Problems& problems) : names_of_batches_(batch_names(root)), problems_(problems) {}
 
+    /// Collects what is wrong with a node; a mistake in its own words ends the look at it.
     void look_at(Node const& node, std::string const& path, Names names) const {
+        problems_.collect([&] { look_into(node, path, names); });
+    }
+
+private:
+    void look_into(Node const& node, std::string const& path, Names names) const {
         for (std::size_t i = 0; i < node.items.size(); ++i) {
             look_at(node.items[i], child(path, std::to_string(i)), below(names));
         }
@@ -207,7 +213,6 @@ public:
         }
     }
 
-private:
     static Names below(Names names) { return names == Names::parameters ? names : Names::ours; }
 
     static Names names_in(std::string_view key, Names names) {
@@ -275,8 +280,11 @@ private:
             }
             std::string_view const word = misspelt_option(key);
             if (!word.empty() && !may_be_a_name(entry, word, map, names)) {
-                fail_at({value, path.empty() ? "the top level" : path},
-                        fmt::format("unknown key '{}'; did you mean '{}'?", shown(key), word));
+                problems_.collect([&] {
+                    fail_at({value, path.empty() ? "the top level" : path},
+                            fmt::format("unknown key '{}'; did you mean '{}'?", shown(key), word));
+                });
+                continue;
             }
             look_at(value, child(path, key), names_in(key, names));
         }
@@ -337,6 +345,7 @@ private:
     }
 
     std::vector<std::string> names_of_batches_;
+    Problems& problems_;
 };
 
 }  // namespace
@@ -349,8 +358,8 @@ void refuse_other_keys(Node const& options, std::string const& path) {
     refuse_others(words, path, kValueOptions, beside->key);
 }
 
-void check_options(Node const& root) {
-    OptionsCheck(root).look_at(root, "", Names::top_level);
+void check_options(Node const& root, Problems& problems) {
+    OptionsCheck(root, problems).look_at(root, "", Names::top_level);
 }
 
 }  // namespace pogosim

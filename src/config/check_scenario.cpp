@@ -15,6 +15,7 @@
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "config/old_names.hpp"
 #include "config/source.hpp"
 #include "config/values.hpp"
 
@@ -51,6 +52,22 @@ void check_counts(Scenario const& scenario) {
     }
 }
 
+/// Throws for a configuration that was written for a version that made robots of `nBots` and others.
+void refuse_old_keys(Scenario const& scenario) {
+    Node const& root = source_of(scenario).tree;
+    std::vector<std::string> const keys = old_keys(root);
+    if (keys.empty()) {
+        return;
+    }
+    Node const* const count = root.find("nBots");
+    fail_at(
+        place_of(scenario, keys.front()),
+        fmt::format("no robot would be created: the keys of versions before 0.10 ({}) have no effect. Describe the "
+                    "robots under 'objects', as in objects: {{robots: {{type: pogobot, nb: {}, geometry: disk, "
+                    "radius: 26.5}}}}, or begin with a new project: pogosim new NAME",
+                    fmt::join(keys, ", "), count != nullptr && number_of(*count) ? count->scalar : std::string("20")));
+}
+
 void check_object_count(Scenario const& scenario) {
     std::int64_t robots = 0;
     std::int64_t all = 0;
@@ -69,6 +86,7 @@ void check_object_count(Scenario const& scenario) {
                 fmt::format("expected at most {} dots of membranes and other objects, found {}", kMaxBodies, bodies));
     }
     if (robots == 0) {
+        refuse_old_keys(scenario);
         log().warn("{}: objects: there are no robots in this configuration; nothing will move",
                    place_of(scenario, "objects").node.where());
     }
@@ -79,9 +97,10 @@ void require_name(Scenario const& scenario, char const* key, std::string const& 
     Node const* node = source_of(scenario).tree.find(key);
     if (name.empty() || (node != nullptr && node->kind == Node::Kind::null)) {
         Node const& cause = node == nullptr ? place_of(scenario, needed_by).node : *node;
-        bool const has_options = node != nullptr && !node->scalar.empty();  // of a batch
-        fail_at({cause, key}, fmt::format("expected a file name, found {}; '{}' needs it",
-                                          has_options ? node->scalar : "nothing", needed_by));
+        if (node != nullptr && is_open_option(*node)) {
+            fail_at({cause, key}, node->scalar);
+        }
+        fail_at({cause, key}, fmt::format("expected a file name, found nothing; '{}' needs it", needed_by));
     }
 }
 
@@ -192,17 +211,32 @@ void check_formation(Scenario const& scenario) {
     }
 }
 
+/// `checks_unused`: also where the formation looks at neither of them.
+void check_spaces(Scenario const& scenario, bool checks_unused) {
+    FormationSpec const& formation = scenario.formation;
+    bool const is_used = formation.name == "random" || formation.name == "aligned_random";
+    if ((is_used || checks_unused) && formation.max_space_mm < formation.min_space_mm) {
+        fail_at(place_of(scenario, "formation_max_space_between_neighbors"),
+                fmt::format("expected at least formation_min_space_between_neighbors, {} mm, found {}",
+                            number_text(formation.min_space_mm), number_text(formation.max_space_mm)));
+    }
+}
+
 }  // namespace
 
-void check_scenario(Scenario const& scenario) {
-    check_counts(scenario);
-    check_object_count(scenario);
-    check_file_names(scenario);
-    check_recorded_categories(scenario);
-    check_frames_name(scenario);
-    check_arena(scenario);
-    check_walls(scenario);
-    check_formation(scenario);
+void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& reading) {
+    auto const collect = [&reading](auto const& check) { reading.problems.collect(check); };
+    collect([&] { check_counts(scenario); });
+    if (objects_are_right) {
+        collect([&] { check_object_count(scenario); });
+        collect([&] { check_recorded_categories(scenario); });
+    }
+    collect([&] { check_file_names(scenario); });
+    collect([&] { check_frames_name(scenario); });
+    collect([&] { check_arena(scenario); });
+    collect([&] { check_walls(scenario); });
+    collect([&] { check_formation(scenario); });
+    collect([&] { check_spaces(scenario, reading.checks_unused); });
 }
 
 }  // namespace pogosim

@@ -1,13 +1,15 @@
 // Checks that involve several keys.
 #pragma once
 
+#include "config/reading.hpp"
 #include "config/scenario.hpp"
 
 namespace pogosim {
 
-/// Throws ConfigError, with the place of the key to change, for values that are valid alone but not together: more
+/// Adds a mistake, with the place of the key to change, for values that are valid alone but not together: more
 /// steps, rows or frames than can be counted exactly; more objects than there are ids; files without a name; a frame
-/// name without its one field; a formation whose root or file is missing. Warns when there is no robot.
-void check_scenario(Scenario const& scenario);
+/// name without its one field; a formation whose root or file is missing; old keys instead of robots. Warns when there
+/// is no robot. Objects are looked at only if all of them could be read (`objects_are_right`).
+void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& reading);
 
 }  // namespace pogosim

@@ -45,7 +45,7 @@ FlashStateConfig read_flash_state(MapReader& top) {
     if (map->kind != Node::Kind::map) {
         fail_expected(place, kFlashStateMap);
     }
-    MapReader reader(*map, place.path, top.is_strict());
+    MapReader reader(*map, place.path, top.reading());
     FlashStateConfig state = read_flash_state_map(reader);
     reader.finish();
     top.set_value("flash_state", reader.values());

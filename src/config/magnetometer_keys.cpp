@@ -274,7 +274,8 @@ Node default_harmonics() {
     list.kind = Node::Kind::sequence;
     for (MagneticHarmonic harmonic : MagnetometerSpec().harmonics) {
         Node const nothing;
-        MapReader reader(nothing, "", false);
+        Reading reading;
+        MapReader reader(nothing, "", reading);
         read_harmonic(reader, harmonic, true);
         list.items.push_back(reader.values());
     }
@@ -300,7 +301,7 @@ void read_harmonics(MapReader& reader, std::vector<MagneticHarmonic>& harmonics,
         harmonics.clear();
         values.items.clear();
         for (std::size_t i = 0; i < list->items.size(); ++i) {
-            MapReader inner(list->items[i], fmt::format("{}.{}", place.path, i), reader.is_strict());
+            MapReader inner(list->items[i], fmt::format("{}.{}", place.path, i), reader.reading());
             read_harmonic(inner, harmonics.emplace_back(), is_used);
             inner.finish();
             values.items.push_back(inner.values());
@@ -424,7 +425,7 @@ MagnetometerConfig read_magnetometer(MapReader& top) {
     if (map != nullptr && map->kind != Node::Kind::map) {
         fail_expected({*map, "magnetometer"}, kMagnetometerMap);
     }
-    MapReader reader(map == nullptr ? absent : *map, "magnetometer", top.is_strict());
+    MapReader reader(map == nullptr ? absent : *map, "magnetometer", top.reading());
     MagnetometerConfig config = read_magnetometer_map(reader);
     reader.finish();
     if (map != nullptr) {

@@ -4,42 +4,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "config/old_names.hpp"
 #include "config/option_keys.hpp"
 
 namespace pogosim {
 
 namespace {
-
-struct OldName {
-    std::string_view old_path;
-    std::string_view new_path;
-};
-
-/// Names that configurations of versions before 0.10 used.
-constexpr std::array kOldNames{
-    OldName{"nBots", "objects.<category>.nb"},
-    OldName{"commRadius", "objects.<category>.communication_radius"},
-    OldName{"msgSuccessRate", "objects.<category>.msg_success_rate"},
-    OldName{"robot_radius", "objects.<category>.radius"},
-    OldName{"initial_robot_formation", "initial_formation"},
-    OldName{"initial_light_value", "objects.<light>.value"},
-    OldName{"showComms", "show_communication_channels"},
-    OldName{"simulationTime", "simulation_time"},
-    OldName{"timeStep", "time_step"},
-    OldName{"photo_start_at", "objects.<light>.photo_start_at"},
-    OldName{"photo_start_duration", "objects.<light>.photo_start_duration"},
-};
-
-std::string new_place(std::string_view path) {
-    auto const old = std::ranges::find(kOldNames, path, &OldName::old_path);
-    return old == kOldNames.end() ? "" : fmt::format("; it is now '{}'", old->new_path);
-}
 
 /// ".robots.nb" of a value that is a chain of maps down to it, as --set makes them.
 std::string path_inside(Node const& value) {
@@ -66,8 +41,8 @@ std::string names_text(std::vector<std::string> const& names) {
                              : fmt::format("one of {}", fmt::join(names, ", "));
 }
 
-MapReader::MapReader(Node const& map, std::string path, bool strict)
-    : map_(map), path_(std::move(path)), strict_(strict) {
+MapReader::MapReader(Node const& map, std::string path, Reading& reading)
+    : map_(map), path_(std::move(path)), reading_(reading) {
     if (map.kind != Node::Kind::map && map.kind != Node::Kind::null) {
         fail_expected(place(), "a map of keys");
     }
@@ -114,12 +89,25 @@ void MapReader::add_map(std::string_view key, MapReader const& inner) {
     }
 }
 
+void MapReader::refuse(std::string_view key, std::string const& what) const {
+    if (!reading_.problems.has_key(path_of(key))) {
+        collect([&] { fail_at({*find(key), path_of(key)}, what); });
+    }
+}
+
+void MapReader::look_for_slips(Place const& place, Limits const& limits, bool is_integer) const {
+    if (is_integer && reading_.strict_values) {
+        require_integers(place);
+    }
+    warn_of_slips(place, limits, is_integer);
+}
+
 std::string MapReader::path_of(std::string_view key) const {
     return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
 std::optional<std::size_t> MapReader::pick(Place const& place, std::vector<std::string> const& names,
-                                           ChoiceRule const& rule, std::string const& default_name) {
+                                           ChoiceRule const& rule, std::string const& default_name) const {
     Node const& node = place.node;
     std::string const typed = rule.any_case ? lower_case(node.scalar) : node.scalar;
     auto const found = std::ranges::find(names, typed);
@@ -133,7 +121,7 @@ std::optional<std::size_t> MapReader::pick(Place const& place, std::vector<std::
         return std::nullopt;  // finish() warns
     }
     bool const is_null = node.kind == Node::Kind::null || (node.kind == Node::Kind::scalar && typed == "null");
-    bool const only_warns = is_null || (rule.warns_only && node.kind == Node::Kind::scalar);
+    bool const only_warns = is_null || (rule.warns_only && node.kind == Node::Kind::scalar && !reading_.strict_values);
     std::string const complaint = fmt::format("expected {}, found {}", names_text(names), found_text(node));
     if (default_name.empty() || !only_warns) {
         fail_at(place, complaint + did_you_mean(shown(typed), names));
@@ -164,8 +152,15 @@ void MapReader::refuse_both_names(std::string_view name, std::string_view other_
 
 void MapReader::refuse_missing_keys() const {
     for (KeyDescription const& key : known_) {
-        if (key.required && find(key.name) == nullptr) {
-            fail_at(place(), fmt::format("the key '{}' is missing; expected {}", key.name, key.expected));
+        if (!key.required || find(key.name) != nullptr) {
+            continue;
+        }
+        Node const* const node = map_.find(key.name);
+        if (node != nullptr && is_open_option(*node)) {
+            collect([&] { fail_at({*node, path_of(key.name)}, node->scalar); });
+        } else {
+            collect(
+                [&] { fail_at(place(), fmt::format("the key '{}' is missing; expected {}", key.name, key.expected)); });
         }
     }
 }
@@ -181,20 +176,27 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     if (hint.empty()) {
         hint = did_you_mean(shown(key), names);
     }
-    if (strict_) {
-        throw ConfigError(fmt::format("{}: unknown key '{}'{} (--strict)", value.where(), path, hint));
+    if (reading_.strict_keys) {
+        reading_.problems.add(fmt::format("{}: unknown key '{}'{} (--strict)", value.where(), path, hint));
+        return;
     }
     log().warn("{}: unknown key '{}' is ignored{}", value.where(), path, hint);
 }
 
 void MapReader::report_blank(KeyDescription const& key, Node const& value) const {
-    bool const is_empty = value.scalar.empty();
-    std::string const problem = fmt::format("{}: {}: expected {}, found {}", value.where(), shown(path_of(key.name)),
-                                            key.expected, is_empty ? "nothing" : value.scalar);
-    if (strict_ && is_empty) {
-        throw ConfigError(problem + "; write null for the default (--strict)");
+    bool const is_option = is_open_option(value);
+    std::string const problem =
+        fmt::format("{}: {}: {}", value.where(), shown(path_of(key.name)),
+                    is_option ? value.scalar : fmt::format("expected {}, found nothing", key.expected));
+    if (is_option && reading_.strict_values) {
+        reading_.problems.add(problem);
+    } else if (!is_option && reading_.strict_keys) {
+        reading_.problems.add(problem + "; write null for the default (--strict)");
+    } else if (is_option) {
+        log().warn("{} (a single run takes the default, {})", problem, key.default_text);
+    } else {
+        log().warn("{}; the default is used, {}", problem, key.default_text);
     }
-    log().warn("{}; the default is used, {}", problem, key.default_text);
 }
 
 void MapReader::finish(std::vector<std::string> const& ignored) const {

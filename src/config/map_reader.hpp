@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "config/key.hpp"
+#include "config/reading.hpp"
 #include "config/tree.hpp"
 #include "config/values.hpp"
 
@@ -23,8 +24,8 @@ inline constexpr std::string_view kMapOfKeysBelow = "a map";
 class MapReader {
 public:
     /// `path` is the key path of the map, empty at the top level. A null node is an empty map; throws ConfigError for
-    /// anything else that is not a map.
-    MapReader(Node const& map, std::string path, bool strict);
+    /// anything else that is not a map. Mistakes in keys are collected in `reading`, which outlives this.
+    MapReader(Node const& map, std::string path, Reading& reading);
 
     /// Fills `into` from the keys of the table. A key that is absent or null leaves its member as it is; so does a
     /// value out of range whose key has no effect in the chosen mode.
@@ -55,7 +56,16 @@ public:
     std::string path_of(std::string_view key) const;
 
     Place place() const { return {map_, path_}; }
-    bool is_strict() const { return strict_; }
+    Reading& reading() const { return reading_; }
+
+    /// Does a part of the reading; a mistake that ends it is collected, and the rest goes on. True if there was none.
+    template <class Part>
+    bool collect(Part const& part) const {
+        return reading_.problems.collect(part);
+    }
+
+    /// Collects a mistake in the value of a key that is present, unless it is known to be wrong already.
+    void refuse(std::string_view key, std::string const& what) const;
 
     /// All keys of all tables read so far, with the defaults that stood in the structs before.
     std::vector<KeyDescription> const& known_keys() const { return known_; }
@@ -71,33 +81,38 @@ public:
     template <class T>
     void note_values(std::span<Key<T> const> keys, T const& from);
 
-    /// Call last: throws for a required key that is missing, warns for each unknown key (throws when strict) that is
-    /// not among the ignored ones.
+    /// A required key that is missing is a mistake. finish() calls it.
+    void refuse_missing_keys() const;
+
+    /// Call last: a required key that is missing is a mistake; an unknown key that is not among the ignored ones is a
+    /// warning, or a mistake if the reading is strict.
     void finish(std::vector<std::string> const& ignored = {}) const;
 
 private:
     /// Index of the name that stands at `place`; nothing, with a warning, where the default is used instead.
-    static std::optional<std::size_t> pick(Place const& place, std::vector<std::string> const& names,
-                                           ChoiceRule const& rule, std::string const& default_name);
+    std::optional<std::size_t> pick(Place const& place, std::vector<std::string> const& names, ChoiceRule const& rule,
+                                    std::string const& default_name) const;
     /// The number at `place`, or nothing where the word stands.
     static std::optional<double> number_or_word(Place const& place, Limits const& limits, std::string_view word,
                                                 std::string_view expected);
 
     template <class T>
     void read_one(Key<T> const& key, bool is_used, T& into);
+    template <class T>
+    void read_node(Key<T> const& key, Node const& node, bool is_used, T& into);
+    void look_for_slips(Place const& place, Limits const& limits, bool is_integer) const;
 
     template <class T>
     Node value_of(Key<T> const& key, T const& from) const;
 
     void add_map(std::string_view key, MapReader const& inner);
     void refuse_both_names(std::string_view name, std::string_view other_name) const;
-    void refuse_missing_keys() const;
     void report_unknown(std::string const& key, Node const& value) const;
     void report_blank(KeyDescription const& key, Node const& value) const;
 
     Node const& map_;
     std::string path_;
-    bool strict_;
+    Reading& reading_;
     std::vector<KeyDescription> known_;
     Node values_;
 };
@@ -105,7 +120,7 @@ private:
 template <class T>
 void MapReader::read(std::span<Key<T> const> keys, T& into) {
     for (Key<T> const& key : keys) {
-        refuse_both_names(key.name, key.same_as);
+        collect([&] { refuse_both_names(key.name, key.same_as); });
         read_one(key, key.has_effect(into), into);
     }
     note_values(keys, into);
@@ -115,7 +130,7 @@ template <class Read>
 void MapReader::read_map(std::string_view key, Read const& read) {
     static Node const empty;
     Node const* const map = find(key);
-    MapReader inner(map == nullptr ? empty : *map, path_of(key), strict_);
+    MapReader inner(map == nullptr ? empty : *map, path_of(key), reading_);
     read(inner);
     inner.finish();
     add_map(key, inner);
@@ -151,11 +166,14 @@ bool is_of_type(Place const& place, Value scratch) {
 template <class T>
 void MapReader::read_one(Key<T> const& key, bool is_used, T& into) {
     known_.push_back(describe(key, into));
-    Node const* value = map_.find(key.name);
-    if (value == nullptr) {
-        return;
+    if (Node const* const value = map_.find(key.name)) {
+        collect([&] { read_node(key, *value, is_used, into); });
     }
-    Place const place{*value, path_of(key.name)};
+}
+
+template <class T>
+void MapReader::read_node(Key<T> const& key, Node const& node, bool is_used, T& into) {
+    Place const place{node, path_of(key.name)};
     Limits const limits{key.range, key.unit};
     std::visit(Overloaded{
                    [&](Choice<T> const& choice) {
@@ -164,15 +182,15 @@ void MapReader::read_one(Key<T> const& key, bool is_used, T& into) {
                        }
                    },
                    [&]<class Number>(NumberOr<T, Number> const& field) {
-                       if (value->kind != Node::Kind::null) {
+                       if (node.kind != Node::Kind::null) {
                            auto const number = number_or_word(place, limits, field.word, known_.back().expected);
                            into.*field.member = number ? std::optional(static_cast<Number>(*number)) : std::nullopt;
-                           warn_of_slips(place, limits, kReadsIntegers<Number>);
+                           look_for_slips(place, limits, kReadsIntegers<Number>);
                        }
                    },
                    [](Elsewhere const&) {},
                    [&](auto T::*member) {
-                       if (value->kind == Node::Kind::null) {
+                       if (node.kind == Node::Kind::null) {
                            return;
                        }
                        auto read = into.*member;
@@ -180,12 +198,12 @@ void MapReader::read_one(Key<T> const& key, bool is_used, T& into) {
                            read_value(place, limits, read);
                            into.*member = std::move(read);
                        } catch (ConfigError const&) {
-                           if (is_used || !is_of_type(place, read)) {
+                           if (is_used || reading_.checks_unused || !is_of_type(place, read)) {
                                throw;
                            }
                        }
                        if (is_used) {
-                           warn_of_slips(place, limits, kReadsIntegers<decltype(read)>);
+                           look_for_slips(place, limits, kReadsIntegers<decltype(read)>);
                        }
                    },
                },

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -22,7 +23,8 @@ std::span<Key<BodySpec> const> body_keys() {
           "Rate at which the speed of a free body decays; 0: it slides on without slowing down."},
         K{"body_angular_damping", &BodySpec::angular_damping, at_least(0).up_to(1e12), "1/s",
           "Rate at which the angular velocity of a free body decays; 0: it spins on without slowing down."},
-        K{"body_density", &BodySpec::density, between(1e-10, 1e15), "per (100 mm)^2", "Mass per area."},
+        K{"body_density", &BodySpec::density, between(0, 1e15), "per (100 mm)^2",
+          "Mass per area; below 1e-10, as light as with 1e-10."},
         K{"body_friction", &BodySpec::friction, between(0, 1000), "",
           "Coulomb friction coefficient; a contact uses the geometric mean of both bodies'."},
         K{"body_restitution", &BodySpec::restitution, between(0, 1), "",
@@ -166,7 +168,7 @@ std::optional<BatterySpec> read_battery(MapReader& robot) {
     if (map->kind != Node::Kind::map) {
         fail_expected({*map, robot.path_of("battery")}, kBatteryMap);
     }
-    MapReader reader(*map, robot.path_of("battery"), robot.is_strict());
+    MapReader reader(*map, robot.path_of("battery"), robot.reading());
     BatterySpec const battery = read_battery_map(reader);
     reader.finish();
     robot.set_value("battery", reader.values());
@@ -215,7 +217,10 @@ void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Sh
 }
 
 void read_body(MapReader& reader, ObjectConfig& object) {
-    reader.read(body_keys(), object.spec.body.emplace());
+    constexpr float kLeastDensity = 1e-10F;
+    BodySpec& body = object.spec.body.emplace();
+    reader.read(body_keys(), body);
+    body.density = std::max(body.density, kLeastDensity);
 }
 
 void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind) {
@@ -224,24 +229,23 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind) 
     reader.read(sensor_model_keys(), robot.sensors);
     reader.read(sensor_keys(), robot.sensors);
     reader.read(battery_map_keys(), robot);
-    robot.battery = read_battery(reader);
+    reader.collect([&] { robot.battery = read_battery(reader); });
     reader.read(ir_keys(), robot.ir);
-    robot.ir.reception = read_reception(reader);
+    reader.collect([&] { robot.ir.reception = read_reception(reader); });
 }
 
 void read_position(MapReader& reader, ObjectConfig& object) {
     Position position;
     reader.read(position_keys(), position);
     if (auto const lone = reader.lone_key("x", "y")) {
-        fail_at({*reader.find(lone->given), reader.path_of(lone->given)},
-                fmt::format("{} without {}; specify both or neither", lone->given, lone->missing));
+        reader.refuse(lone->given, fmt::format("{} without {}; specify both or neither", lone->given, lone->missing));
+        return;
     }
-    if (position.x) {
+    if (position.x && position.y) {
         object.position_mm = Vec2{*position.x, *position.y};
         object.heading_rad = wrap_angle(position.angle.value_or(0.0F));
-    } else if (position.angle) {
-        fail_at({*reader.find("angle"), reader.path_of("angle")},
-                "angle without x and y; it is the heading of objects placed at x and y");
+    } else if (position.angle && reader.find("x") == nullptr) {
+        reader.refuse("angle", "angle without x and y; it is the heading of objects placed at x and y");
     }
 }
 

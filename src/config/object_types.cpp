@@ -63,16 +63,19 @@ std::span<Key<ObjectConfig> const> object_keys() {
     return keys;
 }
 
-Node read_object(Place const& place, std::string const& category, bool strict, ObjectConfig& object) {
-    MapReader reader(place.node, place.path, strict);
+Node read_object(Place const& place, std::string const& category, Reading& reading, ObjectConfig& object) {
     object.category = category;
     object.line = place.node.where();
+    MapReader reader(place.node, place.path, reading);
     reader.read(object_keys(), object);
-    if (Node const* type_node = reader.find("type")) {
-        ObjectType const& type = type_at({*type_node, reader.path_of("type")});
-        object.type = type.name;
-        type.read(reader, object);
+    Node const* const type_node = reader.find("type");
+    if (type_node == nullptr) {
+        reader.refuse_missing_keys();
+        return {};
     }
+    ObjectType const& type = type_at({*type_node, reader.path_of("type")});
+    object.type = type.name;
+    type.read(reader, object);
     reader.finish();
     reader.set_value("type", plain_node(object.type));
     reader.set_value("nb", value_node(object.nb));

@@ -23,8 +23,8 @@ std::span<ObjectType const> lamp_types();
 std::span<ObjectType const> object_types();
 
 /// One entry of `objects`, read and checked, into a new `object`. Returns the values of the keys that mean something.
-/// Throws ConfigError.
-Node read_object(Place const& place, std::string const& category, bool strict, ObjectConfig& object);
+/// Throws ConfigError if it is no map, or of an unknown type; other mistakes are collected in `reading`.
+Node read_object(Place const& place, std::string const& category, Reading& reading, ObjectConfig& object);
 
 // Keys of every type, `type` and `nb`.
 std::span<Key<ObjectConfig> const> object_keys();

@@ -28,6 +28,10 @@ inline constexpr std::array kValueOptions{kDefaultOption, kBatchOptions, kBatchR
 inline constexpr std::array<std::string_view, 5> kRangeKeys{"start", "stop", "step", "inclusive", "type"};
 inline constexpr std::array<std::string_view, 6> kDomainKeys{"type", "min", "max", "init", "log", "choices"};
 
+/// Top-level maps that only batch tools read: their settings. The simulator does not look at them.
+inline constexpr std::string_view kBatchSettings = "pogobatch";
+inline constexpr std::array<std::string_view, 2> kMapsOfTools{kBatchSettings, "_rundr"};
+
 /// Top-level entries that do not describe the world: nothing in them is an option.
 inline constexpr std::array<std::string_view, 4> kWithoutOptions{"result_filename_format", "result_new_columns",
                                                                  "optimization", kBatchChoices};

@@ -121,26 +121,25 @@ Polygon read_area(MapReader const& object, Node const& node) {
     if (node.kind != Node::Kind::map) {
         return read_polygon_area(place);
     }
-    MapReader reader(node, place.path, object.is_strict());
+    MapReader reader(node, place.path, object.reading());
     Polygon const area = read_disk_area(reader);
     reader.finish();
     return area;
 }
 
-/// Throws for two keys that place objects in different ways.
+/// Two keys that place objects in different ways are a mistake.
 void refuse_both(MapReader const& reader, std::string_view one, std::string_view other) {
     if (reader.find(one) != nullptr && reader.find(other) != nullptr) {
-        fail_at({*reader.find(one), reader.path_of(one)},
-                fmt::format("cannot be combined with '{}'; use one or the other", other));
+        reader.refuse(one, fmt::format("cannot be combined with '{}'; use one or the other", other));
     }
 }
 
 void refuse_fixed_wheels_and_membranes(MapReader const& reader, ObjectConfig const& object) {
     bool const has_wheels = object.spec.robot && object.spec.robot->has_wheels;
     if (object.spec.body && object.spec.body->fixed && (has_wheels || object.spec.membrane)) {
-        fail_at({*reader.find("body_fixed"), reader.path_of("body_fixed")},
-                fmt::format("{} cannot be fixed; use a passive_object, an active_object or a pogobject",
-                            has_wheels ? "a robot with wheels" : "a membrane"));
+        reader.refuse("body_fixed",
+                      fmt::format("{} cannot be fixed; use a passive_object, an active_object or a pogobject",
+                                  has_wheels ? "a robot with wheels" : "a membrane"));
     }
 }
 
@@ -164,18 +163,17 @@ void read_placement(MapReader& reader, ObjectConfig& object) {
     reader.read(placement_keys(), object);
     reader.read(formation_keys(), object.own_formation);
     if (Node const* area = reader.find("area")) {
-        object.own_formation.area_mm = read_area(reader, *area);
+        reader.collect([&] { object.own_formation.area_mm = read_area(reader, *area); });
     }
     Node const* const poses = reader.find("poses");
-    if (poses == nullptr) {
+    if (poses == nullptr || !reader.collect([&] { object.poses = read_poses({*poses, reader.path_of("poses")}); })) {
         return;
     }
-    object.poses = read_poses({*poses, reader.path_of("poses")});
     Node const* const nb = reader.find("nb");
     auto const count = static_cast<int>(object.poses.size());
-    if (nb != nullptr && object.nb != count) {
-        fail_at({*nb, reader.path_of("nb")},
-                fmt::format("expected {}, the number of poses, found {}; nb may be omitted", count, object.nb));
+    if (nb != nullptr && number_of(*nb) && object.nb != count) {
+        reader.refuse("nb",
+                      fmt::format("expected {}, the number of poses, found {}; nb may be omitted", count, object.nb));
     }
     object.nb = count;
 }

@@ -1,10 +1,14 @@
 #include "config/places.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "config/source.hpp"
+#include "config/values.hpp"
 
 namespace pogosim {
 
@@ -69,7 +73,27 @@ std::string line_of_key(Scenario const& scenario, std::string const& key) {
     return (value != nullptr ? *value : tree).where();
 }
 
+void collect_open_options(Node const& node, std::string const& path, std::vector<std::string>& notes) {
+    if (is_open_option(node)) {
+        notes.push_back(fmt::format("{} {}", shown(path), node.scalar));
+    }
+    for (auto const& [key, value] : node.entries) {
+        if (!path.empty() || key != "parameters") {
+            collect_open_options(value, path.empty() ? key : fmt::format("{}.{}", path, key), notes);
+        }
+    }
+    for (std::size_t i = 0; i < node.items.size(); ++i) {
+        collect_open_options(node.items[i], fmt::format("{}.{}", path, i), notes);
+    }
+}
+
 }  // namespace
+
+std::string note_on_open_options(Scenario const& scenario) {
+    std::vector<std::string> notes;
+    collect_open_options(source_of(scenario).tree, "", notes);
+    return notes.empty() ? "" : fmt::format(" ({})", fmt::join(notes, "; "));
+}
 
 std::string key_of(Setting setting) {
     switch (setting) {

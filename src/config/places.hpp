@@ -58,6 +58,10 @@ std::string place_of(Scenario const& scenario, ObjectConfig const& object, Objec
 /// The line of the key that the error names: "conf/a.yaml:14".
 std::string line_of(Scenario const& scenario, FormationError const& error);
 
+/// " (objects.m.radius has batch_options but no default_option; ...)": values of which a single run takes the default
+/// because it cannot choose. Empty when there are none.
+std::string note_on_open_options(Scenario const& scenario);
+
 /// Whether the file sets this value.
 bool is_written(Scenario const& scenario, Setting setting);
 

@@ -92,7 +92,7 @@ ReceptionSpec read_reception(MapReader& robot) {
     if (map != nullptr && map->kind != Node::Kind::map) {
         fail_expected({*map, robot.path_of("msg_success_rate")}, kReceptionMap);
     }
-    MapReader reader(map == nullptr ? absent : *map, robot.path_of("msg_success_rate"), robot.is_strict());
+    MapReader reader(map == nullptr ? absent : *map, robot.path_of("msg_success_rate"), robot.reading());
     ReceptionSpec const spec = read_reception_map(reader);
     if (map != nullptr) {
         reader.finish();

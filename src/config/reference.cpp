@@ -12,39 +12,40 @@ namespace pogosim {
 
 std::vector<KeyGroup> configuration_reference() {
     Node const nothing;
+    Reading reading;
     std::vector<KeyGroup> groups;
 
-    MapReader top(nothing, "", false);
+    MapReader top(nothing, "", reading);
     Scenario scenario;
     read_top_level(top, scenario);
     groups.push_back({"", "", "Top level.", top.known_keys()});
 
     for (ObjectType const& type : object_types()) {
-        MapReader reader(nothing, "objects.<category>", false);
+        MapReader reader(nothing, "objects.<category>", reading);
         ObjectConfig object;
         reader.read(object_keys(), object);
         type.read(reader, object);
         groups.push_back({"objects.<category>", std::string(type.name), std::string(type.doc), reader.known_keys()});
     }
 
-    MapReader area(nothing, "objects.<category>.area", false);
+    MapReader area(nothing, "objects.<category>.area", reading);
     read_disk_area(area);
     groups.push_back(
         {"objects.<category>.area", "", "A disk; the other form is a list of corners.", area.known_keys()});
 
-    MapReader reception(nothing, "objects.<category>.msg_success_rate", false);
+    MapReader reception(nothing, "objects.<category>.msg_success_rate", reading);
     read_reception_map(reception);
     groups.push_back({"objects.<category>.msg_success_rate", "", "Reception of messages.", reception.known_keys()});
 
-    MapReader battery(nothing, "objects.<category>.battery", false);
+    MapReader battery(nothing, "objects.<category>.battery", reading);
     read_battery_map(battery);
     groups.push_back({"objects.<category>.battery", "", "A battery that empties.", battery.known_keys()});
 
-    MapReader magnetometer(nothing, "magnetometer", false);
+    MapReader magnetometer(nothing, "magnetometer", reading);
     read_magnetometer_map(magnetometer);
     groups.push_back({"magnetometer", "", "What the magnetometers of robots measure.", magnetometer.known_keys()});
 
-    MapReader flash_state(nothing, "flash_state", false);
+    MapReader flash_state(nothing, "flash_state", reading);
     read_flash_state_map(flash_state);
     groups.push_back({"flash_state", "", "Flash memory from one run to the next.", flash_state.known_keys()});
     return groups;

@@ -1,4 +1,6 @@
 // Resolves batch options, hierarchical alternatives and optimisation domains for a single run.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -11,6 +13,15 @@
 namespace pogosim {
 
 namespace {
+
+/// What is said where a single run cannot take any of the options.
+std::string why_open(Node const& map) {
+    if (map.find(kBatchOptions) == nullptr && map.find(kBatchRange) == nullptr) {
+        return fmt::format("has {} but neither {} nor init; run it with pogoptim", kOptimizationDomain, kDefaultOption);
+    }
+    return fmt::format("has {} but no {}; run it with pogobatch",
+                       map.find(kBatchOptions) != nullptr ? kBatchOptions : kBatchRange, kDefaultOption);
+}
 
 /// `default_option`, or else the point from which an optimisation starts, or else nothing, so that the default of the
 /// key holds.
@@ -25,7 +36,7 @@ Node chosen_option(Node const& map) {
     }
     Node nothing;
     nothing.blank = true;
-    nothing.scalar = "options without default_option";
+    nothing.scalar = why_open(map);
     nothing.source = map.source;
     nothing.line = map.line;
     return nothing;
@@ -58,28 +69,28 @@ Node with_default_alternative(Node map) {
     return map;
 }
 
-Node resolved_at(Node const& node, std::string const& path) {
+Node resolved_at(Node const& node, std::string const& path, Problems& problems) {
     if (node.find(kHierarchicalOptions) != nullptr) {
-        return resolved_at(with_default_alternative(node), path);
+        return resolved_at(with_default_alternative(node), path, problems);
     }
     if (offers_options(node)) {
-        refuse_other_keys(node, path);  // which an alternative may have brought
-        return resolved_at(chosen_option(node), path);
+        problems.collect([&] { refuse_other_keys(node, path); });  // which an alternative may have brought
+        return resolved_at(chosen_option(node), path, problems);
     }
     Node resolved = node;
     for (auto& [key, value] : resolved.entries) {
-        value = resolved_at(value, path.empty() ? key : path + "." + key);
+        value = resolved_at(value, path.empty() ? key : path + "." + key, problems);
     }
     for (std::size_t i = 0; i < resolved.items.size(); ++i) {
-        resolved.items[i] = resolved_at(resolved.items[i], path + "." + std::to_string(i));
+        resolved.items[i] = resolved_at(resolved.items[i], path + "." + std::to_string(i), problems);
     }
     return resolved;
 }
 
 }  // namespace
 
-Node resolve_options(Node const& node) {
-    return resolved_at(node, "");
+Node resolve_options(Node const& node, Problems& problems) {
+    return resolved_at(node, "", problems);
 }
 
 }  // namespace pogosim

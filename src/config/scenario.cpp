@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "base/nearest_name.hpp"
 #include "config/batch_names.hpp"
 #include "config/check_options.hpp"
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
+#include "config/option_keys.hpp"
 #include "config/scenario_keys.hpp"
 #include "config/source.hpp"
 
@@ -15,15 +18,34 @@ namespace pogosim {
 
 namespace {
 
-Node resolved_tree(Node const& written, std::vector<std::string> const& overrides) {
+Node resolved_tree(Node const& written, std::vector<std::string> const& overrides, Problems& problems) {
     // Values of --set replace what the file's options have resolved to, and may be options themselves.
-    check_options(written);
-    Node root = resolve_options(written);
+    check_options(written, problems);
+    problems.leave_out_known_keys();
+    Node root = resolve_options(written, problems);
     for (std::string const& assignment : overrides) {
-        apply_override(root, assignment);
+        problems.collect([&] { apply_override(root, assignment); });
     }
-    check_options(root);
-    return resolve_options(root);
+    check_options(root, problems);
+    problems.leave_out_known_keys();
+    return resolve_options(root, problems);
+}
+
+/// These may hold anything, but are maps.
+void check_maps_of_tools(Node const& root, Problems& problems) {
+    for (std::string_view const key : kMapsOfTools) {
+        Node const* const map = root.find(key);
+        if (map != nullptr && map->kind != Node::Kind::map && map->kind != Node::Kind::null) {
+            problems.collect([&] { fail_expected({*map, std::string(key)}, "a map of keys"); });
+        }
+    }
+}
+
+Node without_maps_of_tools(Node root) {
+    std::erase_if(root.entries, [](Node::Entry const& entry) {
+        return std::ranges::find(kMapsOfTools, entry.key) != kMapsOfTools.end();
+    });
+    return root;
 }
 
 /// A `--set` with a slip in the category's name makes an entry that has no type.
@@ -46,7 +68,7 @@ void require_category(Node const& objects, std::string const& category, Node con
 }
 
 /// Reads all entries. Returns the map `objects` with their values.
-Node read_objects(Node const* objects, bool strict, std::vector<ObjectConfig>& into) {
+Node read_objects(Node const* objects, Reading& reading, std::vector<ObjectConfig>& into) {
     Node values;
     values.kind = Node::Kind::map;
     if (objects == nullptr) {
@@ -55,18 +77,24 @@ Node read_objects(Node const* objects, bool strict, std::vector<ObjectConfig>& i
     if (objects->kind != Node::Kind::map) {
         fail_expected({*objects, "objects"}, "a map of categories");
     }
+    auto const read = [&](Place const& place, std::string const& category) {
+        Node entry;
+        reading.problems.collect([&] { entry = read_object(place, category, reading, into.emplace_back()); });
+        return entry;
+    };
     for (auto const& [category, node] : objects->entries) {
-        require_category(*objects, category, node);
+        if (!reading.problems.collect([&] { require_category(*objects, category, node); })) {
+            continue;
+        }
         std::string const path = "objects." + category;
         if (node.kind != Node::Kind::sequence) {
-            values.entries.emplace_back(category, read_object({node, path}, category, strict, into.emplace_back()));
+            values.entries.emplace_back(category, read({node, path}, category));
             continue;
         }
         Node list;
         list.kind = Node::Kind::sequence;
         for (std::size_t i = 0; i < node.items.size(); ++i) {
-            Place const place{node.items[i], fmt::format("{}.{}", path, i)};
-            list.items.push_back(read_object(place, category, strict, into.emplace_back()));
+            list.items.push_back(read({node.items[i], fmt::format("{}.{}", path, i)}, category));
             into.back().item = i;
         }
         if (!list.items.empty()) {
@@ -76,9 +104,11 @@ Node read_objects(Node const* objects, bool strict, std::vector<ObjectConfig>& i
     return values;
 }
 
-void require_map(Node const* parameters) {
-    if (parameters != nullptr && parameters->kind != Node::Kind::map) {
-        fail_expected({*parameters, "parameters"}, "a map of keys");
+/// For maps of which nothing else is read here.
+void require_map(MapReader const& reader, std::string const& key) {
+    Node const* const value = reader.find(key);
+    if (value != nullptr && value->kind != Node::Kind::map) {
+        reader.collect([&] { fail_expected({*value, key}, "a map of keys"); });
     }
 }
 
@@ -102,27 +132,44 @@ Node const* node_of(Scenario const& scenario, ObjectConfig const& object) {
     return entry != nullptr && object.item ? &entry->items[*object.item] : entry;
 }
 
-Scenario load_scenario(std::string const& path, LoadOptions const& options) {
+Scenario read_scenario(std::string const& path, LoadOptions const& options, Problems& problems) {
     Scenario scenario;
     scenario.file = path;
     Node const written = read_yaml_file(path);
-    ConfigSource source{.tree = resolved_tree(written, options.overrides), .values = {}};
+    Reading reading{
+        .strict_keys = options.strict, .strict_values = options.strict_values, .checks_unused = options.checks_unused};
+    check_maps_of_tools(written, reading.problems);
+    ConfigSource source{.tree = resolved_tree(without_maps_of_tools(written), options.overrides, reading.problems),
+                        .values = {}};
     if (source.tree.kind != Node::Kind::map) {
         fail_expected({source.tree, "the top level"}, "a map of keys");
     }
-    MapReader reader(source.tree, "", options.strict);
+    MapReader reader(source.tree, "", reading);
     read_top_level(reader, scenario);
     reader.finish(batch_names(written));
-    reader.set_value("objects", read_objects(reader.find("objects"), options.strict, scenario.objects));
+    Node objects;
+    std::size_t const before = reading.problems.messages().size();
+    reader.collect([&] { objects = read_objects(reader.find("objects"), reading, scenario.objects); });
+    bool const objects_are_right = reading.problems.messages().size() == before;
+    reader.set_value("objects", std::move(objects));
     for (ObjectConfig& object : scenario.objects) {
         if (object.spec.robot && !object.spec.robot->flash) {
             object.spec.robot->flash = scenario.flash;
         }
     }
-    require_map(reader.find("parameters"));
+    require_map(reader, "parameters");
     source.values = reader.values();
     scenario.source = std::make_shared<ConfigSource const>(std::move(source));
-    check_scenario(scenario);
+    reading.problems.leave_out_known_keys();
+    check_scenario(scenario, objects_are_right, reading);
+    problems = std::move(reading.problems);
+    return scenario;
+}
+
+Scenario load_scenario(std::string const& path, LoadOptions const& options) {
+    Problems problems;
+    Scenario scenario = read_scenario(path, options, problems);
+    problems.throw_if_any();
     return scenario;
 }
 

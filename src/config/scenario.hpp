@@ -16,6 +16,7 @@
 namespace pogosim {
 
 struct ConfigSource;
+class Problems;
 
 enum class BoundaryCondition { solid, periodic };
 enum class LogFormat { dated, minimal };
@@ -125,6 +126,7 @@ struct Scenario {
     std::optional<std::uint32_t> seed;    // absent: drawn from the system
     double user_code_timeout_s = 10.0;    // processor time one call of user code may take; 0: no limit
     int robot_stack_kib = 8192;           // of the stack of each robot that waits in the middle of its program
+    std::int64_t coroutine_stack_bytes = 8192 * 1024;  // the same as written; robot_stack_kib is what counts
     RobotMemoryKind robot_memory = RobotMemoryKind::automatic;
     std::optional<FlashWrites> flash;  // of categories that do not say; absent: overwrite
     FlashStateConfig flash_state;
@@ -141,10 +143,16 @@ struct Scenario {
 struct LoadOptions {
     std::vector<std::string> overrides;  // --set, in order
     bool strict = false;                 // unknown keys are errors
+    bool strict_values = false;          // values that would be cut, or replaced by the default, are errors
+    bool checks_unused = false;          // values that have no effect are checked, too
 };
 
-/// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ..."; warns once for each
-/// unknown key, naming the nearest known one.
+/// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ...", a line for each
+/// mistake; warns once for each unknown key, naming the nearest known one.
 Scenario load_scenario(std::string const& path, LoadOptions const& options);
+
+/// The same, but adds the mistakes to `problems`: what the scenario says is right where they are not. Throws
+/// ConfigError for a file that cannot be read as a map of keys.
+Scenario read_scenario(std::string const& path, LoadOptions const& options, Problems& problems);
 
 }  // namespace pogosim

@@ -15,6 +15,8 @@ namespace pogosim {
 
 namespace {
 
+constexpr int kLeastStackKib = 64;
+
 std::span<Key<Scenario> const> scenario_keys() {
     using K = Key<Scenario>;
     NamedValues<std::string> engines;
@@ -73,8 +75,11 @@ std::span<Key<Scenario> const> scenario_keys() {
           "Variables of the user program outside USERDATA. shared: one for all robots. own: each robot has its own, as "
           "on real robots, except those marked POGO_SHARED; the robots then take their steps on one thread. auto: own "
           "for programs written for the robots' SDK (pogobot.h), else shared."},
-        K{"robot_stack_size", &Scenario::robot_stack_kib, between(64, 1 << 20), "KiB",
+        K{"robot_stack_size", &Scenario::robot_stack_kib, between(kLeastStackKib, 1 << 20), "KiB",
           "Stack on which the program of a robot runs. Only what is used of it takes memory."},
+        K{"coroutine_stack_size", &Scenario::coroutine_stack_bytes, between(1, 1 << 30), "bytes",
+          "The same in bytes, rounded up to at least 64 KiB, as the original simulator has it."}
+            .other_name_of("robot_stack_size"),
         K{"flash", one_of(&Scenario::flash, flash_writes()), any(), "",
           "How robots of all categories write flash memory, see `flash` of objects; default: overwrite."}
             .only_if([](Scenario const& scenario) { return scenario.flash.has_value(); }),
@@ -85,6 +90,8 @@ std::span<Key<Scenario> const> scenario_keys() {
           "Everything in the arena, by category; see the tables below."},
         K{"parameters", Elsewhere{"a map of keys"}, any(), "", "Values for the global variables of the user program."},
         // For the batch and optimisation tools; the simulator reads past them.
+        K{"pogobatch", Elsewhere{"a map of keys"}, any(), "", "For batch tools: their settings."},
+        K{"_rundr", Elsewhere{"a map of keys"}, any(), "", "For batch tools: settings of the scheduler Rundra."},
         K{"result_filename_format", Elsewhere{"a string"}, any(), "", "For batch tools: name of each result file."},
         K{"result_new_columns", Elsewhere{"a list of key paths"}, any(), "",
           "For batch tools: constant columns to add."},
@@ -237,18 +244,27 @@ std::span<Key<ViewConfig> const> view_keys() {
     return keys;
 }
 
+/// Of a number of bytes, as much as every machine can give.
+int stack_kib(std::int64_t bytes) {
+    return static_cast<int>(std::max<std::int64_t>((bytes + 1023) / 1024, kLeastStackKib));
+}
+
 }  // namespace
 
 void read_top_level(MapReader& reader, Scenario& scenario) {
     reader.read(scenario_keys(), scenario);
-    scenario.flash_state = read_flash_state(reader);
+    if (reader.find("coroutine_stack_size") != nullptr) {
+        scenario.robot_stack_kib = stack_kib(scenario.coroutine_stack_bytes);
+        reader.note_values(scenario_keys(), scenario);
+    }
+    reader.collect([&] { scenario.flash_state = read_flash_state(reader); });
     if (scenario.boundary == BoundaryCondition::solid) {
         reader.read(wall_keys(), scenario.walls);
     } else {
         reader.read_unused(wall_keys(), scenario.walls);
     }
     reader.read(formation_keys(), scenario.formation);
-    scenario.magnetometer = read_magnetometer(reader);
+    reader.collect([&] { scenario.magnetometer = read_magnetometer(reader); });
     reader.read(output_keys(), scenario.output);
     reader.read(view_keys(), scenario.view);
 }

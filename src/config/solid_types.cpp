@@ -42,7 +42,7 @@ void read_pogowall(MapReader& reader, ObjectConfig& object) {
     }
     read_position(reader, object);
     if (!object.position_mm && reader.find("geometry") != nullptr) {
-        fail_at(reader.place(), "needs x and y: no formation places a wall of this geometry");
+        reader.collect([&] { fail_at(reader.place(), "needs x and y: no formation places a wall of this geometry"); });
     }
 }
 

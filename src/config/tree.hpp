@@ -9,6 +9,8 @@
 
 namespace pogosim {
 
+class Problems;
+
 /// Source of the nodes that apply_override() makes.
 inline constexpr char const* kSetSource = "--set";
 
@@ -56,8 +58,8 @@ void apply_override(Node& root, std::string const& assignment);
 
 /// The tree a single run sees: `default_option` in place of batch options and optimisation domains (null where there is
 /// none), hierarchical alternatives replaced by their `default`. See docs/configuration.md, "How a file is read".
-/// Throws ConfigError where a map of options has another key.
-Node resolve_options(Node const& node);
+/// A map of options that has another key is one of the `problems`.
+Node resolve_options(Node const& node, Problems& problems);
 
 /// YAML text of the tree; reading it again gives the same tree.
 std::string to_yaml(Node const& root);

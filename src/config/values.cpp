@@ -13,10 +13,10 @@
 #include <string>
 #include <system_error>
 
-#include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "base/number_from.hpp"
+#include "base/problems.hpp"
 #include "config/option_keys.hpp"
 
 namespace pogosim {
@@ -208,10 +208,17 @@ std::string shown(std::string_view text) {
 }
 
 void fail_at(Place const& place, std::string_view what) {
-    throw ConfigError(fmt::format("{}: {}: {}", place.node.where(), shown(place.path), what));
+    throw KeyError(place.path, fmt::format("{}: {}: {}", place.node.where(), shown(place.path), what));
+}
+
+bool is_open_option(Node const& node) {
+    return node.kind == Node::Kind::null && !node.scalar.empty();
 }
 
 void fail_expected(Place const& place, std::string_view expected) {
+    if (is_open_option(place.node)) {
+        fail_at(place, place.node.scalar);
+    }
     bool const takes_list = expected.starts_with('[');
     fail_at(place, fmt::format("expected {}, found {}{}", expected, found_text(place.node),
                                takes_list ? "" : option_hint(place.node)));
@@ -237,10 +244,11 @@ std::optional<bool> truth_of(Node const& node) {
         return std::nullopt;
     }
     std::string const text = lower_case(node.scalar);
-    if (std::ranges::find(kTrue, text) != kTrue.end()) {
+    std::optional<double> const number = number_of(node);
+    if (std::ranges::find(kTrue, text) != kTrue.end() || number == 1.0) {
         return true;
     }
-    return std::ranges::find(kFalse, text) != kFalse.end() ? std::optional(false) : std::nullopt;
+    return std::ranges::find(kFalse, text) != kFalse.end() || number == 0.0 ? std::optional(false) : std::nullopt;
 }
 
 void read_value(Place const& place, Limits const& limits, bool& value) {
@@ -364,6 +372,16 @@ void UnitSlips::warn() const {
         double const meant = number_from(fmt::format("{:.6g}", slip.number * similar->factor));
         log().warn("{}: {} {} is unusually {}{}; if you meant {}, write {}", slip.where, slip.text, slip.unit,
                    similar->factor > 1.0 ? "small" : "large", others, similar->taken, number_text(meant));
+    }
+}
+
+void require_integers(Place const& place) {
+    for (std::size_t i = 0; i < place.node.items.size(); ++i) {
+        require_integers({place.node.items[i], fmt::format("{}.{}", place.path, i)});
+    }
+    std::optional<double> const number = number_of(place.node);
+    if (number && std::trunc(*number) != *number) {
+        fail_expected(place, "an integer");
     }
 }
 

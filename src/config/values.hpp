@@ -30,11 +30,14 @@ struct Limits {
     std::string_view unit = {};
 };
 
-/// Throws ConfigError "file:line: path: expected <expected>, found <the value>".
+/// Throws KeyError "file:line: path: expected <expected>, found <the value>".
 [[noreturn]] void fail_expected(Place const& place, std::string_view expected);
 
-/// Throws ConfigError "file:line: path: <what>".
+/// Throws KeyError "file:line: path: <what>".
 [[noreturn]] void fail_at(Place const& place, std::string_view what);
+
+/// Whether a null node stands for options of a batch, none of which is for a single run. Its scalar says so.
+bool is_open_option(Node const& node);
 
 /// The value of a node, for messages: "-3", "'many'", "a list".
 std::string found_text(Node const& node);
@@ -49,7 +52,7 @@ std::string shown(std::string_view text);
 /// matter: some tools write 1.0e6 as a string.
 std::optional<double> number_of(Node const& node);
 
-/// true, false, yes, no, on, off in any case.
+/// true, false, yes, no, on, off in any case, 1 and 0.
 std::optional<bool> truth_of(Node const& node);
 
 /// read_value: the node as a value of that type, or ConfigError. Integers drop the fraction of a number.
@@ -91,6 +94,9 @@ private:
     };
     std::vector<Slip> slips_;
 };
+
+/// Throws ConfigError for a number, or one of a list, that is not whole.
+void require_integers(Place const& place);
 
 /// Warns of numbers, at a node that has been read, that are not taken as written: fractions that are cut
 /// (`is_integer`), and what looks like another unit.

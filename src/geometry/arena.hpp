@@ -50,6 +50,10 @@ struct ArenaOutline {
 /// file is a ConfigError too.
 ArenaOutline read_arena_file(std::filesystem::path const& path);
 
+/// Whether a file has nothing but blank lines and comments; false for one that is no regular file. Throws ConfigError
+/// for a file that cannot be read.
+bool is_empty_arena_file(std::filesystem::path const& path);
+
 /// How an outline becomes millimetres.
 struct ArenaScaling {
     std::optional<double> surface_mm2{};  // net area asked for, > 0; absent: the outline is in mm

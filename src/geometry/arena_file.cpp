@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
@@ -195,6 +196,12 @@ void check_nesting(Drawing const& drawing, OutlineSurvey const& survey) {
 }
 
 }  // namespace
+
+bool is_empty_arena_file(std::filesystem::path const& path) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored) &&
+           std::ranges::all_of(read_csv(path).lines, [](CsvLine const& line) { return line.text.empty(); });
+}
 
 ArenaOutline read_arena_file(std::filesystem::path const& path) {
     Drawing drawing = parse(path);

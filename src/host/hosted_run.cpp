@@ -48,6 +48,7 @@ pogosim_run::pogosim_run(pogosim_run_options const& options) {
     ProgramImage program = load_program(options.program);
     RunOptions run_options;
     run_options.log = log_;
+    run_options.conversions = options.strict != 0 ? Conversions::typed : Conversions::lenient;
     simulation_ = std::make_unique<Simulation>(std::move(program), scenario_of(options), run_options);
     for (Category const& category : simulation_->world().categories) {
         categories_ += (categories_.empty() ? "" : "\n") + category.name;

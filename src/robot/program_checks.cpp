@@ -96,8 +96,12 @@ void warn_of_idle_categories(World const& world, std::span<Controller const> con
         if (!controllers[i].program.registered && !warned[category]) {
             warned[category] = true;
             std::string const& name = world.categories[category].name;
-            log().warn("the program has no pogobot_start() for category '{}'{}; its robots will do nothing{}", name,
-                       calls, did_you_mean(name, strange));
+            std::string const meant = did_you_mean(name, strange);
+            // Walls, membranes and other things without wheels often have no program.
+            if (world.categories[category].spec.robot->has_wheels || !meant.empty()) {
+                log().warn("the program has no pogobot_start() for category '{}'{}; its robots will do nothing{}", name,
+                           calls, meant);
+            }
         }
     }
 }

@@ -176,11 +176,12 @@ void warn_of_shared_variables(ProgramImage const& image, std::span<BoundVariable
     std::size_t const count = found.names.size();
     std::size_t const shown = count > kMostNames + 1 ? kMostNames : count;
     std::string const text = fmt::format(
-        "all robots share the variable{} {}{}, which real robots cannot: put what each robot has into USERDATA, read "
-        "parameters with init_from_configuration(), declare constants const and what the supervisor or all robots use "
-        "POGO_SHARED, or set robot_memory: own",
+        "all robots share the variable{} {}{}, which real robots cannot: a clock or counter there that each robot "
+        "advances runs {} times too fast. Put what each robot has into USERDATA, read parameters with "
+        "init_from_configuration(), declare constants const and what the supervisor or all robots use POGO_SHARED, or "
+        "set robot_memory: own",
         count == 1 ? "" : "s", fmt::join(std::span(found.names).first(shown), ", "),
-        shown < count ? fmt::format(" and {} more", count - shown) : "");
+        shown < count ? fmt::format(" and {} more", count - shown) : "", robots);
     log().log(found.is_certain ? spdlog::level::warn : spdlog::level::info, "{}", escaped(text));
 }
 

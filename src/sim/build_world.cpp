@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -62,13 +63,25 @@ void check_size(Scenario const& scenario, Arena const& arena) {
     }
 }
 
+/// Other configurations write a periodic square as an empty file, by its name or with a periodic border.
+std::filesystem::path arena_file(Scenario const& scenario) {
+    std::filesystem::path file = find_file(scenario, Setting::arena_file, scenario.arena_file);
+    bool const may_be_empty = scenario.boundary == BoundaryCondition::periodic || is_periodic_square(file);
+    if (may_be_empty && is_empty_arena_file(file)) {
+        log().info("arena '{}' is empty: it stands for a square without walls, whose sides are joined (periodic)",
+                   scenario.arena_file);
+        return bundled_periodic_square();
+    }
+    return file;
+}
+
 void build_arena(Scenario const& scenario, World& world) {
     if (scenario.arena_file.empty()) {
         throw ConfigError(
             fmt::format("{}: the key 'arena_file' is missing; specify an outline, such as arenas/disk.csv",
                         line_of(scenario, Setting::arena_file)));
     }
-    ArenaOutline const outline = read_arena_file(find_file(scenario, Setting::arena_file, scenario.arena_file));
+    ArenaOutline const outline = read_arena_file(arena_file(scenario));
     world.periodic = scenario.boundary == BoundaryCondition::periodic || outline.periodic;
     bool const asks_for_walls =
         scenario.boundary == BoundaryCondition::solid && is_written(scenario, Setting::boundary_condition);
@@ -281,9 +294,7 @@ void part_bodies(Bodies& bodies) {
     bodies.start_mm = bodies.position_mm;
 }
 
-}  // namespace
-
-World build_world(Scenario const& scenario, std::uint32_t seed) {
+World built_world(Scenario const& scenario, std::uint32_t seed) {
     World world;
     world.time_step_s = scenario.time_step_s;
     world.ignore_occlusions = scenario.ignore_occlusions;
@@ -299,6 +310,25 @@ World build_world(Scenario const& scenario, std::uint32_t seed) {
     world.light = make_light_map(world.arena, world.periodic, scenario.light_map_columns, scenario.light_map_rows);
     assert_structure(world);
     return world;
+}
+
+}  // namespace
+
+void check_arena(Scenario const& scenario) {
+    World world;
+    build_arena(scenario, world);
+}
+
+World build_world(Scenario const& scenario, std::uint32_t seed) {
+    try {
+        return built_world(scenario, seed);
+    } catch (ConfigError const& error) {
+        std::string const note = note_on_open_options(scenario);
+        if (note.empty()) {
+            throw;
+        }
+        throw ConfigError(error.what() + note);
+    }
 }
 
 }  // namespace pogosim

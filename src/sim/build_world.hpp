@@ -12,4 +12,7 @@ namespace pogosim {
 /// be read or the objects do not fit. `scenario` is as loaded.
 World build_world(Scenario const& scenario, std::uint32_t seed);
 
+/// Throws ConfigError if the arena cannot be read, or is too large.
+void check_arena(Scenario const& scenario);
+
 }  // namespace pogosim

@@ -53,6 +53,22 @@ std::vector<std::string> folder_names(std::vector<std::filesystem::path> const& 
 
 }  // namespace
 
+bool is_periodic_square(std::filesystem::path const& name) {
+    return name.filename() == "torus.csv" || name.filename() == "empty.csv";
+}
+
+std::filesystem::path bundled_periodic_square() {
+    std::error_code ignored;
+    std::filesystem::path square;
+    for (std::filesystem::path const& folder : data_folders()) {
+        square = folder / "arenas" / "torus.csv";
+        if (std::filesystem::exists(square, ignored)) {
+            break;
+        }
+    }
+    return square;
+}
+
 std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name) {
     std::filesystem::path const path(name);
     std::error_code ignored;
@@ -66,6 +82,9 @@ std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::
             if (std::filesystem::exists(folder / path, ignored)) {
                 return folder / path;
             }
+        }
+        if (setting == Setting::arena_file && is_periodic_square(path)) {
+            return bundled_periodic_square();
         }
         looked_for = fmt::format("; searched {}", fmt::join(folder_names(folders), ", then in "));
     }

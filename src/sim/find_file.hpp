@@ -14,4 +14,11 @@ namespace pogosim {
 /// listing these folders, if there is none. An empty name stays empty.
 std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name);
 
+/// Whether an arena file has one of the names by which configurations mean a square without walls: torus.csv and
+/// empty.csv. There need be no such file, and it may be empty.
+bool is_periodic_square(std::filesystem::path const& name);
+
+/// The outline of that square, which is bundled with Pogosim.
+std::filesystem::path bundled_periodic_square();
+
 }  // namespace pogosim

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -22,6 +23,7 @@
 #include "config/places.hpp"
 #include "render/film_file.hpp"
 #include "render/png_file.hpp"
+#include "sim/output_files.hpp"
 #include "sim/used_files.hpp"
 
 namespace pogosim {
@@ -69,43 +71,43 @@ void check_names_differ(Scenario const& scenario, FrameNames const& names) {
     }
 }
 
+[[noreturn]] void refuse_frame(Scenario const& scenario, std::filesystem::path const& frame,
+                               std::string const& reason) {
+    refuse_frames_name(scenario, fmt::format("the frame '{}' cannot be written: {}; choose another name or folder",
+                                             frame.string(), reason));
+}
+
 /// Makes the folder of a frame, and a file in it, which is removed again.
-void check_frame(Scenario const& scenario, std::filesystem::path const& frame) {
-    auto const refuse = [&](std::string const& reason) {
-        refuse_frames_name(scenario, fmt::format("the frame '{}' cannot be written: {}; choose another name or folder",
-                                                 frame.string(), reason));
-    };
-    if (frame.extension() != ".png") {
-        refuse_frames_name(scenario,
-                           fmt::format("frames are PNG pictures, and '{}' does not end in .png", frame.string()));
-    }
+void try_frame(Scenario const& scenario, std::filesystem::path const& frame) {
     std::error_code error;
     if (frame.has_parent_path()) {
         std::filesystem::create_directories(frame.parent_path(), error);
     }
     if (error) {
-        refuse(error.message());
-    }
-    if (std::filesystem::is_directory(frame, error)) {
-        refuse("it is a folder");
+        refuse_frame(scenario, frame, error.message());
     }
     std::string const beside = unfinished_png(frame).native();
     constexpr mode_t kNewFile = 0666;  // less the umask
     int const descriptor = open(beside.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kNewFile);
     if (descriptor < 0) {
-        refuse(std::generic_category().message(errno));
+        refuse_frame(scenario, frame, std::generic_category().message(errno));
     }
     close(descriptor);
     unlink(beside.c_str());
 }
 
-/// Finds problems with frames before the run, as far as possible.
-void check_frames(Scenario const& scenario, FrameNames const& names) {
+/// The first frame and the last one.
+std::array<std::filesystem::path, 2> outer_frames(Scenario const& scenario, FrameNames const& names) {
+    double const first_s = std::min(scenario.view.save_video_period_s, scenario.simulation_time_s);
+    return {names.at(first_s), names.at(scenario.simulation_time_s)};
+}
+
+/// Finds problems with the files of frames before the run, as far as possible.
+void try_frames(Scenario const& scenario) {
     if (makes_frames(scenario)) {
-        check_names_differ(scenario, names);
-        double const first_s = std::min(scenario.view.save_video_period_s, scenario.simulation_time_s);
-        check_frame(scenario, names.at(first_s));
-        check_frame(scenario, names.at(scenario.simulation_time_s));
+        for (std::filesystem::path const& frame : outer_frames(scenario, FrameNames(scenario.view.frames_name))) {
+            try_frame(scenario, frame);
+        }
     }
 }
 
@@ -153,20 +155,6 @@ double film_period_s(Scenario const& scenario) {
     return (speed_up > 0.0 ? speed_up : 1.0) / kFilmHz;
 }
 
-/// A film in extreme slow motion would show each step for minutes.
-void check_film_speed(Scenario const& scenario) {
-    constexpr double kMostPicturesPerStep = 1000.0;
-    double const least_speed_up = scenario.time_step_s * kFilmHz / kMostPicturesPerStep;
-    double const speed_up = scenario.view.gui_speed_up;
-    if (speed_up > 0.0 && speed_up < least_speed_up) {
-        throw ConfigError(
-            fmt::format("{}: at {:g}, the film would show each step of time_step {:g} s for more than {:g} "
-                        "pictures; expected at least {:g}, or 0 for real time",
-                        place_of(scenario, Setting::speed_up), speed_up, scenario.time_step_s, kMostPicturesPerStep,
-                        least_speed_up));
-    }
-}
-
 }  // namespace
 
 PictureFormat picture_format(Scenario const& scenario, World const& world) {
@@ -183,15 +171,46 @@ PictureFormat picture_format(Scenario const& scenario, World const& world) {
                       .trails = view.show_trajectory_traces}};
 }
 
+void Pictures::check_frames(Scenario const& scenario) {
+    if (!makes_frames(scenario)) {
+        return;
+    }
+    FrameNames const names(scenario.view.frames_name);
+    check_names_differ(scenario, names);
+    for (std::filesystem::path const& frame : outer_frames(scenario, names)) {
+        if (frame.extension() != ".png") {
+            refuse_frames_name(scenario,
+                               fmt::format("frames are PNG pictures, and '{}' does not end in .png", frame.string()));
+        }
+        if (std::string const reason = why_not_writable(frame); !reason.empty()) {
+            refuse_frame(scenario, frame, reason);
+        }
+    }
+}
+
+void Pictures::check_film_speed(Scenario const& scenario) {
+    constexpr double kMostPicturesPerStep = 1000.0;
+    double const least_speed_up = scenario.time_step_s * kFilmHz / kMostPicturesPerStep;
+    double const speed_up = scenario.view.gui_speed_up;
+    if (speed_up > 0.0 && speed_up < least_speed_up) {
+        throw ConfigError(
+            fmt::format("{}: at {:g}, the film would show each step of time_step {:g} s for more than {:g} "
+                        "pictures; expected at least {:g}, or 0 for real time",
+                        place_of(scenario, Setting::speed_up), speed_up, scenario.time_step_s, kMostPicturesPerStep,
+                        least_speed_up));
+    }
+}
+
 std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& world, Controllers const& controllers,
                                          Lighting const& lighting, std::string const& film) {
     if (!makes_frames(scenario) && film.empty()) {
         return nullptr;
     }
-    check_frames(scenario, FrameNames(scenario.view.frames_name));
+    check_frames(scenario);
     if (!film.empty()) {
         check_film_speed(scenario);
     }
+    try_frames(scenario);
     return std::unique_ptr<Pictures>(new Pictures(scenario, world, controllers, lighting, film));
 }
 

@@ -27,6 +27,12 @@ public:
     static std::unique_ptr<Pictures> make(Scenario const& scenario, World const& world, Controllers const& controllers,
                                           Lighting const& lighting, std::string const& film);
 
+    /// Throws ConfigError for frames that no run could draw. Touches no file.
+    static void check_frames(Scenario const& scenario);
+
+    /// Throws ConfigError for a film in extreme slow motion, which would show each step for minutes.
+    static void check_film_speed(Scenario const& scenario);
+
     /// At the start of the run and after each step: hands over the pictures that are due. Throws OutputError, at the
     /// start, if old frames cannot be deleted.
     void record_if_due();

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/error.hpp"
-#include "base/table_format.hpp"
-#include "config/places.hpp"
 #include "physics/physics_engine.hpp"
 #include "robot/crash_handler.hpp"
 #include "robot/crash_message.hpp"
+#include "sim/output_files.hpp"
 #include "sim/run_metadata.hpp"
 
 namespace pogosim {
@@ -55,14 +53,6 @@ ObjectRow row_of(World const& world, Object const& object, double time_s, std::o
         row.angle_rad = wrap_angle(world.bodies.heading_rad[object.body]);
     }
     return row;
-}
-
-/// The ending of a table's name says its format.
-void check_table_format(Scenario const& scenario, Setting setting, std::string const& name) {
-    if (!table_format(name)) {
-        throw ConfigError(fmt::format("{}: the format of '{}' is unknown; expected a name that ends in {}",
-                                      place_of(scenario, setting), name, kTableEndings));
-    }
 }
 
 /// Its rows are followed by those of its subparts.

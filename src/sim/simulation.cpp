@@ -83,7 +83,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       options_(std::move(options)),
       seed_(seed_of(scenario_)),
       world_(build_world(scenario_, seed_)),
-      parameters_(scenario_),
+      parameters_(scenario_, options_.conversions),
       crash_handler_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       controllers_(std::move(program), world_, services_, seed_,
@@ -230,15 +230,17 @@ std::string Simulation::note_of_files() const {
 }
 
 void Simulation::report_unread_parameters() const {
-    std::string const unread = parameters_.unread();
-    if (unread.empty()) {
+    UnreadParameters const unread = parameters_.unread();
+    if (unread.all.empty()) {
         return;
     }
-    std::string const message = "parameters never read by the program: " + unread;
+    constexpr auto what = "parameters never read by the program";
     if (options_.strict && !interrupted()) {
-        throw ConfigError(message + " (--strict; the run itself is complete)");
+        throw ConfigError(fmt::format("{}: {} (--strict; the run itself is complete)", what, unread.all));
     }
-    log().warn("{}", message);
+    // Programs share configurations: a value that one of them does not read is usually meant for another.
+    log().warn("{}: {}", what, unread.brief);
+    log().debug("{}: {}", what, unread.all);
 }
 
 std::optional<UserFailure> Simulation::run_steps() {

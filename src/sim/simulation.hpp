@@ -39,12 +39,13 @@ class WindowDriver;
 
 struct RunOptions {
     bool progress_bar = false;
-    bool measure_stages = false;         // for benchmarks
-    bool shares_nothing = false;         // the program: for benchmarks, where it is in one file with the simulator
-    bool strict = false;                 // unread parameters are an error
-    std::shared_ptr<Log> log{};          // null: that of the process
-    std::int64_t hash_period_steps = 0;  // a hash of the state in the log after so many steps each; 0: none
-    std::string film{};                  // file of a film of the run; empty: none
+    bool measure_stages = false;  // for benchmarks
+    bool shares_nothing = false;  // the program: for benchmarks, where it is in one file with the simulator
+    bool strict = false;          // unread parameters are an error
+    Conversions conversions = Conversions::lenient;  // of parameters
+    std::shared_ptr<Log> log{};                      // null: that of the process
+    std::int64_t hash_period_steps = 0;              // a hash of the state in the log after so many steps each; 0: none
+    std::string film{};                              // file of a film of the run; empty: none
     bool window = false;
     bool close_at_end = false;           // else the window stays open when the simulated time is over
     std::string program_name{};          // for the window's title
@@ -99,6 +100,10 @@ public:
     bool is_over() const;
 
     std::uint32_t seed() const { return seed_; }
+
+    /// The values under `parameters`.
+    UserParameters& parameters() { return parameters_; }
+    UserParameters const& parameters() const { return parameters_; }
 
     /// See state_hash.hpp.
     std::uint64_t hash() const { return state_hash(world_, controllers_); }

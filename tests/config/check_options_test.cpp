@@ -16,7 +16,11 @@ using namespace pogosim::config_file;
 namespace {
 
 std::string checked(std::string const& text) {
-    return error_of([&] { check_options(parse_yaml(text, "x.yaml")); });
+    return error_of([&] {
+        Problems problems;
+        check_options(parse_yaml(text, "x.yaml"), problems);
+        problems.throw_if_any();
+    });
 }
 
 /// The end of the message on an unknown key of a map of options without a near one.
@@ -39,7 +43,8 @@ TEST(MisspeltOption, BesideAnotherIsRefusedWithItsLineAlsoWithoutStrict) {
 
 TEST(MisspeltOption, AloneIsRefusedWhereTheSimulatorChoosesTheKeys) {
     EXPECT_EQ(checked("objects: {robots: {nb: {batch_option: [3, 4], defalt_option: 3}}}\n"),
-              "x.yaml:1: objects.robots.nb: unknown key 'batch_option'; did you mean 'batch_options'?");
+              "x.yaml:1: objects.robots.nb: unknown key 'batch_option'; did you mean 'batch_options'?\n"
+              "x.yaml:1: objects.robots.nb: unknown key 'defalt_option'; did you mean 'default_option'?");
     EXPECT_EQ(checked("a: {Default_Option: 3}\n"),
               "x.yaml:1: a: unknown key 'Default_Option'; did you mean 'default_option'?");
     EXPECT_EQ(checked("a: {optimisation_domain: {min: 0}}\n"),
@@ -189,7 +194,8 @@ TEST(NamesOfTheSimulator, AreNotLikeThoseOfOptions) {
 
 TEST(MisspeltOption, OfAParameterIsRefusedWhereAllOfItsMapLooksLikeOptions) {
     EXPECT_EQ(checked("parameters: {speed: {batch_option: [1, 2], defalt_option: 1}}\n"),
-              "x.yaml:1: parameters.speed: unknown key 'batch_option'; did you mean 'batch_options'?");
+              "x.yaml:1: parameters.speed: unknown key 'batch_option'; did you mean 'batch_options'?\n"
+              "x.yaml:1: parameters.speed: unknown key 'defalt_option'; did you mean 'default_option'?");
     EXPECT_EQ(checked("parameters: {speed: {optimisation_domain: {min: 1}}}\n"),
               "x.yaml:1: parameters.speed: unknown key 'optimisation_domain'; did you mean 'optimization_domain'?");
     EXPECT_EQ(
@@ -200,8 +206,8 @@ TEST(MisspeltOption, OfAParameterIsRefusedWhereAllOfItsMapLooksLikeOptions) {
 TEST(MisspeltOption, IsToldWhereAParameterIsReadAsANumber) {
     Folder const folder;
     Folder::write("x.yaml", kRobots + "parameters:\n  speed: {defalt_option: 1}\n");
-    UserParameters parameters(load_scenario("x.yaml", {}));
-    EXPECT_EQ(parameters.unread(), "speed.defalt_option (x.yaml:7; did you mean 'default_option'?)");
+    UserParameters parameters(load_scenario("x.yaml", {}), Conversions::lenient);
+    EXPECT_EQ(parameters.unread().all, "speed.defalt_option (x.yaml:7; did you mean 'default_option'?)");
     EXPECT_EQ(error_of([&] { static_cast<void>(parameters.number("speed", 1e9)); }),
               "x.yaml:7: parameters.speed: expected a number, found a map; did you mean 'default_option', not "
               "'defalt_option'?");

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "base/problems.hpp"
 #include "config/tree.hpp"
 #include "config/yaml_text.hpp"
 #include "config_file.hpp"
@@ -12,7 +13,10 @@ using namespace pogosim::config_file;
 namespace {
 
 std::string resolved(std::string const& text) {
-    return to_yaml(resolve_options(parse_yaml(text, "x.yaml")));
+    Problems problems;
+    Node const root = resolve_options(parse_yaml(text, "x.yaml"), problems);
+    problems.throw_if_any();
+    return to_yaml(root);
 }
 
 }  // namespace
@@ -69,6 +73,8 @@ TEST(ResolveOptions, AlternativesWithoutADefaultAreIgnoredWithAWarning) {
 }
 
 TEST(ResolveOptions, TheChosenValueKeepsItsOwnLine) {
-    Node const root = resolve_options(parse_yaml("a:\n  batch_options: [1]\n  default_option: 1\n", "x.yaml"));
+    Problems problems;
+    Node const root =
+        resolve_options(parse_yaml("a:\n  batch_options: [1]\n  default_option: 1\n", "x.yaml"), problems);
     EXPECT_EQ(root.find("a")->where(), "x.yaml:3");
 }

@@ -596,12 +596,14 @@ TEST(Scenario, KeyWithoutAValueHasItsDefaultWithAWarning) {
         std::string warning;  // empty: none
     };
     std::string const expected = "x.yaml:6: time_step: expected a number above 0, at most 1 (s), found ";
-    for (auto const& [text, warning] : {Case{"time_step:", expected + "nothing; the default is used, 0.01"},
-                                        Case{"time_step:   # a comment", expected + "nothing; the default is used"},
-                                        Case{"time_step: {batch_options: [0.1, 0.2]}",
-                                             expected + "options without default_option; the default is used, 0.01"},
-                                        Case{"time_step: null", ""}, Case{"time_step: Null  # a comment", ""},
-                                        Case{"time_step: ~", ""}, Case{"\xC3\xA9: 1\nseed: ~", ""}}) {
+    for (auto const& [text, warning] :
+         {Case{"time_step:", expected + "nothing; the default is used, 0.01"},
+          Case{"time_step:   # a comment", expected + "nothing; the default is used"},
+          Case{"time_step: {batch_options: [0.1, 0.2]}",
+               "x.yaml:6: time_step: has batch_options but no default_option; run it with "
+               "pogobatch (a single run takes the default, 0.01)"},
+          Case{"time_step: null", ""}, Case{"time_step: Null  # a comment", ""}, Case{"time_step: ~", ""},
+          Case{"\xC3\xA9: 1\nseed: ~", ""}}) {
         Warnings const warnings;
         EXPECT_EQ(load(kRobots + text + "\n").time_step_s, 0.01);
         if (warning.empty()) {

@@ -31,7 +31,7 @@ std::string unread_after(std::vector<std::string> const& asked) {
         } catch (ConfigError const&) {  // a map or a list: it has been asked for
         }
     }
-    return several.unread();
+    return several.unread().all;
 }
 
 }  // namespace
@@ -113,6 +113,6 @@ TEST(UserParameters, NameThatIsNearToSeveralUnreadOnesIsNoSlipOfThem) {
     UserParameters near_both(parse_yaml("turn_mx: 1\nturn_mix: 2\nwalk_sped: 3\n", "x.yaml"));
     near_both.text("turn_max", 100);
     near_both.text("walk_speed", 100);
-    EXPECT_EQ(near_both.unread(),
+    EXPECT_EQ(near_both.unread().all,
               "turn_mx (x.yaml:1), turn_mix (x.yaml:2), walk_sped (x.yaml:3; did you mean 'walk_speed'?)");
 }

@@ -101,14 +101,14 @@ TEST(Values, NanAndInfinityPassOnlyWhereTheyAreWelcome) {
               "x.yaml:1: key: expected a number above 0 or .inf, found -.inf");
 }
 
-TEST(Values, TruthHasSixWordsInAnyCase) {
-    for (char const* text : {"true", "True", "YES", "on", "'true'"}) {
+TEST(Values, TruthHasSixWordsInAnyCaseAndTwoNumbers) {
+    for (char const* text : {"true", "True", "YES", "on", "'true'", "1", "1.0"}) {
         EXPECT_TRUE(value<bool>(text)) << text;
     }
-    for (char const* text : {"false", "No", "OFF"}) {
+    for (char const* text : {"false", "No", "OFF", "0"}) {
         EXPECT_FALSE(value<bool>(text)) << text;
     }
-    EXPECT_EQ(refusal<bool>("1"), "x.yaml:1: key: expected true or false, found 1");
+    EXPECT_EQ(refusal<bool>("2"), "x.yaml:1: key: expected true or false, found 2");
     EXPECT_EQ(refusal<bool>("maybe"), "x.yaml:1: key: expected true or false, found 'maybe'");
 }
 

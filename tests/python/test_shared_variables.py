@@ -22,7 +22,8 @@ int main(void) {{
 }}
 """
 REMEDY = (
-    "which real robots cannot: put what each robot has into USERDATA, read parameters with init_from_configuration(), "
+    "which real robots cannot: a clock or counter there that each robot advances runs 3 times too fast. Put what each "
+    "robot has into USERDATA, read parameters with init_from_configuration(), "
     "declare constants const and what the supervisor or all robots use POGO_SHARED, or set robot_memory: own"
 )
 COMPILERS = [name for names in (("gcc",), ("clang", "clang-14")) if (name := compiler(*names))]

@@ -342,13 +342,14 @@ def test_columns_that_no_row_could_have_are_not_named(
 # ---- Parameters ----
 
 
-def unread(folder: Path) -> str:
+def unread(folder: Path, *, all_of_them: bool = False) -> str:
     lines = (folder / "scene.yaml").read_text().splitlines()
     places = {line.split(":")[0].strip(): number + 1 for number, line in enumerate(lines)}
+    others = f", walk.speed (scene.yaml:{places['speed']}), list (scene.yaml:{places['list']})"
     return (
         "parameters never read by the program: "
-        f"turn_duratoin (scene.yaml:{places['turn_duratoin']}; did you mean 'turn_duration'?), "
-        f"walk.speed (scene.yaml:{places['speed']}), list (scene.yaml:{places['list']})"
+        f"turn_duratoin (scene.yaml:{places['turn_duratoin']}; did you mean 'turn_duration'?)"
+        f"{others if all_of_them else ' and 2 more (-v lists them)'}"
     )
 
 
@@ -359,16 +360,31 @@ UNREAD: Settings = {
 }
 
 
-def test_unused_parameters_are_listed_with_their_lines(program: Compile, tmp_path: Path) -> None:
+def test_unused_parameter_that_looks_like_a_slip_is_named_and_the_others_are_counted(
+    program: Compile, tmp_path: Path
+) -> None:
     result = slip(program, tmp_path, "nothing", UNREAD)
     assert warnings(result) == [unread(tmp_path)]
+
+
+def test_unused_parameters_without_a_near_name_are_counted(program: Compile, tmp_path: Path) -> None:
+    settings = {"parameters.of_others": 1, "parameters.of_another": 2}
+    assert warnings(slip(program, tmp_path, "nothing", settings)) == [
+        "parameters never read by the program: 2 (-v lists them)"
+    ]
+
+
+def test_all_unused_parameters_are_listed_with_verbose(program: Compile, tmp_path: Path) -> None:
+    result = slip(program, tmp_path, "nothing", UNREAD, "-v")
+    assert f"[debug] {unread(tmp_path, all_of_them=True)}\n" in result.text
 
 
 def test_unused_parameters_are_an_error_with_strict_after_the_whole_run(program: Compile, tmp_path: Path) -> None:
     settings = UNREAD
     result = slip(program, tmp_path, "nothing", settings, "--strict")
     assert result.code == 2
-    assert result.errors == f"Error: {unread(tmp_path)} (--strict; the run itself is complete)\n"
+    everything = unread(tmp_path, all_of_them=True)
+    assert result.errors == f"Error: {everything} (--strict; the run itself is complete)\n"
     assert result.frame()["time"].max() == pytest.approx(2.0)
     plain = slip(program, tmp_path / "plain", "nothing", settings)
     assert (plain.folder / "data.feather").read_bytes() == (tmp_path / "data.feather").read_bytes()

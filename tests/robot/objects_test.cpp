@@ -92,15 +92,12 @@ TEST(Categories, EachRunsTheControllerOfItsName) {
     EXPECT_EQ(counts, std::set<int>{8});  // all but the passive ones
 }
 
-TEST(Categories, WithoutAControllerWarnOnceAndTick) {
+TEST(Categories, WallsAndOtherThingsWithoutWheelsNeedNoProgram) {
     testing::use_program(nullptr, nullptr);
     config_file::Warnings const warnings;
     Simulation simulation(testing::test_program(), one_of_each(), {});
     ASSERT_FALSE(simulation.start());
-    std::vector<std::string> const lines = warnings.lines();
-    ASSERT_EQ(lines.size(), kCategories.size() - 1);
-    EXPECT_EQ(lines[0],
-              "the program has no pogobot_start() for category 'walls' (only for robots); its robots will do nothing");
+    EXPECT_EQ(warnings.text(), "");
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
 }
 

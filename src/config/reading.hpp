@@ -1,0 +1,15 @@
+// How strictly a configuration is read, and the mistakes in it.
+#pragma once
+
+#include "base/problems.hpp"
+
+namespace pogosim {
+
+struct Reading {
+    bool strict_keys = false;    // an unknown key is a mistake
+    bool strict_values = false;  // so is a value that a run would cut, or replace by the default
+    bool checks_unused = false;  // values are checked even where they have no effect
+    Problems problems{};
+};
+
+}  // namespace pogosim

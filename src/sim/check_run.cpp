@@ -1,0 +1,226 @@
+#include "sim/check_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/counted.hpp"
+#include "base/locked_file.hpp"
+#include "base/log.hpp"
+#include "render/png_file.hpp"
+#include "robot/without_effects.hpp"
+#include "sim/build_world.hpp"
+#include "sim/find_file.hpp"
+#include "sim/output_files.hpp"
+#include "sim/pictures.hpp"
+#include "sim/used_files.hpp"
+
+namespace pogosim {
+
+namespace {
+
+void check_files(Scenario const& scenario, CheckOptions const& options, Problems& problems) {
+    std::string const& film = options.run.film;
+    problems.collect([&] { find_file(scenario, Setting::arena_file, scenario.arena_file); });
+    if (scenario.formation.name == kImportedFormation) {
+        problems.collect([&] { find_file(scenario, Setting::formation_filename, scenario.formation.filename); });
+    }
+    problems.collect([&] { check_used_files(scenario, film); });
+    check_output_files(scenario, film, problems);
+    if (!options.picture.empty() && is_used_file(scenario, film, options.picture)) {
+        problems.add(fmt::format("--picture: '{}' is a file that the run reads or writes; choose another file",
+                                 options.picture));
+    }
+}
+
+/// Whether keys are wrong without which the world is another one.
+bool is_world_known(Problems const& problems) {
+    constexpr std::array<std::string_view, 9> kOfWorld{
+        "arena_",     "boundary_condition", "objects",   "initial_formation", "formation_",
+        "chessboard", "imported_formation", "light_map", "physics_engine"};
+    return std::ranges::none_of(problems.paths(), [&](std::string const& path) {
+        return std::ranges::any_of(kOfWorld, [&](std::string_view key) { return path.starts_with(key); });
+    });
+}
+
+/// The same run, which writes nothing.
+Scenario without_outputs(Scenario scenario) {
+    scenario.output.enable_data_logging = false;
+    scenario.output.message_log.clear();
+    scenario.output.enable_console_logging = false;
+    scenario.view.save_video_period_s = -1.0;
+    scenario.flash_state.output_file.clear();
+    std::error_code ignored;
+    if (scenario.flash_state.create_if_missing && !std::filesystem::exists(scenario.flash_state.input_file, ignored)) {
+        scenario.flash_state.input_file.clear();
+    }
+    scenario.threads = 1;
+    return scenario;
+}
+
+/// A world that can always be built: a robot of each category, in a square.
+Scenario stand_in(Scenario const& scenario) {
+    Scenario other;
+    other.file = scenario.file;
+    other.source = scenario.source;
+    other.robot_memory = scenario.robot_memory;
+    other.user_code_timeout_s = scenario.user_code_timeout_s;
+    other.arena_file = "arenas/square.csv";
+    other.seed = scenario.seed;
+    for (ObjectConfig const& object : scenario.objects) {
+        bool const is_new =
+            std::ranges::find(other.objects, object.category, &ObjectConfig::category) == other.objects.end();
+        if (is_new && !object.spec.lamp) {
+            ObjectConfig& robot = other.objects.emplace_back();
+            robot.category = object.category;
+            robot.spec.shape = {.kind = ShapeKind::disk};
+            robot.spec.robot.emplace();
+            robot.spec.body.emplace();
+        }
+    }
+    return without_outputs(std::move(other));
+}
+
+std::unique_ptr<Simulation> built(ProgramImage const& program, Scenario scenario, CheckOptions const& options,
+                                  Problems& problems) {
+    std::unique_ptr<Simulation> simulation;
+    RunOptions run;
+    run.conversions = options.run.conversions;
+    problems.collect([&] { simulation = std::make_unique<Simulation>(program, std::move(scenario), std::move(run)); });
+    return simulation;
+}
+
+/// Null if it cannot be built.
+std::unique_ptr<Simulation> built_as_written(ProgramImage const& program, Scenario const& scenario,
+                                             CheckOptions const& options, Problems& problems) {
+    if (is_world_known(problems)) {
+        return built(program, without_outputs(scenario), options, problems);
+    }
+    problems.collect([&] { check_arena(scenario); });
+    return nullptr;
+}
+
+struct Started {
+    bool possible = true;
+    Outcome outcome{};
+};
+
+/// In a thread of its own, so that the others of this process can still write files.
+Started start_without_effects(Simulation& simulation, Problems& problems) {
+    Started started;
+    std::thread([&] {
+        started.possible = forbid_effects_of_thread();
+        if (started.possible) {
+            problems.collect([&] { started.outcome = simulation.attempt([&] { return simulation.start(); }); });
+        }
+    }).join();
+    return started;
+}
+
+void check_unread_parameters(Simulation const& simulation, bool strict, Problems& problems) {
+    UnreadParameters const unread = simulation.parameters().unread();
+    if (unread.all.empty()) {
+        return;
+    }
+    constexpr auto what = "parameters that the program does not read before its first step";
+    if (strict) {
+        problems.add(fmt::format("{}: {} (--strict)", what, unread.all));
+    } else {
+        log().warn("{}: {}", what, unread.brief);
+    }
+}
+
+/// Starts the programs, for what they say of their parameters.
+void check_programs(Simulation& simulation, bool is_stand_in, bool strict, Problems& problems) {
+    simulation.parameters().collect_in(problems);
+    ProcessRun const scope(simulation.crash_handler());
+    auto const [possible, outcome] = start_without_effects(simulation, problems);
+    if (!possible) {
+        log().warn("the program's parameters are not checked: this system cannot keep programs from writing files");
+        return;
+    }
+    std::optional<UserFailure> const& failure = outcome.failure;
+    if (failure && failure->refused && !is_stand_in) {
+        problems.add(failure->what);
+    } else if (failure && failure->refused && simulation.parameters().has_refused()) {
+        problems.add(failure->what);
+    } else if (failure || outcome.shortage) {
+        if (!is_stand_in) {
+            log().warn("the program could not be checked to the end of user_init, without writing files: {}",
+                       failure ? failure->what : *outcome.shortage);
+        }
+    } else {
+        check_unread_parameters(simulation, strict, problems);
+    }
+}
+
+void draw(Scenario const& scenario, Simulation& simulation, std::string const& file) {
+    PictureFormat const format = picture_format(scenario, simulation.world());
+    Canvas canvas(format.size);
+    Painter().paint(canvas, format.camera, simulation.snapshots().take(parts_for(format.paint)), format.paint);
+    try {
+        std::filesystem::path const path(file);
+        std::error_code ignored;
+        if (path.has_parent_path()) {
+            std::filesystem::create_directories(path.parent_path(), ignored);
+        }
+        write_png(path, canvas);
+    } catch (FileError const& error) {
+        throw OutputError(
+            fmt::format("--picture: '{}' cannot be written: {}; choose another file", file, error.what()));
+    }
+}
+
+std::string summary_of(World const& world) {
+    std::size_t const others = world.objects.size() - world.robots.size();
+    std::string text = counted(world.robots.size(), "robot");
+    if (others > 0) {
+        text += ", " + counted(others, "other object");
+    }
+    if (!world.lamps.empty()) {
+        text += ", " + counted(world.lamps.size(), "lamp");
+    }
+    return text;
+}
+
+}  // namespace
+
+CheckResult check_run(ProgramImage const& program, Scenario const& written, CheckOptions const& options,
+                      Problems& problems) {
+    CheckResult result;
+    Scenario scenario = written;
+    if (problems.has_key("frames_name")) {
+        scenario.view.save_video_period_s = -1.0;  // there are no names to look at
+    }
+    check_files(scenario, options, problems);
+    std::unique_ptr<Simulation> simulation = built_as_written(program, scenario, options, problems);
+    bool const is_stand_in = simulation == nullptr;
+    if (is_stand_in) {
+        Problems of_stand_in;  // which are not the user's
+        simulation = built(program, stand_in(scenario), options, of_stand_in);
+    } else {
+        result.summary = summary_of(simulation->world());
+    }
+    if (simulation) {
+        check_programs(*simulation, is_stand_in, options.run.strict, problems);
+        result.user_code_was_aborted = simulation->crash_handler().was_left_by_force();
+    }
+    if (!options.picture.empty() && problems.empty()) {
+        draw(scenario, *simulation, options.picture);
+    }
+    if (result.user_code_was_aborted) {
+        static_cast<void>(simulation.release());  // its memory may be corrupted
+    }
+    return result;
+}
+
+}  // namespace pogosim

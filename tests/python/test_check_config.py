@@ -1,0 +1,389 @@
+"""--check-config finds all mistakes of a configuration at once, and writes nothing but the picture it is asked for."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from running import ROOT, Run, Settings, compile_text, example, run, run_command, write_scene
+
+CHECK = ["-c", "scene.yaml", "--check-config"]
+
+LEAVES_TRACES = """#define _GNU_SOURCE
+#include "pogobase.h"
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+float speed = 1.0f;
+static void leave(char const* name) {
+    FILE* file = fopen(name, "w");
+    if (file != NULL) { fprintf(file, "trace"); fclose(file); }
+    mkdir("folder_of_robots", 0755);
+    rename("kept.txt", "moved.txt");
+    remove("kept.txt");
+    truncate("kept.txt", 0);
+    int descriptor = open("kept.txt", O_RDWR | O_TRUNC);
+    if (descriptor >= 0) { close(descriptor); }
+    if (system("echo trace > shell.txt") != 0) { printf("no shell\\n"); }
+    FILE* read = fopen("kept.txt", "r");
+    if (read == NULL) { exit(1); }  // reading is allowed
+    fclose(read);
+}
+static void setup(void) { leave("setup.txt"); init_from_configuration(speed); check_parameter(speed, 0.5, 2.0); }
+static void user_init(void) { leave("init.txt"); printf("I am here\\n"); pogobot_led_setColor(0, 25, 0); }
+static void user_step(void) { leave("step.txt"); exit(1); }
+int main(void) {
+    leave("main.txt");
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    SET_CALLBACK(callback_global_setup, setup);
+    return 0;
+}
+"""
+
+
+def contents(folder: Path) -> dict[str, tuple[str, int]]:
+    """Return the hash and the time of change of every file and folder below a folder."""
+    return {
+        str(path.relative_to(folder)): (
+            hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "",
+            path.stat().st_mtime_ns,
+        )
+        for path in sorted([folder, *folder.rglob("*")])
+    }
+
+
+def check(program: Path, folder: Path, settings: Settings | None = None, *arguments: str) -> Run:
+    """Check a scene, in a folder in which nothing changes."""
+    write_scene(folder, settings or {})
+    before = contents(folder)
+    result = run_command(program, folder, [*CHECK, *arguments])
+    assert contents(folder) == before
+    return result
+
+
+def mistakes(result: Run) -> list[str]:
+    assert result.code == 2, result.text
+    assert result.output == ""
+    return [line.removeprefix("Error: ") for line in result.errors.splitlines() if line.startswith("Error: ")]
+
+
+def places(result: Run) -> list[str]:
+    """Return "objects.robots.nb" of each mistake, all of which say file and line."""
+    found = [re.match(r"scene\.yaml:\d+: ([\w.]+): ", mistake) for mistake in mistakes(result)]
+    assert None not in found, result.text
+    return [match[1] for match in found if match]
+
+
+# ---- What is right ----
+
+
+def test_right_configuration_is_one_line_and_exit_code_0(tmp_path: Path) -> None:
+    settings = {
+        "objects.box": {"type": "passive_object", "geometry": "disk", "radius": 30, "nb": 2},
+        "objects.lamp": {"type": "static_light", "geometry": "global", "value": 100},
+    }
+    result = check(example("helloworld"), tmp_path, settings)
+    assert (result.code, result.errors) == (0, "")
+    assert result.output == "scene.yaml: no mistakes found: 3 robots, 2 other objects, 1 lamp\n"
+
+
+@pytest.mark.parametrize("name", ["run_and_tumble", "hanabi", "phototaxis", "walls", "vicsek", "heartbeat_sdk"])
+def test_shipped_configurations_are_right(name: str, tmp_path: Path) -> None:
+    configuration = ROOT / "conf" / f"{name}.yaml"
+    if not configuration.exists():
+        configuration = ROOT / "conf" / "simple.yaml"
+    result = run_command(example(name), tmp_path, ["-c", str(configuration), "--check-config", "-g"])
+    assert result.code == 0, result.text
+    assert result.output.startswith(f"{configuration}: no mistakes found: ")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_warnings_do_not_fail_the_check(tmp_path: Path) -> None:
+    result = check(example("helloworld"), tmp_path, {"arena_surfce": 3, "parameters.unread": 1})
+    assert result.code == 0
+    assert "unknown key 'arena_surfce' is ignored; did you mean 'arena_surface'?" in result.errors
+    assert "parameters that the program does not read before its first step: unread (scene.yaml:" in result.errors
+
+
+def test_check_needs_no_display_and_no_ending_of_the_run(tmp_path: Path) -> None:
+    result = check(example("helloworld"), tmp_path, {"GUI": True, "simulation_time": 1e9})
+    assert (result.code, result.errors) == (0, "")
+
+
+# ---- What is wrong ----
+
+
+def test_all_mistakes_are_told_at_once_each_with_its_line(tmp_path: Path) -> None:
+    settings = {
+        "arena_file": "nowhere.csv",
+        "time_step": 0,
+        "seed": -1,
+        "window_width": 0,
+        "boundary_condition": "soft",
+        "data_filename": "data.xlsx",
+        "objects.robots.nb": -3,
+        "objects.robots.body_density": -1,
+        "objects.robots.msg_success_rate": {"type": "static", "rate": 2},
+        "objects.thing": {"type": "cube"},
+        "parameters.speed": 7,
+    }
+    program = compile_text(tmp_path, LEAVES_TRACES)
+    (tmp_path / "kept.txt").write_text("kept")
+    assert sorted(places(check(program, tmp_path, settings))) == [
+        "arena_file",
+        "boundary_condition",
+        "data_filename",
+        "objects.robots.body_density",
+        "objects.robots.msg_success_rate.rate",
+        "objects.robots.nb",
+        "objects.thing.type",
+        "parameters.speed",
+        "seed",
+        "time_step",
+        "window_width",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("settings", "place"),
+    [
+        ({"arena_file": "gone.csv"}, "arena_file"),
+        ({"objects.robots.nb": 1000, "initial_formation": "random"}, "initial_formation"),
+        ({"initial_formation": "chessboard", "objects.robots.nb": 5000}, "initial_formation"),
+        ({"initial_formation": "imported", "formation_filename": "gone.csv"}, "formation_filename"),
+        ({"objects.robots.x": 5000, "objects.robots.y": 0}, "objects.robots.x"),
+        ({"data_filename": "scene.yaml"}, "data_filename"),
+        ({"data_filename": "prog/data.feather"}, "data_filename"),
+        ({"enable_console_logging": True, "console_filename": "."}, "console_filename"),
+        ({"message_log": "log.txt"}, "message_log"),
+        ({"save_video_period": 1, "frames_name": "f.png"}, "frames_name"),
+        ({"save_video_period": 1, "frames_name": "f{:.0f}.jpg"}, "frames_name"),
+        (
+            {"physics_engine": "disk", "objects.robots.geometry": "triangle", "objects.robots.radius": None},
+            "physics_engine",
+        ),
+        ({"chessboard_distance_between_neighbors": 0}, "chessboard_distance_between_neighbors"),
+        ({"GUI_speed_up": -1}, "GUI_speed_up"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_each_part_of_a_run_is_checked(settings: Settings, place: str, tmp_path: Path) -> None:
+    (tmp_path / "prog").write_text("a file, no folder")
+    found = places(check(example("helloworld"), tmp_path, settings))
+    assert set(found) == {place}
+
+
+def test_arena_file_is_checked_beside_other_mistakes(tmp_path: Path) -> None:
+    (tmp_path / "bow.csv").write_text("0,0\n1,1\n1,0\n0,1\n")
+    result = check(example("helloworld"), tmp_path, {"arena_file": "bow.csv", "objects.robots.nb": "many"})
+    assert sorted(mistake.split(": ")[0].split(":")[0] for mistake in mistakes(result)) == ["bow.csv", "scene.yaml"]
+
+
+def test_yaml_that_cannot_be_read_is_one_mistake(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text("objects: {robots: [\n")
+    assert len(mistakes(run_command(example("helloworld"), tmp_path, CHECK))) == 1
+    assert len(mistakes(run_command(example("helloworld"), tmp_path, ["-c", "none.yaml", "--check-config"]))) == 1
+
+
+def test_ordinary_run_tells_all_mistakes_of_the_file_too(tmp_path: Path) -> None:
+    result = run(example("helloworld"), tmp_path, {"time_step": 0, "objects.robots.nb": "many"})
+    assert places(result) == ["time_step", "objects.robots.nb"]
+    assert list(tmp_path.iterdir()) == [tmp_path / "scene.yaml"]
+
+
+# ---- Parameters, which only the program knows ----
+
+
+def test_program_is_started_without_leaving_a_trace(tmp_path: Path) -> None:
+    program = compile_text(tmp_path, LEAVES_TRACES)
+    (tmp_path / "kept.txt").write_text("kept")
+    (tmp_path / "data.feather").write_text("of an earlier run")
+    (tmp_path / "frames").mkdir()
+    (tmp_path / "frames" / "old.png").write_text("old")
+    settings = {"delete_old_files": True, "save_video_period": 1, "enable_console_logging": True}
+    result = check(program, tmp_path, settings)
+    assert (result.code, result.errors) == (0, "")
+    assert result.output == "scene.yaml: no mistakes found: 3 robots\n"
+
+
+def test_parameter_that_the_program_refuses_is_a_mistake(tmp_path: Path) -> None:
+    program = compile_text(tmp_path, LEAVES_TRACES)
+    (tmp_path / "kept.txt").write_text("kept")
+    (mistake,) = mistakes(check(program, tmp_path, {"parameters.speed": 7}))
+    assert re.fullmatch(r"scene\.yaml:\d+: parameters\.speed: expected a number from 0.5 to 2, found 7", mistake)
+
+
+PARAMETERS = """#include "pogobase.h"
+uint8_t small; int16_t middle; bool flag; float list[2];
+static void setup(void) {
+    init_from_configuration(small); init_from_configuration(middle); init_from_configuration(flag);
+    init_array_from_configuration(list);
+}
+int main(void) {
+    pogobot_init(); pogobot_start(NULL, NULL); SET_CALLBACK(callback_global_setup, setup); return 0;
+}
+"""
+
+
+def test_all_parameters_are_checked_at_once(tmp_path: Path) -> None:
+    program = compile_text(tmp_path, PARAMETERS)
+    wrong = {"small": 300, "middle": -40000, "flag": 1, "list": [1]}
+    assert places(check(program, tmp_path, {"parameters": wrong})) == [
+        "parameters.small",
+        "parameters.middle",
+        "parameters.list",
+    ]
+
+
+@pytest.mark.parametrize("option", ["--strict", "--strict-config"])
+def test_types_of_parameters_are_checked_at_once_when_strict(option: str, tmp_path: Path) -> None:
+    program = compile_text(tmp_path, PARAMETERS)
+    wrong = {"small": "sign", "middle": [1], "flag": "maybe", "list": "none"}
+    lenient = check(program, tmp_path, {"parameters": wrong})
+    assert lenient.code == 0
+    assert lenient.errors.count("the program keeps its own value") == 4
+    assert places(check(program, tmp_path, {"parameters": wrong}, option)) == [
+        "parameters.small",
+        "parameters.middle",
+        "parameters.flag",
+        "parameters.list",
+    ]
+
+
+def test_robots_that_do_not_fit_do_not_hide_a_wrong_parameter(tmp_path: Path) -> None:
+    program = compile_text(tmp_path, PARAMETERS)
+    settings = {"objects.robots.nb": 1000, "initial_formation": "random", "parameters.small": 300}
+    assert places(check(program, tmp_path, settings)) == ["initial_formation", "parameters.small"]
+
+
+def test_program_that_fails_at_its_start_is_said_and_not_blamed_on_the_configuration(tmp_path: Path) -> None:
+    program = compile_text(
+        tmp_path,
+        '#include "pogobase.h"\n#include <stdlib.h>\nstatic void user_init(void) { abort(); }\n'
+        "int main(void) { pogobot_init(); pogobot_start(user_init, NULL); return 0; }\n",
+    )
+    result = check(program, tmp_path)
+    assert result.code == 0
+    assert "the program could not be checked to the end of user_init" in result.errors
+
+
+def test_program_of_the_sdk_is_started_up_to_its_first_wait(tmp_path: Path) -> None:
+    result = check(example("heartbeat_sdk"), tmp_path)
+    assert result.code == 0, result.text
+
+
+# ---- --strict-config ----
+
+
+@pytest.mark.parametrize(
+    ("settings", "place"),
+    [
+        ({"objects.robots.nb": 2.5}, "objects.robots.nb"),
+        ({"objects.robots.nb": {"batch_options": [1, 2]}}, "objects.robots.nb"),
+        (
+            {"objects.lamp": {"type": "static_light", "geometry": "global", "light_mode": "bright"}},
+            "objects.lamp.light_mode",
+        ),
+        ({"parameters.small": "sign"}, "parameters.small"),
+        ({"parameters.small": 2.5}, "parameters.small"),
+    ],
+    ids=["fraction", "options", "mode", "type of a parameter", "fraction of a parameter"],
+)
+def test_strict_values_are_refused_in_a_run_and_in_a_check(settings: Settings, place: str, tmp_path: Path) -> None:
+    program = compile_text(tmp_path, PARAMETERS)
+    assert run(program, tmp_path, settings).code == 0
+    assert check(program, tmp_path, settings).code == 0
+    result = run(program, tmp_path, settings, ["--strict-config"])
+    assert result.code == 2
+    assert re.search(rf"scene\.yaml:\d+: {re.escape(place)}: ", result.errors)
+    assert places(check(program, tmp_path, settings, "--strict-config")) == [place]
+
+
+def test_strict_values_allow_unknown_keys_and_whole_numbers_of_any_form(tmp_path: Path) -> None:
+    settings = {"some_key": 1, "objects.robots.nb": "1e1", "arena_stretch": 1, "seed": None}
+    result = run(example("helloworld"), tmp_path, {**settings, "objects.robots.radius": 20}, ["--strict-config"])
+    assert result.code == 0, result.text
+
+
+# ---- The picture ----
+
+
+def test_picture_shows_the_start_and_is_all_that_is_written(tmp_path: Path) -> None:
+    program = compile_text(tmp_path, LEAVES_TRACES)
+    (tmp_path / "kept.txt").write_text("kept")
+    write_scene(tmp_path, {"window_width": 300, "window_height": 200})
+    before = set(contents(tmp_path))
+    result = run_command(program, tmp_path, [*CHECK, "--picture", "new/start.png"])
+    assert (result.code, result.errors) == (0, "")
+    assert set(contents(tmp_path)) - before == {"new", "new/start.png"}
+    with Image.open(tmp_path / "new" / "start.png") as picture:
+        assert picture.size == (300, 200)
+        red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB")).astype(int), 2, 0)
+    assert np.any(green > 2 * np.maximum(red, blue))  # the LEDs that user_init has set
+
+
+def test_picture_is_not_drawn_of_a_wrong_configuration(tmp_path: Path) -> None:
+    assert places(check(example("helloworld"), tmp_path, {"seed": -1}, "--picture", "start.png")) == ["seed"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["--picture", "start.png"], "--picture requires --check-config"),
+        (["--check-config", "--picture", "start.jpg"], "expected the name of a picture, .png, found 'start.jpg'"),
+        (["--check-config", "--picture", "scene.yaml/start.png"], "'scene.yaml/start.png' cannot be written"),
+        (["--check-config", "--picture"], "--picture needs a value"),
+    ],
+)
+def test_wrong_pictures_are_refused(arguments: list[str], complaint: str, tmp_path: Path) -> None:
+    write_scene(tmp_path, {})
+    result = run_command(example("helloworld"), tmp_path, ["-c", "scene.yaml", *arguments])
+    assert result.code == 2
+    assert complaint in result.errors
+    assert list(tmp_path.iterdir()) == [tmp_path / "scene.yaml"]
+
+
+def test_picture_does_not_replace_a_file_of_the_run(tmp_path: Path) -> None:
+    link = tmp_path / "link.png"
+    link.symlink_to("scene.yaml")
+    write_scene(tmp_path, {})
+    text = (tmp_path / "scene.yaml").read_text()
+    result = run_command(example("helloworld"), tmp_path, [*CHECK, "--picture", "link.png"])
+    assert result.code == 2
+    assert "is a file that the run reads or writes" in result.errors
+    assert (tmp_path / "scene.yaml").read_text() == text
+
+
+# ---- Through `pogosim run` ----
+
+
+def test_pogosim_run_passes_the_options_on(tmp_path: Path) -> None:
+    write_scene(tmp_path, {"seed": -1, "time_step": 0})
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+    command = [sys.executable, "-m", "pogosim", "run", str(example("helloworld")), *CHECK]
+    ended = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False, env=environment
+    )
+    assert places(Run(ended.returncode, ended.stdout, ended.stderr, tmp_path)) == ["time_step", "seed"]
+    write_scene(tmp_path, {})
+    ended = subprocess.run(
+        [*command, "--picture", "start.png"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env=environment,
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert (tmp_path / "start.png").exists()
