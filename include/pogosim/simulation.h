@@ -45,9 +45,9 @@ extern POGO_PER_ROBOT void (*callback_robot_click)(void);
 // ---- Configuration: values under `parameters:` ----
 
 ///@{
-/// Sets the variable to the value of `parameters.NAME` (dots address entries of maps and lists), or to the default if it
-/// is absent or, with a warning, of another type (--strict: an error). A value outside the range of the variable's type
-/// is an error; for integers, fractions are truncated, with a warning.
+/// Sets the variable to the value of `parameters.NAME` (dots address entries of maps and lists), or to the default if
+/// it is absent or, with a warning, of another type (--strict: an error). A value outside the range of the variable's
+/// type is an error; for integers, fractions are truncated, with a warning.
 /// @range the range of the type
 void init_bool_from_configuration(bool* variable, char const* name, bool const default_value);
 void init_float_from_configuration(float* variable, char const* name, float const default_value);

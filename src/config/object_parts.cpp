@@ -101,8 +101,8 @@ std::span<Key<SensorSpec> const> sensor_model_keys() {
     static std::array const keys{
         K{"sensor_model", model, any(), "",
           "ideal: sensors give exact numbers, and light up to 32767. robot: numbers of a real robot's chips, with "
-          "light up to 1023, gravity, noise and whole counts; photosensors_bits and the keys that begin with imu_ may change "
-          "each."},
+          "light up to 1023, gravity, noise and whole counts; photosensors_bits and the keys that begin with imu_ may "
+          "change each."},
     };
     return keys;
 }

@@ -244,7 +244,7 @@ std::span<Key<ViewConfig> const> view_keys() {
     return keys;
 }
 
-/// Of a number of bytes, as much as every machine can give.
+/// The stack of so many bytes, or the least that every machine can give.
 int stack_kib(std::int64_t bytes) {
     return static_cast<int>(std::max<std::int64_t>((bytes + 1023) / 1024, kLeastStackKib));
 }

@@ -1,6 +1,6 @@
 // The values under `parameters` for the global variables of a user's program, and which of them it has asked for. Names
-// are dotted paths as in find_path. Each question has no answer for a value that is absent or null. A value out of range
-// is a ConfigError ("file:line: parameters.x: expected ..., found ..."), one of another type may be.
+// are dotted paths as in find_path. Each question has no answer for a value that is absent or null. A value out of
+// range is a ConfigError ("file:line: parameters.x: expected ..., found ..."), one of another type may be.
 #pragma once
 
 #include <cstddef>

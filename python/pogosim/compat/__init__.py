@@ -6,8 +6,8 @@ print(compute_polar_order(rows))
 
 Each table that an analysis writes, `NAME.csv`, is a function `compute_NAME(rows, metadata=None, **options)` of the
 module that is named after the analysis: `am`, `locomotion`, `neighbors`, `network` and `coverage`. It returns what
-`pogosim analyze` would write, with columns for the run, the arena and the varied parameters. `metadata` is needed only if the
-rows have lost their `attrs`. Options are those of the command line, by the same names: `compute_psi_k(rows,
+`pogosim analyze` would write, with columns for the run, the arena and the varied parameters. `metadata` is needed only
+if the rows have lost their `attrs`. Options are those of the command line, by the same names: `compute_psi_k(rows,
 psi_k=4)`.
 """
 
