@@ -56,7 +56,7 @@ std::string why_not_writable(std::string const& name) {
         path = path.parent_path();
     }
     if (!is_there && !fs::is_directory(path, error)) {
-        return fmt::format("'{}' is not a folder", path.string());
+        return std::generic_category().message(ENOTDIR);
     }
     return access(path.c_str(), is_there ? W_OK : W_OK | X_OK) == 0 ? "" : std::generic_category().message(errno);
 }

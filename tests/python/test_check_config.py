@@ -216,6 +216,20 @@ def test_program_is_started_without_leaving_a_trace(tmp_path: Path) -> None:
     assert result.output == "scene.yaml: no mistakes found: 3 robots\n"
 
 
+def test_archive_of_flash_memory_is_neither_made_nor_replaced(tmp_path: Path) -> None:
+    files = {"flash_state": {"input_file": "in.flash", "output_file": "new/out.flash"}}
+    result = check(example("helloworld"), tmp_path, files)
+    assert (result.code, result.errors) == (0, "")
+    (tmp_path / "broken.flash").write_text("no archive")
+    assert places(check(example("helloworld"), tmp_path, {"flash_state": {"input_file": "broken.flash"}})) == [
+        "flash_state.input_file"
+    ]
+    (tmp_path / "file").write_text("no folder")
+    assert places(check(example("helloworld"), tmp_path, {"flash_state": {"output_file": "file/out.flash"}})) == [
+        "flash_state.output_file"
+    ]
+
+
 def test_parameter_that_the_program_refuses_is_a_mistake(tmp_path: Path) -> None:
     program = compile_text(tmp_path, LEAVES_TRACES)
     (tmp_path / "kept.txt").write_text("kept")
