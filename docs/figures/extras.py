@@ -25,5 +25,6 @@ def draw(_folder: Path) -> dict[str, Quote]:
     rows = [
         f"| {PURPOSES[extra]} | `.venv/bin/python -m pip install {shlex.join(packages)}` |"
         for extra, packages in EXTRAS.items()
+        if extra in PURPOSES  # `optim` is another name
     ]
     return {NAMES[0]: Quote(("| for | command in a checkout |", "|---|---|", *rows))}

@@ -22,6 +22,7 @@ SUBCOMMANDS = (
     "picture",
     "film",
     "recover",
+    "flash",
     "arena",
     "calibrate",
     "fit-comm",

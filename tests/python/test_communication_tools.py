@@ -190,7 +190,7 @@ def test_percentage_for_programs_is_never_zero(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "required: -c/--cluster, -m/--msg-size"),
+        ([], "required: -c/--cluster/--cluster-size/--cluster_size, -m/--msg-size/--msg_size"),
         (["-c", "0", "-m", "10"], "0 is less than 1; the sender counts, too"),
         (["-c", "7", "-m", "-1"], "-1 is not above 0"),
         (["-c", "nan", "-m", "1"], "'nan' is not a finite number"),

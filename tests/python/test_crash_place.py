@@ -117,7 +117,7 @@ def failed(program: Path, folder: Path, failure: str, **settings: Any) -> str:
     """Run a program that fails in this way and return its message."""
     number = FAILURES.index(failure)
     result = run(
-        program, folder, {"parameters.failure": number, "parameters.gain": "fast", "user_code_timeout": 0.3, **settings}
+        program, folder, {"parameters.failure": number, "parameters.gain": 1e12, "user_code_timeout": 0.3, **settings}
     )
     assert result.code == {"exit": 4, "refused": 2}.get(failure, 3), result.text
     [message] = [line for line in result.errors.splitlines() if "[error]" in line]
