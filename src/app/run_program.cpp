@@ -73,7 +73,7 @@ LoadOptions load_options(CommandLine const& options) {
     return {.overrides = options.overrides,
             .strict = options.strict,
             .strict_values = options.strict_config,
-            .checks_unused = options.check_config || options.strict_config};
+            .thorough = options.check_config || options.strict_config};
 }
 
 Scenario scenario_of(CommandLine const& options) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/nearest_name.hpp"
@@ -272,6 +273,7 @@ private:
     }
 
     void look_at_entries(Node const& map, std::string const& path, Names names) const {
+        bool is_told = false;  // one slip of a map is enough
         for (auto const& entry : map.entries) {
             auto const& [key, value] = entry;
             bool const has_options = names != Names::top_level || !is_in(kWithoutOptions, key);
@@ -280,6 +282,9 @@ private:
             }
             std::string_view const word = misspelt_option(key);
             if (!word.empty() && !may_be_a_name(entry, word, map, names)) {
+                if (std::exchange(is_told, true)) {
+                    continue;
+                }
                 problems_.collect([&] {
                     fail_at({value, path.empty() ? "the top level" : path},
                             fmt::format("unknown key '{}'; did you mean '{}'?", shown(key), word));

@@ -211,11 +211,11 @@ void check_formation(Scenario const& scenario) {
     }
 }
 
-/// `checks_unused`: also where the formation looks at neither of them.
-void check_spaces(Scenario const& scenario, bool checks_unused) {
+/// `thorough`: also where the formation looks at neither of them.
+void check_spaces(Scenario const& scenario, bool thorough) {
     FormationSpec const& formation = scenario.formation;
     bool const is_used = formation.name == "random" || formation.name == "aligned_random";
-    if ((is_used || checks_unused) && formation.max_space_mm < formation.min_space_mm) {
+    if ((is_used || thorough) && formation.max_space_mm < formation.min_space_mm) {
         fail_at(place_of(scenario, "formation_max_space_between_neighbors"),
                 fmt::format("expected at least formation_min_space_between_neighbors, {} mm, found {}",
                             number_text(formation.min_space_mm), number_text(formation.max_space_mm)));
@@ -236,7 +236,7 @@ void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& r
     collect([&] { check_arena(scenario); });
     collect([&] { check_walls(scenario); });
     collect([&] { check_formation(scenario); });
-    collect([&] { check_spaces(scenario, reading.checks_unused); });
+    collect([&] { check_spaces(scenario, reading.thorough); });
 }
 
 }  // namespace pogosim

@@ -198,7 +198,7 @@ void MapReader::read_node(Key<T> const& key, Node const& node, bool is_used, T& 
                            read_value(place, limits, read);
                            into.*member = std::move(read);
                        } catch (ConfigError const&) {
-                           if (is_used || reading_.checks_unused || !is_of_type(place, read)) {
+                           if (is_used || reading_.thorough || !is_of_type(place, read)) {
                                throw;
                            }
                        }

@@ -127,11 +127,13 @@ Polygon read_area(MapReader const& object, Node const& node) {
     return area;
 }
 
-/// Two keys that place objects in different ways are a mistake.
-void refuse_both(MapReader const& reader, std::string_view one, std::string_view other) {
-    if (reader.find(one) != nullptr && reader.find(other) != nullptr) {
+/// Two keys that place objects in different ways are a mistake. Returns whether both are there.
+bool refuse_both(MapReader const& reader, std::string_view one, std::string_view other) {
+    bool const are_there = reader.find(one) != nullptr && reader.find(other) != nullptr;
+    if (are_there) {
         reader.refuse(one, fmt::format("cannot be combined with '{}'; use one or the other", other));
     }
+    return are_there;
 }
 
 void refuse_fixed_wheels_and_membranes(MapReader const& reader, ObjectConfig const& object) {
@@ -153,13 +155,18 @@ Polygon read_disk_area(MapReader& reader) {
 
 void read_placement(MapReader& reader, ObjectConfig& object) {
     refuse_fixed_wheels_and_membranes(reader, object);
+    bool has_place_twice = false;
     for (std::string_view const key : {"poses", "area", "initial_formation"}) {
-        refuse_both(reader, key, "x");
-        refuse_both(reader, key, "y");
+        bool const has_x = refuse_both(reader, key, "x");
+        has_place_twice = refuse_both(reader, key, "y") || has_x || has_place_twice;
     }
     refuse_both(reader, "area", "poses");
     refuse_both(reader, "initial_formation", "poses");
-    read_position(reader, object);
+    if (has_place_twice) {
+        ignore_position(reader);
+    } else {
+        read_position(reader, object);
+    }
     reader.read(placement_keys(), object);
     reader.read(formation_keys(), object.own_formation);
     if (Node const* area = reader.find("area")) {

@@ -8,7 +8,7 @@ namespace pogosim {
 struct Reading {
     bool strict_keys = false;    // an unknown key is a mistake
     bool strict_values = false;  // so is a value that a run would cut, or replace by the default
-    bool checks_unused = false;  // values are checked even where they have no effect
+    bool thorough = false;  // values without effect are checked, and slips in words of options do not end the reading
     Problems problems{};
 };
 

@@ -18,16 +18,25 @@ namespace pogosim {
 
 namespace {
 
-Node resolved_tree(Node const& written, std::vector<std::string> const& overrides, Problems& problems) {
+/// Slips in words of options leave out a part of a study; what a run would make of the rest says little then.
+void check_words(Node const& root, Reading& reading) {
+    std::size_t const before = reading.problems.messages().size();
+    check_options(root, reading.problems);
+    if (!reading.thorough && reading.problems.messages().size() > before) {
+        reading.problems.throw_if_any();
+    }
+    reading.problems.leave_out_known_keys();
+}
+
+Node resolved_tree(Node const& written, std::vector<std::string> const& overrides, Reading& reading) {
+    Problems& problems = reading.problems;
     // Values of --set replace what the file's options have resolved to, and may be options themselves.
-    check_options(written, problems);
-    problems.leave_out_known_keys();
+    check_words(written, reading);
     Node root = resolve_options(written, problems);
     for (std::string const& assignment : overrides) {
         problems.collect([&] { apply_override(root, assignment); });
     }
-    check_options(root, problems);
-    problems.leave_out_known_keys();
+    check_words(root, reading);
     return resolve_options(root, problems);
 }
 
@@ -137,9 +146,9 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
     scenario.file = path;
     Node const written = read_yaml_file(path);
     Reading reading{
-        .strict_keys = options.strict, .strict_values = options.strict_values, .checks_unused = options.checks_unused};
+        .strict_keys = options.strict, .strict_values = options.strict_values, .thorough = options.thorough};
     check_maps_of_tools(written, reading.problems);
-    ConfigSource source{.tree = resolved_tree(without_maps_of_tools(written), options.overrides, reading.problems),
+    ConfigSource source{.tree = resolved_tree(without_maps_of_tools(written), options.overrides, reading),
                         .values = {}};
     if (source.tree.kind != Node::Kind::map) {
         fail_expected({source.tree, "the top level"}, "a map of keys");

@@ -144,7 +144,7 @@ struct LoadOptions {
     std::vector<std::string> overrides;  // --set, in order
     bool strict = false;                 // unknown keys are errors
     bool strict_values = false;          // values that would be cut, or replaced by the default, are errors
-    bool checks_unused = false;          // values that have no effect are checked, too
+    bool thorough = false;               // for a check, see Reading
 };
 
 /// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ...", a line for each

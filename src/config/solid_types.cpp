@@ -41,7 +41,9 @@ void read_pogowall(MapReader& reader, ObjectConfig& object) {
         return;
     }
     read_position(reader, object);
-    if (!object.position_mm && reader.find("geometry") != nullptr) {
+    bool const has_shape =
+        reader.find("geometry") != nullptr && !reader.reading().problems.has_key(reader.path_of("geometry"));
+    if (!object.position_mm && has_shape) {
         reader.collect([&] { fail_at(reader.place(), "needs x and y: no formation places a wall of this geometry"); });
     }
 }

@@ -43,8 +43,7 @@ TEST(MisspeltOption, BesideAnotherIsRefusedWithItsLineAlsoWithoutStrict) {
 
 TEST(MisspeltOption, AloneIsRefusedWhereTheSimulatorChoosesTheKeys) {
     EXPECT_EQ(checked("objects: {robots: {nb: {batch_option: [3, 4], defalt_option: 3}}}\n"),
-              "x.yaml:1: objects.robots.nb: unknown key 'batch_option'; did you mean 'batch_options'?\n"
-              "x.yaml:1: objects.robots.nb: unknown key 'defalt_option'; did you mean 'default_option'?");
+              "x.yaml:1: objects.robots.nb: unknown key 'batch_option'; did you mean 'batch_options'?");
     EXPECT_EQ(checked("a: {Default_Option: 3}\n"),
               "x.yaml:1: a: unknown key 'Default_Option'; did you mean 'default_option'?");
     EXPECT_EQ(checked("a: {optimisation_domain: {min: 0}}\n"),
@@ -194,8 +193,7 @@ TEST(NamesOfTheSimulator, AreNotLikeThoseOfOptions) {
 
 TEST(MisspeltOption, OfAParameterIsRefusedWhereAllOfItsMapLooksLikeOptions) {
     EXPECT_EQ(checked("parameters: {speed: {batch_option: [1, 2], defalt_option: 1}}\n"),
-              "x.yaml:1: parameters.speed: unknown key 'batch_option'; did you mean 'batch_options'?\n"
-              "x.yaml:1: parameters.speed: unknown key 'defalt_option'; did you mean 'default_option'?");
+              "x.yaml:1: parameters.speed: unknown key 'batch_option'; did you mean 'batch_options'?");
     EXPECT_EQ(checked("parameters: {speed: {optimisation_domain: {min: 1}}}\n"),
               "x.yaml:1: parameters.speed: unknown key 'optimisation_domain'; did you mean 'optimization_domain'?");
     EXPECT_EQ(

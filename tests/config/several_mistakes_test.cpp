@@ -75,7 +75,8 @@ TEST(SeveralMistakes, UnknownKeysAreToldToo) {
 
 TEST(SeveralMistakes, SlipsInWordsOfOptionsAreToldOnceAndWithTheOthers) {
     EXPECT_EQ(lines_of(load_error(kRobots + "    nb: {batch_option: [1, 2], default_option: 1}\n"
-                                            "seed: {batch_options: 3, default_option: 1}\ntime_step: 0\n")),
+                                            "seed: {batch_options: 3, default_option: 1}\ntime_step: 0\n",
+                                  {.thorough = true})),
               (Keys{"x.yaml:6: objects.robots.nb: unknown key 'batch_option' beside 'default_option'; did you mean "
                     "'batch_options'?",
                     "x.yaml:7: seed: batch_options: expected a list of values, found 3; write [3]",
@@ -221,7 +222,7 @@ TEST(UnusedValues, AreCheckedIfAsked) {
                                           "formation_max_space_between_neighbors: 3"};
     for (std::string const& text : unused) {
         EXPECT_EQ(load_error(kRobots + text + "\n"), "no error") << text;
-        EXPECT_NE(load_error(kRobots + text + "\n", {.checks_unused = true}), "no error") << text;
+        EXPECT_NE(load_error(kRobots + text + "\n", {.thorough = true}), "no error") << text;
     }
 }
 

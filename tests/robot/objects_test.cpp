@@ -97,7 +97,8 @@ TEST(Categories, WallsAndOtherThingsWithoutWheelsNeedNoProgram) {
     config_file::Warnings const warnings;
     Simulation simulation(testing::test_program(), one_of_each(), {});
     ASSERT_FALSE(simulation.start());
-    EXPECT_EQ(warnings.text(), "");
+    EXPECT_EQ(warnings.text(),
+              "the program has no pogobot_start() for category 'late' (only for robots); its robots will do nothing\n");
     EXPECT_FALSE(testing::run_for(simulation, 0.1));
 }
 
