@@ -285,7 +285,7 @@ private:
                 if (std::exchange(is_told, true)) {
                     continue;
                 }
-                problems_.collect([&] {
+                problems_.collect([&, &key = key, &value = value] {
                     fail_at({value, path.empty() ? "the top level" : path},
                             fmt::format("unknown key '{}'; did you mean '{}'?", shown(key), word));
                 });

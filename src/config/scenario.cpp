@@ -92,7 +92,8 @@ Node read_objects(Node const* objects, Reading& reading, std::vector<ObjectConfi
         return entry;
     };
     for (auto const& [category, node] : objects->entries) {
-        if (!reading.problems.collect([&] { require_category(*objects, category, node); })) {
+        if (!reading.problems.collect(
+                [&, &category = category, &node = node] { require_category(*objects, category, node); })) {
             continue;
         }
         std::string const path = "objects." + category;

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -24,13 +24,12 @@ namespace {
 /// Headings modulo a turn, to about a hundredth of a degree.
 std::size_t count_headings(std::vector<MagneticRow> const& rows) {
     constexpr double kDifferent = 1e-4;
-    std::vector<std::pair<long, long>> places;
+    std::set<std::pair<long, long>> places;
     for (MagneticRow const& row : rows) {
         auto const [sine, cosine] = exact::sine_cosine(row.angle_rad);
-        places.emplace_back(std::lround(cosine / kDifferent), std::lround(sine / kDifferent));
+        places.emplace(std::lround(cosine / kDifferent), std::lround(sine / kDifferent));
     }
-    std::ranges::sort(places);
-    return static_cast<std::size_t>(std::ranges::unique(places).begin() - places.begin());
+    return places.size();
 }
 
 MagneticFit fit_to_table(Scenario const& scenario) {
