@@ -52,7 +52,7 @@ def scene(settings: Settings) -> dict[str, Any]:
         if value is None:
             node.pop(key, None)
         else:
-            node[key] = value
+            node[key] = copy.deepcopy(value)  # later paths change entries of it
     return result
 
 
