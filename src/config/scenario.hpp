@@ -141,10 +141,10 @@ struct Scenario {
 };
 
 struct LoadOptions {
-    std::vector<std::string> overrides;  // --set, in order
-    bool strict = false;                 // unknown keys are errors
-    bool strict_values = false;          // values that would be cut, or replaced by the default, are errors
-    bool thorough = false;               // for a check, see Reading
+    std::vector<std::string> overrides{};  // --set, in order
+    bool strict = false;                   // unknown keys are errors
+    bool strict_values = false;            // values that would be cut, or replaced by the default, are errors
+    bool thorough = false;                 // for a check, see Reading
 };
 
 /// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ...", a line for each

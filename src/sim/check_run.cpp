@@ -20,6 +20,7 @@
 #include "robot/without_effects.hpp"
 #include "sim/build_world.hpp"
 #include "sim/find_file.hpp"
+#include "sim/flash_state.hpp"
 #include "sim/output_files.hpp"
 #include "sim/pictures.hpp"
 #include "sim/used_files.hpp"
@@ -91,9 +92,10 @@ Scenario stand_in(Scenario const& scenario) {
 }
 
 std::unique_ptr<Simulation> built(ProgramImage const& program, Scenario scenario, CheckOptions const& options,
-                                  Problems& problems) {
+                                  Problems& problems, std::shared_ptr<Log> log = {}) {
     std::unique_ptr<Simulation> simulation;
     RunOptions run;
+    run.log = std::move(log);
     run.conversions = options.run.conversions;
     problems.collect([&] { simulation = std::make_unique<Simulation>(program, std::move(scenario), std::move(run)); });
     return simulation;
@@ -205,8 +207,10 @@ CheckResult check_run(ProgramImage const& program, Scenario const& written, Chec
     std::unique_ptr<Simulation> simulation = built_as_written(program, scenario, options, problems);
     bool const is_stand_in = simulation == nullptr;
     if (is_stand_in) {
-        Problems of_stand_in;  // which are not the user's
-        simulation = built(program, stand_in(scenario), options, of_stand_in);
+        problems.collect([&] { check_flash_input(scenario); });
+        Problems of_stand_in;  // which are not the user's, and neither are its warnings
+        auto const silent = std::make_shared<Log>(LogOptions{.on_line = [](LogLine const&) {}});
+        simulation = built(program, stand_in(scenario), options, of_stand_in, silent);
     } else {
         result.summary = summary_of(simulation->world());
     }

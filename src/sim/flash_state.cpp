@@ -141,18 +141,26 @@ private:
                                   scenario.flash_state.input_file, reason));
 }
 
-/// Where there is no input, and there may be none, writes one without records.
-void provide_input(Scenario const& scenario) {
-    std::string const& name = scenario.flash_state.input_file;
+/// Whether there is an input. Throws ConfigError if there is none, and must be one.
+bool has_input(Scenario const& scenario) {
     std::error_code error;
-    if (fs::exists(name, error)) {
-        return;
+    if (fs::exists(scenario.flash_state.input_file, error)) {
+        return true;
     }
     if (!scenario.flash_state.create_if_missing) {
         refuse_input(scenario, fmt::format("there is no such file in '{}' (create_if_missing: false); write one with "
                                            "output_file, or with: pogosim flash make",
                                            fs::current_path(error).string()));
     }
+    return false;
+}
+
+/// Where there is no input, and there may be none, writes one without records.
+void provide_input(Scenario const& scenario) {
+    if (has_input(scenario)) {
+        return;
+    }
+    std::string const& name = scenario.flash_state.input_file;
     try {
         fs::path const path = real_path(name);
         make_parent_folder(path);
@@ -179,19 +187,23 @@ std::ifstream open_input(Scenario const& scenario) {
     return file;
 }
 
-/// Returns the number of records. Throws ConfigError if some robots have none, unless there are none at all.
-std::uint32_t restore(Scenario const& scenario, std::istream& file, RobotsByOwner robots, Controllers& controllers) {
-    std::size_t const count = robots.size();
-    std::uint32_t records = 0;
+/// As read_flash_archive(), with ConfigError for what is wrong.
+std::uint32_t read_input(Scenario const& scenario, std::istream& file, std::function<void(FlashRecord&&)> const& take) {
     try {
-        records = read_flash_archive(file, [&](FlashRecord&& record) {
-            if (auto const robot = robots.extract(record.owner)) {
-                controllers.restore(robot.mapped(), std::move(record.flash), record.directions, record.powers);
-            }
-        });
+        return read_flash_archive(file, take);
     } catch (FileError const& error) {
         refuse_input(scenario, error.what());
     }
+}
+
+/// Returns the number of records. Throws ConfigError if some robots have none, unless there are none at all.
+std::uint32_t restore(Scenario const& scenario, std::istream& file, RobotsByOwner robots, Controllers& controllers) {
+    std::size_t const count = robots.size();
+    std::uint32_t const records = read_input(scenario, file, [&](FlashRecord&& record) {
+        if (auto const robot = robots.extract(record.owner)) {
+            controllers.restore(robot.mapped(), std::move(record.flash), record.directions, record.powers);
+        }
+    });
     if (records > 0 && !robots.empty()) {
         refuse_input(scenario,
                      fmt::format("it has no record of {}{} ({} in all, for {}); take an archive of these robots, or "
@@ -275,6 +287,13 @@ void FlashState::save(Controllers const& controllers) {
             fmt::format("cannot write the archive of flash memory '{}' (flash_state.output_file): {}. It "
                         "is as before",
                         files_.output_file, error.what()));
+    }
+}
+
+void check_flash_input(Scenario const& scenario) {
+    if (!scenario.flash_state.input_file.empty() && has_input(scenario)) {
+        std::ifstream file = open_input(scenario);
+        read_input(scenario, file, [](FlashRecord&&) {});
     }
 }
 

@@ -47,4 +47,7 @@ private:
     LockedFile output_;
 };
 
+/// Looks at the input archive without any robots. Throws ConfigError if it has to exist and does not, or is damaged.
+void check_flash_input(Scenario const& scenario);
+
 }  // namespace pogosim

@@ -94,6 +94,9 @@ enum class MagnetometerTiming {
     robot,    // new data at 50 Hz, waited for as on the robot
 };
 
+inline constexpr MagneticHarmonic kUsualHarmonic{
+    .order = 2, .cosine = {.x = {12.0, 12.0}, .y = {-6.0, -6.0}, .z = {}}, .sine = {.x = {}, .y = {4.0, 4.0}, .z = {}}};
+
 struct MagnetometerSpec {
     std::uint64_t seed = 0;  // of profiles and noise
     MagnetometerTiming timing = MagnetometerTiming::at_once;
@@ -103,9 +106,7 @@ struct MagnetometerSpec {
     MagnetometerOutput output;
     MagnetometerVariation variation;
     MagneticEllipse ellipse;
-    std::vector<MagneticHarmonic> harmonics{{.order = 2,
-                                             .cosine = {.x = {12.0, 12.0}, .y = {-6.0, -6.0}, .z = {}},
-                                             .sine = {.x = {}, .y = {4.0, 4.0}, .z = {}}}};
+    std::vector<MagneticHarmonic> harmonics = std::vector(1, kUsualHarmonic);
     std::optional<MagneticCurve> fitted{};  // to a table: instead of the ellipse and the harmonics
 };
 

@@ -230,6 +230,30 @@ def test_archive_of_flash_memory_is_neither_made_nor_replaced(tmp_path: Path) ->
     ]
 
 
+@pytest.mark.parametrize("archive", [{"input_file": "broken.flash"}, {"input_file": "no", "create_if_missing": False}])
+def test_archive_of_flash_memory_is_looked_at_when_the_world_is_wrong(
+    tmp_path: Path, archive: dict[str, object]
+) -> None:
+    (tmp_path / "broken.flash").write_text("no archive")
+    wrong = {"arena_file": "nowhere.csv", "flash_state": archive}
+    assert places(check(example("helloworld"), tmp_path, wrong)) == ["arena_file", "flash_state.input_file"]
+
+
+def test_world_that_cannot_be_built_has_no_warnings_of_the_one_in_its_place(tmp_path: Path) -> None:
+    program = compile_text(
+        tmp_path,
+        """#include "pogobase.h"
+static void user_init(void) { pogobot_photosensors_read(0); }
+static void user_step(void) {}
+int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+""",
+    )
+    assert "there is no lamp in this world" in check(program, tmp_path, {}).errors
+    result = check(program, tmp_path, {"objects.robots.radius": -1})
+    assert places(result) == ["objects.robots.radius"]
+    assert "lamp" not in result.text
+
+
 def test_parameter_that_the_program_refuses_is_a_mistake(tmp_path: Path) -> None:
     program = compile_text(tmp_path, LEAVES_TRACES)
     (tmp_path / "kept.txt").write_text("kept")

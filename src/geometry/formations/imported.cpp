@@ -102,7 +102,8 @@ ImportedPose parse_pose(std::vector<std::string> const& fields, Columns const& c
 
 ImportedPoses read_csv_poses(std::filesystem::path const& path) {
     ImportedPoses poses;
-    std::optional<Columns> columns;
+    bool is_first = true;
+    Columns columns;
     SharedNames categories;
     for (CsvLine const& line : read_csv(path).lines) {
         if (line.text.empty()) {
@@ -110,19 +111,18 @@ ImportedPoses read_csv_poses(std::filesystem::path const& path) {
         }
         std::string const where = fmt::format("{}:{}", path.string(), line.number);
         std::vector<std::string> const fields = split_fields(line.text);
-        bool const header = !columns && is_header(fields);
-        if (!columns && header) {
-            columns = columns_of_header(fields, where, poses.remark);
-        } else if (!columns) {
-            columns = Columns{};
-            poses.remark = remark_without_header(fields.size());
-        }
+        bool const header = is_first && is_header(fields);
         if (header) {
-            columns->category = find_column(fields, "robot_category", where);
-            columns->part = find_column(fields, "subpart_id", where);
+            columns = columns_of_header(fields, where, poses.remark);
+            columns.category = find_column(fields, "robot_category", where);
+            columns.part = find_column(fields, "subpart_id", where);
         } else {
-            poses.rows.push_back(parse_pose(fields, *columns, line.number, where, categories));
+            if (is_first) {
+                poses.remark = remark_without_header(fields.size());
+            }
+            poses.rows.push_back(parse_pose(fields, columns, line.number, where, categories));
         }
+        is_first = false;
     }
     return poses;
 }
