@@ -150,6 +150,9 @@ std::optional<double> UserParameters::number(std::string const& name, double lar
 std::optional<std::int64_t> UserParameters::integer(std::string const& name, std::int64_t min, std::int64_t max) {
     std::size_t const read_before = read_.size();
     return converted<std::int64_t>(name, [&](Place const& place) {
+        if (std::optional<bool> const truth = truth_of(place.node); truth && conversions_ != Conversions::exact) {
+            return std::int64_t{*truth};
+        }
         auto const value =
             read_of_type<std::int64_t>(place, between(static_cast<double>(min), static_cast<double>(max)));
         if (read_.size() > read_before) {

@@ -46,6 +46,7 @@ TEST(UserParameters, ValuesAreFoundByNameAndPath) {
     EXPECT_EQ(parameters.integer("p.list.1", 0, 255), 5);
     EXPECT_EQ(parameters.integer("a.b", 0, 255), 8);
     EXPECT_EQ(parameters.integer("float_text", 0, 255), 12);
+    EXPECT_EQ(parameters.integer("back", 0, 255), 1);
     EXPECT_EQ(parameters.number("big", kLargest), 1e40);
 }
 

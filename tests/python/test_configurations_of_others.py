@@ -97,6 +97,17 @@ def test_flags_may_be_numbers(tmp_path: Path) -> None:
     assert (warnings(result), printed(result)) == ([], "3 0.5 0 2 abc")
 
 
+@pytest.mark.parametrize(("value", "read"), [(True, 1), (False, 0), ("off", 0)])
+def test_numbers_may_be_flags(value: object, read: int, tmp_path: Path) -> None:
+    program = compile_text(tmp_path, READS_PARAMETERS)
+    for options in ([], ["--strict"]):
+        result = run(program, tmp_path, {"parameters.led_mode": value}, options)
+        assert (warnings(result), printed(result)) == ([], f"{read} 0.5 1 2 abc")
+    exact = run(program, tmp_path, {"parameters.led_mode": value}, ["--strict-config"])
+    assert exact.code == 2
+    assert "parameters.led_mode: expected an integer from 0 to 255" in exact.errors
+
+
 # ---- Options of a batch in a single run ----
 
 
