@@ -149,6 +149,36 @@ def test_library_of_pogoutils_include_dir_is_compiled_and_linked(headers: str, s
     assert not (folder / "build").exists()
 
 
+def test_library_of_the_original_builds_by_itself_and_need_not_be_installed(tmp_path: Path) -> None:
+    library = tmp_path / "pogo-utils"
+    for name in ("sums.h", "sums.c"):
+        path = library / "src" / "util" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(LIBRARY[f"util/{name}"])
+    # As cmake writes it: the library knows nothing of the simulator, whose headers are installed in the system.
+    commands = ["mkdir -p build", "cc -c $< -o build/sums.o", "ar rcs $@ build/sums.o"]
+    (library / "Makefile").write_text("\n\t".join(["build/libpogo-utils.a: src/util/sums.c", *commands]) + "\n")
+    environment = {"MAKEFILES": original()}
+    made(library, environment=environment)
+    (library / "examples").mkdir()
+    folder = project(library / "examples" / "theirs")
+    (folder / "Makefile").write_text("POGOUTILS_INCLUDE_DIR = ../../src\n" + MAKEFILE)
+    (folder / "main.c").write_text(USER)
+    made(folder, "sim", environment=environment)
+    check_runs(folder)
+
+
+def test_headers_that_compilers_are_to_find_stay_found(tmp_path: Path) -> None:
+    (tmp_path / "headers").mkdir()
+    (tmp_path / "headers" / "five.h").write_text("#define FIVE 5\n")
+    folder = project(tmp_path / "theirs")
+    (folder / "main.c").write_text(
+        PROGRAM.replace("== 5", "== FIVE").replace("typedef", '#include "five.h"\ntypedef', 1)
+    )
+    made(folder, "sim", environment={"MAKEFILES": original(), "CPATH": str(tmp_path / "headers")})
+    check_runs(folder)
+
+
 def test_library_may_be_far_away_and_may_have_no_c_files(tmp_path: Path) -> None:
     (tmp_path / "headers").mkdir()
     (tmp_path / "headers" / "five.h").write_text("#define FIVE 5\n")
