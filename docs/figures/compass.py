@@ -49,9 +49,10 @@ def draw_readings(axes: Axes, rows: pd.DataFrame) -> None:
         x = end["centre_x"] + end["major_radius"] * np.cos(angle)
         y = end["centre_y"] + end["minor_radius"] * np.sin(angle)
         axes.plot(x, y, color=colour, linewidth=1, label=f"robot {robot}")
-        axes.plot(end["centre_x"], end["centre_y"], "+", color=colour)
+        axes.plot(end["centre_x"], end["centre_y"], "+", color=colour, markersize=9 + 4 * number, zorder=3)
     axes.plot(0, 0, "+", color=INK, markersize=10)
     axes.set(xlabel="x (counts)", ylabel="y (counts)", aspect="equal")
+    axes.yaxis.set_inverted(True)  # y points down, as in the arena
     axes.set_title("readings while robots turn, and the ellipses", color=INK, fontsize=10)
     axes.legend(fontsize=8, loc="lower right")
 

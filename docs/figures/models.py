@@ -69,7 +69,7 @@ def draw_orders(axes: Axes, table: pd.DataFrame) -> None:
     axes.plot(mean.index, mean, color="tab:purple", linewidth=1)
     independent = float(np.sqrt(np.pi / 4 / 100))
     axes.axhline(independent, color=INK, linestyle=":", linewidth=1, label="independent directions")
-    axes.set(xlabel="noise (mm/s in a second)", ylabel="order parameter", ylim=(0, 1.03))
+    axes.set(xlabel="noise (mm/s per $\\sqrt{s}$)", ylabel="order parameter", ylim=(0, 1.03))
     axes.set_title("toner_tu: the more noise, the less order", color=INK, fontsize=10)
     axes.legend(fontsize=8)
 

@@ -253,7 +253,7 @@ static void global_step(void) {
 
 static void create_data_schema(void) {
     data_add_column_double("shut");         // 0: the partition is in its recess; 1: the swarm is divided
-    data_add_column_double("same_within");  // share of the pairs of robots of one half that have the same word
+    data_add_column_double("same_within");  // share of the pairs of robots of the same half that have the same word
     data_add_column_double("same_across");  // share of the pairs of different halves
     data_add_column_int64("word");
 }

@@ -71,7 +71,7 @@ float alpha = 1.0f;      // 1/s
 float beta = 4.0e-4f;    // s/mm^2: the flock moves at 50 mm/s
 float alignment = 3.0f;  // 1/s
 float pressure = 20.0f;  // mm/s^2 for each neighbour
-float noise = 10.0f;     // mm/s in a second, each component
+float noise = 10.0f;     // mm/s per square root of a second, each component
 
 static float wrapped(float angle) {
     return angle > PI ? angle - 2.0f * PI : angle < -PI ? angle + 2.0f * PI : angle;

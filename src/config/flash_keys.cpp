@@ -14,7 +14,7 @@ std::span<Key<FlashStateConfig> const> flash_state_keys() {
           "Archive from which robots get their flash memory, and the directions and powers of motors that they store, "
           "before the program starts. Relative to the working folder. Empty: flash memory is blank."},
         K{"output_file", &FlashStateConfig::output_file, any(), "",
-          "Archive that a run writes when it ends well; it may be the input file. Relative to the working folder; "
+          "Archive that a run writes when it ends normally; it may be the input file. Relative to the working folder; "
           "missing folders are created. Empty: none."},
         K{"create_if_missing", &FlashStateConfig::create_if_missing, any(), "",
           "If there is no input file, an archive without records is written in its place, and flash memory is blank; "

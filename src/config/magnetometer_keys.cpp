@@ -337,7 +337,7 @@ std::array<Key<MagnetometerTable>, 10> table_keys() {
         K{"skip_invalid_rows", &MagnetometerTable::skip_invalid_rows, any(), "",
           "Skip rows that are not numbers, with a warning; false: they are errors."},
         K{"add_fit_residual_as_noise", &MagnetometerTable::residual_is_noise, any(), "",
-          "Add the error of the fit to noise_stddev, as the root of the sum of squares."},
+          "Add the error of the fit to noise_stddev, in quadrature."},
         K{"calibration_field_angle", &MagnetometerTable::field_angle_rad, any(), kAngles,
           "Direction of the field where the table was recorded; default: that of world_field."},
     };

@@ -19,7 +19,7 @@ POGO_BEGIN_API
 
 /// Reads a page: POGOBOT_USER_FLASH_PAGE_SIZE bytes, to `buf`, not NULL. An unknown page leaves `buf` as it is.
 /// @range page: 0 to 5887
-void read_page_flash(uint16_t page, char* buf);
+void read_page_flash(uint16_t page, char buf[POGOBOT_USER_FLASH_PAGE_SIZE]);
 
 /// Writes a page: POGOBOT_USER_FLASH_PAGE_SIZE bytes, from `data`, not NULL. An unknown page writes nothing. On a real
 /// robot, a write only clears bits, so a page must be erased before it is written again. In the simulator, a write

@@ -14,7 +14,7 @@ POGO_BEGIN_API
 /// Light level at photosensor 0 (back), 1 (front left) or 2 (front right), sensor counts: 0 to 32767, with noise and
 /// bias -32768 to 32767; on a real robot, and with `photosensors_bits: 10`, 0 to 1023. -1 for other numbers. Sensors
 /// are on the rim, at 180, -40 and +40 degrees from the heading.
-/// @range sensor_number: 0 to 2; returns sensor counts, 0 to 32767 without noise
+/// @range sensor_number: 0 to 2; returns sensor counts, 0 to 32767 without noise; 0 to 1023 with photosensors_bits: 10
 int16_t pogobot_photosensors_read(uint8_t sensor_number);
 
 /// Acceleration (m/s2: [0] to the right, [1] forward, [2] up) and angular velocity (rad/s; [2] counter-clockwise seen

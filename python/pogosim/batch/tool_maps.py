@@ -5,7 +5,7 @@
         result_new_columns: [arena_file]
     _rundr: {version: 1, seeds: "0:99"}
 
-What is in the first one may also stand at the top level, and counts before what stands there.
+What is in the first one may also stand at the top level, and takes precedence over what stands there.
 """
 
 from __future__ import annotations
