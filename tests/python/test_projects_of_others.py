@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from project import copy_template, made, write
+from project import copy_template, made, make, write
 from running import ROOT, build_folder, run
 
 # In the manner of such projects: variables, compilers and rules by these names, which their Makefiles have.
@@ -158,13 +158,19 @@ def test_library_of_the_original_builds_by_itself_and_need_not_be_installed(tmp_
     # As cmake writes it: the library knows nothing of the simulator, whose headers are installed in the system.
     commands = ["mkdir -p build", "cc -c $< -o build/sums.o", "ar rcs $@ build/sums.o"]
     (library / "Makefile").write_text("\n\t".join(["build/libpogo-utils.a: src/util/sums.c", *commands]) + "\n")
-    environment = {"MAKEFILES": original()}
-    made(library, environment=environment)
     (library / "examples").mkdir()
     folder = project(library / "examples" / "theirs")
     (folder / "Makefile").write_text("POGOUTILS_INCLUDE_DIR = ../../src\n" + MAKEFILE)
     (folder / "main.c").write_text(USER)
-    made(folder, "sim", environment=environment)
+    environment = {"MAKEFILES": original()}
+    too_early = make(folder, "sim", environment=environment)
+    assert too_early.code == 2
+    assert (
+        "there is no libpogo-utils.a in ../../src/../build; if its functions are missing, build it: "
+        in too_early.errors
+    )
+    made(library, environment=environment)
+    assert "no libpogo-utils.a" not in made(folder, "sim", environment=environment).text
     check_runs(folder)
 
 
