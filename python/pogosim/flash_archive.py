@@ -86,9 +86,14 @@ def head_of(record: Record) -> bytes:
     return OWNER.pack(record.identifier, len(name)) + name + MOTORS.pack(*record.directions, *record.powers)
 
 
+def bytes_of_head(count: int) -> bytes:
+    """Return what an archive of so many records begins with; without records, that is all of it."""
+    return HEAD.pack(SIGNATURE, VERSION, FLASH_BYTES, count)
+
+
 def write_archive(file: BinaryIO, records: list[Record]) -> None:
     """Write an archive with these records, in their order."""
-    file.write(HEAD.pack(SIGNATURE, VERSION, FLASH_BYTES, len(records)))
+    file.write(bytes_of_head(len(records)))
     for record in records:
         head = head_of(record)
         file.write(head + record.flash + CHECKSUM.pack(checksum_of(head, record.flash)))

@@ -199,8 +199,68 @@ def test_made_archive_fits_the_robots_of_its_configuration(program: Compile, tmp
 
 
 def test_make_replaces_an_archive_as_a_whole(capsys: pytest.CaptureFixture[str]) -> None:
-    assert flash("make", "x.flash", "-c", configuration({"robots": {"type": "pogobot", "nb": 2}}), "--json") == 0
+    own = ("-c", configuration({"robots": {"type": "pogobot", "nb": 2}}), "--force", "--json")
+    assert flash("make", "x.flash", *own) == 0
     found = json.loads(capsys.readouterr().out)
     assert found == {"file": "x.flash", "records": [{"category": "robots", "id": i} for i in range(2)]}
     assert Path("x.flash").read_bytes() == archive([Record(0), Record(1)])
     assert sorted(path.name for path in Path().iterdir()) == ["c.yaml", "x.flash"]
+
+
+# ---- What would be lost ----
+
+
+def test_make_never_replaces_what_it_reads(capsys: pytest.CaptureFixture[str]) -> None:
+    name = configuration({"robots": {"type": "pogobot", "nb": 2}})
+    text = Path(name).read_bytes()
+    Path("a.bin").write_bytes(b"abc")
+    for link, target in (("link.yaml", name), ("link.bin", "a.bin")):
+        Path(link).symlink_to(target)
+    Path("hard.bin").hardlink_to("a.bin")
+    for archive_name, arguments in {
+        name: ("-c", name),
+        "link.yaml": ("-c", name),
+        "a.bin": ("--from", "robots", "0", "a.bin"),
+        "link.bin": ("-c", name, "--from", "robots", "0", "a.bin"),
+        "hard.bin": ("--from", "robots", "0", "x.flash", "--from", "robots", "1", "a.bin"),
+    }.items():
+        for more in ((), ("--force",)):
+            assert flash("make", archive_name, *arguments, *more) == 2
+            told = capsys.readouterr().err
+            assert told == f"pogosim flash: {archive_name} is an input, which would be lost; choose another archive\n"
+    assert Path(name).read_bytes() == text
+    assert Path("a.bin").read_bytes() == b"abc"
+
+
+@pytest.mark.parametrize("through_link", [False, True])
+@pytest.mark.parametrize(
+    ("data", "what"),
+    [
+        (archive(RECORDS), "has the flash memory of 3 robots"),
+        (archive(RECORDS[:1]), "has the flash memory of 1 robot"),
+        (b"int main(void) {}", "is not an archive of flash memory"),
+        (EMPTY[:-1], "is not an archive of flash memory"),
+    ],
+)
+def test_make_replaces_what_is_there_only_if_it_is_told_to(
+    data: bytes, what: str, through_link: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("x.flash").write_bytes(data)
+    name = "link" if through_link else "x.flash"
+    if through_link:
+        Path(name).symlink_to("x.flash")
+    Path("a.bin").write_bytes(b"a")
+    assert flash("make", name, "--from", "robots", "0", "a.bin") == 2
+    told = capsys.readouterr().err
+    assert told == f"pogosim flash: {name} {what}, and would be lost; choose another archive, or add --force\n"
+    assert Path("x.flash").read_bytes() == data
+    assert flash("make", name, "--from", "robots", "0", "a.bin", "--force") == 0
+    assert Path("x.flash").read_bytes() == archive([Record(0, pages={0: b"a".ljust(PAGE, b"\xff")})])
+
+
+@pytest.mark.parametrize("data", [b"", EMPTY])
+def test_make_replaces_what_has_nothing_in_it(data: bytes) -> None:
+    Path("x.flash").write_bytes(data)
+    Path("a.bin").write_bytes(b"")
+    assert flash("make", "x.flash", "--from", "robots", "0", "a.bin") == 0
+    assert Path("x.flash").read_bytes() == archive([Record(0)])

@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.command.parser import Parser, complain
-from pogosim.flash_archive import FLASH_BYTES, PAGE_COUNT, ArchiveError, Record, records_of, write_archive
+from pogosim.flash_archive import (
+    FLASH_BYTES,
+    PAGE_COUNT,
+    ArchiveError,
+    Record,
+    bytes_of_head,
+    read_head,
+    records_of,
+    write_archive,
+)
 from pogosim.lines import say
-from pogosim.outputs import OutputError, partial_output, real_output, told
+from pogosim.outputs import OutputError, leads_to, partial_output, real_output, told
 
 IDS = 65536
+EMPTY = bytes_of_head(0)
 DAMAGED = 1  # exit code of show: a checksum is wrong
 
 
@@ -29,7 +40,7 @@ def parser(prog: str) -> Parser:
     make = actions.add_parser("make", help="make an archive: blank, or with the flash memory of binary files")
     for action in (show, extract):
         action.add_argument("archive", metavar="FILE", help="archive")
-    make.add_argument("archive", metavar="FILE", help="archive to write; it is replaced")
+    make.add_argument("archive", metavar="FILE", help="archive to write")
     extract.add_argument("-r", "--robot", metavar="ID", type=int, required=True, help="id of the robot")
     extract.add_argument("--category", metavar="NAME", help="its category, if several have a robot of this id")
     extract.add_argument("-o", "--output", metavar="OUT.bin", required=True, help=f"file to write, {FLASH_BYTES} bytes")
@@ -44,6 +55,9 @@ def parser(prog: str) -> Parser:
         action="append",
         default=[],
         help="flash memory of a robot, from page 0 on; the rest is blank. May be given several times",
+    )
+    make.add_argument(
+        "--force", action="store_true", help="replace FILE, even if it has flash memory, or is something else"
     )
     for action in (show, extract, make):
         action.add_argument("--json", action="store_true", help="print one JSON object")
@@ -121,6 +135,11 @@ def extract(options: argparse.Namespace) -> int:
 def make(options: argparse.Namespace) -> int:
     """Write an archive."""
     output = real_output(options.archive)
+    for file in ([] if options.config is None else [options.config]) + [file for *_, file in options.binaries]:
+        if leads_to(options.archive, file):
+            raise OutputError(f"{options.archive} is an input, which would be lost; choose another archive")
+    if not options.force:
+        check_nothing_is_lost(options.archive)
     if options.config is None and not options.binaries:
         raise FlashError("expected the robots of the archive: -c CONFIG, or --from CATEGORY ID FILE.bin")
     owners = robots_of(options.config) if options.config is not None else []
@@ -148,6 +167,26 @@ def make(options: argparse.Namespace) -> int:
     else:
         say(f"{options.archive}: {counted(len(records), 'record')}")
     return 0
+
+
+def check_nothing_is_lost(name: str) -> None:
+    """Check that a file is missing, empty, or an archive without records.
+
+    Raises:
+        OutputError: It is something else.
+    """
+    try:
+        with Path(name).open("rb") as file:
+            data = file.read(len(EMPTY) + 1)
+    except FileNotFoundError:
+        return
+    if data in (b"", EMPTY):
+        return
+    try:
+        what = f"has the flash memory of {counted(read_head(io.BytesIO(data)), 'robot')}"
+    except ArchiveError:
+        what = "is not an archive of flash memory"
+    raise OutputError(f"{name} {what}, and would be lost; choose another archive, or add --force")
 
 
 def robots_of(configuration: str) -> list[tuple[str, int]]:
