@@ -264,3 +264,14 @@ def test_make_replaces_what_has_nothing_in_it(data: bytes) -> None:
     Path("a.bin").write_bytes(b"")
     assert flash("make", "x.flash", "--from", "robots", "0", "a.bin") == 0
     assert Path("x.flash").read_bytes() == archive([Record(0)])
+
+
+def test_extract_never_replaces_its_archive(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("link").symlink_to("x.flash")
+    Path("hard").hardlink_to("x.flash")
+    data = Path("x.flash").read_bytes()
+    for source, output in (("x.flash", "x.flash"), ("x.flash", "link"), ("link", "x.flash"), ("x.flash", "hard")):
+        assert flash("extract", source, "-r", "1", "-o", output) == 2
+        told = capsys.readouterr().err
+        assert told == f"pogosim flash: {output} is the archive, which would be lost; choose another --output\n"
+    assert Path("x.flash").read_bytes() == data

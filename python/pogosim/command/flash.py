@@ -105,6 +105,8 @@ def show(options: argparse.Namespace) -> int:
 def extract(options: argparse.Namespace) -> int:
     """Write the flash memory of one robot."""
     output = real_output(options.output)
+    if leads_to(options.output, options.archive):
+        raise OutputError(f"{options.output} is the archive, which would be lost; choose another --output")
     found = [
         (record, is_right)
         for record, is_right in read_records(options.archive)
