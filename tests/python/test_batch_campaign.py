@@ -82,6 +82,23 @@ def test_failures_are_an_error_that_lists_them_and_the_results_have_the_others(t
     assert caught.value.result.outputs == [str(tmp_path / "results" / "result.feather")]
 
 
+def test_runs_with_other_seeds_are_listed(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    write_options(tmp_path, {"objects.robots.nb": 2})
+    program = script(tmp_path / "broken", '[ "$seed" = 1 ] && kill -SEGV $$')
+    done = campaign(tmp_path, program=program)
+    assert done.replaced == (
+        {
+            "combination_ordinal": 0,
+            "logical_run": 1,
+            "seed": 1,
+            "retry_attempt": 1,
+            "replacement_seed": 3,
+            "error": "killed by SIGSEGV",
+        },
+    )
+    assert "1 of 2 runs failed and was done with another seed (retry_attempt > 0)" in caplog.text
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 
@@ -94,7 +95,7 @@ def test_run_that_fails_has_another_seed_which_its_row_says(tmp_path: Path) -> N
     write_options(tmp_path, ONE)
     program = script(tmp_path / "flaky", '[ "$seed" = 1 ] || [ "$seed" = 4 ] && exit 3')
     result = subcommand(tmp_path, "run", "-r", "3", program=program)
-    assert (result.code, result.errors) == (0, "")
+    assert (result.code, result.errors.count("\n")) == (0, 1)
     assert runs_in(tmp_path) == [[0, 0, 0], [1, 7, 2], [2, 2, 0]]
     rows, metadata = load_dataframe(tmp_path / "results" / "result.feather")
     assert metadata["combinations"][0]["seeds"] == [0, 7, 2]
@@ -104,6 +105,29 @@ def test_run_that_fails_has_another_seed_which_its_row_says(tmp_path: Path) -> N
     seven, _ = load_dataframe(tmp_path / "seven" / "result.feather")
     own = rows[rows["run"] == 1].reset_index(drop=True)
     pd.testing.assert_frame_equal(own[["time", "x", "y"]], seven[["time", "x", "y"]], check_flags=False)
+
+
+def test_replaced_runs_are_told_with_the_reason_of_the_first(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    lines = 'case "$seed" in 1|4|6) echo "[2026-01-01 12:00:00.000] [error] robot $seed broke"; exit 3;; esac'
+    program = script(tmp_path / "flaky", lines)
+    result = subcommand(tmp_path, "run", "-r", "3", "--json", "--keep-temp", program=program)
+    assert result.code == 0
+    assert (
+        "2 of 6 runs failed and were done with other seeds (retry_attempt > 0); the first: run 1 of "
+        "results/result.feather, seed 1, is now that of seed 7: exit code 3: [error] robot 1 broke\n"
+    ) in result.errors
+    told = json.loads(result.output)
+    own = {"logical_run": 1, "seed": 1, "retry_attempt": 2, "replacement_seed": 7}
+    error = "exit code 3: [error] robot 1 broke"
+    assert told["replaced"] == [{"combination_ordinal": number, **own, "error": error} for number in (0, 1)]
+    assert (told["ok"], told["failures"]) == (True, [])
+    assert json.loads((tmp_path / "results" / "pogobatch_run.json").read_text())["replaced"] == told["replaced"]
+    # The same call does nothing, and has them nevertheless; only the reason has gone.
+    again = subcommand(tmp_path, "run", "-r", "3", "--json", "--keep-temp", program=program)
+    assert "2 of 6 runs failed and were done with other seeds" in again.errors
+    assert [entry["error"] for entry in json.loads(again.output)["replaced"]] == ["", ""]
+    assert json.loads(subcommand(tmp_path, "run", "-r", "3", "--json", folder_of="others").output)["replaced"] == []
 
 
 def test_same_seed_again_leaves_no_trace_in_the_results(tmp_path: Path) -> None:
@@ -120,7 +144,12 @@ def test_flags_repeat_with_the_same_seed_unless_asked_for_another(tmp_path: Path
     write_options(tmp_path, ONE)
     program = script(tmp_path / "flaky", '[ "$seed" = 1 ] && exit 3')
     assert batch(tmp_path, "-r", "2", "-R", "2", program=program).code == 3
-    assert batch(tmp_path, "-r", "2", "-R", "2", "--retry-new-seed", program=program).code == 0
+    replaced = batch(tmp_path, "-r", "2", "-R", "2", "--retry-new-seed", program=program)
+    assert (replaced.code, replaced.errors) == (
+        0,
+        "pogobatch: 1 of 2 runs failed and was done with another seed; the first: run 1 of "
+        "results/result.feather, seed 1, is now that of seed 3: exit code 3\n",
+    )
     rows, metadata = load_dataframe(tmp_path / "results" / "result.feather")
     assert "seed" not in rows
     assert metadata["combinations"][0]["seeds"] == [0, 3]

@@ -27,6 +27,9 @@ class LocalCampaignResult:
         seeds: Seeds of the runs of each combination.
         effective_jobs: Number of runs at the same time, at most.
         retained_temp_dir: Folder with the files of single runs; None: they are removed.
+        replaced: A map for each run that failed and was done with another seed: `combination_ordinal`, `logical_run`,
+            `seed` (its own), `retry_attempt`, `replacement_seed` and `error` (of its first attempt; empty if an
+            interrupted call did it).
     """
 
     outputs: list[str]
@@ -36,6 +39,7 @@ class LocalCampaignResult:
     seeds: tuple[int, ...]
     effective_jobs: int
     retained_temp_dir: Path | None
+    replaced: tuple[Mapping[str, Any], ...] = ()
 
 
 class LocalCampaignError(BatchError):
@@ -144,6 +148,7 @@ def run_campaign(runner: PogobotBatchRunner) -> LocalCampaignResult:
         tuple(done["seeds"]),
         done["jobs"],
         folder if runner.keep_temp or failures else None,
+        tuple(done["replaced"]),
     )
     if failures:
         first = failures[0]
@@ -179,6 +184,17 @@ def entries_of(runner: PogobotBatchRunner) -> dict[str, Any]:
                 "error": failure.outcome.problem,
             }
             for failure in sorted(runner.failures, key=lambda failure: (failure.combination, failure.task.run))
+        ],
+        "replaced": [
+            {
+                "combination_ordinal": run.combination,
+                "logical_run": run.task.run,
+                "seed": run.task.seed,
+                "retry_attempt": run.replacement,
+                "replacement_seed": run.task.seed_of(run.replacement),
+                "error": run.problem,
+            }
+            for run in runner.replaced
         ],
         "pogosim_version": pogosim.__version__,
     }

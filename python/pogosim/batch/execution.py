@@ -15,7 +15,7 @@ from pogosim.batch.manifests import write_manifest
 from pogosim.batch.option_words import CHOICES
 from pogosim.batch.parts import PLAIN, Format
 from pogosim.batch.places import in_the_users_file
-from pogosim.batch.reports import Failure, Progress, report_warnings
+from pogosim.batch.reports import Failure, Progress, Replaced, report_warnings
 from pogosim.batch.results import check_columns, schema_of
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.tasks import Combination
@@ -53,6 +53,7 @@ class Execution:
         self.finished: dict[str, int] = {}
         self.checked: set[tuple[str | None, ...]] = set()  # names of columns
         self.failures: list[Failure] = []
+        self.problems: dict[str, str] = {}  # of first attempts of runs that are done, by key
         self.simulator_s = 0.0
 
     def waiting(self, temporary: TemporaryFolder) -> list[Task]:
@@ -83,8 +84,11 @@ class Execution:
                 task = self.tasks[outcome.key]
                 self.simulator_s += outcome.simulator_s
                 if not outcome.problem:
-                    warnings.update(dict.fromkeys(self.messages(outcome, task).splitlines()))
+                    warnings.update(dict.fromkeys(self.messages(outcome.log, task).splitlines()))
                     self.finished[task.key] = outcome.replacement
+                    if outcome.first_problem:
+                        self.problems[task.key] = self.messages(outcome.first_problem, task)
+                        log.debug("run %d failed at first: %s", task.run, self.problems[task.key])
                     self.check_run(task)
                     self.keep_manifest(task, outcome)
                 elif outcome.is_fatal:
@@ -100,16 +104,26 @@ class Execution:
                 report_warnings(warnings)
         self.failures.sort(key=lambda failure: (failure.output, failure.task.run, failure.task.key))
 
-    def messages(self, outcome: Outcome, task: Task) -> str:
+    def messages(self, said: str, task: Task) -> str:
         """Return what a run has said, with places in the file of the user."""
-        return in_the_users_file(outcome.log, task, self.first_of[task.key].entries, self.configuration)
+        return in_the_users_file(said, task, self.first_of[task.key].entries, self.configuration)
 
     def failure(self, outcome: Outcome, task: Task) -> Failure:
         """Return what is said of a run that has failed."""
         combination = self.first_of[task.key]
         number = self.number_of(combination)
         options = self.options_of(number)
-        return Failure(task, replace(outcome, log=self.messages(outcome, task)), combination.output, options, number)
+        outcome = replace(outcome, log=self.messages(outcome.log, task))
+        return Failure(task, outcome, combination.output, options, number)
+
+    @property
+    def replaced(self) -> list[Replaced]:
+        """Runs that failed, and were done with other seeds; in order."""
+        return [
+            Replaced(task, self.finished[key], self.problems.get(key, ""), first.output, self.number_of(first))
+            for key, task in self.tasks.items()
+            if self.finished.get(key) and (first := self.first_of[key])
+        ]
 
     def number_of(self, combination: Combination) -> int:
         """Return which one a combination is, from 0 on."""

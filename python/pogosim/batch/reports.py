@@ -16,6 +16,7 @@ from tqdm.contrib.logging import logging_redirect_tqdm
 
 from pogosim.batch.option_words import shown
 from pogosim.batch.run import Outcome, Task
+from pogosim.counted import counted
 from pogosim.lines import printable
 
 log = logging.getLogger("pogobatch")
@@ -34,6 +35,17 @@ class Failure:
     outcome: Outcome
     output: str
     options: dict[str, Any]
+    combination: int  # its number, from 0 on
+
+
+@dataclass(frozen=True)
+class Replaced:
+    """A run that failed, and was done with another seed."""
+
+    task: Task
+    replacement: int  # of its seed, from 1 on
+    problem: str  # of its first attempt; empty: another call of the same batch has done it
+    output: str
     combination: int  # its number, from 0 on
 
 
@@ -89,6 +101,31 @@ def report_warnings(warnings: Iterable[str]) -> None:
         log.warning("warning of a run: %s", line)
     if len(lines) > SHOWN_WARNINGS:
         log.warning("not shown: %d more warning(s) of runs; a single run prints its own", len(lines) - SHOWN_WARNINGS)
+
+
+def report_replaced(replaced: Sequence[Replaced], count: int, column: str | None) -> None:
+    """Say how many runs of how many failed and have other seeds, since that biases a sample.
+
+    Args:
+        replaced: These runs.
+        count: Number of all runs.
+        column: Column of the results that tells them from others; None: there is none.
+    """
+    if not replaced:
+        return
+    first = replaced[0]
+    log.warning(
+        "%d of %s failed and %s%s; the first: run %d of %s, seed %d, is now that of seed %d%s",
+        len(replaced),
+        counted(count, "run"),
+        "was done with another seed" if len(replaced) == 1 else "were done with other seeds",
+        f" ({column} > 0)" if column else "",
+        first.task.run,
+        first.output,
+        first.task.seed,
+        first.task.seed_of(first.replacement),
+        f": {first.problem}" if first.problem else "",
+    )
 
 
 def report_failures(failures: Sequence[Failure]) -> None:

@@ -24,7 +24,7 @@ from pogosim.batch.parts import WITH_SEEDS, Part
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import check_columns, schema_of, write_results
-from pogosim.batch.run import Outcome, Task
+from pogosim.batch.run import Outcome, Task, with_last_line
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.utils import load_dataframe
@@ -32,7 +32,6 @@ from pogosim.utils import load_dataframe
 ARENA = "arena_file"
 RUN_FAILED = "a run failed"  # how such problems begin
 VALUES = re.compile(r"'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?")  # in which messages of one kind differ
-WHEN = re.compile(r"^\[[^\]]*\] (?=\[)")  # the date of a line in the log
 
 log = logging.getLogger("pogobatch")
 
@@ -208,9 +207,7 @@ class Runs:
             raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
         if outcome.problem:
             log.debug("run %d failed: %s", task.run, outcome.problem)
-            lines = [line for line in outcome.log.splitlines() if line.strip()]
-            said = WHEN.sub("", lines[-1]) if lines else ""
-            return f"{RUN_FAILED}: {outcome.problem}{': ' if said else ''}{said}"
+            return f"{RUN_FAILED}: {with_last_line(outcome.problem, outcome.log)}"
         new = {kind_of(line): line for line in outcome.log.splitlines() if kind_of(line) not in self.warned}
         self.warned.update(new)
         report_warnings(new.values())

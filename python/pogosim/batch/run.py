@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -34,6 +35,7 @@ OWN = "<configuration>"  # in messages of a run: its own configuration, a tempor
 REFUSED = 2  # exit code of a program that refuses its configuration, or cannot write its files
 QUIET = ("-nr", "-q")  # a simulator prints warnings and errors only
 LOG_LINES = 10
+WHEN = re.compile(r"^\[[^\]]*\] (?=\[)")  # the date of a line in the log
 MAX_WARNINGS = 1000  # of one run
 LONGEST_LINE = 10_000  # bytes of a line that are read at once
 DISK_FULL = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
@@ -96,6 +98,7 @@ class Outcome:
     is_certain: bool = False  # the same run would end in the same way: its configuration is refused
     attempts: int = 1
     replacement: int = 0  # of its seed, with which the run was done; 0: its own seed
+    first_problem: str = ""  # of an attempt before, with the last line of its log; empty: there was none
     command: str = ""
     log: str = ""  # its last lines; of a run that is done, its warnings
     folder: str = ""  # what a failure leaves
@@ -193,6 +196,12 @@ def tail(path: Path) -> str:
     except OSError:
         return ""
     return "\n".join(without_folder(line, path.parent) for line in lines[-LOG_LINES:])
+
+
+def with_last_line(problem: str, log: str) -> str:
+    """Return why a run failed, with the last line of its log, without the date."""
+    last = next((line for line in reversed(log.splitlines()) if line.strip()), "")
+    return f"{problem}: {WHEN.sub('', last)}" if last else problem
 
 
 def without_folder(line: str, folder: Path) -> str:
@@ -356,7 +365,7 @@ def do_run(task: Task) -> Outcome:
         StoppedError: The batch ends.
     """
     outcome = Outcome(task.key)
-    simulator_s = 0.0
+    simulator_s, first_problem = 0.0, ""
     for number in range(task.retries + 1):
         if outcome.folder and not task.keep_temp:
             shutil.rmtree(outcome.folder, ignore_errors=True)
@@ -372,4 +381,5 @@ def do_run(task: Task) -> Outcome:
         # What is certain for one seed, such as that robots find no place, may be otherwise for another.
         if not outcome.problem or outcome.is_fatal or (outcome.is_certain and not task.replacements):
             break
-    return replace(outcome, simulator_s=simulator_s)
+        first_problem = first_problem or with_last_line(outcome.problem, outcome.log)
+    return replace(outcome, simulator_s=simulator_s, first_problem=first_problem)

@@ -20,7 +20,7 @@ from pogosim.batch.joining import join, remove_stale, removing_stale
 from pogosim.batch.names import COLUMNS, NamesError, ambiguous, file_name, is_linked_out, new_columns
 from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
-from pogosim.batch.reports import Failure, report_failures
+from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
 from pogosim.batch.run import QUIET
 from pogosim.batch.seeds import listed_seeds
@@ -28,6 +28,7 @@ from pogosim.batch.selection import check_columns_exist, indistinguishable, with
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.run_columns import RETRY
 
 MAX_RUNS = 10_000_000  # in memory, about 1 kB each
 
@@ -75,6 +76,7 @@ class PogobotBatchRunner:
 
     Attributes:
         failures: Runs of the last `run_all()` that failed.
+        replaced: Those that failed, and were done with other seeds.
         simulator_s: Wall-clock time, in s, that simulators of the last `run_all()` took, added up.
         generated: Files of results that the last `run_all()` wrote, each once.
         combination_count: Number of combinations of the last `run_all()`.
@@ -133,6 +135,7 @@ class PogobotBatchRunner:
         self.progress = progress
         self.simulator_output = simulator_output
         self.failures: list[Failure] = []
+        self.replaced: list[Replaced] = []
         self.simulator_s = 0.0
         self.generated: list[str] = []
         self.combination_count = 0
@@ -271,7 +274,7 @@ class PogobotBatchRunner:
         """Do the runs that are not done yet, and write the results."""
         shows_warnings = self.simulator_output != "quiet"
         execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, shows_warnings)
-        self.failures, self.simulator_s, self.generated = execution.failures, 0.0, []
+        self.failures, self.replaced, self.simulator_s, self.generated = execution.failures, [], 0.0, []
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
         waiting = execution.waiting(self.temporary)
         with self.workers.opened() as do:
@@ -285,6 +288,8 @@ class PogobotBatchRunner:
                 execution.take(outcomes, len(waiting), self.progress)
             finally:
                 self.simulator_s = execution.simulator_s
+        self.replaced = execution.replaced
+        report_replaced(self.replaced, len(execution.tasks), RETRY if RETRY in self.layout.run_columns else None)
         report_failures(self.failures)
         for output in outputs:
             of_output = [combination for combination in combinations if combination.output == output]

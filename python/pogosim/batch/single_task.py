@@ -15,7 +15,7 @@ from pogosim.batch.option_words import CHOICES, CombinationsError
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.results import check_columns, schema_of
-from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, Task, attempt_in, simulators
+from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, Task, attempt_in, simulators, with_last_line
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.sweeps import resolved
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
@@ -103,8 +103,7 @@ def execute_task(
         raise cannot("use", error.filename or folder, error) from None
     if outcome.problem:
         said = in_the_users_file(outcome.log, task, entries, configuration)
-        last = next((f": {line}" for line in reversed(said.splitlines()) if line.strip()), "")
-        raise TaskError(f"the run with seed {seed} failed: {outcome.problem}{last}", outcome)
+        raise TaskError(f"the run with seed {seed} failed: {with_last_line(outcome.problem, said)}", outcome)
     check_columns(schema_of(folder / FRAMES / task.data), list(columns), program, WITH_SEEDS)
     combination = Combination("", columns, entries, [task], name)
     manifest = task_entries(combination, task, 0, 0, entries.get(CHOICES, {})) | {"retry_attempt": retry_attempt}
