@@ -10,8 +10,10 @@ from typing import Any
 import pytest
 import yaml
 from pogosim.batch.identity import program_digest
+from pogosim.batch.manifests import config_hash
 from pogosim.batch.run import Task
-from pogosim.batch.tasks import RunSettings, found_beside, tasks_of
+from pogosim.batch.run_files import found_beside
+from pogosim.batch.tasks import RunSettings, tasks_of
 from pogosim.batch.temporary import TemporaryFolder
 from running import LIBRARY
 
@@ -113,3 +115,14 @@ def test_names_of_outputs_make_no_other_run(tasks: Tasks) -> None:
     (logged, _) = tasks({"a": 1, **names, "message_log": "a/m.feather"})
     assert (logged.key, logged.text) == (plain.key, plain.text)
     assert dict(logged.outputs) == outputs | {"message_log": "m.feather"}
+
+
+def test_no_name_of_an_output_is_part_of_a_configuration(tasks: Tasks) -> None:
+    outputs = {"data_filename": "d", "console_filename": "c", "frames_name": "f", "message_log": "m"}
+    base: dict[str, Any] = {"flash_state": {"input_file": "a.flash"}}
+    named = {**outputs, "flash_state": {"input_file": "a.flash", "output_file": "b/c.flash"}}
+    assert config_hash(base) == config_hash(named) != config_hash({})
+    (plain, _), (wanted, _) = tasks(base), tasks(named)
+    assert plain.key == wanted.key
+    assert dict(wanted.outputs)["flash_state.output_file"] == "c.flash"
+    assert "flash_state.output_file" not in dict(plain.outputs)

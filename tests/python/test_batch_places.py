@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from batches import batch
+from batches import batch, subcommand
 from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.places import line_in
@@ -60,6 +60,23 @@ def test_refused_value_is_named_with_the_line_of_the_user(text: str, line: int, 
     assert result.errors.count("test.yaml") == 1, result.errors  # the command
     assert (f"options: {options}\n" in result.errors) == bool(options), result.errors
     assert ("options: " in result.errors) == bool(options)
+
+
+@pytest.mark.parametrize("state", ["{output_file: own.flash}", "{output_file: own.flash, create_if_missing: true}"])
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("        nb: 1\n        radius: -1\n{state}", "many.yaml:11: objects.robots.radius: "),
+        ("        nb: 1\n{state}time_step: 0\n", "many.yaml:12: time_step: "),
+        ("        nb: 1\n{state}frames_format: 3\ntime_step: 0\n", "many.yaml:13: time_step: "),
+    ],
+)
+def test_output_in_a_map_moves_no_line(text: str, wrong: str, state: str, tmp_path: Path) -> None:
+    write(tmp_path, text.format(state=f"flash_state: {state}\n"))
+    for result in (batch(tmp_path, "-r", "1"), subcommand(tmp_path, "task", "--seed", "1", folder_of="one")):
+        assert result.code == 3
+        assert wrong in result.errors
+    assert "output_file: '" in (tmp_path / "one" / "pogobatch_effective.yaml").read_text()
 
 
 def test_warnings_of_runs_have_the_line_of_the_user_and_are_said_once(tmp_path: Path) -> None:

@@ -14,14 +14,11 @@ from typing import Any
 from pogosim.batch.errors import BatchError, cannot
 from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.batch.option_words import CHOICES
+from pogosim.batch.run_files import without_outputs
 from pogosim.yaml_1_2 import dump_yaml
 
-# Keys that say where results go, not what they are.
-NOT_IN_THE_WORLD = (
-    *("data_filename", "message_log", "console_filename", "frames_name"),
-    *(FORMAT, COLUMNS, "optimization", CHOICES),
-)
-FLASH_STATE, FLASH_OUTPUT = "flash_state", "output_file"
+# Keys that say, beside the names of outputs, where results go, not what they are.
+NOT_IN_THE_WORLD = (FORMAT, COLUMNS, "optimization", CHOICES)
 LIBRARY = re.compile(r"^\s*(?:\S+ => )?(/\S*libpogosim[^/\s]*)", re.MULTILINE)
 
 PYTHON = ".py"  # how the names of files end that Python runs
@@ -103,14 +100,6 @@ def texts_in(node: Any) -> Iterator[str]:
         yield node
 
 
-def without_flash_output(entries: dict[str, Any]) -> dict[str, Any]:
-    """Return a configuration without the file to which flash memory goes."""
-    state = entries.get(FLASH_STATE)
-    if not isinstance(state, dict):
-        return entries
-    return {**entries, FLASH_STATE: {key: value for key, value in state.items() if key != FLASH_OUTPUT}}
-
-
 def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: dict[Path, str]) -> str:
     """Return a digest of the configuration of a run, and of the files that it names (arenas, formations).
 
@@ -119,7 +108,7 @@ def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: di
         folders: Where relative names are searched, in this order.
         digests: Digests of files, to read each once in a batch; found ones are added.
     """
-    world = {key: value for key, value in without_flash_output(entries).items() if key not in NOT_IN_THE_WORLD}
+    world = {key: value for key, value in without_outputs(entries).items() if key not in NOT_IN_THE_WORLD}
     digest = hashlib.sha256(dump_yaml(world).encode(errors="surrogatepass"))
     for text in texts_in(world):
         if 0 < len(text) < 1024 and "\0" not in text:

@@ -14,7 +14,8 @@ import pogosim
 from pogosim.batch.errors import BatchError, cannot, one_line
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.run import FRAMES, Task
-from pogosim.batch.tasks import MESSAGE_LOG, OUTPUTS, Combination
+from pogosim.batch.run_files import without_outputs
+from pogosim.batch.tasks import Combination
 from pogosim.outputs import OutputError, partial_output, real_output
 from pogosim.yaml_1_2 import dump_yaml, plain
 
@@ -29,9 +30,9 @@ NAMESPACE = uuid.UUID("6f6a0f0e-2a43-5d1e-9d0b-7b6f676f7369")
 NEEDED = {"seed": int, "logical_run": int, "result_filename": str, "data_file": str}
 
 
-def config_hash(entries: Mapping[str, Any]) -> str:
+def config_hash(entries: dict[str, Any]) -> str:
     """Return the SHA-256 of a configuration in YAML, with sorted keys, without the names of outputs of a run."""
-    kept = {key: value for key, value in entries.items() if key not in (*OUTPUTS, MESSAGE_LOG, CHOICES)}
+    kept = {key: value for key, value in without_outputs(entries).items() if key != CHOICES}
     return hashlib.sha256(dump_yaml(in_order(kept)).encode(errors="surrogatepass")).hexdigest()
 
 

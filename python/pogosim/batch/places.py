@@ -13,6 +13,7 @@ from pogosim.batch.configuration import BatchLoader, Configuration, line_of
 from pogosim.batch.option_words import CHOICES, DOMAIN, HIERARCHICAL_OPTIONS, LIST, identities
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.batch.run import OWN, Task
+from pogosim.batch.run_files import is_nested
 
 Path = tuple[str, ...]
 
@@ -39,8 +40,9 @@ def in_the_users_file(text: str, task: Task, entries: dict[str, Any], configurat
 def path_at(task: Task, line: int) -> Path:
     """Return the path of what stands at a line of the configuration of a run."""
     beyond = line - task.text.count("\n") - 1
-    if 0 <= beyond < len(task.outputs):
-        return (task.outputs[beyond][0],)
+    added = [setting for setting, _ in task.outputs if not is_nested(setting)]
+    if 0 <= beyond < len(added):
+        return (added[beyond],)
     places = [place for place in places_in(yaml.compose(task.text, Loader=BatchLoader), ()) if place[0] <= line]
     return max(places, key=lambda place: (place[0], len(place[1])), default=(0, ()))[1]
 

@@ -10,17 +10,14 @@ from typing import Any
 
 import pyarrow as pa
 
-from pogosim.batch.identity import without_flash_output
 from pogosim.batch.parts import Part
+from pogosim.batch.run_files import without_outputs
 from pogosim.yaml_1_2 import dump_yaml, parse_yaml
 
 RESOLVED = "resolved_configuration"
 POLYGONS = "arena_polygons"
 COMBINATIONS = "combinations"
 MANIFEST = "pogobatch_manifest"
-
-# What differs between the runs of one configuration.
-OF_ONE_RUN = ("seed", "data_filename", "message_log", "console_filename", "frames_name")
 
 
 @dataclass(frozen=True)
@@ -80,7 +77,7 @@ def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
         return {}
     if not isinstance(entries, dict):
         return {}
-    return {key: value for key, value in without_flash_output(entries).items() if key not in OF_ONE_RUN}
+    return {key: value for key, value in without_outputs(entries).items() if key != "seed"}
 
 
 def shared_entries(maps: Sequence[dict[str, Any]]) -> dict[str, Any]:

@@ -18,14 +18,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pogosim.batch.configuration import dump_configuration
 from pogosim.batch.errors import reason
 from pogosim.batch.identity import PYTHON
-from pogosim.batch.paths import set_in_dict
+from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.running import Watch
 from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
-from pogosim.yaml_1_2 import parse_yaml
 
 LOG = "log.txt"
 CONFIGURATION = "test.yaml"
@@ -56,7 +54,7 @@ class Task:
     run: int
     seed: int
     program: str
-    text: str  # configuration, without the names of its outputs
+    text: str  # configuration, without the names of its outputs, or with `place_of` them
     outputs: tuple[tuple[str, str], ...]  # keys of the configuration, and the basenames of the files
     data: str  # basename of the data file
     working_folder: str
@@ -235,20 +233,15 @@ def ending(code: int) -> str:
 def write_configuration(task: Task, folder: Path, configuration: str) -> Path:
     """Write the configuration of a run, whose outputs go to `frames` in its folder."""
     outputs = {key: folder / FRAMES / name for key, name in task.outputs}
-    lines = "".join(f"{key}: {quoted(path)}\n" for key, path in outputs.items() if "." not in key)
+    text = task.text
+    for setting, output in outputs.items():
+        if is_nested(setting):
+            text = text.replace(place_of(setting), quoted(output))
+        else:
+            text += f"{setting}: {quoted(output)}\n"
     path = folder / configuration
-    path.write_text(with_nested(task.text, {key: path for key, path in outputs.items() if "." in key}) + lines)
+    path.write_text(text)
     return path
-
-
-def with_nested(text: str, outputs: dict[str, Path]) -> str:
-    """Return a configuration with outputs whose keys stand in maps; dotted paths."""
-    if not outputs:
-        return text
-    entries = parse_yaml(text)
-    for key, path in outputs.items():
-        set_in_dict(entries, key, str(path))
-    return dump_configuration(entries)
 
 
 def quoted(path: Path) -> str:

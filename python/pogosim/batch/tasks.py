@@ -9,16 +9,13 @@ from typing import Any
 
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError
-from pogosim.batch.identity import FLASH_OUTPUT, FLASH_STATE, run_key, without_flash_output, world_digest
+from pogosim.batch.identity import run_key, world_digest
 from pogosim.batch.run import QUIET, Task
+from pogosim.batch.run_files import outputs_of, with_files_beside, with_places
 from pogosim.batch.seeds import replacements
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.yaml_1_2 import plain
-
-OUTPUTS = {"data_filename": "data.feather", "console_filename": "console.txt", "frames_name": "f{:010.4f}.png"}
-MESSAGE_LOG = "message_log"  # an output only of runs that ask for it
-FILES_BESIDE = ("arena_file", "formation_filename", "magnetometer.csv.file")
 
 
 @dataclass
@@ -60,17 +57,10 @@ def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> No
 
 def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings) -> list[Task]:
     """Return the runs of a configuration, one per seed."""
-    world = without_flash_output(entries)
-    world = {key: value for key, value in world.items() if key not in OUTPUTS and key != MESSAGE_LOG}
-    world = with_files_beside(world, settings.configuration_folder)
-    outputs = {key: basename(entries.get(key), default) for key, default in OUTPUTS.items()}
+    outputs = outputs_of(entries)
+    world = with_files_beside(with_places(entries, list(outputs)), settings.configuration_folder)
     if format_of(outputs["data_filename"]) != FEATHER:  # that of the results is another matter
         outputs["data_filename"] = f"{Path(outputs['data_filename']).stem}.feather"
-    if entries.get(MESSAGE_LOG):
-        outputs[MESSAGE_LOG] = basename(entries[MESSAGE_LOG], "messages.feather")
-    state = entries.get(FLASH_STATE)
-    if isinstance(state, dict) and state.get(FLASH_OUTPUT):
-        outputs[f"{FLASH_STATE}.{FLASH_OUTPUT}"] = basename(state[FLASH_OUTPUT], "robots.flash")
     text = dump_configuration(world) if world else ""
     digest = world_digest(world, (Path.cwd(), settings.configuration_folder), settings.digests)
     others = replacements(seeds, settings.retries) if settings.retry_new_seed else [()] * len(seeds)
@@ -95,31 +85,3 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
         )
         for run, seed in enumerate(seeds)
     ]
-
-
-def with_files_beside(entries: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a configuration for another folder: with the paths of files that a single run finds beside it."""
-    result = dict(entries)
-    for path in FILES_BESIDE:
-        *maps, key = path.split(".")
-        node: Any = result
-        for name in maps:
-            if isinstance(node, dict) and isinstance(node.get(name), dict):
-                node[name] = dict(node[name])  # the given one stays as it is
-            node = node.get(name) if isinstance(node, dict) else None
-        if isinstance(node, dict) and key in node:
-            node[key] = found_beside(node[key], folder)
-    return result
-
-
-def found_beside(name: Any, folder: Path) -> Any:
-    """Return the path of a file that a single run would find beside the configuration; else the name as it is."""
-    if not isinstance(name, str) or not name or Path(name).exists():
-        return name
-    beside = folder / name
-    return str(beside) if beside.exists() else name
-
-
-def basename(name: Any, default: str) -> str:
-    """Return the last part of a path."""
-    return (Path(name).name or default) if isinstance(name, str) else default

@@ -12,8 +12,9 @@ from pogosim.batch.backends import Workers
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
+from pogosim.batch.run_files import found_beside
 from pogosim.batch.slurm_options import slurm_jobs
-from pogosim.batch.tasks import check_logs_data, found_beside
+from pogosim.batch.tasks import check_logs_data
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective

@@ -17,7 +17,7 @@ from pogosim.batch.combinations import overlay
 from pogosim.batch.configuration import dump_configuration
 from pogosim.batch.errors import cannot
 from pogosim.batch.names import COLUMNS, FORMAT
-from pogosim.batch.tasks import with_files_beside
+from pogosim.batch.run_files import with_files_beside
 from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Evaluation
 from pogosim.optimize.settings import SECTION
