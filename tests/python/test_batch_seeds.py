@@ -51,8 +51,8 @@ def test_rows_are_those_of_single_runs_with_the_same_seeds(tmp_path: Path) -> No
     rows, _ = load_dataframe(tmp_path / "results" / "result.feather")
     write_options(tmp_path, {**ONE, "simulation_time": 1.0})
     for run, seed in enumerate((7, 8)):
-        assert subcommand(tmp_path, "task", "--seed", str(seed), folder_of="one").code == 0
-        single, _ = load_dataframe(tmp_path / "one" / "frames" / "data.feather")
+        assert subcommand(tmp_path, "task", "--seed", str(seed), folder_of=str(seed)).code == 0
+        single, _ = load_dataframe(tmp_path / str(seed) / "frames" / "data.feather")
         own = rows[rows["run"] == run].drop(columns=["run", "seed", "retry_attempt"]).reset_index(drop=True)
         pd.testing.assert_frame_equal(own, single, check_flags=False)
 

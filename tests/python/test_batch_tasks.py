@@ -96,6 +96,32 @@ def test_failed_task_leaves_its_log_and_no_manifest(tmp_path: Path) -> None:
         execute_task(tmp_path / "many.yaml", broken, seed=1, output_dir=tmp_path / "api")
 
 
+def test_folder_with_another_run_is_refused_and_stays_as_it_is(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 7, into="one").code == 0
+    before = {path: path.read_bytes() for path in (tmp_path / "one").rglob("*") if path.is_file()}
+    refused = task(tmp_path, 9, into="one")
+    assert (refused.code, refused.errors) == (
+        2,
+        "pogobatch task: one has another run already, with the seed 7, not 9; choose another folder with -o, or "
+        "replace that run with --force\n",
+    )
+    write_options(tmp_path, {"objects.robots.nb": 5})
+    other = task(tmp_path, 7, into="one")
+    assert (other.code, "with the extra columns {" in other.errors) == (2, True), other.errors
+    assert {path: path.read_bytes() for path in (tmp_path / "one").rglob("*") if path.is_file()} == before
+    with pytest.raises(PogobatchError, match="has another run already"):
+        execute_task(tmp_path / "many.yaml", PROGRAM, seed=9, output_dir=tmp_path / "one")
+    # The same run is done again, also with a configuration that has been corrected.
+    write_options(tmp_path, {"simulation_time": 0.5})
+    assert task(tmp_path, 7, "--run-index", "1", into="one").code == 0
+    assert manifest_of(tmp_path / "one")["logical_run"] == 1
+    assert task(tmp_path, 9, "--force", into="one").code == 0
+    assert manifest_of(tmp_path / "one")["seed"] == 9
+    change(tmp_path / "one", schema_version=99)
+    assert task(tmp_path, 3, into="one").code == 0
+
+
 @pytest.mark.parametrize(
     ("changes", "options", "said"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,9 @@ from typing import Any
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program
-from pogosim.batch.manifests import TASK, task_entries, write_json
+from pogosim.batch.manifests import TASK, read_manifest, task_entries, write_json
 from pogosim.batch.names import NamesError, file_name, new_columns
-from pogosim.batch.option_words import CHOICES, CombinationsError
+from pogosim.batch.option_words import CHOICES, CombinationsError, shown
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.results import check_columns, schema_of
@@ -21,6 +22,8 @@ from pogosim.batch.sweeps import resolved
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
+
+WHICH_RUN = ("seed", "result_filename", "extra_columns")  # entries of a manifest that tell runs in a folder apart
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,7 @@ def execute_task(
     run_index: int = 0,
     retry_attempt: int = 0,
     gui: bool = False,
+    force: bool = False,
 ) -> TaskArtifact:
     """Do one run in a folder: `pogobatch_effective.yaml`, `log.txt`, `frames/`, and at the end `pogobatch_task.json`.
 
@@ -69,13 +73,15 @@ def execute_task(
         config_path: YAML file. A run takes the `default_option` of each of its options.
         simulator_binary: Program compiled for Pogosim, or a Python file that behaves like one.
         seed: Seed, 0 to 2^32-1.
-        output_dir: The folder, which is made. What an earlier run has left there is replaced.
+        output_dir: The folder, which is made. What the same run has left there, or one that failed, is replaced; the
+            same are runs with the same seed whose results have the same name and columns.
         run_index: Number of the run, from 0 on, for the column `run`.
         retry_attempt: Which attempt this is, from 0 on, for the column `retry_attempt`.
         gui: Let the run open its window.
+        force: Replace another run, too.
 
     Raises:
-        BatchError: It cannot be done.
+        BatchError: It cannot be done, or another run is in the folder.
         TaskError: The run failed.
     """
     (seed,) = listed_seeds([seed], "--seed")
@@ -93,6 +99,10 @@ def execute_task(
     check_logs_data(entries, configuration)
     folder = given.path("output_dir", output_dir)
     task = task_in(folder, configuration, entries, program, seed, run_index, gui)
+    combination = Combination("", columns, entries, [task], name)
+    manifest = task_entries(combination, task, 0, 0, entries.get(CHOICES, {})) | {"retry_attempt": retry_attempt}
+    if not force:
+        refuse_another_run(folder, manifest)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for left in (TASK, f"{FRAMES}/{task.data}"):
@@ -105,10 +115,22 @@ def execute_task(
         said = in_the_users_file(outcome.log, task, entries, configuration)
         raise TaskError(f"the run with seed {seed} failed: {with_last_line(outcome.problem, said)}", outcome)
     check_columns(schema_of(folder / FRAMES / task.data), list(columns), program, WITH_SEEDS)
-    combination = Combination("", columns, entries, [task], name)
-    manifest = task_entries(combination, task, 0, 0, entries.get(CHOICES, {})) | {"retry_attempt": retry_attempt}
     write_json(folder / TASK, manifest)
     return TaskArtifact(folder, manifest)
+
+
+def refuse_another_run(folder: Path, manifest: Mapping[str, Any]) -> None:
+    """Raise BatchError if a folder has a run that is done and is another one than a manifest says."""
+    try:
+        there = read_manifest(folder / TASK)
+    except BatchError:
+        return  # none is done there
+    for name in WHICH_RUN:
+        if there.get(name) != manifest[name]:
+            raise BatchError(
+                f"{folder} has another run already, with the {name.replace('_', ' ')} {shown(there.get(name))}, not "
+                f"{shown(manifest[name])}; choose another folder with -o, or replace that run with --force"
+            )
 
 
 def task_in(

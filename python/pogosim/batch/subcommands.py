@@ -96,6 +96,7 @@ def add_task_options(options: Parser) -> None:
     add("--run-index", type=int, default=0, metavar="N", help="its number, for the column run (%(default)s)")
     add("--retry-attempt", type=int, default=0, metavar="N", help="which attempt this is (%(default)s)")
     add("--gui", action="store_true", help="let the run open its window")
+    add("--force", action="store_true", help="replace another run that is in the folder")
     add("--json", action="store_true", help="print what was done as JSON, and all else on standard error")
     add("-v", "--verbose", action="store_true", help="say more")
 
@@ -114,6 +115,7 @@ def task(arguments: argparse.Namespace) -> Report:
             run_index=arguments.run_index,
             retry_attempt=arguments.retry_attempt,
             gui=arguments.gui,
+            force=arguments.force,
         )
     except TaskError as error:
         report = {"config": arguments.config, "seed": arguments.seed}
