@@ -257,12 +257,48 @@ def test_wrong_settings_are_named(section: dict[str, Any], said: str) -> None:
     assert said in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("section", "said"),
+    [
+        ({"bugdet": 3}, "optimization.bugdet: unknown key; did you mean 'budget'?"),
+        ({"Runs": 3}, "optimization.Runs: unknown key; did you mean 'runs'?"),
+        ({"parallelism": {"batch_job": 1}}, "optimization.parallelism.batch_job: unknown key; did you mean "),
+        ({"qd": {"bach": 1}}, "optimization.qd.bach: unknown key; did you mean 'qd.batch'?"),
+        ({"init_samples": 9}, "optimization.init_samples: unknown key; did you mean 'qd_init_samples'?"),
+        ({"qd": {"budget": 9}}, "optimization.qd.budget: unknown key; did you mean 'budget'?"),
+        (
+            {"objective": {"path": "x", "function": "f"}},
+            "optimization.objective.function: unknown key; expected path and func",
+        ),
+    ],
+)
+def test_slip_in_a_key_is_an_error_since_another_search_would_begin(section: dict[str, Any], said: str) -> None:
+    with pytest.raises(OptimizeError) as caught:
+        settings(section)
+    assert said in str(caught.value)
+
+
+def test_log_says_which_function_of_which_file_is_maximised(tmp_path: Path) -> None:
+    both = "def objective_fn(df): return 1.0\ndef compute_objective(df): return 2.0\n"
+    changes = {"algorithm": "random", "budget": 1, "qd": None, "objective": "theirs.py"}
+    other = "(compute_objective is there, too; --objective-func chooses)"
+    first = theirs(tmp_path, changes, lines=both)
+    assert f"conf/theirs.py, objective_fn {other}\n" in first.errors
+    assert "of the working folder" not in first.errors
+    named = theirs(tmp_path, {**changes, "objective": {"path": "theirs.py", "func": "compute_objective"}}, lines=both)
+    assert "conf/theirs.py, compute_objective\n" in named.errors
+    (tmp_path / "theirs.py").write_text("def compute_objective(df): return 3.0\n")
+    here = theirs(tmp_path, changes, lines=both)
+    assert "[INFO] Objective: theirs.py, compute_objective\n" in here.errors
+    assert "conf/theirs.py is not the objective, but theirs.py of the working folder: both have" in here.errors
+
+
 def test_unknown_keys_of_the_maps_are_named() -> None:
     warnings: list[str] = []
-    section = {"parallelism": {"candidates": 2}, "objective": {"file": "x"}, "qd": {"algo_kwargs": {}}}
+    section = {"parallelism": {"candidates": 2}, "colour": 1, "qd": {"algo_kwargs": {}}}
     settings_from(section, {}, ".".join, warnings.append)
     assert [text.partition(":")[0] for text in warnings] == [
-        *("optimization.parallelism.candidates", "optimization.objective.file", "optimization.qd.algo_kwargs")
+        *("optimization.parallelism.candidates", "optimization.colour", "optimization.qd.algo_kwargs")
     ]
 
 

@@ -39,7 +39,8 @@ def test_search_finds_the_best_values_and_says_so(tmp_path: Path) -> None:
     assert entries["best_values"]["parameters.c"] == "green"
     assert (entries["best_fitness"], entries["evaluations"]) == (table["fitness"].max(), 60)
     lines = [line.partition("] ")[2] for line in result.errors.splitlines()]
-    assert lines[0] == "[INFO] Starting the search: CMAES | dim=3 | max_evals=60 (normalised space)"
+    assert lines[0] == "[INFO] Objective: obj.py, objective_fn"
+    assert lines[1] == "[INFO] Starting the search: CMAES | dim=3 | max_evals=60 (normalised space)"
     first = table["fitness"][:8]
     numbers = "/".join(f"{value:.6g}" for value in (first.max(), first.mean(), first.min()))
     assert f"[INFO] gen 001: pop=8  f[best/mean/min]=[{numbers}]  best_so_far={first.max():.6g}" in lines
@@ -207,11 +208,11 @@ def test_settings_stand_in_the_configuration_and_the_command_line_comes_first(tm
         "cmaes": {"popsize": 3},
         "final_runs": 0,
     }
-    write_search(tmp_path, {"optimization": {**section, "speed": 1, "qd": {"sel_pb": 0.5}}})
+    write_search(tmp_path, {"optimization": {**section, "colour": 1, "qd": {"sel_pb": 0.5}}})
     result = search(tmp_path, "--max-evals", "5")
     assert result.code == 0
     assert "space.yaml:" in result.errors
-    assert "optimization.speed: unknown key, which has no effect; did you mean 'seed'?" in result.errors
+    assert "optimization.colour: unknown key, which has no effect; known are algorithm, budget" in result.errors
     assert "optimization.qd.sel_pb: has no effect here" in result.errors
     entries = summary(tmp_path, "there")
     assert (entries["optimizer"], entries["evaluations"], entries["seed"]) == ("random", 5, 5)

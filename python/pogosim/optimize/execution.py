@@ -45,7 +45,14 @@ def objective_of(settings: Settings, beside: Path) -> Objective:
     """
     if settings.objective:
         path = found_beside(settings.objective, beside)
-        return load_objective(path, settings.objective_func, settings.features_func, settings.objective_names)
+        objective = load_objective(path, settings.objective_func, settings.features_func, settings.objective_names)
+        others = ", ".join(objective.others)
+        advice = f" ({others} is there, too; --objective-func chooses)" if others else ""
+        log.info("Objective: %s, %s%s", path, objective.name, advice)
+        other = beside / settings.objective
+        if other.is_file() and not other.samefile(path):
+            log.warning("%s is not the objective, but %s of the working folder: both have this name", other, path)
+        return objective
     for name in ("objective_func", "features_func"):
         if getattr(settings, name) is not None:
             raise OptimizeError(f"--{name.replace('_', '-')} goes with --objective FILE.py")

@@ -85,12 +85,16 @@ class Objective:
         fitness: From the rows of all runs to a number, or to a number and the features.
         features: From the rows to the features; None if there is no such function.
         path: The file they are in; None: those above.
+        name: Name of the first one there.
+        others: Names of functions there that would be taken if it were not.
         modules: Files beside it, or in folders there, that it has imported.
     """
 
     fitness: Callable[[pd.DataFrame], Any] = objective_fn
     features: Callable[[pd.DataFrame], Any] | None = fd_fn
     path: Path | None = None
+    name: str = "objective_fn"
+    others: tuple[str, ...] = ()
     modules: tuple[Path, ...] = ()
 
     @property
@@ -199,8 +203,8 @@ def load_objective(
     module = imported(Path(path))
     modules = own_modules(Path(path), set(sys.modules) - before)
     names = usual if objective_name is None else (objective_name,)
-    fitness = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), None)
-    if fitness is None:
+    found = [name for name in names if callable(getattr(module, name, None))]
+    if not found:
         raise OptimizeError(
             f"--objective: {path} has no function {' or '.join(names)}; write 'def {names[0]}(df): ...', which returns "
             "a number, or give the name of yours with --objective-func"
@@ -208,7 +212,9 @@ def load_objective(
     features = getattr(module, features_name or FEATURES_NAME, None)
     if features_name is not None and not callable(features):
         raise OptimizeError(f"--features-func: {path} has no function {features_name}")
-    return Objective(fitness, features if callable(features) else None, Path(path), modules)
+    name, *others = found
+    own_features = features if callable(features) else None
+    return Objective(getattr(module, name), own_features, Path(path), name, tuple(others), modules)
 
 
 def own_modules(path: Path, names: set[str]) -> tuple[Path, ...]:

@@ -9,10 +9,12 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from pogosim.batch.option_words import shown
+from pogosim.nearest_name import nearest_name
 from pogosim.optimize.errors import OptimizeError
 from pogosim.yaml_1_2 import plain
 
 SECTION = "optimization"
+OBJECTIVE = "objective"
 STREAM = 0x504F474F  # which random numbers the first seed of blocks is drawn from
 COMMON = "common"
 FRESH = "fresh"
@@ -237,6 +239,27 @@ def flattened(section: Mapping[str, Any]) -> dict[tuple[str, ...], Any]:
     return flat
 
 
+def say_unknown(path: tuple[str, ...], place: str, warn: Callable[[str], None]) -> None:
+    """Refuse a key that is a slip, and warn of any other: it may be for another version of the program.
+
+    Raises:
+        OptimizeError: It is near to a known key, stands in another map than that one, or is in the map `objective`,
+            where it would choose what is maximised.
+    """
+    *maps, name = path
+    beside = [key for key in KEYS if list(key[:-1]) == maps]
+    near = nearest_name(name, [key[-1] for key in beside])
+    meant = [key for key in beside if key[-1] == near] or [key for key in KEYS if key[-1] == name]
+    if meant:
+        raise OptimizeError(f"{place}: unknown key; did you mean '{'.'.join(meant[0])}'?")
+    if maps == [OBJECTIVE]:
+        raise OptimizeError(f"{place}: unknown key; expected {' and '.join(key[-1] for key in beside)}")
+    names = [".".join(key) for key in KEYS]
+    alike = difflib.get_close_matches(".".join(path), names, n=1)
+    advice = f"did you mean '{alike[0]}'?" if alike else f"known are {', '.join(names)}"
+    warn(f"{place}: unknown key, which has no effect; {advice}")
+
+
 def settings_from(
     section: Any, options: Mapping[str, Any], where: Callable[[tuple[str, ...]], str], warn: Callable[[str], None]
 ) -> Settings:
@@ -258,10 +281,7 @@ def settings_from(
         if path in UNUSED:
             warn(f"{where((SECTION, *path))}: has no effect here")
         elif path not in KEYS:
-            names = [".".join(key) for key in KEYS]
-            near = difflib.get_close_matches(".".join(path), names, n=1)
-            advice = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(names)}"
-            warn(f"{where((SECTION, *path))}: unknown key, which has no effect; {advice}")
+            say_unknown(path, where((SECTION, *path)), warn)
         elif value is not None:
             name, check = KEYS[path]
             chosen[name] = checked(check, value, where((SECTION, *path)))
@@ -269,7 +289,7 @@ def settings_from(
         value = options.get(field.name)
         if value is not None:
             chosen[field.name] = checked(CHECKS[field.name], value, f"--{field.name.replace('_', '-')}")
-    if isinstance((section or {}).get("objective"), dict):
+    if isinstance((section or {}).get(OBJECTIVE), dict):
         chosen["objective_names"] = NAMES_OF_MAP
     settings = Settings(**chosen)
     if settings.seeds not in POLICIES:
