@@ -179,6 +179,24 @@ def test_rows_that_are_not_numbers_are_left_out_with_a_warning(tmp_path: Path) -
     assert "10, ?, 4, 5" in warnings[0]
 
 
+@pytest.mark.parametrize("row", ["1e308,1,2,3", "10,1e308,2,3", "10,1,-32769,3", "10,1,2,32768", "10,1,2,-inf"])
+def test_rows_that_no_sensor_can_have_measured_are_left_out(row: str, tmp_path: Path) -> None:
+    own = lines_of(table(coefficients(160.0, 140.0, 0.3, 0.1)))
+    warnings: list[str] = []
+    path = written(tmp_path, [*own[:9], row, *own[9:]])
+    assert len(read_reading_table(path, None, False, warnings.append).reading) == len(own)
+    assert len(warnings) == 1
+    assert "1 of 73 rows are not four numbers, an angle and readings of 16 bits, and are left out" in warnings[0]
+
+
+@pytest.mark.parametrize("text", ["," * 100000, "angle,mag_x,mag_y,mag_z\n" + "1," * 100000, "x" * 100000 + ",b\n1,2"])
+def test_long_lines_are_refused_soon_and_not_repeated(text: str, tmp_path: Path) -> None:
+    path = written(tmp_path, [text], header="")
+    with pytest.raises(CalibrationError) as refused:
+        read_reading_table(path, None, False, pytest.fail)
+    assert len(str(refused.value)) < 500 + len(str(path))
+
+
 OWN = lines_of(table(coefficients(160.0, 140.0, 0.3, 0.1), noise=2.0))
 MIRRORED = coefficients(160.0, 140.0, 0.3, 0.1) * [1.0, -1.0, 1.0]
 FLAT = ReadingTable(HEADINGS, np.random.default_rng(1).normal(400.0, 3.0, (72, 3)), "")
@@ -191,6 +209,11 @@ WRONG: dict[str, tuple[list[str], str, str]] = {
     "words": (["north,a,b,c"], "angle,mag_x,mag_y,mag_z", "no row of four numbers"),
     "too few": (OWN[:5], "angle,mag_x,mag_y,mag_z", "5 rows at 5 different headings, which cover 20 of 360 degrees"),
     "one heading": ([f"90,{i},{i + 1},3" for i in range(50)], "angle,mag_x,mag_y,mag_z", "1 different headings"),
+    "far too large": (
+        [f"{5 * i},1e308,-1e308,1e308" for i in range(72)],
+        "angle,mag_x,mag_y,mag_z",
+        "readings of 16 bits",
+    ),
     "narrow": ([f"{i / 10},{i % 7},{i % 5},3" for i in range(90)], "angle,mag_x,mag_y,mag_z", "cover 9 of 360"),
     "no signal": (lines_of(FLAT), "angle,mag_x,mag_y,mag_z", "hardly depend on the heading"),
     "constant": ([f"{5 * i},400,400,400" for i in range(72)], "angle,mag_x,mag_y,mag_z", "hardly depend"),

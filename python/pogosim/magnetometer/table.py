@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,6 +23,10 @@ SYNONYMS = {
 }
 EXPECTED = "expected the columns angle, mag_x, mag_y and mag_z"
 TURN = {"degrees": 360.0, "radians": 2.0 * math.pi}
+MOST_COLUMNS = 1000
+LARGEST_ANGLE = 1e6  # in either unit, as in the simulator
+COUNTS = (-32768.0, 32767.0)  # of a sensor with 16 bits
+SHOWN = 200  # characters of a line of the table in a message
 EXCESS = 1.02  # of the largest angle over a turn in radians, beyond which angles must be degrees
 
 
@@ -67,6 +71,7 @@ def read_csv(path: Path) -> pd.DataFrame:
     """Read a CSV file as text; columns without a header have numbers for names."""
     try:
         sep = separator(path, "utf-8-sig")
+        check_columns(path, sep)
         table = pd.read_csv(
             path, comment="#", encoding="utf-8-sig", index_col=False, sep=sep, dtype=str, skipinitialspace=True
         )
@@ -77,6 +82,20 @@ def read_csv(path: Path) -> pd.DataFrame:
     except (ValueError, pd.errors.ParserWarning) as error:
         raise CalibrationError(f"{path} is not a CSV file of readings: {' '.join(str(error).split())}") from None
     return table
+
+
+def check_columns(path: Path, sep: str) -> None:
+    """Raise CalibrationError for a file with very many columns, which would take long to read."""
+    with path.open(encoding="utf-8-sig") as file:
+        columns = 1 + max((line.count(sep) for line in file if not line.startswith("#")), default=0)
+    if columns > MOST_COLUMNS:
+        raise CalibrationError(f"{path} has a line of {columns} columns; {EXPECTED}")
+
+
+def shortened(cells: Iterable[object]) -> str:
+    """Return cells of a table for a message, without the end of a long line."""
+    text = ", ".join(map(str, cells))
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]} ..."
 
 
 def is_number(text: str) -> bool:
@@ -98,7 +117,7 @@ def named(table: pd.DataFrame, path: Path) -> pd.DataFrame:
     found = {wanted: first_of(synonyms, by_name) for wanted, synonyms in SYNONYMS.items()}
     missing = [SYNONYMS[wanted][0] for wanted, name in found.items() if name is None]
     if missing:
-        there = ", ".join(map(str, table.columns))
+        there = shortened(table.columns)
         raise CalibrationError(f"{path} has no column {', '.join(missing)}; {EXPECTED}, found {there}")
     return pd.DataFrame({wanted: table[by_name[str(name)]] for wanted, name in found.items()})
 
@@ -109,15 +128,20 @@ def first_of(synonyms: Sequence[str], names: dict[str, str]) -> str | None:
 
 
 def numbers(rows: pd.DataFrame, path: Path, warn: Warn) -> pd.DataFrame:
-    """Make numbers of all cells; rows with anything else are left out, with a warning."""
-    converted = rows.apply(pd.to_numeric, errors="coerce").replace([np.inf, -np.inf], np.nan)
+    """Make numbers of all cells; rows that no sensor can have measured are left out, with a warning."""
+    converted = rows.apply(pd.to_numeric, errors="coerce").astype(float)
+    converted["angle"] = converted["angle"].where(converted["angle"].between(-LARGEST_ANGLE, LARGEST_ANGLE))
+    for axis in AXES:
+        converted[axis] = converted[axis].where(converted[axis].between(*COUNTS))
     complete = converted.dropna()
     if complete.empty:
-        raise CalibrationError(f"{path} has no row of four numbers; {EXPECTED}")
+        raise CalibrationError(f"{path} has no row of four numbers, an angle and readings of 16 bits; {EXPECTED}")
     if left_out := len(rows) - len(complete):
         first = int(np.flatnonzero(converted.isna().any(axis="columns").to_numpy())[0])
-        cells = ", ".join(map(str, rows.iloc[first].tolist()))
-        warn(f"{path}: {left_out} of {len(rows)} rows are not four numbers and are left out; the first one is {cells}")
+        warn(
+            f"{path}: {left_out} of {len(rows)} rows are not four numbers, an angle and readings of 16 bits, and are "
+            f"left out; the first one is {shortened(rows.iloc[first].tolist())}"
+        )
     kept: pd.DataFrame = complete.reset_index(drop=True)
     return kept
 
