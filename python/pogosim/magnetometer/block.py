@@ -104,7 +104,7 @@ def configuration_block(fitted: CurveFit, field_angle_rad: float) -> str:
 
 
 def phase_near(coefficients: Floats, phase: float) -> float:
-    """Return the phase of another ellipse: of its two ends, the one nearest to a known phase."""
+    """Return the phase of the ellipse, or that plus pi, whichever is nearer to `phase`."""
     return phase + math.remainder(ellipse_of(coefficients).phase - phase, math.pi)
 
 
