@@ -1,4 +1,4 @@
-#include "robot/magnetometer_fit.hpp"
+#include "sim/magnetometer_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,8 @@ NormalEquations normal_equations(std::span<MagneticRow const> rows, int order, d
     return equations;
 }
 
-/// Replaces the matrix by its Cholesky factor. False if it is singular, or so nearly that a small ridge alone prevents
-/// it: then the noise of the readings would be amplified a thousand times.
+/// Replaces the matrix by its Cholesky factor. False if it is singular or ill-conditioned: the fit would amplify noise
+/// about a thousand times.
 bool factorise(std::vector<std::vector<double>>& matrix) {
     constexpr double kLeastPivot = 1e-6;  // relative to the largest element
     double largest = 0.0;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/magnetometer_config.hpp"
-#include "robot/magnetometer_fit.hpp"
+#include "sim/magnetometer_fit.hpp"
 
 namespace pogosim {
 

@@ -13,7 +13,7 @@
 #include "base/exact_math.hpp"
 #include "base/log.hpp"
 #include "config/places.hpp"
-#include "robot/magnetometer_fit.hpp"
+#include "sim/magnetometer_fit.hpp"
 #include "sim/find_file.hpp"
 #include "sim/magnetometer_table.hpp"
 

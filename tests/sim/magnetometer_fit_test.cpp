@@ -1,5 +1,5 @@
 // Curves fitted to tables of readings.
-#include "robot/magnetometer_fit.hpp"
+#include "sim/magnetometer_fit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 """The curve of a magnetometer: harmonics of the angle of the field in the robot's frame, and the ellipse in them.
 
-The simulator fits the same curve to a table (`magnetometer: {source: csv}`, src/robot/magnetometer_fit.cpp).
+The simulator fits the same curve to a table (`magnetometer: {source: csv}`, src/sim/magnetometer_fit.cpp).
 """
 
 from __future__ import annotations
