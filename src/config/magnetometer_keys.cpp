@@ -335,7 +335,8 @@ std::array<Key<MagnetometerTable>, 10> table_keys() {
         K{"ridge_regularization", &MagnetometerTable::ridge, between(0, 1e12), "",
           "Weight of the squared coefficients in the fit."},
         K{"skip_invalid_rows", &MagnetometerTable::skip_invalid_rows, any(), "",
-          "Skip rows that are not numbers, with a warning; false: they are errors."},
+          "Skip rows that are not numbers, or whose readings do not have 16 bits, with a warning; false: they are "
+          "errors."},
         K{"add_fit_residual_as_noise", &MagnetometerTable::residual_is_noise, any(), "",
           "Add the error of the fit to noise_stddev, in quadrature."},
         K{"calibration_field_angle", &MagnetometerTable::field_angle_rad, any(), kAngles,

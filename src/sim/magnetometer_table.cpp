@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/counted.hpp"
@@ -19,6 +23,8 @@
 namespace pogosim {
 
 namespace {
+
+constexpr double kLargestAngle = 1e6;  // in either unit; beyond, turns and more of it may be lost to rounding
 
 /// Places of angle, x, y and z in a line.
 using Places = std::array<std::size_t, 1 + kAxisCount>;
@@ -66,18 +72,33 @@ std::optional<std::array<double, 1 + kAxisCount>> numbers_of(CsvLine const& line
     return numbers;
 }
 
+/// Whether a sensor can have measured this: larger numbers are those of a damaged table, and fit no curve.
+bool is_possible(std::array<double, 1 + kAxisCount> const& numbers) {
+    using Count = std::numeric_limits<std::int16_t>;
+    auto const [angle, x, y, z] = numbers;
+    auto const is_count = [](double reading) { return reading >= Count::min() && reading <= Count::max(); };
+    return std::abs(angle) <= kLargestAngle && is_count(x) && is_count(y) && is_count(z);
+}
+
 /// Rows that are no data.
 struct InvalidRows {
     std::size_t count = 0;
     CsvLine first{};
+    std::string_view expected;  // in the first one
+
+    void note(CsvLine const& line, std::string_view expected_here) {
+        if (count++ == 0) {
+            first = line;
+            expected = expected_here;
+        }
+    }
 };
 
 void report(std::string const& file, InvalidRows const& invalid, MagnetometerTable const& table) {
     if (invalid.count == 0) {
         return;
     }
-    std::string const found =
-        fmt::format("expected numbers for angle, x, y and z, found {}", in_quotes(invalid.first.text));
+    std::string const found = fmt::format("expected {}, found {}", invalid.expected, in_quotes(invalid.first.text));
     if (!table.skip_invalid_rows) {
         throw ConfigError(fmt::format("{}:{}: {} (magnetometer.csv.skip_invalid_rows: true skips such rows)", file,
                                       invalid.first.number, found));
@@ -105,11 +126,13 @@ std::vector<MagneticRow> read_magnetometer_table(std::filesystem::path const& pa
         }
         if (!places) {
             places = places_in_header(file, line, table);
-        } else if (auto const numbers = numbers_of(line, *places, delimiter)) {
+        } else if (auto const numbers = numbers_of(line, *places, delimiter); !numbers) {
+            invalid.note(line, "numbers for angle, x, y and z");
+        } else if (!is_possible(*numbers)) {
+            invalid.note(line, "an angle up to a million and readings of 16 bits, from -32768 to 32767");
+        } else {
             auto const [angle, x, y, z] = *numbers;
             rows.push_back({.angle_rad = field_angle_rad - unit * angle, .reading = {x, y, z}});
-        } else if (invalid.count++ == 0) {
-            invalid.first = line;
         }
     }
     report(file, invalid, table);

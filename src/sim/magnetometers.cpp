@@ -13,8 +13,8 @@
 #include "base/exact_math.hpp"
 #include "base/log.hpp"
 #include "config/places.hpp"
-#include "sim/magnetometer_fit.hpp"
 #include "sim/find_file.hpp"
+#include "sim/magnetometer_fit.hpp"
 #include "sim/magnetometer_table.hpp"
 
 namespace pogosim {
@@ -40,11 +40,12 @@ MagneticFit fit_to_table(Scenario const& scenario) {
     std::vector<MagneticRow> const rows = read_magnetometer_table(file, table, field_angle_rad);
     auto const fit = fit_magnetic_curve(rows, table.harmonic_order, table.ridge);
     if (!fit) {
-        throw ConfigError(fmt::format(
-            "{}: '{}' has {} at {} different headings; a curve of harmonic_order {} needs at least {}, all around the "
-            "turn. Take readings at more headings, or lower magnetometer.csv.harmonic_order",
-            place_of(scenario, Setting::magnetometer_table), file.string(), counted(rows.size(), "valid row"),
-            count_headings(rows), table.harmonic_order, coefficient_count(table.harmonic_order)));
+        throw ConfigError(
+            fmt::format("{}: '{}' has {} at {}; a curve of harmonic_order {} needs at least {}, all around the "
+                        "turn. Take readings at more headings, or lower magnetometer.csv.harmonic_order",
+                        place_of(scenario, Setting::magnetometer_table), file.string(),
+                        counted(rows.size(), "valid row"), counted(count_headings(rows), "different heading"),
+                        table.harmonic_order, coefficient_count(table.harmonic_order)));
     }
     log().info("magnetometer: {} fitted to {} of '{}'; root mean square of the residuals: x {:.3g}, y {:.3g}, z {:.3g}",
                counted(static_cast<std::size_t>(table.harmonic_order), "harmonic"), counted(rows.size(), "row"),

@@ -218,16 +218,21 @@ WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
     "empty": ("", {}, "has 0 valid rows at 0 different headings"),
     "header alone": ("angle,mag_x,mag_y,mag_z\n", {}, "has 0 valid rows"),
     "too few rows": ("angle,mag_x,mag_y,mag_z\n0,1,2,3\n90,1,2,3\n", {}, "needs at least 5, all around the turn"),
-    "one heading": ("angle,mag_x,mag_y,mag_z\n" + "90,1,2,3\n" * 9, {}, "has 9 valid rows at 1 different headings"),
+    "one heading": ("angle,mag_x,mag_y,mag_z\n" + "90,1,2,3\n" * 9, {}, "has 9 valid rows at 1 different heading;"),
     "a turn further is no other heading": (
         "angle,mag_x,mag_y,mag_z\n" + "".join(f"{360 * i},1,2,3\n" for i in range(9)),
         {},
-        "at 1 different headings",
+        "at 1 different heading;",
     ),
     "invalid row": (
         "angle,mag_x,mag_y,mag_z\n0,1,2,3\n# more\n10,1,x,3\n",
         {"skip_invalid_rows": False},
         "table.csv:4: expected numbers for angle, x, y and z, found '10,1,x,3'",
+    ),
+    "reading that is none": (
+        "angle,mag_x,mag_y,mag_z\n0,1,2,1e200\n",
+        {"skip_invalid_rows": False},
+        "table.csv:2: expected an angle up to a million and readings of 16 bits, from -32768 to 32767, found '0,1,2,1e",
     ),
     "open quotes": ('angle,mag_x,mag_y,mag_z\n0,"1,2,3\n', {}, "table.csv:2: a text in double quotes begins"),
 }
@@ -295,6 +300,29 @@ def test_rows_that_are_not_numbers_are_skipped_and_told_once(reader: Path, tmp_p
     assert "fitted to 36 rows" in result.output
     (warning,) = result.errors.splitlines()
     assert "table.csv:38: expected numbers for angle, x, y and z, found '10,,,'; 3 such rows are skipped" in warning
+
+
+@pytest.mark.parametrize("row", ["10,1e200,2,3", "10,1,-32769,3", "10,1,2,32768", "1e308,1,2,3"])
+def test_rows_that_no_sensor_can_have_measured_are_skipped(reader: Path, tmp_path: Path, row: str) -> None:
+    result = table_run(reader, tmp_path, "\n".join(["angle,mag_x,mag_y,mag_z", *rows_of_table(), row]), {})
+    assert result.code == 0
+    assert "fitted to 36 rows of 'table.csv'; root mean square of the residuals: x 0." in result.output
+    expected = "table.csv:38: expected an angle up to a million and readings of 16 bits, from -32768 to 32767, found"
+    assert f"{expected} '{row}'; this row is skipped" in result.errors
+
+
+def test_each_axis_has_the_noise_of_its_own_residuals(reader: Path, tmp_path: Path) -> None:
+    def reading(heading: int, sign: int) -> str:
+        x, y = 400 + 100 * math.cos(math.radians(heading)), 400 + 100 * math.sin(math.radians(heading))
+        return f"{heading},{x},{y + 20 * sign},{400 + 5 * sign}"
+
+    rows = [reading(10 * i, sign) for i in range(36) for sign in (-1, 1)]
+    (tmp_path / "table.csv").write_text("\n".join(["angle,mag_x,mag_y,mag_z", *rows]))
+    table = {"source": "csv", "csv": {"file": str(tmp_path / "table.csv")}, "robot_variation": EXACT}
+    found = recorded(reader, tmp_path, table, turns=False, simulation_time=20).groupby("robot_id")
+    assert found["mag_x"].std().to_numpy() == pytest.approx(0, abs=0.6)
+    assert found["mag_y"].std().to_numpy() == pytest.approx(20, rel=0.15)
+    assert found["mag_z"].std().to_numpy() == pytest.approx(5, rel=0.15)
 
 
 def test_data_file_does_not_replace_the_table(reader: Path, tmp_path: Path) -> None:
