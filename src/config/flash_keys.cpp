@@ -37,18 +37,8 @@ FlashStateConfig read_flash_state_map(MapReader& reader) {
 }
 
 FlashStateConfig read_flash_state(MapReader& top) {
-    Node const* const map = top.find("flash_state");
-    if (map == nullptr) {
-        return {};
-    }
-    Place const place{*map, top.path_of("flash_state")};
-    if (map->kind != Node::Kind::map) {
-        fail_expected(place, kFlashStateMap);
-    }
-    MapReader reader(*map, place.path, top.reading());
-    FlashStateConfig state = read_flash_state_map(reader);
-    reader.finish();
-    top.set_value("flash_state", reader.values());
+    FlashStateConfig state;
+    top.read_map("flash_state", kFlashStateMap, [&](MapReader& map) { state = read_flash_state_map(map); });
     return state;
 }
 

@@ -421,17 +421,8 @@ MagnetometerConfig read_magnetometer_map(MapReader& reader) {
 }
 
 MagnetometerConfig read_magnetometer(MapReader& top) {
-    static Node const absent;
-    Node const* const map = top.find("magnetometer");
-    if (map != nullptr && map->kind != Node::Kind::map) {
-        fail_expected({*map, "magnetometer"}, kMagnetometerMap);
-    }
-    MapReader reader(map == nullptr ? absent : *map, "magnetometer", top.reading());
-    MagnetometerConfig config = read_magnetometer_map(reader);
-    reader.finish();
-    if (map != nullptr) {
-        top.set_value("magnetometer", reader.values());
-    }
+    MagnetometerConfig config;
+    top.read_map("magnetometer", kMagnetometerMap, [&](MapReader& map) { config = read_magnetometer_map(map); });
     return config;
 }
 

@@ -41,6 +41,11 @@ public:
     template <class Read>
     void read_map(std::string_view key, Read const& read);
 
+    /// Reads the map under a key that is a part of its own: its keys are not known here. Where there is none, `read`
+    /// gets an empty one, and the key stays absent. Anything else is a mistake, which says what was `expected`.
+    template <class Read>
+    void read_map(std::string_view key, std::string_view expected, Read const& read);
+
     /// The value under a key, or nullptr when it is absent or null.
     Node const* find(std::string_view key) const;
 
@@ -134,6 +139,21 @@ void MapReader::read_map(std::string_view key, Read const& read) {
     read(inner);
     inner.finish();
     add_map(key, inner);
+}
+
+template <class Read>
+void MapReader::read_map(std::string_view key, std::string_view expected, Read const& read) {
+    static Node const empty;
+    Node const* const map = find(key);
+    if (map != nullptr && map->kind != Node::Kind::map) {
+        fail_expected({*map, path_of(key)}, expected);
+    }
+    MapReader inner(map == nullptr ? empty : *map, path_of(key), reading_);
+    read(inner);
+    if (map != nullptr) {
+        inner.finish();
+        set_value(key, inner.values());
+    }
 }
 
 template <class T>

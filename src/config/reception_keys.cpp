@@ -87,17 +87,11 @@ ReceptionSpec read_reception_map(MapReader& reader) {
 }
 
 ReceptionSpec read_reception(MapReader& robot) {
-    static Node const absent;
-    Node const* const map = robot.find("msg_success_rate");
-    if (map != nullptr && map->kind != Node::Kind::map) {
-        fail_expected({*map, robot.path_of("msg_success_rate")}, kReceptionMap);
-    }
-    MapReader reader(map == nullptr ? absent : *map, robot.path_of("msg_success_rate"), robot.reading());
-    ReceptionSpec const spec = read_reception_map(reader);
-    if (map != nullptr) {
-        reader.finish();
-    }
-    robot.set_value("msg_success_rate", reader.values());
+    ReceptionSpec spec;
+    robot.read_map("msg_success_rate", kReceptionMap, [&](MapReader& map) {
+        spec = read_reception_map(map);
+        robot.set_value("msg_success_rate", map.values());  // also where the law is the default one
+    });
     return spec;
 }
 
