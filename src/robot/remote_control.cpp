@@ -32,8 +32,8 @@ PacketKind kind_of_packet(FrameHeader const& header, std::span<std::byte const> 
 
 bool obey_commands(Mailboxes& mailboxes, std::size_t robot, InfraredState& state) {
     Mailboxes::Commands const commands = mailboxes.take_commands(robot);
-    if (commands.mute || commands.unmute) {
-        state.is_muted = commands.mute ? 1 : 0;
+    if (commands.is_muted) {
+        state.is_muted = *commands.is_muted ? 1 : 0;
     }
     return commands.restart;
 }

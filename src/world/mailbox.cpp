@@ -110,8 +110,7 @@ unsigned Mailboxes::receive_special(std::size_t robot, FrameHeader const& header
     if (kind == PacketKind::restart) {
         commands.restart = true;
     } else {
-        commands.mute = kind == PacketKind::mute;
-        commands.unmute = kind == PacketKind::unmute;
+        commands.is_muted = kind == PacketKind::mute;
     }
     queues_[robot].has_commands = 1;
     return push_copies(robot, header, payload, faces);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -83,8 +84,7 @@ public:
 
     /// Commands that have arrived and that the robot's library has not looked at.
     struct Commands {
-        bool mute = false;  // the last one of these two counts: the other one is false
-        bool unmute = false;
+        std::optional<bool> is_muted{};  // what the last one of these says
         bool restart = false;
     };
     bool has_commands(std::size_t robot) const { return queues_[robot].has_commands != 0; }
