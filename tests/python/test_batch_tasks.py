@@ -16,7 +16,7 @@ import pytest
 from batches import COMMAND, ENVIRONMENT, results, run_main, script, subcommand, write_options
 from pogosim.pogobatch import PogobatchError, TaskError, discover_task_artifacts, execute_task, merge_task_artifacts
 from pogosim.utils import load_dataframe
-from running import Run, example
+from running import ROOT, Run, example
 from yaml import safe_load
 
 PROGRAM = str(example("helloworld"))
@@ -210,6 +210,98 @@ def test_rows_of_a_batch_stay_when_tasks_are_appended(tmp_path: Path) -> None:
     assert after[: len(before)].equals(before)
     assert len(metadata["combinations"]) == 3
     assert "batch_options" in str(metadata["configuration"])
+
+
+def kept(folder: Path, runs: int, into: str, changes: dict[str, object] | None = None) -> None:
+    """Do a batch of many.yaml, whose runs stay in a folder."""
+    write_options(folder, changes)
+    assert subcommand(folder, "run", "-r", str(runs), "-t", into, "--keep-temp").code == 0
+
+
+def folder_of(folder: Path, run: int, nb: int) -> Path:
+    """Return the folder of a run that was kept."""
+    manifests = [path.parent for path in folder.rglob("pogobatch_task.json")]
+    (found,) = [
+        path
+        for path in manifests
+        if (entries := manifest_of(path))["logical_run"] == run and entries["batch_choices"]["objects.robots.nb"] == nb
+    ]
+    return found
+
+
+def test_runs_of_another_world_are_told_where_metadata_and_columns_do_not_tell_them(tmp_path: Path) -> None:
+    kept(tmp_path, 2, "small")
+    other: dict[str, object] = {"arena_surface": 2.0e6, "simulation_time": 0.5}
+    kept(tmp_path, 2, "large", other)
+    result = merge(tmp_path, "small", "large", "-c", "many.yaml")
+    assert result.code == 0
+    others, alike = result.errors.splitlines()
+    assert others.startswith("pogobatch merge: many.yaml: 4 of 8 runs are of other configurations, the first in small/")
+    assert others.endswith(
+        ", which differs in arena_surface, simulation_time; the metadata of the results will not say so: merge these "
+        "apart, with their own configuration"
+    )
+    assert alike.startswith("pogobatch merge: results/result.feather: no column tells apart its runs, which differ in ")
+    assert set(alike.partition("differ in ")[2].split(", ")) == {"arena_surface", "simulation_time"}
+    # Without -c, the configuration is that of the first run.
+    assert merge(tmp_path, "small", "large").errors == f"{alike}\n"
+    assert merge(tmp_path, "large", "-c", "many.yaml").errors == ""
+
+
+def test_results_to_which_runs_of_another_world_are_appended_are_named(tmp_path: Path) -> None:
+    kept(tmp_path, 1, "small")
+    write_options(tmp_path, {"arena_surface": 2.0e6})
+    assert task(tmp_path, 8, into="large").code == 0
+    assert merge(tmp_path, "small").errors == ""
+    result = merge(tmp_path, "large", "--append")
+    assert (result.code, result.errors) == (
+        0,
+        "pogobatch merge: results/result.feather: no column tells apart its runs, which differ in arena_surface\n",
+    )
+
+
+def test_columns_that_tell_worlds_apart_need_no_warning(tmp_path: Path) -> None:
+    columns: dict[str, object] = {"result_new_columns": ["objects.robots.nb", "arena_surface"]}
+    kept(tmp_path, 1, "small", columns)
+    kept(tmp_path, 1, "large", {**columns, "arena_surface": 2.0e6})
+    assert merge(tmp_path, "small", "large").errors == ""
+
+
+def test_missing_runs_are_named(tmp_path: Path) -> None:
+    kept(tmp_path, 3, "tmp", {"_rundr": {"seeds": 3}})
+    shutil.rmtree(folder_of(tmp_path / "tmp", 1, 3))
+    said = "1 of 6 runs is missing, the first: run 1 of results/result.feather, objects.robots.nb: 3"
+    result = merge(tmp_path, "tmp", "-c", "many.yaml")
+    assert (result.code, result.errors) == (0, f"pogobatch merge: {said}\n")
+    # Others of its number are there, so it is known without a configuration, too; and its columns.
+    assert merge(tmp_path, "tmp").errors == f"pogobatch merge: {said}, arena_file: 'disk'\n"
+    report = json.loads(merge(tmp_path, "tmp", "-c", "many.yaml", "--json").output)
+    missing = {"output": "results/result.feather", "logical_run": 1, "batch_choices": {"objects.robots.nb": 3}}
+    assert (report["ok"], report["missing"]) == (True, [missing])
+    # The configuration tells of combinations and runs of which there are none.
+    shutil.rmtree(folder_of(tmp_path / "tmp", 0, 3))
+    shutil.rmtree(folder_of(tmp_path / "tmp", 2, 3))
+    assert merge(tmp_path, "tmp").errors == ""
+    whole = merge(tmp_path, "tmp", "-c", "many.yaml").errors
+    assert whole == "pogobatch merge: 3 of 6 runs are missing, the first: run 0, objects.robots.nb: 3\n"
+    shutil.rmtree(folder_of(tmp_path / "tmp", 2, 2))
+    last = merge(tmp_path, "tmp", "-c", "many.yaml").errors
+    assert "4 of 6 runs are missing, the first: run 2 of results/result.feather, objects.robots.nb: 2" in last
+    assert merge(tmp_path, "tmp", "-c", "many.yaml", "--append", into="more").errors == ""
+
+
+def test_configuration_that_is_written_in_another_way_is_the_same(tmp_path: Path) -> None:
+    (tmp_path / "conf" / "arenas").mkdir(parents=True)
+    shutil.copy(ROOT / "arenas" / "disk.csv", tmp_path / "conf" / "arenas" / "mine.csv")
+    path = write_options(tmp_path, {"arena_file": "arenas/mine.csv"})
+    shutil.move(path, tmp_path / "conf" / "many.yaml")
+    words = ["run", "-c", "conf/many.yaml", "-S", PROGRAM, "-r", "2", "-t", "tmp", "-o", "results", "--keep-temp"]
+    assert run_main(tmp_path, words).code == 0
+    for folder in (tmp_path / "tmp").glob("sim_*"):
+        change(folder, config_hash="that of another program" if manifest_of(folder)["seed"] else None)
+    text = (tmp_path / "conf" / "many.yaml").read_text()
+    (tmp_path / "conf" / "many.yaml").write_text(f"# Mine\n{text}".replace("1000000.0", "1.0e6"))
+    assert merge(tmp_path, "tmp", "-c", "conf/many.yaml").errors == ""
 
 
 def test_run_that_would_count_twice_is_refused_and_results_stay(tmp_path: Path) -> None:

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from pogosim.batch.completeness import (
+    Expected,
+    missing_runs,
+    warn_of_indistinguishable,
+    warn_of_missing,
+    warn_of_others,
+)
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError, cannot, given
+from pogosim.batch.errors import BatchError, given
 from pogosim.batch.manifests import TASK, read_manifest
 from pogosim.batch.names import is_linked_out, leads_out
 from pogosim.batch.parts import OF_CAMPAIGNS, Part, RunFile
 from pogosim.batch.result_metadata import COMBINATIONS, Earlier
 from pogosim.batch.results import check_columns, check_output, schema_of, write_results
-from pogosim.batch.single_task import TaskArtifact
+from pogosim.batch.single_task import TaskArtifact, columns_as_text
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RETRY, RUN, SEED
 from pogosim.table_formats import FEATHER, format_of
@@ -79,18 +86,43 @@ def merge_task_artifacts(
         raise BatchError("there are no runs to merge")
     refuse_same_runs(artifacts)
     folder = given.path("output_dir", output_dir)
+    by_output = grouped(artifacts, folder)
+    expected = None if config_path is None else Expected(Configuration(given.path("config_path", config_path)))
+    for artifact in artifacts:
+        check_columns(artifact.schema, list(artifact.columns), str(artifact.folder), OF_CAMPAIGNS)
+    parts = {output: parts_of(own) for output, own in by_output.items()}
+    earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
+    if expected is not None:
+        warn_of_others(artifacts, expected)
+    if not append:
+        warn_of_missing(*missing_runs(by_output, expected))
+    for output, own in by_output.items():
+        warn_of_indistinguishable(output, own, earlier[output])
+    for output, own in by_output.items():
+        own_text = own[0].configuration_text if expected is None else expected.configuration.text
+        write_results(output, parts[output], own_text, OF_CAMPAIGNS, earlier[output])
+    return list(by_output)
+
+
+def grouped(artifacts: Iterable[TaskArtifact], folder: Path) -> dict[str, list[TaskArtifact]]:
+    """Return runs by their files of results in a folder."""
     by_output: dict[str, list[TaskArtifact]] = {}
     for artifact in artifacts:
         by_output.setdefault(output_of(artifact, folder), []).append(artifact)
-    text = None if config_path is None else Configuration(given.path("config_path", config_path)).text
-    for artifact in artifacts:
-        check_columns(schema_of_run(artifact), list(columns_of(artifact)), str(artifact.folder), OF_CAMPAIGNS)
-    parts = {output: parts_of(own) for output, own in by_output.items()}
-    earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
-    for output, own in by_output.items():
-        own_text = configuration_of(own[0]) if text is None else text
-        write_results(output, parts[output], own_text, OF_CAMPAIGNS, earlier[output])
-    return list(by_output)
+    return by_output
+
+
+def missing_in(
+    artifacts: Sequence[TaskArtifact], output_dir: PathLike, config_path: PathLike | None
+) -> list[dict[str, Any]]:
+    """Return the runs that are missing in a merge, see `missing_runs`: maps that can be written as JSON.
+
+    Raises:
+        BatchError: The configuration cannot be read, or its options are wrong.
+    """
+    by_output = grouped(artifacts, given.path("output_dir", output_dir))
+    expected = None if config_path is None else Expected(Configuration(given.path("config_path", config_path)))
+    return [asdict(run) for run in missing_runs(by_output, expected)[0]]
 
 
 def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:
@@ -98,7 +130,7 @@ def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:
     known: dict[tuple[Any, ...], Path] = {}
     for artifact in artifacts:
         manifest = artifact.manifest
-        which = combination_of(artifact)
+        which = artifact.combination
         for what in ("logical_run", "seed"):
             before = known.setdefault((*which, what, manifest[what]), artifact.folder)
             if before != artifact.folder:
@@ -106,30 +138,6 @@ def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:
                     f"{before} and {artifact.folder} have the same {what.replace('_', ' ')}, {manifest[what]}, of one "
                     "configuration, which would count twice; leave one out"
                 )
-
-
-def combination_of(artifact: TaskArtifact) -> tuple[str, ...]:
-    """Return what tells the combination of a run from others."""
-    manifest = artifact.manifest
-    return (str(manifest.get("config_hash", "")), as_text(columns_of(artifact)), str(manifest["result_filename"]))
-
-
-def as_text(columns: Mapping[str, Any]) -> str:
-    """Return columns as a text, which is the same for the same columns."""
-    return json.dumps(columns, sort_keys=True, default=str)
-
-
-def columns_of(artifact: TaskArtifact) -> dict[str, Any]:
-    """Return the constant columns of a run."""
-    return {name: value for name, value in artifact.manifest.get("extra_columns", {}).items() if name != SEED}
-
-
-def schema_of_run(artifact: TaskArtifact) -> Any:
-    """Return columns and metadata of a run."""
-    try:
-        return schema_of(artifact.data)
-    except OSError as error:
-        raise cannot("read", artifact.data, error) from None
 
 
 def output_of(artifact: TaskArtifact, folder: Path) -> str:
@@ -147,20 +155,14 @@ def parts_of(artifacts: Sequence[TaskArtifact]) -> list[Part]:
     """Return runs by their combinations of options, in the order of the first run of each."""
     parts: dict[tuple[str, ...], list[TaskArtifact]] = {}
     for artifact in artifacts:
-        parts.setdefault(combination_of(artifact), []).append(artifact)
-    return [Part(columns_of(runs[0]), [file_of(run) for run in runs], (), which[0]) for which, runs in parts.items()]
+        parts.setdefault(artifact.combination, []).append(artifact)
+    return [Part(runs[0].columns, [file_of(run) for run in runs], (), which[0]) for which, runs in parts.items()]
 
 
 def file_of(artifact: TaskArtifact) -> RunFile:
     """Return the data file of a run."""
     manifest = artifact.manifest
     return RunFile(artifact.data, manifest["logical_run"], manifest["seed"], int(manifest.get(RETRY) or 0))
-
-
-def configuration_of(artifact: TaskArtifact) -> str:
-    """Return the configuration in the data file of a run."""
-    text: bytes = (schema_of_run(artifact).metadata or {}).get(b"configuration", b"")
-    return text.decode(errors="replace")
 
 
 def earlier_results(output: str, parts: Sequence[Part]) -> Earlier | None:
@@ -179,12 +181,12 @@ def earlier_results(output: str, parts: Sequence[Part]) -> Earlier | None:
         raise BatchError(f"{output} has no columns run and seed: pogobatch run, or merge, did not write it")
     try:
         combinations = parse_yaml((schema.metadata or {})[COMBINATIONS.encode()].decode())
-        known = {(as_text(entry["columns"]), seed) for entry in combinations for seed in seeds_of(entry)}
+        known = {(columns_as_text(entry["columns"]), seed) for entry in combinations for seed in seeds_of(entry)}
     except (KeyError, TypeError, ValueError, RecursionError):
         raise BatchError(f"{output} does not say which runs it has: pogobatch did not write it") from None
     for part in parts:
         for run in part.runs:
-            if (as_text(part.columns), run.seed) in known:
+            if (columns_as_text(part.columns), run.seed) in known:
                 raise BatchError(f"{output} has the run of {run.path} already, with seed {run.seed}; leave it out")
     return Earlier(real, schema, combinations)
 

@@ -34,6 +34,10 @@ class Earlier:
     schema: pa.Schema
     combinations: list[dict[str, Any]]
 
+    def has_columns(self, text: str) -> bool:
+        """Tell whether a combination has these constant columns, as JSON with sorted keys."""
+        return any(json.dumps(entry["columns"], sort_keys=True, default=str) == text for entry in self.combinations)
+
 
 def manifest(parts: Sequence[Part], earlier: Earlier | None) -> bytes:
     """Return the metadata entry `pogobatch_manifest`, in JSON: how many runs there are, and of which configurations."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
+
+import pyarrow as pa
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
@@ -22,6 +26,8 @@ from pogosim.batch.sweeps import resolved
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
+from pogosim.run_columns import SEED
+from pogosim.yaml_1_2 import parse_yaml
 
 WHICH_RUN = ("seed", "result_filename", "extra_columns")  # entries of a manifest that tell runs in a folder apart
 
@@ -42,6 +48,57 @@ class TaskArtifact:
     def data(self) -> Path:
         """The data file."""
         return self.folder / str(self.manifest["data_file"])
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """The constant columns of the run, without its seed."""
+        return {name: value for name, value in self.manifest.get("extra_columns", {}).items() if name != SEED}
+
+    @cached_property
+    def columns_text(self) -> str:
+        """The constant columns as a text, which is the same for the same columns."""
+        return columns_as_text(self.columns)
+
+    @cached_property
+    def combination(self) -> tuple[str, ...]:
+        """What tells the combination of the run from others: its configuration, columns and file of results."""
+        return (str(self.manifest.get("config_hash", "")), self.columns_text, str(self.manifest["result_filename"]))
+
+    @property
+    def schema(self) -> pa.Schema:
+        """Columns and metadata of the data file.
+
+        Raises:
+            BatchError: It cannot be read.
+        """
+        try:
+            return schema_of(self.data)
+        except OSError as error:
+            raise cannot("read", self.data, error) from None
+
+    @property
+    def metadata(self) -> dict[bytes, bytes]:
+        """The metadata of the data file."""
+        return self.schema.metadata or {}
+
+    @property
+    def configuration_text(self) -> str:
+        """The configuration in the data file."""
+        return self.metadata.get(b"configuration", b"").decode(errors="replace")
+
+    @property
+    def configuration(self) -> dict[str, Any]:
+        """Its entries; empty: they cannot be read."""
+        try:
+            entries = parse_yaml(self.configuration_text)
+        except (ValueError, RecursionError):
+            return {}
+        return entries if isinstance(entries, dict) else {}
+
+
+def columns_as_text(columns: Mapping[str, Any]) -> str:
+    """Return columns as a text, which is the same for the same columns."""
+    return json.dumps(columns, sort_keys=True, default=str)
 
 
 class TaskError(BatchError):

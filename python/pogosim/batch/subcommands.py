@@ -185,7 +185,7 @@ def add_merge_options(options: Parser) -> None:
 def merge(arguments: argparse.Namespace) -> Report:
     """Join runs that were done one by one."""
     check_names(arguments)
-    from pogosim.batch.merging import discover_task_artifacts, merge_task_artifacts
+    from pogosim.batch.merging import discover_task_artifacts, merge_task_artifacts, missing_in
 
     artifacts = discover_task_artifacts(arguments.inputs)
     outputs = merge_task_artifacts(
@@ -194,7 +194,8 @@ def merge(arguments: argparse.Namespace) -> Report:
     tell(f"{counted(len(artifacts), 'run')} merged. Generated output files:")
     for output in outputs:
         tell(f" - {output}")
-    return {"inputs": arguments.inputs, "task_count": len(artifacts), "outputs": outputs}
+    missing = [] if arguments.append else missing_in(artifacts, arguments.output_dir, arguments.config)
+    return {"inputs": arguments.inputs, "task_count": len(artifacts), "outputs": outputs, "missing": missing}
 
 
 # ---- cluster ----

@@ -1,0 +1,202 @@
+"""Whether runs that are merged are those of one configuration, are all there, and are told apart by columns."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import PurePath
+from typing import Any
+
+from pogosim.batch.combinations import combinations_of
+from pogosim.batch.configuration import Configuration
+from pogosim.batch.manifests import config_hash, for_json
+from pogosim.batch.option_words import CHOICES, CombinationsError, shown
+from pogosim.batch.result_metadata import Earlier, configuration_in
+from pogosim.batch.run_files import ALL_OUTPUTS, FILES_BESIDE
+from pogosim.batch.single_task import TaskArtifact
+from pogosim.batch.sweeps import resolved
+from pogosim.counted import counted
+from pogosim.varied import NO_PARAMETERS, differ, leaves, varied_parameters
+
+OF_VIEW = ("GUI", "progress_bar", "mm_to_pixels")  # which a run adds to its configuration
+NOT_COMPARED = (*NO_PARAMETERS, *ALL_OUTPUTS, *OF_VIEW)
+
+log = logging.getLogger("pogobatch")
+
+
+@dataclass(frozen=True)
+class MissingRun:
+    """A run that is not there, although others of its number, or of its combination, are."""
+
+    output: str
+    logical_run: int
+    batch_choices: Mapping[str, Any]  # what tells its combination from others
+
+
+class Expected:
+    """What a configuration with options says of runs.
+
+    Raises:
+        BatchError: Its options are wrong.
+    """
+
+    def __init__(self, configuration: Configuration) -> None:
+        self.configuration = configuration
+        try:
+            self.combinations = combinations_of(configuration.entries)
+        except CombinationsError as error:
+            raise configuration.error(error) from None
+        self.numbers = {config_hash(entries): number for number, entries in enumerate(self.combinations)}
+
+    @cached_property
+    def single(self) -> dict[str, Any] | None:
+        """The configuration of a run that takes all defaults, as `pogobatch task` does; None: there is none."""
+        try:
+            return resolved(self.configuration.entries)
+        except CombinationsError:
+            return None
+
+    @cached_property
+    def known(self) -> list[dict[str, Any]]:
+        """Values of all configurations that runs may have, by dotted path."""
+        return [compared(entries) for entries in (*self.combinations, self.single) if entries is not None]
+
+    def number_of(self, artifact: TaskArtifact) -> int | None:
+        """Return which combination a run is of; None: of none."""
+        number = self.numbers.get(str(artifact.manifest.get("config_hash", "")))
+        if number is not None or not (entries := artifact.configuration):
+            return number
+        found = self.known.index(own) if (own := compared(entries)) in self.known else len(self.combinations)
+        return found if found < len(self.combinations) else None
+
+    def other_keys(self, artifact: TaskArtifact) -> list[str]:
+        """Return in which keys a run differs from all that the configuration says; empty: it is one of its runs."""
+        digest = str(artifact.manifest.get("config_hash", ""))
+        if digest in self.numbers or (self.single is not None and digest == config_hash(self.single)):
+            return []
+        own = compared(artifact.configuration)
+        if not own or own in self.known:
+            return []
+        keys = dict.fromkeys(key for values in (own, *self.known) for key in values)
+        nowhere = [key for key in keys if all(differ(own.get(key), values.get(key)) for values in self.known)]
+        return nowhere or list(varied_parameters(self.combinations))
+
+    def choices_of(self, number: int) -> dict[str, Any]:
+        """Return what tells a combination from others: keys and values."""
+        return {key.removeprefix(f"{CHOICES}."): values[number] for key, values in self.varied.items()}
+
+    @cached_property
+    def varied(self) -> dict[str, list[Any]]:
+        """What differs between the combinations: keys, with a value for each."""
+        return varied_parameters(self.combinations)
+
+
+def compared(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of a configuration by dotted path, without those that differ between its runs.
+
+    Files are there by their names: runs have them with other paths, if they are beside the configuration.
+    """
+    kept = {key: value for key, value in entries.items() if key != CHOICES}
+    values = {path: for_json(value) for path, value in leaves(kept) if path not in NOT_COMPARED and value != {}}
+    return {path: PurePath(str(value)).name if path in FILES_BESIDE else value for path, value in values.items()}
+
+
+def warn_of_others(artifacts: Sequence[TaskArtifact], expected: Expected) -> None:
+    """Warn of runs that are not of the configuration which the metadata of their results will have."""
+    keys_of: dict[tuple[str, ...], list[str]] = {}
+    others = []
+    for artifact in artifacts:
+        if artifact.combination not in keys_of:
+            keys_of[artifact.combination] = expected.other_keys(artifact)
+        if keys_of[artifact.combination]:
+            others.append(artifact)
+    if others:
+        first = others[0]
+        log.warning(
+            "%s: %d of %s %s of other configurations, the first in %s, which differs in %s; the metadata of the "
+            "results will not say so: merge these apart, with their own configuration",
+            expected.configuration.path,
+            len(others),
+            counted(len(artifacts), "run"),
+            "is" if len(others) == 1 else "are",
+            first.folder,
+            ", ".join(keys_of[first.combination]),
+        )
+
+
+def warn_of_indistinguishable(output: str, runs: Sequence[TaskArtifact], earlier: Earlier | None) -> None:
+    """Warn of runs in a file of results that differ in keys which no column has."""
+    firsts = [first for first, _ in by_combination(runs)]
+    keys: dict[str, None] = {}
+    for columns in dict.fromkeys(run.columns_text for run in firsts):
+        alike = [configuration_in(run.metadata) for run in firsts if run.columns_text == columns]
+        found = list(varied_parameters(alike))
+        if earlier is not None and earlier.has_columns(columns):
+            # Of earlier runs, only what all of them have in common is known.
+            there = dict(leaves(configuration_in(earlier.schema.metadata or {})))
+            own = dict(leaves(alike[0]))
+            found += [key for key in own if key in there and differ(own[key], there[key])]
+        keys.update(dict.fromkeys(key for key in found if key not in NOT_COMPARED))
+    if keys:
+        log.warning("%s: no column tells apart its runs, which differ in %s", output, ", ".join(keys))
+
+
+def by_combination(artifacts: Sequence[TaskArtifact]) -> list[tuple[TaskArtifact, list[int]]]:
+    """Return the numbers of the runs of each combination, with one of these runs."""
+    found: dict[tuple[str, ...], tuple[TaskArtifact, list[int]]] = {}
+    for artifact in artifacts:
+        found.setdefault(artifact.combination, (artifact, []))[1].append(int(artifact.manifest["logical_run"]))
+    return list(found.values())
+
+
+def missing_runs(
+    by_output: Mapping[str, Sequence[TaskArtifact]], expected: Expected | None
+) -> tuple[list[MissingRun], int]:
+    """Return the runs that are missing, and how many there should be.
+
+    Each combination should have the same runs as all others together. With a configuration, each of its combinations
+    should have the runs 0, 1, ... up to the greatest number that there is, or as many as `_rundr` in it says.
+
+    Args:
+        by_output: The runs that are there, by file of results.
+        expected: What the configuration says; None: there is none.
+    """
+    runs_of: dict[Any, set[int]] = {}
+    named: dict[Any, tuple[str, dict[str, Any]]] = {}
+    for output, artifacts in by_output.items():
+        for first, runs in by_combination(artifacts):
+            which: Any = first.combination if expected is None else expected.number_of(first)
+            if which is None:
+                continue
+            runs_of.setdefault(which, set()).update(runs)
+            named[which] = (output, first.columns if expected is None else expected.choices_of(which))
+    if not runs_of:
+        return [], 0
+    wanted = set().union(*runs_of.values())
+    combinations = list(runs_of)
+    if expected is not None:
+        wanted = set(range(max(max(wanted) + 1, len(expected.configuration.seeds or ()))))
+        combinations = list(range(len(expected.combinations)))
+    missing = []
+    for which in combinations:
+        output, choices = named.get(which) or ("", expected.choices_of(which) if expected is not None else {})
+        missing += [MissingRun(output, run, for_json(choices)) for run in sorted(wanted - runs_of.get(which, set()))]
+    return missing, len(combinations) * len(wanted)
+
+
+def warn_of_missing(missing: Sequence[MissingRun], count: int) -> None:
+    """Warn of runs that are not there, of so many that there should be."""
+    if missing:
+        first = missing[0]
+        choices = "".join(f", {key}: {shown(value)}" for key, value in first.batch_choices.items())
+        log.warning(
+            "%d of %s %s missing, the first: run %d%s%s",
+            len(missing),
+            counted(count, "run"),
+            "is" if len(missing) == 1 else "are",
+            first.logical_run,
+            f" of {first.output}" if first.output else "",
+            choices,
+        )
