@@ -21,6 +21,7 @@
 #include "sim/build_world.hpp"
 #include "sim/find_file.hpp"
 #include "sim/flash_state.hpp"
+#include "sim/magnetometers.hpp"
 #include "sim/output_files.hpp"
 #include "sim/pictures.hpp"
 #include "sim/used_files.hpp"
@@ -43,14 +44,29 @@ void check_files(Scenario const& scenario, CheckOptions const& options, Problems
     }
 }
 
-/// Whether keys are wrong without which the world is another one.
+/// Whether all keys that determine the world are right. Light, motion and readings of sensors are checked with their
+/// defaults where their own keys are wrong.
 bool is_world_known(Problems const& problems) {
-    constexpr std::array<std::string_view, 9> kOfWorld{
-        "arena_",     "boundary_condition", "objects",   "initial_formation", "formation_",
-        "chessboard", "imported_formation", "light_map", "physics_engine"};
+    constexpr std::array<std::string_view, 4> kKeys{"arena_file", "arena_surface", "arena_stretch",
+                                                    "boundary_condition"};
+    constexpr std::array<std::string_view, 5> kBeginnings{"objects", "initial_formation", "formation_", "chessboard",
+                                                          "imported_formation"};
     return std::ranges::none_of(problems.paths(), [&](std::string const& path) {
-        return std::ranges::any_of(kOfWorld, [&](std::string_view key) { return path.starts_with(key); });
+        return std::ranges::find(kKeys, path) != kKeys.end() ||
+               std::ranges::any_of(kBeginnings, [&](std::string_view key) { return path.starts_with(key); });
     });
+}
+
+/// Fits their curve to the table now, so that one that determines none hides nothing else: the default model is used
+/// then, as it is where keys of the table are wrong.
+void check_magnetometers(Scenario& scenario, Problems& problems) {
+    auto const is_of_table = [](std::string const& path) { return path.starts_with("magnetometer.csv"); };
+    MagnetometerConfig checked;
+    checked.seed = scenario.magnetometer.seed;
+    if (std::ranges::none_of(problems.paths(), is_of_table)) {
+        problems.collect([&] { checked.spec = magnetometers_of(scenario, 0); });
+    }
+    scenario.magnetometer = checked;
 }
 
 /// The same run, which writes nothing.
@@ -151,9 +167,8 @@ void check_programs(Simulation& simulation, bool is_stand_in, bool strict, Probl
         return;
     }
     std::optional<UserFailure> const& failure = outcome.failure;
-    if (failure && failure->refused && !is_stand_in) {
-        problems.add(failure->what);
-    } else if (failure && failure->refused && simulation.parameters().has_refused()) {
+    bool const is_ours = is_stand_in && !simulation.parameters().has_refused();
+    if (failure && failure->refused && !is_ours) {
         problems.add(failure->what);
     } else if (failure || outcome.shortage) {
         if (!is_stand_in) {
@@ -204,11 +219,12 @@ CheckResult check_run(ProgramImage const& program, Scenario const& written, Chec
         scenario.view.save_video_period_s = -1.0;  // there are no names to look at
     }
     check_files(scenario, options, problems);
+    check_magnetometers(scenario, problems);
     std::unique_ptr<Simulation> simulation = built_as_written(program, scenario, options, problems);
     bool const is_stand_in = simulation == nullptr;
     if (is_stand_in) {
         problems.collect([&] { check_flash_input(scenario); });
-        Problems of_stand_in;  // which are not the user's, and neither are its warnings
+        Problems of_stand_in;  // the substitute world's own mistakes and warnings are dropped
         auto const silent = std::make_shared<Log>(LogOptions{.on_line = [](LogLine const&) {}});
         simulation = built(program, stand_in(scenario), options, of_stand_in, silent);
     } else {

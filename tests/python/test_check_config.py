@@ -189,6 +189,55 @@ def test_arena_file_is_checked_beside_other_mistakes(tmp_path: Path) -> None:
     assert sorted(mistake.split(": ")[0].split(":")[0] for mistake in mistakes(result)) == ["bow.csv", "scene.yaml"]
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("arena_temperature", -500), ("light_map_nb_bin_x", 0), ("physics_engine", "bogus"), ("magnetometer.timing", 1)],
+)
+def test_objects_that_do_not_fit_are_told_beside_what_makes_no_other_world(
+    key: str, value: object, tmp_path: Path
+) -> None:
+    settings = {key: value, "objects.robots.nb": 3000, "initial_formation": "random"}
+    assert sorted(places(check(example("helloworld"), tmp_path, settings))) == sorted([key, "initial_formation"])
+
+
+def test_table_of_a_magnetometer_is_checked_beside_the_rest(tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text("angle,mag_x,mag_y,mag_z\n1,2,3,4\nx,2,3,4\n")
+    table = {"magnetometer": {"source": "csv", "csv": {"file": "table.csv"}}}
+    no_curve = "'table.csv' has 1 valid row at 1 "
+    crowd = {"objects.robots.nb": 3000, "initial_formation": "random"}
+    for other, place in ((crowd, "initial_formation"), ({"arena_file": "gone.csv"}, "arena_file")):
+        result = check(example("helloworld"), tmp_path, {**table, **other})
+        assert len(mistakes(result)) == 2
+        assert no_curve in result.errors
+        assert place in result.errors
+        assert result.errors.count("this row is skipped") == 1
+
+
+def test_names_of_frames_that_cannot_be_written_are_one_mistake(tmp_path: Path) -> None:
+    result = check(example("helloworld"), tmp_path, {"save_video_period": 1, "frames_name": "{}{}.png"})
+    assert places(result) == ["frames_name"]
+
+
+def test_own_memory_is_that_of_the_check_when_the_world_is_wrong_too(tmp_path: Path) -> None:
+    program = compile_text(
+        tmp_path,
+        """#include "pogobase.h"
+int32_t small = 0, robots = 0;
+static void user_init(void) { if (++robots > 1) { init_from_configuration(small); check_parameter(small, 5, 9); } }
+int main(void) {
+    pogobot_init();
+    pogobot_start(user_init, NULL);
+    pogobot_start(user_init, NULL, "others");
+    return 0;
+}
+""",
+    )
+    wrong = {"objects.others": {"type": "pogobot", "nb": 1}, "objects.robots.radius": -1, "parameters.small": 1}
+    shared = check(program, tmp_path, {**wrong, "robot_memory": "shared"})
+    assert "parameters.small" in places(shared)
+    assert "parameters.small" not in places(check(program, tmp_path, {**wrong, "robot_memory": "own"}))
+
+
 def test_yaml_that_cannot_be_read_is_one_mistake(tmp_path: Path) -> None:
     (tmp_path / "scene.yaml").write_text("objects: {robots: [\n")
     assert len(mistakes(run_command(example("helloworld"), tmp_path, CHECK))) == 1
