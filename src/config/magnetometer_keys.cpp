@@ -66,6 +66,32 @@ std::array<Key<MagnetometerSpec>, 2> behaviour_keys() {
     };
 }
 
+// ---- Angles, which a file has in the unit of the map ----
+
+/// Returns the angle under a key as it is in the file; it is 0, or absent, by default.
+template <class Angle>
+Angle read_angle(MapReader& reader, std::string_view name, std::string_view doc, bool is_used = true) {
+    struct InFile {
+        Angle angle{};
+    };
+    InFile in_file;
+    read_keys(reader, std::array{Key<InFile>{name, &InFile::angle, any(), kAngles, doc}}, in_file, is_used);
+    return in_file.angle;
+}
+
+double in_radians(double angle, AngleUnit unit) {
+    return angle * radians_in(unit);
+}
+
+Interval in_radians(Interval const& angles, AngleUnit unit) {
+    return {in_radians(angles.min, unit), in_radians(angles.max, unit)};
+}
+
+template <class Angle>
+std::optional<Angle> in_radians(std::optional<Angle> const& angle, AngleUnit unit) {
+    return angle ? std::optional(in_radians(*angle, unit)) : std::nullopt;
+}
+
 // ---- world_field: three ways to say the field at the origin. ----
 
 enum class FieldForm { vector, components, polar };
@@ -159,12 +185,17 @@ void read_field(MapReader& reader, MagnetometerConfig& config) {
 
 // ---- domain ----
 
-std::array<Key<MagneticDomain>, 5> domain_keys() {
+std::array<Key<MagneticDomain>, 2> place_keys() {
     using K = Key<MagneticDomain>;
     return {
         K{"x", &MagneticDomain::x_mm, kCoordinate, "mm", "Positions for which the model is meant; default: all."},
         K{"y", &MagneticDomain::y_mm, kCoordinate, "mm", "See x."},
-        K{"theta", &MagneticDomain::heading_rad, any(), kAngles, "Headings for which it is meant; default: all."},
+    };
+}
+
+std::array<Key<MagneticDomain>, 2> policy_keys() {
+    using K = Key<MagneticDomain>;
+    return {
         K{"wrap_theta", &MagneticDomain::wrap_heading, any(), "", "Headings count modulo a turn."},
         K{"policy",
           one_of(&MagneticDomain::policy, {{"allow", DomainPolicy::allow},
@@ -177,15 +208,18 @@ std::array<Key<MagneticDomain>, 5> domain_keys() {
     };
 }
 
-void read_domain(MapReader& reader, MagneticDomain& domain) {
-    read_keys(reader, domain_keys(), domain);
-    for (auto const& [key, interval] :
-         {std::pair{"x", domain.x_mm}, {"y", domain.y_mm}, {"theta", domain.heading_rad}}) {
+void read_domain(MapReader& reader, AngleUnit unit, MagneticDomain& domain) {
+    read_keys(reader, place_keys(), domain);
+    auto const theta =
+        read_angle<std::optional<Interval>>(reader, "theta", "Headings for which it is meant; default: all.");
+    read_keys(reader, policy_keys(), domain);
+    for (auto const& [key, interval] : {std::pair{"x", domain.x_mm}, {"y", domain.y_mm}, {"theta", theta}}) {
         if (interval && !(interval->min < interval->max)) {
             fail_at({*reader.find(key), reader.path_of(key)},
                     fmt::format("expected [smallest, largest], found {}", value_text(*interval)));
         }
     }
+    domain.heading_rad = in_radians(theta, unit);
 }
 
 // ---- Intervals of the three axes ----
@@ -222,41 +256,50 @@ void read_output(MapReader& reader, MagnetometerOutput& output) {
     read_axes(reader, {"limits", output.limits, kCounts, "Smallest and largest reading with `clamp`."}, output.clamp);
 }
 
-void read_variation(MapReader& reader, MagnetometerVariation& variation) {
+void read_variation(MapReader& reader, AngleUnit unit, MagnetometerVariation& variation) {
     using K = Key<MagnetometerVariation>;
     read_axes(reader, {"additional_bias", variation.additional_bias, kCounts, "Added to the centre of the curve."});
     read_keys(reader,
               std::array{
                   K{"signal_gain", &MagnetometerVariation::signal_gain, kCounts, "", "Factor of the curve's size."},
-                  K{"angle_offset", &MagnetometerVariation::angle_offset_rad, any(), kAngles,
-                    "Added to the angle of the field in the robot's frame."},
               },
               variation);
+    variation.angle_offset_rad = in_radians(
+        read_angle<Interval>(reader, "angle_offset", "Added to the angle of the field in the robot's frame."), unit);
     read_axes(reader, {"noise_stddev", variation.noise_stddev, between(0, 1e6),
                        "Standard deviation of Gaussian noise on each reading."});
 }
 
 // ---- procedural ----
 
-std::array<Key<MagneticEllipse>, 6> ellipse_keys() {
+std::array<Key<MagneticEllipse>, 2> radius_keys() {
     using K = Key<MagneticEllipse>;
     constexpr Range radius = between(0, 1e6);
     return {
         K{"major_radius", &MagneticEllipse::major_radius, radius, "counts",
           "Half the long axis of the ellipse of x and y."},
         K{"minor_radius", &MagneticEllipse::minor_radius, radius, "counts", "Half its short axis."},
-        K{"ellipse_rotation", &MagneticEllipse::rotation_rad, any(), kAngles,
-          "Angle of the major axis from the x axis."},
-        K{"sensor_phase_offset", &MagneticEllipse::phase_offset_rad, any(), kAngles,
-          "Added to the angle of the field in the robot's frame."},
+    };
+}
+
+std::array<Key<MagneticEllipse>, 2> vertical_keys() {
+    using K = Key<MagneticEllipse>;
+    return {
         K{"z_cos_amplitude", &MagneticEllipse::z_cosine, kCounts, "counts", "z by the cosine of that angle."},
         K{"z_sin_amplitude", &MagneticEllipse::z_sine, kCounts, "counts", "z by its sine."},
     };
 }
 
-void read_ellipse(MapReader& reader, MagneticEllipse& ellipse, bool is_used) {
+void read_ellipse(MapReader& reader, AngleUnit unit, MagneticEllipse& ellipse, bool is_used) {
     read_axes(reader, {"center", ellipse.centre, kCounts, "Centre of the curve."}, is_used);
-    read_keys(reader, ellipse_keys(), ellipse, is_used);
+    read_keys(reader, radius_keys(), ellipse, is_used);
+    ellipse.rotation_rad = in_radians(
+        read_angle<Interval>(reader, "ellipse_rotation", "Angle of the major axis from the x axis.", is_used), unit);
+    ellipse.phase_offset_rad =
+        in_radians(read_angle<Interval>(reader, "sensor_phase_offset",
+                                        "Added to the angle of the field in the robot's frame.", is_used),
+                   unit);
+    read_keys(reader, vertical_keys(), ellipse, is_used);
 }
 
 void read_harmonic(MapReader& reader, MagneticHarmonic& harmonic, bool is_used) {
@@ -312,14 +355,14 @@ void read_harmonics(MapReader& reader, std::vector<MagneticHarmonic>& harmonics,
     }
 }
 
-void read_procedural(MapReader& reader, MagnetometerSpec& spec, bool is_used) {
-    reader.read_map("ellipse", [&](MapReader& inner) { read_ellipse(inner, spec.ellipse, is_used); });
+void read_procedural(MapReader& reader, AngleUnit unit, MagnetometerSpec& spec, bool is_used) {
+    reader.read_map("ellipse", [&](MapReader& inner) { read_ellipse(inner, unit, spec.ellipse, is_used); });
     read_harmonics(reader, spec.harmonics, is_used);
 }
 
 // ---- csv ----
 
-std::array<Key<MagnetometerTable>, 10> table_keys() {
+std::array<Key<MagnetometerTable>, 9> table_keys() {
     using K = Key<MagnetometerTable>;
     return {
         K{"file", &MagnetometerTable::file, any(), "",
@@ -339,8 +382,6 @@ std::array<Key<MagnetometerTable>, 10> table_keys() {
           "errors."},
         K{"add_fit_residual_as_noise", &MagnetometerTable::residual_is_noise, any(), "",
           "Add the error of the fit to noise_stddev, in quadrature."},
-        K{"calibration_field_angle", &MagnetometerTable::field_angle_rad, any(), kAngles,
-          "Direction of the field where the table was recorded; default: that of world_field."},
     };
 }
 
@@ -363,8 +404,14 @@ void refuse_delimiter(MapReader const& reader, MagnetometerTable const& table) {
     }
 }
 
-void read_table(MapReader& reader, MagnetometerTable& table, bool is_used) {
+void read_table(MapReader& reader, AngleUnit unit, MagnetometerTable& table, bool is_used) {
     read_keys(reader, table_keys(), table, is_used);
+    table.field_angle_rad = in_radians(
+        read_angle<std::optional<double>>(reader, "calibration_field_angle",
+                                          "Direction of the field where the table was recorded; default: that of "
+                                          "world_field.",
+                                          is_used),
+        unit);
     reader.read_map("columns", [&](MapReader& inner) {
         read_keys(inner, column_keys<std::string>(any(), "Names of the columns, with a header."), table.columns,
                   is_used && table.has_header);
@@ -378,26 +425,6 @@ void read_table(MapReader& reader, MagnetometerTable& table, bool is_used) {
     }
 }
 
-// ---- Units ----
-
-void scale(Interval& interval, double factor) {
-    interval = {interval.min * factor, interval.max * factor};
-}
-
-/// The file has these angles in its unit.
-void make_radians(MagnetometerConfig& config) {
-    double const unit = radians_in(config.angle_unit);
-    if (config.spec.domain.heading_rad) {
-        scale(*config.spec.domain.heading_rad, unit);
-    }
-    scale(config.spec.variation.angle_offset_rad, unit);
-    scale(config.spec.ellipse.rotation_rad, unit);
-    scale(config.spec.ellipse.phase_offset_rad, unit);
-    if (config.table.field_angle_rad) {
-        *config.table.field_angle_rad *= unit;
-    }
-}
-
 }  // namespace
 
 MagnetometerConfig read_magnetometer_map(MapReader& reader) {
@@ -405,18 +432,18 @@ MagnetometerConfig read_magnetometer_map(MapReader& reader) {
     MagnetometerSpec& spec = config.spec;
     read_keys(reader, general_keys(), config);
     read_keys(reader, behaviour_keys(), spec);
+    AngleUnit const unit = config.angle_unit;
     bool const has_table = config.source == MagnetometerSource::csv;
     reader.read_map("world_field", [&](MapReader& inner) { read_field(inner, config); });
-    reader.read_map("domain", [&](MapReader& inner) { read_domain(inner, spec.domain); });
+    reader.read_map("domain", [&](MapReader& inner) { read_domain(inner, unit, spec.domain); });
     reader.read_map("output", [&](MapReader& inner) { read_output(inner, spec.output); });
-    reader.read_map("robot_variation", [&](MapReader& inner) { read_variation(inner, spec.variation); });
-    reader.read_map("procedural", [&](MapReader& inner) { read_procedural(inner, spec, !has_table); });
-    reader.read_map("csv", [&](MapReader& inner) { read_table(inner, config.table, has_table); });
+    reader.read_map("robot_variation", [&](MapReader& inner) { read_variation(inner, unit, spec.variation); });
+    reader.read_map("procedural", [&](MapReader& inner) { read_procedural(inner, unit, spec, !has_table); });
+    reader.read_map("csv", [&](MapReader& inner) { read_table(inner, unit, config.table, has_table); });
     if (has_table && config.table.file.empty()) {
         fail_at({*reader.find("source"), reader.path_of("source")},
                 "csv needs csv.file, a table of headings and readings");
     }
-    make_radians(config);
     return config;
 }
 
