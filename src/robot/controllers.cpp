@@ -113,7 +113,7 @@ void call_main(int (*function)(), char** arguments) {
 
 Controllers::Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed,
                          std::size_t stack_bytes)
-    : image_(std::move(image)), world_(world), services_(services), fibers_(stack_bytes) {
+    : image_(std::move(image)), world_(world), services_(services), chips_(world), fibers_(stack_bytes) {
     services_.access.controllers = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
@@ -122,7 +122,7 @@ Controllers::Controllers(ProgramImage image, World& world, RunServices& services
     allocate_for(purpose, static_cast<double>(count * sizeof(Controller)), [&] { controllers_.resize(count); });
     allocate_user_data();
     draw_individual_differences(seed);
-    note_chips();
+    chips_.install(controllers_);
 }
 
 Controllers::~Controllers() {
@@ -471,8 +471,9 @@ void Controllers::begin_step() {
     if (is_restart_due_.exchange(false)) [[unlikely]] {
         restart_robots();
     }
-    measure_each_step();
-    drain_batteries();
+    for (std::uint32_t const robot : chips_.begin_step(controllers_, step_us_)) {
+        set_alive(robot, false);
+    }
     warn_of_unreturned_calls_if_due();
     if (callback_global_step != nullptr && step_us_ >= system_.clock_us) {
         enter(kNone, Phase::global_step);

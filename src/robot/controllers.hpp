@@ -17,6 +17,7 @@
 #include "robot/program_image.hpp"
 #include "robot/robot_memory.hpp"
 #include "robot/shared_state.hpp"
+#include "robot/step_chips.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -74,7 +75,7 @@ public:
     /// One step: begin_step(), run_robots() of all, end_step().
     void run_step();
 
-    /// The part of a step before the robots: the global step.
+    /// The part of a step before the robots: restarts, chips that work at each step, and the global step.
     void begin_step();
 
     /// The robots from `first` to `last` - 1 that are due. Those that share nothing may run on several threads at a
@@ -212,10 +213,6 @@ private:
     void wake(SwitchedOff const& self);
     void rest(SwitchedOff& self);
     void hold_switched_off();
-    void note_chips();
-    void measure_each_step();
-    void drain_batteries();
-    void drain_battery(std::uint32_t robot, double duration_s);
     void call_as_system(std::uint32_t robot, Phase phase, void (*function)());
     void tick(std::uint32_t robot);
     static void drift(Controller& self, std::int64_t since_us);
@@ -230,12 +227,9 @@ private:
     World& world_;
     RunServices& services_;
     std::vector<Controller> controllers_;
-    Controller system_;                              // of the global step
-    std::vector<SwitchedOff> switched_off_;          // by robot, ascending
-    std::vector<std::uint32_t> measured_each_step_;  // robots with such an accelerometer
-    std::vector<std::uint32_t> with_battery_;        // robots whose battery empties
-    bool has_warned_of_battery_ = false;
-    std::int64_t drained_us_ = 0;  // time up to which these have been emptied
+    Controller system_;                      // of the global step
+    std::vector<SwitchedOff> switched_off_;  // by robot, ascending
+    StepChips chips_;
     GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step

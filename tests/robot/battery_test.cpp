@@ -88,6 +88,15 @@ TEST(Battery, RobotThatStandsLastsLonger) {
                           0));
 }
 
+TEST(Battery, ObjectWithoutWheelsPaysForNoMotors) {
+    ObjectSpec spec = robot_for_two_seconds();
+    spec.robot->has_wheels = false;
+    EXPECT_TRUE(is_alive(run_alone(
+                             spec, full_ahead, [] {}, 9.9)
+                             ->world(),
+                         0));
+}
+
 TEST(Battery, ThatIsPutIntoARobotAgainIsFull) {
     testing::use_program(full_ahead, [] { voltages_mv.push_back(pogobot_battery_voltage_read()); });
     Simulation simulation(testing::test_program(),
