@@ -116,7 +116,7 @@ struct Controller {
     int calls = 0;                    // of what programs wait with in a loop, see waiting.hpp
     Fiber* fiber = nullptr;           // on which its program waits in the middle; null: it does not
     Phase waits_in = Phase::none;
-    bool restarts = false;             // at the beginning of the next step
+    bool is_restart_due = false;       // at the beginning of the next step
     int waits = 0;                     // in the call of its program that runs
     std::int64_t call_began_us = 0;    // when that began; time of the step
     std::uint32_t call_ticks = 0;      // pogobot_ticks then

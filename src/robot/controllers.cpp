@@ -601,7 +601,7 @@ void Controllers::warn_of_stacks() const {
     warn_of_large_stack(own_memory_ ? own_memory_->bytes() : user_data_bytes(), fibers_.deepest_bytes());
 }
 
-void Controllers::warn_of_messages(std::uint64_t arrivals) const {
+void Controllers::tell_at_end(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, controllers_);
     warn_of_commands(world_, controllers_);
     warn_of_unused_messages(world_, controllers_, arrivals);

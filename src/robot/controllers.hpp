@@ -130,8 +130,9 @@ public:
     /// Warns about stacks for which a real robot has no room.
     void warn_of_stacks() const;
 
-    /// Warns about messages that no robot received or read. `arrivals`: messages that reached robots in the whole run.
-    void warn_of_messages(std::uint64_t arrivals) const;
+    /// Tells what has become of messages, commands, writes to flash memory and programs. `arrivals`: messages that
+    /// reached robots in the whole run.
+    void tell_at_end(std::uint64_t arrivals) const;
 
     /// Tells of columns that the program has declared and never set. `fields`: those of the data file; absent: all.
     void tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const;

@@ -24,7 +24,7 @@ struct Flash {
     std::uint64_t lost_writes = 0;      // after which a page did not contain what was written, see program_page()
 };
 
-/// All of these take a page below kFlashPageCount.
+// Numbers of pages are below kFlashPageCount.
 
 /// Reads a page into kFlashPageBytes bytes.
 void read_page(Flash const& flash, std::uint16_t page, std::byte* into);

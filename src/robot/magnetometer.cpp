@@ -16,7 +16,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::int64_t kDataPeriodUs = 20000;  // 50 Hz
 constexpr std::int64_t kPollUs = 1000;
 
-// Streams of these purposes, apart from those of robots' bodies, programs and seeds, which have the seed of the run.
+// Tags that keep these random streams apart from all other streams of the run.
 constexpr std::uint64_t kProfiles = 0x6d61676e70726f66ULL;
 constexpr std::uint64_t kSamples = 0x6d61676e73616d70ULL;
 
@@ -82,7 +82,8 @@ double wrapped_above(double from, double angle) {
     return angle - kTurn * std::floor((angle - from) / kTurn);
 }
 
-/// The nearest value of the interval; of headings that wrap, `value` is at most a turn above its smallest.
+/// The nearest value of the interval. A heading that wraps must lie between the interval's minimum and one turn above
+/// it.
 double nearest(std::optional<Interval> const& interval, double value, bool wraps) {
     if (is_inside(interval, value)) {
         return value;

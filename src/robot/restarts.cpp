@@ -11,7 +11,7 @@ namespace pogosim {
 
 namespace {
 
-/// What a processor loses that is reset.
+/// Clears what a reset of the processor clears.
 void forget(Controller& self) {
     self.program = {};
     self.loop = {};
@@ -26,7 +26,7 @@ void forget(Controller& self) {
 
 void Controllers::ask_for_restart() {
     Controller& self = controllers_[context.robot];
-    self.restarts = is_restart_due_ = true;
+    self.is_restart_due = is_restart_due_ = true;
     if (context.waiting != Waiting::always) {
         return;
     }
@@ -39,10 +39,10 @@ void Controllers::ask_for_restart() {
 
 void Controllers::restart_robots() {
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
-        if (controllers_[i].restarts && is_alive(world_, i)) {
+        if (controllers_[i].is_restart_due && is_alive(world_, i)) {
             restart(i);
         }
-        is_restart_due_ = is_restart_due_ || controllers_[i].restarts;  // of robots that are switched off: later
+        is_restart_due_ = is_restart_due_ || controllers_[i].is_restart_due;  // of robots that are switched off: later
     }
 }
 
@@ -53,7 +53,7 @@ void Controllers::restart(std::uint32_t robot) {
         fibers_.discard(*fiber);
     }
     forget(self);
-    self.restarts = false;
+    self.is_restart_due = false;
     ++self.infrared.restarts;
     initialise_infrared(world_.mailboxes, robot, self.infrared);
     self.random = random_of_program(services_.seed, robot);

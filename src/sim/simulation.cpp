@@ -206,7 +206,7 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     }
     bool const all_pictures_written = finish();
     controllers_.warn_of_unreturned_calls_at_end();
-    controllers_.warn_of_messages(channel_.receptions());
+    controllers_.tell_at_end(channel_.receptions());
     controllers_.warn_of_stacks();
     if (!scenario_.output.categories) {  // else a column may be that of a category without rows
         controllers_.tell_of_unset_columns(scenario_.output.fields);

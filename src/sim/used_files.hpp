@@ -13,7 +13,7 @@ namespace pogosim {
 /// is opened for writing. `film`: of --video; empty for none.
 void check_used_files(Scenario const& scenario, std::string const& film);
 
-/// True if the run reads this existing file, or writes it other than as a frame.
+/// True if the run reads this existing file, or writes it; false for one that only becomes a frame.
 bool is_used_file(Scenario const& scenario, std::string const& film, std::filesystem::path const& path);
 
 }  // namespace pogosim
