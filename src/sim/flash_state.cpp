@@ -38,7 +38,9 @@ RobotsByOwner robots_by_owner(Scenario const& scenario, World const& world) {
             throw ConfigError(
                 fmt::format("{}: expected at most {} objects and categories with short names: the ids of robots have "
                             "16 bits in an archive of flash memory",
-                            line_of(scenario, Setting::flash_input_file), kIdsOnAir));
+                            line_of(scenario, scenario.flash_state.input_file.empty() ? Setting::flash_output_file
+                                                                                      : Setting::flash_input_file),
+                            kIdsOnAir));
         }
         robots.emplace(FlashOwner{.category = category, .id = id_on_air(id)}, robot);
     }
