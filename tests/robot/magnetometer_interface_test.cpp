@@ -84,6 +84,22 @@ TEST(MagnetometerInterface, EachReadIsTheModelAtTheTrueHeading) {
     EXPECT_GT(std::abs(world.bodies.heading_rad[0]), 0.5F);
 }
 
+TEST(MagnetometerInterface, ReadBeyondTheSeamIsThatOfThePlaceInTheArena) {
+    testing::use_program([] {}, read_once);
+    Scenario scenario = lone_robot_scene();
+    scenario.boundary = BoundaryCondition::periodic;
+    scenario.magnetometer.spec.field.gradient_x = {0.001, 0.0, 0.0};
+    Simulation simulation(testing::test_program(), scenario, {});
+    ASSERT_FALSE(simulation.start());
+    reads.clear();
+    auto& world = const_cast<World&>(simulation.world());
+    Pose const pose{.position_mm = world.bodies.position_mm[0], .heading_rad = world.bodies.heading_rad[0]};
+    world.bodies.position_mm[0].x += 5000.0F;  // as that of a robot in a membrane that lies on the seam
+    ASSERT_FALSE(simulation.step());
+    ASSERT_EQ(reads.size(), 1U);
+    EXPECT_EQ(reads[0].counts, measure_field(world.magnetometer, 0, 0, pose));
+}
+
 TEST(MagnetometerInterface, OnARobotDataAreNewFiftyTimesPerSecond) {
     timeout_ms = 25;
     std::vector<Read> const found =
