@@ -90,7 +90,9 @@ static void user_init(void) {
 }
 
 static void user_step(void) {
-    if (pogobot_ticks == 10 && is("stop")) {
+    if (pogobot_ticks == 1 && is("long")) {
+        printf("goes on\n");
+    } else if (pogobot_ticks == 10 && is("stop")) {
         stop_simulation();
     } else if (pogobot_ticks == 10 && is("exit")) {
         exit(0);
