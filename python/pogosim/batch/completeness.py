@@ -134,7 +134,7 @@ def warn_of_indistinguishable(output: str, runs: Sequence[TaskArtifact], earlier
         alike = [configuration_in(run.metadata) for run in firsts if run.columns_text == columns]
         found = list(varied_parameters(alike))
         if earlier is not None and earlier.has_columns(columns):
-            # Of earlier runs, only what all of them have in common is known.
+            # Metadata say only what all earlier runs have in common.
             there = dict(leaves(configuration_in(earlier.schema.metadata or {})))
             own = dict(leaves(alike[0]))
             found += [key for key in own if key in there and differ(own[key], there[key])]
