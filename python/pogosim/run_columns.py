@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 RUN = "run"  # the number of the run in a batch, or of the file among several
 SEED = "seed"
+NUMBERS = "run_numbers"  # in an entry of the metadata `combinations`
 RETRY = "retry_attempt"  # which replacement the seed of the run is, after failures; 0: its own seed
 NAMES = (RUN, SEED, "arena_file")  # kColumnsOfRuns in src/record/columns.cpp
 KEYS = ("objects.", "parameters.")  # how dotted paths of configuration keys begin; kKeysOfRuns there
@@ -41,3 +42,15 @@ def is_one_run(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> bool:
     if is_batch or metadata.get("combinations") or "files" in metadata or "program_version" not in metadata:
         return False
     return not rows.duplicated([name for name in OBJECT_AND_TIME if name in rows]).any()
+
+
+def run_numbers(combination: Mapping[str, Any]) -> list[int]:
+    """Return what the column `run` has for the runs of a combination, by its entry in the metadata `combinations`.
+
+    Raises:
+        KeyError, TypeError, ValueError: The entry is not what a batch writes.
+    """
+    if NUMBERS in combination:
+        return [int(run) for run in combination[NUMBERS]]
+    failed = [int(run) for run in combination.get("failed_runs", [])]
+    return [run for run in range(int(combination["runs"]) + len(failed)) if run not in failed]

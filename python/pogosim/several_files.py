@@ -13,7 +13,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from pogosim.outputs import PathLike
-from pogosim.run_columns import RUN, is_one_run, tells_runs_apart
+from pogosim.run_columns import RUN, is_one_run, run_numbers, tells_runs_apart
 from pogosim.times import with_exact_times
 from pogosim.varied import varied_parameters
 
@@ -124,8 +124,7 @@ def has_own_seeds(metadata: Mapping[str, Any]) -> bool:
 
 def seeds_by_run(combination: Mapping[str, Any]) -> dict[int, int]:
     """Return the seeds of the runs of a combination of a batch; those are their numbers, unless it says others."""
-    failed = [int(run) for run in combination.get("failed_runs", [])]
-    runs = [run for run in range(int(combination["runs"]) + len(failed)) if run not in failed]
+    runs = run_numbers(combination)
     return dict(zip(runs, combination.get("seeds", runs), strict=True))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -16,6 +17,7 @@ import pytest
 from batches import COMMAND, ENVIRONMENT, results, run_main, script, subcommand, write_options
 from pogosim.pogobatch import PogobatchError, TaskError, discover_task_artifacts, execute_task, merge_task_artifacts
 from pogosim.utils import load_dataframe
+from pyarrow import feather
 from running import ROOT, Run, example
 from yaml import safe_load
 
@@ -199,6 +201,38 @@ def test_runs_are_appended_to_results_that_are_there(tmp_path: Path) -> None:
     assert set(replaced["seed"]) == {5}
 
 
+def test_other_seeds_of_one_configuration_are_merged_in_one_call_or_in_two(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    for first, last in ((0, 1), (2, 3)):
+        seeds = ("--seeds", f"{first}:{last}", "--keep-temp", "-t", f"kept{first}")
+        assert subcommand(tmp_path, "run", *seeds, folder_of=f"own{first}").code == 0
+    assert merge(tmp_path, "kept0", "kept2").code == 0
+    assert merge(tmp_path, "kept2", "kept0", into="again").code == 0
+    assert (tmp_path / "again" / "result.feather").read_bytes() == results(tmp_path)["result.feather"]
+    assert merge(tmp_path, "kept0", into="two").code == 0
+    assert merge(tmp_path, "kept2", "--append", into="two").code == 0
+    for folder in ("results", "two"):
+        rows, metadata = load_dataframe(tmp_path / folder / "result.feather")
+        runs = rows[["objects.robots.nb", "run", "seed"]].drop_duplicates()
+        assert sorted(map(tuple, runs.to_numpy().tolist())) == [(nb, seed, seed) for nb in (2, 3) for seed in range(4)]
+        listed = [(entry.get("run_numbers", [0, 1]), entry.get("seeds", [0, 1])) for entry in metadata["combinations"]]
+        mixed = [0, 2, 1, 3]  # by the number that they had
+        one_by_one = [([0, 1], [0, 1])] * 2 + [([2, 3], [2, 3])] * 2
+        assert listed == ([(mixed, mixed)] * 2 if folder == "results" else one_by_one)
+
+
+def test_combinations_have_the_order_of_their_batch(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    for seed in (1, 2):
+        assert task(tmp_path, seed).code == 0
+    for digests in (("a", "b"), ("b", "a")):
+        for seed, digest in zip((1, 2), digests, strict=True):
+            change(tmp_path / "tasks" / str(seed), combination_ordinal=2 - seed, config_hash=digest)
+        assert merge(tmp_path, "tasks").code == 0
+        _, metadata = load_dataframe(tmp_path / "results" / "result.feather")
+        assert [entry["seeds"] for entry in metadata["combinations"]] == [[2], [1]]
+
+
 def test_rows_of_a_batch_stay_when_tasks_are_appended(tmp_path: Path) -> None:
     write_options(tmp_path)
     assert subcommand(tmp_path, "run", "--seeds", "3:4").code == 0
@@ -310,7 +344,7 @@ def test_run_that_would_count_twice_is_refused_and_results_stay(tmp_path: Path) 
     shutil.copytree(tmp_path / "tasks" / "4", tmp_path / "copy" / "4")
     twice = merge(tmp_path, "tasks", "copy")
     assert (twice.code, results(tmp_path)) == (2, {})
-    assert "have the same logical run, 0, of one configuration, which would count twice" in twice.errors
+    assert "have the same seed, 4, of one configuration, which would count twice; leave one out" in twice.errors
     change(tmp_path / "copy" / "4", logical_run=1)
     assert "have the same seed, 4, of one configuration" in merge(tmp_path, "tasks", "copy").errors
     assert merge(tmp_path, "tasks").code == 0
@@ -332,8 +366,8 @@ def test_manifests_of_the_first_version_can_be_read(tmp_path: Path) -> None:
     ("entries", "said"),
     [
         ({"schema_version": 3}, "schema_version: expected 1 or 2, found 3"),
-        ({"seed": "4"}, "seed: expected a whole number, found '4'"),
-        ({"logical_run": True}, "logical_run: expected a whole number, found True"),
+        ({"seed": "4"}, "seed: expected a whole number from 0 to 4294967295, found '4'"),
+        ({"logical_run": True}, "logical_run: expected a whole number from 0 to 9223372036854775807, found True"),
         ({"data_file": None}, "data_file: expected a text, found nothing"),
         ({"data_file": "frames/none.feather"}, "cannot read tasks/4/frames/none.feather"),
         ({"data_file": "log.txt"}, "tasks/4/log.txt is damaged"),
@@ -344,17 +378,86 @@ def test_manifests_of_the_first_version_can_be_read(tmp_path: Path) -> None:
         ({"result_filename": "out.xyz"}, "result_filename: the format of 'out.xyz' is unknown"),
         ({"extra_columns": [1]}, "extra_columns: expected a map, found [1]"),
         ({"extra_columns": {"x": 5}}, "writes a column 'x'"),
+        ({"extra_columns": {"a": "\ud800"}}, "extra_columns.a: expected text"),
+        ({"extra_columns": {"a": 1 << 2000}}, "extra_columns.a: expected a number of at most 1024 bits"),
+        ({"combination_ordinal": "x"}, "combination_ordinal: expected a whole number from 0 to 9223372036854775807"),
+        ({"combination_ordinal": -1}, "combination_ordinal: expected a whole number from 0 to"),
+        ({"retry_attempt": "x"}, "retry_attempt: expected a whole number from 0 to 9223372036854775807, found 'x'"),
+        ({"retry_attempt": {}}, "retry_attempt: expected a whole number from 0"),
+        ({"retry_attempt": 2**63}, "retry_attempt: expected a whole number from 0"),
+        ({"logical_run": 2**63}, "logical_run: expected a whole number from 0"),
+        ({"seed": 2**32}, "seed: expected a whole number from 0 to 4294967295, found 4294967296"),
+        ({"seed": "4\n5"}, r"seed: expected a whole number from 0 to 4294967295, found '4\n5'"),
+        ({"schema_version": True}, "schema_version: expected 1 or 2, found True"),
+        ({"config_hash": 5}, "config_hash: expected a text, found 5"),
+        ({"result_filename": "\ud800.feather"}, "result_filename: expected a text"),
+        ({"data_file": "a\0b"}, "data_file: expected a text"),
+        ({"data_file": "a\nb"}, r"cannot read tasks/4/a\nb: No such file or directory"),
+        ({"data_file": "pipe"}, "tasks/4/pipe cannot be read: it is not a file"),
     ],
 )
 def test_wrong_manifest_is_one_line_and_nothing_is_written(entries: dict[str, Any], said: str, tmp_path: Path) -> None:
     write_options(tmp_path)
     assert task(tmp_path, 4).code == 0
+    os.mkfifo(tmp_path / "tasks" / "4" / "pipe")
     change(tmp_path / "tasks" / "4", **entries)
     result = merge(tmp_path, "tasks")
     assert (result.code, result.errors.count("\n")) == (2, 1), result.errors
     assert said in result.errors
     assert results(tmp_path) == {}
     assert not (tmp_path / "out.feather").exists()
+
+
+def test_number_beyond_all_others_is_a_text_in_a_column(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 4).code == 0
+    change(tmp_path / "tasks" / "4", extra_columns={"a": 2**1024 - 1, "b": 2**64})
+    assert merge(tmp_path, "tasks").code == 0
+    rows, _ = load_dataframe(tmp_path / "results" / "result.feather")
+    assert (set(rows["a"]), set(rows["b"])) == ({str(2**1024 - 1)}, {2.0**64})
+
+
+def test_pipe_in_the_place_of_a_manifest_is_not_read(tmp_path: Path) -> None:
+    (tmp_path / "one").mkdir()
+    os.mkfifo(tmp_path / "one" / "pogobatch_task.json")
+    for place in ("one", "one/pogobatch_task.json"):
+        result = merge(tmp_path, place)
+        assert result.code == 2
+        assert result.errors.endswith("one/pogobatch_task.json cannot be read: it is not a file\n")
+
+
+def test_damaged_data_files_are_one_line_with_their_name(tmp_path: Path) -> None:
+    write_options(tmp_path, {"simulation_time": 0.2})
+    assert task(tmp_path, 4).code == 0
+    data = tmp_path / "tasks" / "4" / "frames" / "data.feather"
+    whole = data.read_bytes()
+    told = set()
+    for place in [*range(0, len(whole), 97), *range(len(whole) - 400, len(whole), 7)]:
+        data.write_bytes(whole[:place] + bytes(byte ^ 0xFF for byte in whole[place : place + 5]) + whole[place + 5 :])
+        result = merge(tmp_path, "tasks")
+        if result.code == 0:
+            continue
+        assert (result.code, result.errors.count("\n")) == (2, 1), (place, result.errors)
+        assert "cannot write" not in result.errors, place
+        told.add(result.errors.partition(" is damaged: ")[0])
+    assert told == {"pogobatch merge: tasks/4/frames/data.feather"}
+
+
+@pytest.mark.parametrize("key", ["combinations", "pogobatch_manifest"])
+def test_results_whose_metadata_are_damaged_are_not_appended_to(key: str, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    for seed in (4, 5):
+        assert task(tmp_path, seed).code == 0
+    assert merge(tmp_path, "tasks/4").code == 0
+    path = tmp_path / "results" / "result.feather"
+    for wrong in (b"{", b"- x", b"\xff", b"[1"):
+        table = feather.read_table(path)
+        feather.write_feather(table.replace_schema_metadata({**table.schema.metadata, key.encode(): wrong}), path)
+        before = path.read_bytes()
+        result = merge(tmp_path, "tasks/5", "--append")
+        assert (result.code, result.errors.count("\n")) == (2, 1), result.errors
+        assert "does not say which runs it has" in result.errors
+        assert path.read_bytes() == before
 
 
 def test_what_cannot_be_merged_is_one_line(tmp_path: Path) -> None:

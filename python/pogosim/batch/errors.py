@@ -10,11 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.arguments import Arguments, shown
-from pogosim.lines import say
+from pogosim.lines import printable, say
 
 
 class BatchError(Exception):
     """The batch cannot be done. The message is one line: where, what, what was expected, what to do."""
+
+    def __init__(self, message: object = "") -> None:
+        super().__init__(printable(message))
 
 
 given = Arguments(BatchError)
@@ -39,6 +42,21 @@ def cannot(task: str, path: str | Path, error: OSError) -> BatchError:
     is_full = error.errno in (errno.ENOSPC, errno.EDQUOT)
     advice = "; free space, then give the same command again: finished runs are kept" if is_full else ""
     return BatchError(f"cannot {task} {path}: {reason(error)}{advice}")
+
+
+def check_is_file(path: Path) -> None:
+    """Check that what is there, if anything is, is a file: to read a pipe or a device may never end.
+
+    Raises:
+        BatchError: It is none.
+    """
+    if path.exists() and not path.is_file():
+        raise BatchError(f"{path} cannot be read: it is not a file")
+
+
+def is_whole(value: Any) -> bool:
+    """Tell whether a value is a whole number; true and false are none."""
+    return isinstance(value, int) and not isinstance(value, bool)
 
 
 def is_text(text: str) -> bool:

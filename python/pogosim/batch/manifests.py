@@ -11,10 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import pogosim
-from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.arguments import is_text
+from pogosim.batch.errors import BatchError, cannot, check_is_file, given, is_whole, one_line
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.run import FRAMES, Task
 from pogosim.batch.run_files import without_outputs
+from pogosim.batch.seeds import LARGEST
 from pogosim.batch.tasks import Combination
 from pogosim.outputs import OutputError, partial_output, real_output
 from pogosim.yaml_1_2 import dump_yaml, plain
@@ -26,8 +28,13 @@ CAMPAIGN = "pogobatch_run.json"
 CAMPAIGN_VERSION = 1
 NAMESPACE = uuid.UUID("6f6a0f0e-2a43-5d1e-9d0b-7b6f676f7369")
 
-# What every manifest of a run has, in whatever version, with the type of its value.
-NEEDED = {"seed": int, "logical_run": int, "result_filename": str, "data_file": str}
+# What manifests of runs have that is read, with the largest number, or None for a text; every one has the first four.
+MOST = 2**63 - 1
+KNOWN = {
+    **{"seed": LARGEST, "logical_run": MOST, "result_filename": None, "data_file": None},
+    **{"retry_attempt": MOST, "combination_ordinal": MOST, "config_hash": None},
+}
+NEEDED = list(KNOWN)[:4]
 
 
 def config_hash(entries: dict[str, Any]) -> str:
@@ -118,20 +125,29 @@ def read_manifest(path: Path) -> dict[str, Any]:
         BatchError: It cannot be read, or is not what a batch writes.
     """
     try:
+        check_is_file(path)
         entries = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise cannot("read", path, error) from None
     except (ValueError, RecursionError) as error:
         raise BatchError(f"{path} is no manifest of a run: {one_line(error)}") from None
     version = entries.get("schema_version") if isinstance(entries, dict) else None
-    if version not in TASK_VERSIONS:
+    if version not in TASK_VERSIONS or isinstance(version, bool):
         raise BatchError(f"{path}: schema_version: expected 1 or {TASK_VERSION}, found {shown(version)}")
-    for name, kind in NEEDED.items():
-        if not isinstance(entries.get(name), kind) or isinstance(entries[name], bool):
-            expected = "a whole number" if kind is int else "a text"
-            raise BatchError(f"{path}: {name}: expected {expected}, found {shown(entries.get(name))}")
-    if not isinstance(entries.get("extra_columns", {}), dict):
-        raise BatchError(f"{path}: extra_columns: expected a map, found {shown(entries['extra_columns'])}")
+    for name, most in KNOWN.items():
+        if (value := entries.get(name)) is None and name not in NEEDED:
+            continue
+        if most is None and not is_text(value):
+            raise BatchError(f"{path}: {name}: expected a text, found {shown(value)}")
+        if most is not None and not (is_whole(value) and 0 <= value <= most):
+            raise BatchError(f"{path}: {name}: expected a whole number from 0 to {most}, found {shown(value)}")
+    columns = entries.get("extra_columns", {})
+    if not isinstance(columns, dict):
+        raise BatchError(f"{path}: extra_columns: expected a map, found {shown(columns)}")
+    try:
+        given.value("extra_columns", columns)
+    except BatchError as error:
+        raise BatchError(f"{path}: {error}") from None
     return dict(entries)
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +20,13 @@ from pogosim.batch.errors import BatchError, given
 from pogosim.batch.manifests import TASK, read_manifest
 from pogosim.batch.names import is_linked_out, leads_out
 from pogosim.batch.parts import OF_CAMPAIGNS, Part, RunFile
-from pogosim.batch.result_metadata import COMBINATIONS, Earlier
+from pogosim.batch.result_metadata import COMBINATIONS, Earlier, manifest
 from pogosim.batch.results import check_columns, check_output, schema_of, write_results
 from pogosim.batch.single_task import TaskArtifact, columns_as_text
 from pogosim.outputs import PathLike
-from pogosim.run_columns import RETRY, RUN, SEED
+from pogosim.run_columns import RETRY, RUN, SEED, run_numbers
 from pogosim.table_formats import FEATHER, format_of
-from pogosim.yaml_1_2 import parse_yaml
+from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 
 def discover_task_artifacts(inputs: Iterable[PathLike]) -> list[TaskArtifact]:
@@ -92,6 +93,7 @@ def merge_task_artifacts(
         check_columns(artifact.schema, list(artifact.columns), str(artifact.folder), OF_CAMPAIGNS)
     parts = {output: parts_of(own) for output, own in by_output.items()}
     earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
+    parts = {output: numbered(own, earlier[output]) for output, own in parts.items()}
     if expected is not None:
         warn_of_others(artifacts, expected)
     if not append:
@@ -126,18 +128,16 @@ def missing_in(
 
 
 def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:
-    """Raise BatchError if a run is there twice: with the same seed, or again after a failure."""
+    """Raise BatchError if a run is there twice: its seed is that of another run of its combination."""
     known: dict[tuple[Any, ...], Path] = {}
     for artifact in artifacts:
-        manifest = artifact.manifest
-        which = artifact.combination
-        for what in ("logical_run", "seed"):
-            before = known.setdefault((*which, what, manifest[what]), artifact.folder)
-            if before != artifact.folder:
-                raise BatchError(
-                    f"{before} and {artifact.folder} have the same {what.replace('_', ' ')}, {manifest[what]}, of one "
-                    "configuration, which would count twice; leave one out"
-                )
+        seed = artifact.manifest["seed"]
+        before = known.setdefault((*artifact.combination, seed), artifact.folder)
+        if before != artifact.folder:
+            raise BatchError(
+                f"{before} and {artifact.folder} have the same seed, {seed}, of one configuration, which would count "
+                "twice; leave one out"
+            )
 
 
 def output_of(artifact: TaskArtifact, folder: Path) -> str:
@@ -157,6 +157,32 @@ def parts_of(artifacts: Sequence[TaskArtifact]) -> list[Part]:
     for artifact in artifacts:
         parts.setdefault(artifact.combination, []).append(artifact)
     return [Part(runs[0].columns, [file_of(run) for run in runs], (), which[0]) for which, runs in parts.items()]
+
+
+def numbered(parts: Sequence[Part], earlier: Earlier | None) -> list[Part]:
+    """Return runs each with a number that no other run of its combination has.
+
+    A run keeps its own, unless one before it has it; then it takes the smallest that is free.
+    """
+    taken: dict[str, set[int]] = {}
+    for entry in earlier.combinations if earlier else ():
+        taken.setdefault(columns_as_text(entry["columns"]), set()).update(run_numbers(entry))
+    return [
+        replace(part, runs=with_own_numbers(part.runs, taken.get(columns_as_text(part.columns), set())))
+        for part in parts
+    ]
+
+
+def with_own_numbers(runs: Sequence[RunFile], taken: Iterable[int]) -> list[RunFile]:
+    """Return runs whose numbers differ from each other and from those that are taken."""
+    used = set(taken)
+    again = set()
+    for index, run in enumerate(runs):
+        if run.run in used:
+            again.add(index)
+        used.add(run.run)
+    free = (number for number in itertools.count() if number not in used)
+    return [replace(run, run=next(free)) if index in again else run for index, run in enumerate(runs)]
 
 
 def file_of(artifact: TaskArtifact) -> RunFile:
@@ -182,16 +208,17 @@ def earlier_results(output: str, parts: Sequence[Part]) -> Earlier | None:
     try:
         combinations = parse_yaml((schema.metadata or {})[COMBINATIONS.encode()].decode())
         known = {(columns_as_text(entry["columns"]), seed) for entry in combinations for seed in seeds_of(entry)}
-    except (KeyError, TypeError, ValueError, RecursionError):
+        earlier = Earlier(real, schema, combinations)
+        manifest([], earlier)  # which is read, too
+    except WRONG_VALUES:
         raise BatchError(f"{output} does not say which runs it has: pogobatch did not write it") from None
     for part in parts:
         for run in part.runs:
             if (columns_as_text(part.columns), run.seed) in known:
                 raise BatchError(f"{output} has the run of {run.path} already, with seed {run.seed}; leave it out")
-    return Earlier(real, schema, combinations)
+    return earlier
 
 
 def seeds_of(entry: Mapping[str, Any]) -> list[int]:
     """Return the seeds of a combination, as the metadata of results say."""
-    runs = [run for run in range(entry["runs"] + len(entry["failed_runs"])) if run not in entry["failed_runs"]]
-    return list(entry.get("seeds", runs))
+    return list(entry.get("seeds", run_numbers(entry)))

@@ -10,9 +10,11 @@ from typing import Any
 
 import pyarrow as pa
 
+from pogosim.batch.errors import BatchError
 from pogosim.batch.parts import Part
 from pogosim.batch.run_files import without_outputs
-from pogosim.yaml_1_2 import dump_yaml, parse_yaml
+from pogosim.run_columns import NUMBERS
+from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, parse_yaml, problem_of
 
 RESOLVED = "resolved_configuration"
 POLYGONS = "arena_polygons"
@@ -77,7 +79,7 @@ def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """Return the configuration with all defaults of a run, without what only that run has."""
     try:
         entries = parse_yaml(metadata.get(RESOLVED.encode(), b"").decode())
-    except (ValueError, RecursionError):
+    except WRONG_VALUES:
         return {}
     if not isinstance(entries, dict):
         return {}
@@ -105,7 +107,8 @@ def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows:
     """Return the metadata entry `combinations`.
 
     A list with the columns of each combination, its number of runs and rows, the runs that failed, the seeds of the
-    others if they are not their numbers, and the polygons of its arena if they are not the same everywhere.
+    others if they are not their numbers, those numbers if they are not 0, 1, ... without the runs that failed, and the
+    polygons of its arena if they are not the same everywhere.
     """
     polygons = [(part[0].metadata or {}).get(POLYGONS.encode()) if part else None for part in schemas]
     differ = len({text for text in polygons if text is not None}) > 1
@@ -115,8 +118,13 @@ def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows:
         numbers = [run for run in range(len(part.runs) + len(part.failed)) if run not in part.failed]
         if any(run.seed is not None and run.seed != number for run, number in zip(part.runs, numbers, strict=True)):
             entry["seeds"] = [run.seed for run in part.runs]
+        if [run.run for run in part.runs] != numbers:
+            entry[NUMBERS] = [run.run for run in part.runs]
         text = polygons[i]
         if differ and text is not None:
-            entry[POLYGONS] = parse_yaml(text.decode())
+            try:
+                entry[POLYGONS] = parse_yaml(text.decode())
+            except WRONG_VALUES as error:
+                raise BatchError(f"{part.runs[0].path} is damaged: {POLYGONS}: {problem_of(error)}") from None
         entries.append(entry)
     return entries

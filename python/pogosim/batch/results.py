@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
+import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from typing import Any
 import pyarrow as pa
 from pyarrow import ipc
 
-from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.batch.errors import BatchError, cannot, check_is_file, is_whole, one_line
 from pogosim.batch.parts import PLAIN, Format, Part, RunFile
 from pogosim.batch.result_metadata import COMBINATIONS, MANIFEST, Earlier, manifest, metadata_of, summary
 from pogosim.outputs import OutputError, real_output
@@ -26,7 +27,7 @@ from pogosim.run_columns import tells_runs_apart
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.tables import TableWriter, table_writer, write_metadata_beside
 from pogosim.times import as_float64
-from pogosim.yaml_1_2 import dump_yaml, plain
+from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, plain
 
 ROWS_PER_BATCH = 65536
 
@@ -57,10 +58,27 @@ def open_run(file: Any, path: Path, fields: list[int] | None = None) -> ipc.Reco
         raise BatchError(f"{path} is damaged: {one_line(error)}; remove it, then give the same command again") from None
 
 
+@contextlib.contextmanager
+def told_as_damaged(path: Path) -> Iterator[None]:
+    """Raise BatchError, with the name of a data file, for whatever a block finds wrong in it."""
+    try:
+        yield
+    except (*DAMAGED, *WRONG_VALUES) as error:
+        reraise_system_error(error)
+        raise BatchError(f"{path} is damaged: {one_line(error)}; remove it, then try again") from None
+
+
 def schema_of(path: Path) -> pa.Schema:
-    """Return columns and metadata of the data file of a run."""
-    with pa.OSFile(str(path)) as file, open_run(file, path) as reader:
-        return reader.schema
+    """Return columns and metadata of the data file of a run.
+
+    Raises:
+        BatchError: It is no file, or damaged.
+    """
+    check_is_file(path)
+    with pa.OSFile(str(path)) as file, open_run(file, path) as reader, told_as_damaged(path):
+        schema = reader.schema
+        list(schema.names)  # which damaged bytes need not be
+        return schema
 
 
 def check_columns(schema: pa.Schema, columns: Sequence[str], program: str, layout: Format = PLAIN) -> None:
@@ -91,7 +109,7 @@ def column_type(values: Sequence[Any]) -> pa.DataType:
         return pa.bool_()
     if kinds == {int} and all(abs(value) < 2**63 for value in values if value is not None):
         return pa.int64()
-    if kinds and kinds <= {int, float}:
+    if kinds and kinds <= {int, float} and all(abs(value) <= sys.float_info.max for value in values if is_whole(value)):
         return pa.float64()
     return pa.string()
 
@@ -122,11 +140,8 @@ def batches_of(path: Path) -> Iterator[pa.RecordBatch]:
     """Yield the rows of a data file in pieces."""
     with pa.memory_map(str(path)) as file, open_run(file, path) as reader:
         for i in range(reader.num_record_batches):
-            try:
+            with told_as_damaged(path):
                 batch = reader.get_batch(i)
-            except DAMAGED as error:
-                reraise_system_error(error)
-                raise BatchError(f"{path} is damaged: {one_line(error)}; remove it, then try again") from None
             for start in range(0, batch.num_rows, ROWS_PER_BATCH):
                 yield batch.slice(start, ROWS_PER_BATCH)
 
@@ -292,7 +307,9 @@ def write_results(
                     for run in part.runs:
                         which = {name: run.column(name) for name in layout.run_columns}
                         for batch in batches_of(run.path):
-                            pieces.add(with_columns(batch, schema, {**constants, **which}))
+                            with told_as_damaged(run.path):
+                                rows_with_all = with_columns(batch, schema, {**constants, **which})
+                            pieces.add(rows_with_all)
                 pieces.finish()
             write_metadata_beside(real, kind, schema)
     except OSError as error:
@@ -307,5 +324,5 @@ def rows_of(runs: Sequence[RunFile]) -> int:
 
 def rows_in(path: Path) -> int:
     """Return the number of rows of a data file."""
-    with pa.memory_map(str(path)) as file, open_run(file, path, [0]) as reader:  # one column will do
-        return sum(reader.get_batch(i).num_rows for i in range(reader.num_record_batches))
+    with pa.memory_map(str(path)) as file, open_run(file, path, [0]) as reader, told_as_damaged(path):
+        return sum(reader.get_batch(i).num_rows for i in range(reader.num_record_batches))  # one column will do

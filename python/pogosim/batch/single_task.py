@@ -27,7 +27,7 @@ from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
 from pogosim.run_columns import SEED
-from pogosim.yaml_1_2 import parse_yaml
+from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 WHICH_RUN = ("seed", "result_filename", "extra_columns")  # entries of a manifest that tell runs in a folder apart
 
@@ -91,7 +91,7 @@ class TaskArtifact:
         """Its entries; empty: they cannot be read."""
         try:
             entries = parse_yaml(self.configuration_text)
-        except (ValueError, RecursionError):
+        except WRONG_VALUES:
             return {}
         return entries if isinstance(entries, dict) else {}
 
