@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from pogosim import compute_optimal_psend
+from pogosim.analysis.errors import AnalysisError
 from pogosim.compat import MODULES, functions_of
 from pogosim.reports import figures
 from pogosim.reports.command import main as analyze
@@ -59,6 +60,15 @@ def test_each_function_returns_the_table_that_the_analysis_writes(
             np.testing.assert_allclose(table[column], expected[column], rtol=1e-12)
         else:
             assert list(table[column].astype(str)) == list(expected[column].astype(str))
+
+
+def test_table_that_the_options_do_not_give_is_an_error_and_no_other_table(data: Path) -> None:
+    rows, functions = load_dataframe(data)[0], functions_of("network")
+    with pytest.raises(AnalysisError, match="compute_timeavg_eigs: the table is that with the option avg_window_s; "):
+        functions["compute_timeavg_eigs"](rows)
+    for name in ("compute_timeavg_eigs_tau_c", "compute_timeavg_eigs_10dt"):
+        with pytest.raises(AnalysisError, match=f"{name}: the table is that without the option avg_window_s; "):
+            functions[name](rows, avg_window_s=5.0)
 
 
 def test_options_have_the_names_of_the_command_line(data: Path) -> None:

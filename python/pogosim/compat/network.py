@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.network import averaged_spectra, graph_over_time, instantaneous_spectra
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.compat.table_function import Table, table_function
@@ -27,11 +28,17 @@ def at_once(runs: Sequence[Trajectories], options: argparse.Namespace) -> pd.Dat
 
 
 def averaged(name: str) -> Table:
-    """Return the function for spectra of graphs that are averaged over windows of time."""
+    """Return the function for spectra of graphs that are averaged over the windows of time of a table."""
 
     def of_runs(runs: Sequence[Trajectories], options: argparse.Namespace) -> pd.DataFrame:
         windows = windows_of(runs, options.avg_window_s)
-        own = windows.get(name, next(iter(windows.values())))
+        own = windows.get(name)
+        if own is None:
+            which = "without" if name in windows_of(runs, None) else "with"
+            raise AnalysisError(
+                f"compute_{name}: the table is that {which} the option avg_window_s; with this call, there is "
+                + " and ".join(f"compute_{other}" for other in windows)
+            )
         return pd.concat(
             [
                 labelled(averaged_spectra(run, window_s, options.k_first, zero_tol=options.zero_tol), run)
