@@ -132,7 +132,8 @@ def records_of(file: BinaryIO) -> Iterator[tuple[Record, bool]]:
         owner = (record.category, record.identifier)
         if is_right and owner in known:
             raise ArchiveError(f"it has two records of robot #{record.identifier} of category '{record.category}'")
-        known.add(owner)
+        if is_right:  # otherwise, whose record it is may be wrong, too
+            known.add(owner)
         yield record, is_right
     if file.read(1):
         raise ArchiveError("bytes follow its last record")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ import yaml
 from conftest import Compile
 from flash_files import EMPTY, FLASH, PAGE, Record, archive, checksum, written
 from pogosim.command.main import main
-from pogosim.flash_archive import checksum_of
+from pogosim.flash_archive import checksum_of, records_of
 from running import SCENE, run
 
 RECORDS = [written(0), Record(1), Record(0, "ants", pages={5: bytes(PAGE)})]
@@ -80,6 +81,39 @@ def test_show_tells_which_record_is_damaged(capsys: pytest.CaptureFixture[str]) 
     assert lines[5] == "1 record damaged: the simulator refuses this archive"
     assert flash("show", "x.flash", "--json") == 1
     assert json.loads(capsys.readouterr().out)["ok"] is False
+
+
+@pytest.mark.parametrize("damaged", [0, 1])
+def test_damaged_record_is_no_second_one_of_its_robot(damaged: int, capsys: pytest.CaptureFixture[str]) -> None:
+    data = bytearray(archive([Record(1), Record(1)]))
+    data[len(EMPTY) + damaged * (len(data) - len(EMPTY)) // 2 + 1000] ^= 1
+    Path("x.flash").write_bytes(data)
+    assert flash("show", "x.flash") == 1
+    checksums = [line.split()[-1] for line in capsys.readouterr().out.splitlines()[2:4]]
+    assert checksums == (["wrong", "right"] if damaged == 0 else ["right", "wrong"])
+
+
+def test_memory_does_not_grow_with_the_archive(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("x.flash").write_bytes(archive([Record(identifier) for identifier in range(20)]))
+    for arguments in (["show", "x.flash"], ["extract", "x.flash", "-r", "3", "-o", "out.bin"]):
+        assert flash(*arguments) == 0  # what is imported does not count
+        tracemalloc.start()
+        try:
+            assert flash(*arguments) == 0
+            assert tracemalloc.get_traced_memory()[1] < 8 * FLASH, arguments
+        finally:
+            tracemalloc.stop()
+    assert "20 records" in capsys.readouterr().out
+
+
+def test_make_sorts_categories_by_their_bytes() -> None:
+    Path("own.bin").write_bytes(b"x")
+    categories = ["b\udcff", "b", "b\U0001f41c", "b\u00e9", "a"]
+    given = [word for category in categories for word in ("--from", category, "0", "own.bin")]
+    assert flash("make", "made.flash", *given) == 0
+    with Path("made.flash").open("rb") as file:
+        made = [record.category for record, _ in records_of(file)]
+    assert made == ["a", "b", "b\u00e9", "b\U0001f41c", "b\udcff"]
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pogosim.command.parser import Parser, complain
+from pogosim.counted import counted
 from pogosim.flash_archive import (
     FLASH_BYTES,
     PAGE_COUNT,
@@ -64,11 +65,11 @@ def parser(prog: str) -> Parser:
     return made
 
 
-def read_records(name: str) -> list[tuple[Record, bool]]:
-    """Return the records of an archive, and whether the checksum of each is right."""
+def read_records(name: str) -> Iterator[tuple[Record, bool]]:
+    """Yield the records of an archive, each of 1.5 MB, and whether the checksum of each is right."""
     with Path(name).open("rb") as file:
         try:
-            return list(records_of(file))
+            yield from records_of(file)
         except ArchiveError as error:
             raise FlashError(f"{name}: {error}") from None
 
@@ -158,7 +159,7 @@ def make(options: argparse.Namespace) -> int:
     records = [
         Record(category, identifier) if flash is None else Record(category, identifier, flash=flash)
         for (category, identifier), flash in sorted(
-            memories.items(), key=lambda item: (item[0][0].encode(), item[0][1])
+            memories.items(), key=lambda item: (item[0][0].encode(errors="surrogateescape"), item[0][1])
         )
     ]
     with partial_output(output) as partial, partial.open("wb") as file:
@@ -251,11 +252,6 @@ def flash_of(name: str) -> bytes:
 def text_of(value: object) -> str:
     """Return a cell of the table."""
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-
-
-def counted(count: int, one: str) -> str:
-    """Return "1 record", "3 records"."""
-    return f"{count} {one}" + ("" if count == 1 else "s")
 
 
 ACTIONS = {"show": show, "extract": extract, "make": make}
