@@ -89,10 +89,11 @@ def test_manifest_says_what_was_done(tmp_path: Path) -> None:
     assert {key: entries[key] for key in expected} == expected
 
 
-def test_file_that_is_no_manifest_is_not_overwritten(tmp_path: Path) -> None:
+@pytest.mark.parametrize("text", ["[1, 2]", '{"a": 1}', "", "x"])
+def test_file_that_is_no_manifest_is_not_overwritten(text: str, tmp_path: Path) -> None:
     write_options(tmp_path)
     (tmp_path / "results").mkdir()
-    (tmp_path / "results" / "pogobatch_run.json").write_text("[1, 2]")
+    (tmp_path / "results" / "pogobatch_run.json").write_text(text)
     result = subcommand(tmp_path, "run")
     assert (result.code, result.errors.count("\n")) == (2, 1)
     assert "results/pogobatch_run.json is there and was not written by pogobatch" in result.errors
@@ -240,6 +241,7 @@ def test_map_for_results_comes_before_the_top_level_with_a_warning(tmp_path: Pat
         ({"pogobatsh": {}}, "did you mean 'pogobatch'?"),
         ({"_rundr": [1]}, "_rundr: expected a map with version and seeds, found [1]"),
         ({"_rundr": {"version": 2}}, "_rundr.version: expected 1, found 2"),
+        ({"_rundr": {"version": True}}, "_rundr.version: expected 1, found True"),
         ({"_rundr": {"seeds": "5"}}, "_rundr.seeds: expected the first and the last seed"),
         ({"_rundr": {"seeds": 0}}, "_rundr.seeds: expected a whole number of at least 1; found 0"),
         ({"_rundr": {"seeds": 1.5}}, '_rundr.seeds: expected a number of seeds, or "A:B", found 1.5'),

@@ -15,8 +15,8 @@ import yaml
 from pogosim.calibration.command import main
 from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.tracks import Floats
-from pogosim.magnetometer.block import configuration_block
-from pogosim.magnetometer.fit import basis, ellipse_errors, ellipse_of, fit_curve
+from pogosim.magnetometer.block import configuration_block, noise_lines, phase_near
+from pogosim.magnetometer.fit import CurveFit, basis, ellipse_errors, ellipse_of, fit_curve
 from pogosim.magnetometer.table import ReadingTable, read_reading_table
 from running import ROOT
 
@@ -278,3 +278,18 @@ def test_picture_does_not_replace_the_table(tmp_path: Path, capsys: pytest.Captu
 def test_fit_that_has_no_unique_solution_is_refused() -> None:
     with pytest.raises(CalibrationError, match="4 different headings"):
         fit_curve(table(coefficients(160.0, 140.0, 0.3, 0.1), headings=np.repeat(HEADINGS[::18], 20)), 2, 0.0)
+
+
+@pytest.mark.parametrize("turns", [-1, 0, 1, 2])
+def test_phase_is_that_of_the_nearest_end_of_the_ellipse(turns: int) -> None:
+    of = coefficients(100.0, 60.0, 0.3, 0.2)
+    phase = ellipse_of(of).phase + turns * math.pi
+    for near in (-0.4, 0.0, 0.4):
+        assert phase_near(of, phase + near) == pytest.approx(phase)
+
+
+def test_error_of_the_noise_is_that_of_the_readings_that_the_curve_leaves() -> None:
+    # With n - k degrees of freedom: 2 / sqrt(2 (13 - 5)).
+    of = coefficients(100.0, 60.0, 0.3, 0.2)
+    fitted = CurveFit(of, np.eye(5), np.full(3, 2.0), np.zeros(13), np.zeros((13, 3)))
+    assert noise_lines(fitted)[0].comment == "counts, +- 0.5, 0.5, 0.5"

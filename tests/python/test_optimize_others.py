@@ -198,6 +198,7 @@ def test_seeds_of_candidates_do_not_meet() -> None:
     assert (common.seeds_of(1), common.seeds_of(9), common.fresh_seeds) == ([0, 1, 2, 3], [0, 1, 2, 3], [4, 5])
     assert Settings(seeds="fresh", runs=2).seeds_of(3) == [4, 5]
     assert Settings(seeds="blocks", seed=1).first_seed != Settings(seeds="blocks", seed=2).first_seed
+    assert max(Settings(seeds="blocks", seed=seed).first_seed for seed in range(40)) < 2**31
 
 
 def test_command_line_comes_before_the_configuration_and_that_before_what_is_usual() -> None:
