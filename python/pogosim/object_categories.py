@@ -69,7 +69,7 @@ def categories_of(rows: pd.DataFrame, configuration: dict[str, Any], metadata: M
     if len(recorded) == 1:
         return next(iter(recorded))
     if "robot_id" not in rows:
-        raise unknown("neither has it a column robot_id")
+        raise unknown("no column robot_id")
     if given := metadata.get("configuration"):
         check_categories(given, bodies)
     ids = rows["robot_id"].to_numpy()

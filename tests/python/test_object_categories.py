@@ -97,7 +97,12 @@ def test_combinations_of_a_batch_have_numbers_of_objects_of_their_own(tmp_path: 
     [
         ({"robot_id": [0, 9]}, {"boxes": BOXES, "robots": {"nb": 3}}, None, "none of its objects has the id 9"),
         ({"robot_id": [0, 1]}, {"boxes": BOXES, "robots": {}}, None, "does not say how many objects"),
-        ({"x": [0.0, 1.0]}, {"boxes": BOXES, "robots": {"nb": 3}}, None, "neither has it a column robot_id"),
+        (
+            {"x": [0.0, 1.0]},
+            {"boxes": BOXES, "robots": {"nb": 3}},
+            None,
+            "and no column robot_id, so nothing says",
+        ),
         ({"robot_id": [0, 1]}, {"boxes": BOXES, "robots": {"nb": 3}}, {"preys": {}}, "different categories"),
         (
             {"robot_id": [0, 1], "run": [0, 1], "objects.preys.nb": [None, 2.0]},

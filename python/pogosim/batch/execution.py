@@ -11,8 +11,8 @@ from typing import Any
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, tell
-from pogosim.batch.manifests import write_manifest
-from pogosim.batch.option_words import CHOICES
+from pogosim.batch.manifests import TASK, task_entries, write_json
+from pogosim.batch.option_words import chosen_in
 from pogosim.batch.parts import PLAIN, Format
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import Failure, Progress, Replaced, report_warnings
@@ -131,7 +131,7 @@ class Execution:
 
     def options_of(self, number: int) -> dict[str, Any]:
         """Return what tells a combination from the others: keys and their values."""
-        return {key.removeprefix(f"{CHOICES}."): values[number] for key, values in self.varied.items()}
+        return chosen_in(self.varied, number)
 
     @cached_property
     def varied(self) -> dict[str, list[Any]]:
@@ -153,4 +153,5 @@ class Execution:
             return
         combination = self.first_of[task.key]
         number = self.number_of(combination)
-        write_manifest(Path(outcome.folder), combination, task, outcome.replacement, number, self.options_of(number))
+        entries = task_entries(combination, task, outcome.replacement, number, self.options_of(number))
+        write_json(Path(outcome.folder) / TASK, entries)

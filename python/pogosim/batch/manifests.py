@@ -75,7 +75,7 @@ def task_entries(
     digest, seed = config_hash(combination.entries), task.seed_of(replacement)
     return {
         "schema_version": TASK_VERSION,
-        # The same run always has the same one, so that it is not merged twice.
+        # The same run always has the same one.
         "task_uuid": str(uuid.uuid5(NAMESPACE, f"{digest} {task.run} {seed} {replacement}")),
         "seed": seed,
         "logical_run": task.run,
@@ -88,17 +88,6 @@ def task_entries(
         "data_file": f"{FRAMES}/{task.data}",
         "pogosim_version": pogosim.__version__,
     }
-
-
-def write_manifest(
-    folder: Path, combination: Combination, task: Task, replacement: int, ordinal: int, choices: Mapping[str, Any]
-) -> Path:
-    """Write `pogobatch_task.json` into the folder of a run; see `task_entries`. Returns its path.
-
-    Raises:
-        BatchError: It cannot be written.
-    """
-    return write_json(folder / TASK, task_entries(combination, task, replacement, ordinal, choices))
 
 
 def write_json(path: Path, entries: Mapping[str, Any]) -> Path:

@@ -6,7 +6,7 @@ A misspelt key would silently leave out a part of a study. The simulator has the
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any
 
 from pogosim.nearest_name import advice, edit_distance
@@ -64,6 +64,11 @@ def shown(value: Any) -> str:
     """Return a value as short text for a message."""
     text = "nothing" if value is None else f"'{value}'" if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def chosen_in(varied: Mapping[str, Sequence[Any]], number: int) -> dict[str, Any]:
+    """Return what tells a combination from others: keys and its values. `varied` has the values of all."""
+    return {key.removeprefix(f"{CHOICES}."): values[number] for key, values in varied.items()}
 
 
 def offers_options(node: Any) -> bool:

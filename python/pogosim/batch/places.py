@@ -65,7 +65,7 @@ def children_of(node: yaml.Node | None) -> Iterator[tuple[str, yaml.Node, yaml.N
 def line_in(configuration: Configuration, path: Path, entries: dict[str, Any]) -> int:
     """Return the line where a combination has an entry from; 0 if the file does not have it.
 
-    That of a value that is one of several is its own line.
+    Each item of a list of options has its own line.
     """
     place = written_path(configuration.entries, path, (), entries)
     return 0 if place is None else configuration.line_at(place)
@@ -102,7 +102,7 @@ def written_path(node: Any, path: Path, above: Path, entries: dict[str, Any]) ->
 
 
 def chosen_number(options: Sequence[Any], value: Any) -> int | None:
-    """Return which of several options a value is, or an option stands for that contains options itself."""
+    """Return the index of the option that gives this value, also if it contains options itself."""
     known = identities(value)[0]
     for number, option in enumerate(options):
         if any(identities(one)[0] == known for one, _, _ in variants_of(option, ())):

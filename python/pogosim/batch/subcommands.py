@@ -66,13 +66,13 @@ def plan(arguments: argparse.Namespace) -> Report:
 def planned(runner: PogobotBatchRunner) -> Iterator[dict[str, Any]]:
     """Yield the runs of a batch."""
     from pogosim.batch.manifests import for_json
-    from pogosim.batch.option_words import CHOICES
+    from pogosim.batch.option_words import chosen_in
     from pogosim.varied import varied_parameters
 
     selected = runner.checked_selection()
     varied = varied_parameters([config for config, _ in selected])
     for number, (config, output) in enumerate(selected):
-        choices = {key.removeprefix(f"{CHOICES}."): values[number] for key, values in varied.items()}
+        choices = chosen_in(varied, number)
         for run in range(runner.runs):
             yield {
                 "combination_ordinal": number,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import os
 import signal
@@ -13,6 +12,7 @@ from typing import NamedTuple
 import pogosim
 from pogosim.command.parser import complain
 from pogosim.lines import say, say_error
+from pogosim.nearest_name import nearest_name
 
 WRONG_USAGE = 2
 INTERRUPTED = 130
@@ -69,8 +69,8 @@ def unknown(name: str) -> str:
     """Return what is said of a name that is no subcommand."""
     if name.startswith("-"):
         return f"pogosim: there is no option {name} before the command; pogosim --help lists all commands"
-    near = difflib.get_close_matches(name, SUBCOMMANDS, n=1)
-    question = f"; did you mean '{near[0]}'?" if near else "; pogosim --help lists all commands"
+    near = nearest_name(name, SUBCOMMANDS)
+    question = f"; did you mean '{near}'?" if near else "; pogosim --help lists all commands"
     return f"pogosim: there is no command '{name}'{question}"
 
 

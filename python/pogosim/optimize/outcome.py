@@ -201,9 +201,9 @@ class Outcome:
     """Results of the runs on fresh seeds; None where no run could be judged.
 
     Attributes:
-        best: Best of the best candidate.
-        initial: Initial of the initial values, with the same seeds.
-        gain: The best less the initial ones, seed by seed, on those seeds that both have.
+        best: Fresh runs of the best candidate.
+        initial: Fresh runs of the initial values, with the same seeds.
+        gain: Difference of the two, seed by seed, on those seeds that both have.
     """
 
     best: FreshRuns | None = None

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 from pogosim.batch.option_words import shown
-from pogosim.nearest_name import nearest_name
+from pogosim.nearest_name import advice, nearest_name
 from pogosim.optimize.errors import OptimizeError
 from pogosim.yaml_1_2 import plain
 
@@ -255,9 +254,7 @@ def say_unknown(path: tuple[str, ...], place: str, warn: Callable[[str], None]) 
     if maps == [OBJECTIVE]:
         raise OptimizeError(f"{place}: unknown key; expected {' and '.join(key[-1] for key in beside)}")
     names = [".".join(key) for key in KEYS]
-    alike = difflib.get_close_matches(".".join(path), names, n=1)
-    advice = f"did you mean '{alike[0]}'?" if alike else f"known are {', '.join(names)}"
-    warn(f"{place}: unknown key, which has no effect; {advice}")
+    warn(f"{place}: unknown key, which has no effect{advice('.'.join(path), names)}")
 
 
 def settings_from(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import sys
 from collections.abc import Callable, Sequence
@@ -11,6 +10,7 @@ from typing import NamedTuple
 from pogosim.command.parser import Parser, complain
 from pogosim.inputs import check_readable
 from pogosim.lines import say, say_error
+from pogosim.nearest_name import nearest_name
 from pogosim.reports import command_lines
 
 
@@ -81,8 +81,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze") 
         say_error(*usage(prog))
         return 2
     if name not in ANALYSES:
-        near = difflib.get_close_matches(name, ANALYSES, n=1)
-        question = f"; did you mean '{near[0]}'?" if near else f"; {prog} --help lists all analyses"
+        near = nearest_name(name, ANALYSES)
+        question = f"; did you mean '{near}'?" if near else f"; {prog} --help lists all analyses"
         return complain(prog, f"there is no analysis '{name}'{question}")
     return analyze(name, rest, f"{prog} {name}")
 
