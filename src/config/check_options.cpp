@@ -67,7 +67,7 @@ std::string with_length(std::string const& text) {
     return fmt::format("{} {}", text.size(), text);
 }
 
-/// What a value is to the simulator; two values that share one of these are the same: 3, 3.0 and '3'.
+/// What a value is to the simulator; two values that share one of these are the same: 3, 3.0 and '3', true and 'true'.
 std::vector<std::string> identities(Node const& value) {
     std::string all;
     switch (value.kind) {
@@ -94,7 +94,10 @@ std::vector<std::string> identities(Node const& value) {
     if (std::optional<double> const number = number_of(value)) {
         return {fmt::format("number {}", *number + 0.0), text};  // -0 is 0
     }
-    return {word == "true" || word == "false" ? word : text};
+    if (word == "true" || word == "false") {
+        return {word, text, "text " + word};
+    }
+    return {text};
 }
 
 /// `path`: of the list.

@@ -212,6 +212,39 @@ def test_value_that_is_offered_twice_is_refused_by_everything(
     refused(search(tmp_path), f"space.yaml{said}")
 
 
+# Text of a file, and whether everything that reads it refuses it.
+BOTH: list[tuple[str, bool]] = [
+    ("batch_optons:", True),
+    ("batch_optons: []", True),
+    ("batch_optons: {}", True),
+    ("batch_optons: walk", False),
+    ("batch_optons: ''", False),
+    ("batch_optons: 3", False),
+    ("parameters: {p: {default_option: 1, batch_options: [true, 'true']}}", True),
+    ("parameters: {p: {default_option: 1, batch_options: ['true', true]}}", True),
+    ("parameters: {p: {default_option: 1, batch_options: [True, true]}}", True),
+    ("parameters: {p: {default_option: 1, batch_options: ['false', False]}}", True),
+    ("parameters: {p: {default_option: 1, batch_options: [True, 'True']}}", True),
+    ("parameters: {p: {default_option: 1, batch_options: ['True', 'true']}}", False),
+    ("parameters: {p: {default_option: 1, batch_options: [true, false]}}", False),
+    ("parameters: {p: {default_option: 1, batch_options: [yes, true]}}", False),
+    ("parameters: {p: {default_option: 1, batch_options: [[true], ['true']]}}", False),
+    ("parameters: {p: {default_option: 1, batch_options: [0x10, 16]}}", True),
+    ("parameters: {p: {default_option: 1, batch_options: [~, null]}}", True),
+    ("parameters: {p: {default_option: 1, batch_options: ['', ~]}}", False),
+    ("parameters: {p: {default_option: 1, batch_options: [{}, []]}}", False),
+]
+
+
+@pytest.mark.parametrize(("text", "is_refused"), BOTH, ids=[text for text, _ in BOTH])
+def test_simulator_and_batches_refuse_the_same_files(text: str, is_refused: bool, tmp_path: Path) -> None:
+    path = written(tmp_path, {"simulation_time": 0.1, "parameters": None})
+    path.write_text(f"{path.read_text()}{text}\n")
+    simulator = run_command(example("helloworld"), tmp_path, ["-c", "many.yaml", "-g"])
+    batches = batch(tmp_path)
+    assert (simulator.code, batches.code) == ((2, 2) if is_refused else (0, 0)), simulator.errors + batches.errors
+
+
 DIFFERENT: list[list[Any]] = [[3, 3.5], [True, 1], [True, "true story"], ["a", "A"], [[1, 2], [2, 1]], [None, "None"]]
 
 

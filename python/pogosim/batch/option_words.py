@@ -112,9 +112,9 @@ def identities(value: Any) -> list[Hashable]:
     So are 3, 3.0 and '3', and 1e4 and '10000.0', which a column of texts would not tell apart.
     """
     if isinstance(value, dict):
-        return [tuple((str(key), identities(inner)[0]) for key, inner in value.items())]
+        return [("map", *((str(key), identities(inner)[0]) for key, inner in value.items()))]
     if isinstance(value, list):
-        return [tuple(identities(inner)[0] for inner in value)]
+        return [("list", *(identities(inner)[0] for inner in value))]
     text = getattr(value, "text", str(value))
     if value is None:
         return [("word", value)]
@@ -209,7 +209,7 @@ def may_be_a_name(key: str, word: str, node: dict[Any, Any], names: str) -> bool
     """Tell whether a key of a map that is like a word of options may be a name that the user has chosen."""
     value = node[key]
     if names == "top level":
-        return not isinstance(value, (dict, list))  # perhaps the name of an alternative
+        return value is not None and not isinstance(value, (dict, list))  # perhaps the name of an alternative
     if names == "categories":
         return word != HIERARCHICAL_OPTIONS
     if names == "parameters":
