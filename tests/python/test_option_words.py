@@ -218,6 +218,8 @@ BOTH: list[tuple[str, bool]] = [
     ("batch_optons: []", True),
     ("batch_optons: {}", True),
     ("batch_optons: walk", False),
+    ("batch_optons: {a: 1}\nresult_new_columns: [batch_optons]", False),
+    ("batch_optons: {a: 1}\nresult_new_columns: [arena_file]", True),
     ("batch_optons: ''", False),
     ("batch_optons: 3", False),
     ("parameters: {p: {default_option: 1, batch_options: [true, 'true']}}", True),

@@ -6,7 +6,8 @@ A misspelt key would silently leave out a part of a study. The simulator has the
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+import re
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pogosim.nearest_name import advice, edit_distance
@@ -30,7 +31,8 @@ DEFAULT_ALTERNATIVE = "default"
 # In the configuration of a combination: the names of the chosen alternatives, by the dotted path of their map.
 CHOICES = "_batch_choice_names"
 # Keys of the top level that are no part of a run's world; nothing in them is an option.
-TOOL_KEYS = ("result_filename_format", "result_new_columns", "optimization")
+FORMAT_OF_RESULTS, COLUMNS_OF_RESULTS = "result_filename_format", "result_new_columns"
+TOOL_KEYS = (FORMAT_OF_RESULTS, COLUMNS_OF_RESULTS, "optimization")
 NOT_EXPANDED = (*TOOL_KEYS, CHOICES)
 
 SLIP = 2  # letters at most
@@ -209,12 +211,40 @@ def may_be_a_name(key: str, word: str, node: dict[Any, Any], names: str) -> bool
     """Tell whether a key of a map that is like a word of options may be a name that the user has chosen."""
     value = node[key]
     if names == "top level":
-        return value is not None and not isinstance(value, (dict, list))  # perhaps the name of an alternative
+        is_one = value is not None and not isinstance(value, (dict, list))  # perhaps the name of an alternative
+        return is_one or key in names_of_results(node)
     if names == "categories":
         return word != HIERARCHICAL_OPTIONS
     if names == "parameters":
         return not isinstance(value, dict) if word == HIERARCHICAL_OPTIONS else not is_meant_as_options(node)
     return False
+
+
+def names_of_results(entries: dict[Any, Any]) -> set[str]:
+    """Return the keys that columns and names of results are asked to have, of a whole configuration."""
+    texts = list(texts_in([entries.get(COLUMNS_OF_RESULTS), entries.get(CHOICES)]))
+    return {*texts, *re.findall(r"\{([^}:!]+)", str(entries.get(FORMAT_OF_RESULTS) or "")), *names_of_choices(entries)}
+
+
+def texts_in(node: Any) -> Iterator[str]:
+    """Yield all keys and values in maps and lists."""
+    if isinstance(node, dict):
+        yield from map(str, node)
+        yield from texts_in(list(node.values()))
+    elif isinstance(node, list):
+        for item in node:
+            yield from texts_in(item)
+    else:
+        yield str(node)
+
+
+def names_of_choices(node: Any) -> Iterator[str]:
+    """Yield the names under which results have the choices between alternatives, at any depth."""
+    alternatives = node.get(HIERARCHICAL_OPTIONS) if isinstance(node, dict) else None
+    if isinstance(alternatives, dict) and isinstance(name := alternatives.get(NAME), str):
+        yield name
+    for inner in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
+        yield from names_of_choices(inner)
 
 
 def is_meant_as_options(node: dict[Any, Any]) -> bool:
