@@ -139,12 +139,15 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
         scenario.seed = options.seed;
     }
     CheckResult const result = check_run(linked_program(program, process_name()), scenario, check_options, problems);
-    problems.throw_if_any();
     flush_logs();
-    if (interrupted()) {
+    if (result.interrupted) {
+        for (std::string const& message : problems.messages()) {
+            std::fprintf(stderr, "Error: %s\n", escaped(message).c_str());
+        }
         return {.code = ExitCode::interrupted, .user_code_was_aborted = result.user_code_was_aborted};
     }
     std::printf("%s: no mistakes found: %s\n", escaped(options.config).c_str(), result.summary.c_str());
+    problems.throw_if_any();
     return {.code = ExitCode::done, .user_code_was_aborted = result.user_code_was_aborted};
 }
 

@@ -183,6 +183,10 @@ bool CrashHandler::was_left_by_force() const {
     return state_->left_by_force;
 }
 
+bool CrashHandler::was_interrupted() const {
+    return state_->interrupts > 0;
+}
+
 CrashHandlerScope::CrashHandlerScope(CrashHandler& handler) : handler_(*handler.state_), before_(active_handler) {
     if (handler_.depth++ == 0) {
         caught_signals.need();

@@ -55,6 +55,9 @@ public:
     /// True if user code was aborted: no destructor or atexit() handler may rely on its memory and locks.
     bool was_left_by_force() const;
 
+    /// True if the run was asked to end by a signal; also after the run.
+    bool was_interrupted() const;
+
     /// Asks the run to end, from another thread of the simulator; `request_name` names the cause. If user code does not
     /// return soon, prints what the run is waiting for, and aborts it after `user_code_timeout` of wall-clock time.
     void hurry(char const* request_name);

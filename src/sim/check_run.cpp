@@ -136,6 +136,7 @@ struct Started {
 Started start_without_effects(Simulation& simulation, Problems& problems) {
     Started started;
     std::thread([&] {
+        ProcessRun const scope(simulation.crash_handler());
         started.possible = forbid_effects_of_thread();
         if (started.possible) {
             problems.collect([&] { started.outcome = simulation.attempt([&] { return simulation.start(); }); });
@@ -160,10 +161,13 @@ void check_unread_parameters(Simulation const& simulation, bool strict, Problems
 /// Starts the programs, for what they say of their parameters.
 void check_programs(Simulation& simulation, bool is_stand_in, bool strict, Problems& problems) {
     simulation.parameters().collect_in(problems);
-    ProcessRun const scope(simulation.crash_handler());
     auto const [possible, outcome] = start_without_effects(simulation, problems);
     if (!possible) {
         log().warn("the program's parameters are not checked: this system cannot keep programs from writing files");
+        return;
+    }
+    if (simulation.crash_handler().was_interrupted()) {
+        log().warn("interrupted: the check is not complete");
         return;
     }
     std::optional<UserFailure> const& failure = outcome.failure;
@@ -233,8 +237,9 @@ CheckResult check_run(ProgramImage const& program, Scenario const& written, Chec
     if (simulation) {
         check_programs(*simulation, is_stand_in, options.run.strict, problems);
         result.user_code_was_aborted = simulation->crash_handler().was_left_by_force();
+        result.interrupted = simulation->crash_handler().was_interrupted();
     }
-    if (!options.picture.empty() && problems.empty()) {
+    if (!options.picture.empty() && problems.empty() && !result.interrupted) {
         draw(scenario, *simulation, options.picture);
     }
     if (result.user_code_was_aborted) {

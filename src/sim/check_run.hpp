@@ -18,6 +18,7 @@ struct CheckOptions {
 struct CheckResult {
     std::string summary{};  // "50 robots, 2 other objects"; empty if the world could not be built
     bool user_code_was_aborted = false;
+    bool interrupted = false;  // by a signal, while the program was checked: there may be other mistakes
 };
 
 /// Adds to `problems`, which has those of the scenario: files that are missing, or cannot be written; an arena that is

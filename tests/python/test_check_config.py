@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -69,6 +70,15 @@ def check(program: Path, folder: Path, settings: Settings | None = None, *argume
     result = run_command(program, folder, [*CHECK, *arguments])
     assert contents(folder) == before
     return result
+
+
+def program_with(init: str) -> str:
+    """Return a program that does this in user_init."""
+    return f"""#include "pogobase.h"
+static void user_init(void) {{ {init} }}
+static void user_step(void) {{}}
+int main(void) {{ pogobot_init(); pogobot_start(user_init, user_step); return 0; }}
+"""
 
 
 def mistakes(result: Run) -> list[str]:
@@ -367,6 +377,39 @@ def test_program_that_fails_at_its_start_is_said_and_not_blamed_on_the_configura
 def test_program_of_the_sdk_is_started_up_to_its_first_wait(tmp_path: Path) -> None:
     result = check(example("heartbeat_sdk"), tmp_path)
     assert result.code == 0, result.text
+
+
+# ---- Interrupted ----
+
+
+@pytest.mark.parametrize("wrong", [False, True], ids=["right", "wrong"])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_interrupted_check_does_not_say_that_all_is_right(name: str, wrong: bool, tmp_path: Path) -> None:
+    program = compile_text(
+        tmp_path,
+        "#include <unistd.h>\n" + program_with('(void)!write(2, "begun\\n", 6); for (volatile int i = 0; i < 1;) {}'),
+    )
+    write_scene(tmp_path, {"user_code_timeout": 2, **({"time_step": 0} if wrong else {})})
+    before = contents(tmp_path)
+    command = [str(program), *CHECK, "--picture", "start.png"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        assert running.stderr.readline() == "begun\n"
+        running.send_signal(signal.Signals[name])
+        output, errors = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert output == ""
+    assert "interrupted: the check is not complete" in errors
+    assert ("time_step: " in errors) is wrong
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_program_that_interrupts_its_check_is_not_said_to_be_right(name: str, tmp_path: Path) -> None:
+    program = compile_text(tmp_path, "#include <signal.h>\n" + program_with(f"raise({name});"))
+    result = check(program, tmp_path)
+    assert (result.code, result.output) == (130, "")
+    assert "interrupted: the check is not complete" in result.errors
 
 
 # ---- --strict-config ----
