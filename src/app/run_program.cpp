@@ -32,6 +32,7 @@
 #include "robot/process.hpp"
 #include "robot/program_image.hpp"
 #include "sim/check_run.hpp"
+#include "sim/flash_state.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/kept_files.hpp"
 #include "sim/simulation.hpp"
@@ -146,8 +147,8 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
         }
         return {.code = ExitCode::interrupted, .user_code_was_aborted = result.user_code_was_aborted};
     }
-    std::printf("%s: no mistakes found: %s\n", escaped(options.config).c_str(), result.summary.c_str());
     problems.throw_if_any();
+    std::printf("%s: no mistakes found: %s\n", escaped(options.config).c_str(), result.summary.c_str());
     return {.code = ExitCode::done, .user_code_was_aborted = result.user_code_was_aborted};
 }
 
@@ -186,6 +187,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                            .program_name = options.program_name,
                            .restarted = restarted,
                            .check_restart = [&] { return check_restart(options, folder); }};
+    check_flash_output(scenario);
     // A run that is watched replaces nothing that an earlier one has written.
     bool const keeps = window && has_display() && !(restarted && restarted->overwrite);
     std::vector<KeptFile> const kept = keeps ? keep_earlier_files(scenario, options.video) : std::vector<KeptFile>();

@@ -148,6 +148,12 @@ std::uint32_t read_flash_archive(std::istream& file, std::function<void(FlashRec
     return count;
 }
 
+bool begins_as_flash_archive(std::istream& file) {
+    std::string bytes(kSignature.size(), '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return file.gcount() == static_cast<std::streamsize>(bytes.size()) && bytes == kSignature;
+}
+
 std::string flash_archive_head(std::uint32_t records) {
     std::string bytes(kSignature);
     put(bytes, kVersion);

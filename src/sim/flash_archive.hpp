@@ -46,6 +46,9 @@ std::string described(FlashOwner const& owner);
 /// that is not as above: whatever `take` was given before then is to be discarded. Returns the number of records.
 std::uint32_t read_flash_archive(std::istream& file, std::function<void(FlashRecord&&)> const& take);
 
+/// Whether a file begins as an archive does.
+bool begins_as_flash_archive(std::istream& file);
+
 /// The bytes in front of the first record.
 std::string flash_archive_head(std::uint32_t records);
 

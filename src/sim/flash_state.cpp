@@ -225,6 +225,7 @@ FlashState::FlashState(Scenario const& scenario, World const& world, Controllers
         return;
     }
     robots_ = robots_by_owner(scenario, world);
+    check_flash_output(scenario);
     if (!files_.input_file.empty()) {
         provide_input(scenario);
     }
@@ -289,6 +290,22 @@ void FlashState::save(Controllers const& controllers) {
             fmt::format("cannot write the archive of flash memory '{}' (flash_state.output_file): {}. It "
                         "is as before",
                         files_.output_file, error.what()));
+    }
+}
+
+void check_flash_output(Scenario const& scenario) {
+    FlashStateConfig const& files = scenario.flash_state;
+    std::error_code error;
+    if (!fs::is_regular_file(files.output_file, error) || fs::file_size(files.output_file, error) == 0 ||
+        fs::equivalent(files.output_file, files.input_file, error)) {
+        return;  // what is wrong with an input is said where it is read
+    }
+    std::ifstream file(files.output_file, std::ios::binary);
+    if (file && !begins_as_flash_archive(file)) {
+        throw ConfigError(
+            fmt::format("{}: '{}' is not an archive of flash memory, and would be lost: it does not "
+                        "begin with PGFLASH; choose another file, or remove it",
+                        place_of(scenario, Setting::flash_output_file), files.output_file));
     }
 }
 

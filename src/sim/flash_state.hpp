@@ -23,7 +23,8 @@ public:
     /// Restores what robots keep while they are off, as the input archive has it, and reserves the output file: no
     /// other run can write it until this object is gone. Until save(), an output file keeps its bytes; a new one is an
     /// archive without records, removed again if nothing is saved. Throws ConfigError for an archive that does not fit
-    /// the robots, OutputError for a file that cannot be written. Does nothing if no file is named.
+    /// the robots and for an output file that is something else, OutputError for a file that cannot be written. Does
+    /// nothing if no file is named.
     FlashState(Scenario const& scenario, World const& world, Controllers& controllers);
 
     /// Writes the output archive, at once as a whole: the records of the input in its order, with those of robots of
@@ -46,6 +47,9 @@ private:
     std::size_t input_records_ = 0;  // 0: the order is that of the robots
     LockedFile output_;
 };
+
+/// Throws ConfigError if the output file is there, and neither empty nor an archive: the run would replace it.
+void check_flash_output(Scenario const& scenario);
 
 /// Looks at the input archive without any robots. Throws ConfigError if it has to exist and does not, or is damaged.
 void check_flash_input(Scenario const& scenario);

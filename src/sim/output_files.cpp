@@ -9,6 +9,7 @@
 
 #include "base/table_format.hpp"
 #include "render/film_format.hpp"
+#include "sim/flash_state.hpp"
 #include "sim/pictures.hpp"
 
 namespace pogosim {
@@ -74,7 +75,10 @@ void check_output_files(Scenario const& scenario, std::string const& film, Probl
             [&] { check_writable(place_of(scenario, Setting::console_filename), output.console_filename); });
     }
     if (std::string const& archive = scenario.flash_state.output_file; !archive.empty()) {
-        problems.collect([&] { check_writable(place_of(scenario, Setting::flash_output_file), archive); });
+        problems.collect([&] {
+            check_writable(place_of(scenario, Setting::flash_output_file), archive);
+            check_flash_output(scenario);
+        });
     }
     problems.collect([&] { Pictures::check_frames(scenario); });
     if (!film.empty()) {

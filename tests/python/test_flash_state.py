@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import signal
 import struct
 import subprocess
@@ -23,9 +24,11 @@ WALLS = {"type": "pogowall", "geometry": "arena", "nb": 1}
 RECORD = len(archive([Record(0)])) - len(EMPTY)  # bytes, of category robots
 
 
-def flash(program: Compile, folder: Path, kind: str, state: Settings, settings: Settings | None = None) -> Run:
+def flash(
+    program: Compile, folder: Path, kind: str, state: Settings, settings: Settings | None = None, *arguments: str
+) -> Run:
     changes = {"parameters.kind": kind, "flash_state": dict(state), "enable_data_logging": False, **(settings or {})}
-    return run(program("flash.c"), folder, changes)
+    return run(program("flash.c"), folder, changes, arguments)
 
 
 def left_in(folder: Path) -> list[str]:
@@ -454,7 +457,62 @@ def test_search_leaves_the_archive_of_the_user(program: Compile, tmp_path: Path)
     assert best["flash_state"] == state
 
 
+# ---- An output that is something else ----
+
+
+@pytest.mark.parametrize("through_link", [False, True])
+@pytest.mark.parametrize("data", [b"int main(void) { return 0; }\n", b"PG", b"PGFLASH", b"PGFLASHX" + GOOD[8:]])
+def test_file_that_is_no_archive_is_never_replaced(
+    program: Compile, tmp_path: Path, data: bytes, through_link: bool
+) -> None:
+    (tmp_path / "main.c").write_bytes(data)
+    name = "link" if through_link else "main.c"
+    if through_link:
+        (tmp_path / name).symlink_to("main.c")
+    files = left_in(tmp_path)
+    for arguments in ((), ("--check-config",)):
+        result = flash(program, tmp_path, "write", {"output_file": name, "input_file": "new/x"}, None, *arguments)
+        assert result.code == 2
+        assert re.fullmatch(
+            rf"Error: scene\.yaml:\d+: flash_state\.output_file: '{name}' is not an archive of flash memory, and would "
+            r"be lost: it does not begin with PGFLASH; choose another file, or remove it\n",
+            result.errors,
+        )
+        assert result.robot_lines == []
+        assert (tmp_path / "main.c").read_bytes() == data
+        assert left_in(tmp_path) == files
+
+
+@pytest.mark.parametrize("data", [b"", EMPTY, GOOD, GOOD[:100]])
+def test_archive_is_replaced_even_if_it_is_empty_or_damaged(program: Compile, tmp_path: Path, data: bytes) -> None:
+    (tmp_path / "x").write_bytes(data)
+    assert flash(program, tmp_path, "write", {"output_file": "x"}).code == 0
+    assert (tmp_path / "x").read_bytes() == archive([written(robot) for robot in range(3)])
+
+
+def test_simulation_in_python_does_not_replace_other_files(library: Path, tmp_path: Path) -> None:
+    (tmp_path / "main.c").write_text("int main(void);")
+    scene = write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv")})
+    with pytest.raises(pogosim.ConfigurationError, match="is not an archive of flash memory, and would be lost"):
+        pogosim.Simulation(library, scene, set={"flash_state.output_file": str(tmp_path / "main.c")})
+    assert (tmp_path / "main.c").read_text() == "int main(void);"
+
+
 # ---- The window ----
+
+
+def test_watched_run_does_not_rename_what_is_no_archive(display: Display, program: Compile, tmp_path: Path) -> None:
+    (tmp_path / "main.c").write_text("int main(void);")
+    state = {"output_file": "main.c"}
+    write_scene(tmp_path, {"GUI": True, "parameters.kind": "write", "flash_state": state})
+    command = [str(program("flash.c")), "-c", "scene.yaml"]
+    ended = subprocess.run(
+        command, cwd=tmp_path, env=display.environment, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert ended.returncode == 2
+    assert "flash_state.output_file: 'main.c' is not an archive of flash memory" in ended.stderr
+    assert (tmp_path / "main.c").read_text() == "int main(void);"
+    assert left_in(tmp_path) == ["main.c"]
 
 
 def test_closed_window_saves(display: Display, program: Compile, tmp_path: Path) -> None:
