@@ -417,6 +417,27 @@ void end_run_from_thread(char const* what, ExitCode code, void const* signal_con
     stop_this_thread();
 }
 
+void leave_ending_process(int status, bool has_exit_begun, void const* signal_context) {
+    SignalText<512> what;
+    what << "called _exit(" << (status < 0 ? "-" : "");
+    what.whole(static_cast<std::uint64_t>(std::abs(std::int64_t{status})));
+    what << ")";
+    if (has_exit_begun || (active_handler == nullptr && !is_other_thread_of_run())) {
+        prepare_plain_message("the program ended itself, before its check was complete");
+        end_with_crash_message(static_cast<int>(ExitCode::user_program));
+    }
+    if (active_handler == nullptr) {
+        end_run_from_thread(what.c_str(), ExitCode::user_program, signal_context);
+    }
+    CrashHandlerState& handler = *active_handler;
+    begin_rescue(handler, what.c_str(), ExitCode::user_program, /*in_other_thread=*/false);
+    if (!handler.inside) {
+        give_up_rescue(handler);
+    }
+    note_place(handler, signal_context);
+    jump_out(handler, ExitCode::user_program);
+}
+
 void check_end_of_thread() {
     constexpr auto kWhat = "called pthread_exit(), which ends the only thread that can run the simulator";
     bool const is_simulators = active_handler != nullptr || (process_is_ours() && on_main_thread());

@@ -152,6 +152,10 @@ EndRequest const* end_request(CrashHandlerState const& handler);
 /// The request has been met: what remains is to save the data.
 void drop_end_request(CrashHandlerState& handler);
 
+/// The program was about to end this process by _exit(), which was prevented: leaves user code as after a crash. If
+/// that is impossible, since exit handlers have run, says so, and ends the process. For signal handlers.
+[[noreturn]] void leave_ending_process(int status, bool has_exit_begun, void const* signal_context);
+
 /// In an executable, crashes are reported from the start to the end of the process.
 void catch_crashes_of_process();
 

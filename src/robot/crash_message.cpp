@@ -1,7 +1,5 @@
 #include "robot/crash_message.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include "base/scratch_file.hpp"
 #include "robot/context.hpp"
 #include "robot/crash_handler_state.hpp"
+#include "robot/process.hpp"
 
 namespace pogosim {
 
@@ -204,7 +203,7 @@ void end_with_crash_message(int code) {
     crash_message() << "\n";
     crash_message().write_to_stderr();
     remove_scratch_files();
-    _exit(code);
+    end_process(code);
 }
 
 }  // namespace pogosim

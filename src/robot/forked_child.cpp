@@ -50,7 +50,7 @@ bool is_forked_child() {
 
 void end_forked_child(int status) {
     std::fflush(nullptr);
-    _exit(status);
+    end_process(status);
 }
 
 }  // namespace pogosim

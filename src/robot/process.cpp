@@ -1,6 +1,8 @@
 #include "robot/process.hpp"
 
 #include <pthread.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <atomic>
 
@@ -33,6 +35,13 @@ bool process_is_ours() {
 
 bool on_main_thread() {
     return is_ours && pthread_equal(pthread_self(), main_thread) != 0;
+}
+
+void end_process(int code) {
+#ifdef __linux__
+    syscall(SYS_exit_group, kOwnEnd | (static_cast<unsigned>(code) & kExitCodeBits));
+#endif
+    _exit(code);
 }
 
 }  // namespace pogosim

@@ -13,4 +13,11 @@ bool process_is_ours();
 
 bool on_main_thread();
 
+/// As _exit(), also where that is trapped because the program is not to end the process (without_effects.hpp).
+[[noreturn]] void end_process(int code);
+
+// What the system is given then: it takes the lowest bits.
+inline constexpr unsigned kExitCodeBits = 0xff;
+inline constexpr unsigned kOwnEnd = 0x706f6700;
+
 }  // namespace pogosim

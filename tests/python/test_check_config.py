@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import hashlib
 import os
 import re
@@ -377,6 +379,138 @@ def test_program_that_fails_at_its_start_is_said_and_not_blamed_on_the_configura
 def test_program_of_the_sdk_is_started_up_to_its_first_wait(tmp_path: Path) -> None:
     result = check(example("heartbeat_sdk"), tmp_path)
     assert result.code == 0, result.text
+
+
+FORBIDDEN = {
+    "fchmodat2": "syscall(452, AT_FDCWD, file, 0600, 0)",
+    "chmod": "chmod(file, 0600)",
+    "fchmod": "fchmod(descriptor, 0600)",
+    "setxattr": 'setxattr(file, "user.a", "b", 1, 0)',
+    "lsetxattr": 'lsetxattr(file, "user.a", "b", 1, 0)',
+    "fsetxattr": 'fsetxattr(descriptor, "user.a", "b", 1, 0)',
+    "removexattr": 'removexattr(file, "user.kept")',
+    "lremovexattr": 'lremovexattr(file, "user.kept")',
+    "fremovexattr": 'fremovexattr(descriptor, "user.kept")',
+    "setxattrat": "syscall(463, AT_FDCWD, file, 0, 0, 0, 0)",
+    "file_setattr": "syscall(469, AT_FDCWD, file, 0, 0, 0)",
+    "flags of a file": "ioctl(descriptor, FS_IOC_SETFLAGS, &flags)",
+    "utimensat": "utimensat(AT_FDCWD, file, 0, 0)",
+    "futimens": "futimens(descriptor, 0)",
+    "link": 'link(file, "linked.txt")',
+    "open": "open(file, O_WRONLY)",
+    "openat2": "syscall(SYS_openat2, AT_FDCWD, file, how, sizeof how)",
+    "temporary file": 'open(".", O_TMPFILE | O_RDWR, 0600)',
+    "prlimit of the parent": "prlimit(getppid(), RLIMIT_NOFILE, 0, &limit)",
+    "tgkill of the parent": "syscall(SYS_tgkill, getppid(), getppid(), 0)",
+    "kill of the parent": "kill(getppid(), 0)",
+    "signal with a value": "sigqueue(getppid(), 0, value)",
+    "pidfd": "syscall(SYS_pidfd_open, getppid(), 0)",
+    "priority of the parent": "setpriority(PRIO_PROCESS, getppid(), 19)",
+    "processors of the parent": "sched_setaffinity(getppid(), sizeof processors, &processors)",
+    "owner of a signal": "fcntl(descriptor, F_SETOWN, getppid())",
+    "socket": "socket(AF_UNIX, SOCK_DGRAM, 0)",
+    "shared memory": "shmget(IPC_PRIVATE, 4096, 0600)",
+    "key": 'syscall(SYS_add_key, "user", "a", "b", 1, -3)',
+    "vfork": "syscall(SYS_clone, CLONE_VM | CLONE_VFORK | SIGCHLD, 0, 0, 0, 0)",
+    "execve": 'execl("/bin/true", "true", (char*)0)',
+    "shell": 'system("exit 0") == 0 ? 0 : -1',
+}
+
+INCLUDES = """#define _GNU_SOURCE
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/fs.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
+#include <sys/ipc.h>
+#include <sys/resource.h>
+#include <sys/shm.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <sys/xattr.h>
+#include <unistd.h>
+"""
+
+TRY = """
+    char const* const file = "kept.txt"; int const descriptor = open(file, O_RDONLY);
+    int flags = 0; long how[3] = {O_RDWR};
+    struct rlimit limit; union sigval value = {0}; cpu_set_t processors; CPU_ZERO(&processors); CPU_SET(0, &processors);
+    (void)file; (void)flags; (void)how; (void)limit; (void)value;
+"""
+
+
+def test_program_cannot_change_anything_outside_of_its_process(tmp_path: Path) -> None:
+    tries = "".join(f'errno = 0; tried("{name}", {call});\n' for name, call in FORBIDDEN.items())
+    says = 'static void tried(char const* what, long result) { dprintf(2, "%s: %ld %d\\n", what, result, errno); }\n'
+    program = compile_text(tmp_path, INCLUDES + says + program_with(TRY + tries + "close(descriptor);"))
+    (tmp_path / "kept.txt").write_text("kept")
+    with contextlib.suppress(OSError):  # not on all file systems
+        os.setxattr(tmp_path / "kept.txt", "user.kept", b"1")
+    result = check(program, tmp_path, {"objects.robots.nb": 1})
+    assert result.code == 0, result.text
+    found = dict(line.rsplit(": ", 1) for line in result.errors.splitlines())
+    assert found == dict.fromkeys(FORBIDDEN, f"-1 {errno.EPERM}")
+
+
+def test_program_may_compute_read_start_threads_and_fork(tmp_path: Path) -> None:
+    ordinary = """
+    pthread_t thread; int status = -1; void* end = 0; FILE* read = fopen("kept.txt", "r"); struct rlimit limit;
+    int ok = read != 0 && fgetc(read) == 'k' && fclose(read) == 0 && getrlimit(RLIMIT_NOFILE, &limit) == 0 &&
+             pthread_create(&thread, 0, in_thread, 0) == 0 && pthread_join(thread, &end) == 0 && end == &ok_thread;
+    pid_t const child = fork();
+    if (child == 0) { _exit(7); }
+    ok = ok && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 7;
+    signal(SIGURG, note); raise(SIGURG);
+    ok = ok && caught == 1 && kill(getpid(), 0) == 0 && isatty(2) == 0 && chdir("/") == 0 && system("exit 0") != 0;
+    dprintf(2, "%s\\n", ok ? "all is well" : "something failed");
+    """
+    before = """
+    static int ok_thread; static volatile sig_atomic_t caught;
+    static void* in_thread(void* unused) { (void)unused; return malloc(1 << 10) != 0 ? &ok_thread : 0; }
+    static void note(int unused) { (void)unused; caught = caught + 1; }
+    """
+    program = compile_text(tmp_path, INCLUDES + before + program_with(ordinary))
+    (tmp_path / "kept.txt").write_text("kept")
+    write_scene(tmp_path, {"objects.robots.nb": 1, "window_width": 100, "window_height": 100})
+    result = run_command(program, tmp_path, [*CHECK, "--picture", "start.png"])
+    assert (result.code, result.errors) == (0, "all is well\n")
+    assert (tmp_path / "start.png").exists()  # the program's chdir() is its own
+
+
+@pytest.mark.parametrize("call", ["_exit(0)", "_exit(7)", "quick_exit(0)", "syscall(SYS_exit_group, 0)"])
+def test_program_that_ends_itself_does_not_end_its_check_silently(call: str, tmp_path: Path) -> None:
+    program = compile_text(tmp_path, INCLUDES + program_with(f"{call};"))
+    result = check(program, tmp_path)
+    status = 7 if "7" in call else 0
+    assert result.code == 0
+    assert (
+        "the program could not be checked to the end of user_init, without writing files: "
+        f"called _exit({status})" in result.errors
+    )
+    assert result.output.startswith("scene.yaml: no mistakes found: ")
+    assert places(check(program, tmp_path, {"seed": -1})) == ["seed"]
+
+
+def test_program_that_ends_itself_in_a_thread_is_said_to(tmp_path: Path) -> None:
+    in_thread = "static void* in_thread(void* unused) { (void)unused; _exit(0); }\n"
+    init = "pthread_t thread; pthread_create(&thread, 0, in_thread, 0); pthread_join(thread, 0);"
+    result = check(compile_text(tmp_path, INCLUDES + in_thread + program_with(init)), tmp_path)
+    assert "the program could not be checked to the end of user_init" in result.errors
+    assert "called _exit(0)" in result.errors
+
+
+def test_library_that_ends_the_process_does_not_leave_it_unsaid(tmp_path: Path) -> None:
+    """When exit handlers have run, the check cannot go on."""
+    program = compile_text(tmp_path, "#include <err.h>\n" + program_with('err(0, "I have had enough");'))
+    result = check(program, tmp_path)
+    assert (result.code, result.output) == (3, "")
+    assert "the program ended itself, before its check was complete" in result.errors
 
 
 # ---- Interrupted ----
