@@ -207,6 +207,7 @@ private:
     void take_turns(Turns& turns);
     void restart_robots();
     void restart(std::uint32_t robot);
+    void repeat_global_setup(std::uint32_t robot);
     void run_global_setup();
     void call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world = false);
     std::int64_t now_us() const;

@@ -46,6 +46,16 @@ void Controllers::restart_robots() {
     }
 }
 
+/// What callback_global_setup wrote into the variables of each robot stands there again, after main() as at the start.
+void Controllers::repeat_global_setup(std::uint32_t robot) {
+    if (own_memory_) {
+        without_exceptions([&] {
+            own_memory_->load(robot);
+            own_memory_->repeat_common_changes();
+        });
+    }
+}
+
 /// As start_programs() does for all. Robots share variables unless they have their own memory: those stay as they are.
 void Controllers::restart(std::uint32_t robot) {
     Controller& self = controllers_[robot];
@@ -75,10 +85,12 @@ void Controllers::restart(std::uint32_t robot) {
     }
     if (image_.is_for_sdk) {
         run_on_fiber(robot, &Controllers::run_sdk_main);
+        repeat_global_setup(robot);
         self.program.registered = true;
     } else {
         construct_user_data(robot);
         run_main(robot);
+        repeat_global_setup(robot);
         run_on_fiber(robot, &Controllers::run_init);
     }
     command_motors(robot);

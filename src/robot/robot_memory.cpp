@@ -321,12 +321,15 @@ void RobotMemory::read(std::uint32_t copy, std::byte const* place, std::span<std
 
 void RobotMemory::give_to_all(std::span<std::byte const> place) {
     std::byte const* const end = place.data() + place.size();
+    std::erase_if(changed_, [&](ChangedByte const& byte) { return place.data() <= byte.place && byte.place < end; });
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         Block const& block = blocks_[i];
         std::byte const* const from = std::max<std::byte const*>(place.data(), block.place);
         std::byte const* const to = std::min<std::byte const*>(end, block.place + block.bytes);
         if (from < to) {
-            give(i, static_cast<std::size_t>(from - block.place), static_cast<std::size_t>(to - from));
+            auto const at = static_cast<std::size_t>(from - block.place);
+            give(i, at, static_cast<std::size_t>(to - from));
+            note_common_change(block.place + at, static_cast<std::size_t>(to - from));
         }
     }
 }
@@ -350,10 +353,25 @@ void RobotMemory::begin_common_change() {
 void RobotMemory::end_common_change() {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         for (std::size_t at = 0; at < blocks_[i].bytes; ++at) {
-            if (!is_same(blocks_[i].place + at, before_.data() + i * kBlockBytes + at, 1)) {
+            std::byte* const place = blocks_[i].place + at;
+            if (!is_same(place, before_.data() + i * kBlockBytes + at, 1)) {
                 give(i, at, 1);
+                note_common_change(place, 1);
             }
         }
+    }
+}
+
+/// The last change of a byte is the one that counts.
+void RobotMemory::note_common_change(std::byte* place, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i) {
+        copy_bytes(&changed_.emplace_back(ChangedByte{.place = place + i}).value, place + i, 1);
+    }
+}
+
+void RobotMemory::repeat_common_changes() {
+    for (ChangedByte const& byte : changed_) {
+        copy_bytes(byte.place, &byte.value, 1);
     }
 }
 

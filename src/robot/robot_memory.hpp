@@ -41,6 +41,9 @@ public:
     void begin_common_change();
     void end_common_change();
 
+    /// Makes these common changes, and what was given to all, again in what the program has now.
+    void repeat_common_changes();
+
     struct Part {
         std::size_t offset = 0;            // in all pieces, one after the other
         std::span<std::byte const> bytes;  // valid until the next change
@@ -68,6 +71,11 @@ private:
         std::size_t last = 0;  // not one of them
     };
 
+    struct ChangedByte {
+        std::byte* place = nullptr;  // in the program
+        std::byte value{};
+    };
+
     static void put(Block const& block, std::byte const* from);
     static void take(Block const& block, std::byte* to);
     static bool is_in_program(Block const& block, std::byte const* bytes);
@@ -76,6 +84,7 @@ private:
     void load_all(std::uint32_t copy);
     void save();
     void give(std::size_t block, std::size_t at, std::size_t bytes);
+    void note_common_change(std::byte* place, std::size_t bytes);
     void note_changes();
     void note_changes_between(std::size_t first, std::size_t last);
     void note_change(std::uint32_t block);
@@ -94,6 +103,7 @@ private:
     std::vector<std::byte> same_;           // what all robots have, but for the blocks that differ
     std::vector<std::byte> other_;          // of code that is of no robot
     std::vector<std::byte> before_;         // a common change: what was in the program
+    std::vector<ChangedByte> changed_;      // by common changes
     std::vector<std::uint32_t> different_;  // blocks, by slot
     std::uint32_t capacity_ = 0;            // slots of each robot
     GuardedMemory copies_;                  // slots of all, robot by robot

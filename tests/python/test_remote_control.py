@@ -204,6 +204,36 @@ def test_parameters_and_flash_outlive_a_restart_with_own_memory(tmp_path: Path) 
     assert [line for line in lines_of(result, 1) if "speed" in line] == ["speed 4 steps 0"] * 2
 
 
+SETUP = """int32_t gain = 1; int32_t derived = 0; float scaled[2]; int32_t counted = 0; int32_t half = 1;
+static void setup(void) {
+    init_from_configuration(gain);
+    init_from_configuration(half);
+    half /= 2;
+    derived = gain * 2;
+    scaled[1] = 0.5f * (float)derived;
+    counted++;
+}
+static void command"""
+
+
+@pytest.mark.parametrize("memory", ["own", "shared"])
+def test_what_the_global_setup_computed_outlives_a_restart(memory: str, tmp_path: Path) -> None:
+    say = 'printf("derived %ld %.1f %ld half %ld\\n", derived, (double)scaled[1], counted, half);'
+    text = (
+        PROGRAM.replace("static void command", SETUP, 1)
+        .replace('printf("starts', f'{say}\n    printf("starts', 1)
+        .replace("int main(void) {", "int main(void) {\n    counted = 4;", 1)
+        .replace("    return 0;", "    SET_CALLBACK(callback_global_setup, setup);\n    return 0;", 1)
+    )
+    program = compile_text(tmp_path, text.replace("COMMAND", "DEADBEEF"))
+    settings = {**PERFECT, "objects.robots.nb": 2, "robot_memory": memory, "parameters": {"gain": 3, "half": 8}}
+    result = run(program, tmp_path, settings)
+    assert result.code == 0, result.text
+    counted = 5 if memory == "own" else 4  # by main() of the restart, for all robots that share the variable
+    said = [line for line in lines_of(result, 1) if "derived" in line]
+    assert said == ["derived 6 3.0 5 half 4", f"derived 6 3.0 {counted} half 4"]
+
+
 def test_threads_do_not_change_what_a_restart_does(tmp_path: Path) -> None:
     folders = [tmp_path / "one", tmp_path / "four"]
     for folder, threads in zip(folders, (1, 4), strict=True):

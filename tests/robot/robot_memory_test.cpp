@@ -125,6 +125,32 @@ TEST(RobotMemory, ACommonChangeLeavesTheRestToEachCopy) {
     }
 }
 
+TEST(RobotMemory, ACommonChangeIsMadeAgainInACopyThatBeginsAnew) {
+    Variables program;
+    RobotMemory memory(program.pieces(), 3);
+    memory.load(2);
+    memory.begin_common_change();
+    program.large[8] = 5;
+    program.small[2] = 6;
+    memory.end_common_change();
+    memory.load(1);
+    program.large[7] = program.large[8] = 9;
+    memory.begin_anew(1);
+    EXPECT_EQ(program.large[8], 0);
+    memory.repeat_common_changes();
+    memory.load(0);
+    memory.load(1);
+    EXPECT_EQ(program.large[7], 0);
+    EXPECT_EQ(program.large[8], 5);
+    EXPECT_EQ(program.small[2], 6);
+    program.large[8] = 7;
+    memory.give_to_all(bytes_of(program.large[8]));
+    memory.begin_anew(2);
+    memory.repeat_common_changes();
+    EXPECT_EQ(program.large[8], 7);
+    EXPECT_EQ(program.small[2], 6);
+}
+
 TEST(RobotMemory, ChangedPartsAreWhatACopyHasElse) {
     Variables program;
     RobotMemory memory(program.pieces(), 2);
