@@ -18,6 +18,7 @@ FLASH_BYTES = PAGE_BYTES * PAGE_COUNT
 SIGNATURE = b"PGFLASH\0"
 VERSION = 1
 BLANK = b"\xff" * PAGE_BYTES
+LONGEST_CATEGORY = 65535  # bytes of its name
 OLD_FLASH_BYTES = 65536  # of robots before version 3
 
 HEAD = struct.Struct("<8sHII")

@@ -22,6 +22,12 @@ void fail_with_errno(int error_number) {
     throw FileError(std::generic_category().message(error_number));
 }
 
+void check_is_name_of_file(std::filesystem::path const& path) {
+    if (!path.has_filename() || path.filename() == ".") {
+        throw FileError("this is the name of a folder, not of a file");
+    }
+}
+
 std::filesystem::path real_path(std::filesystem::path const& path) {
     std::error_code error;
     std::filesystem::path target = std::filesystem::absolute(path, error);

@@ -25,6 +25,9 @@ public:
 /// Throws FileError with the system's text for `error_number` (errno).
 [[noreturn]] void fail_with_errno(int error_number);
 
+/// Throws FileError for the name of a folder, such as "results/", which can be no file.
+void check_is_name_of_file(std::filesystem::path const& path);
+
 /// The absolute path without symbolic links, "." and ".."; components that do not exist yet are kept unchanged.
 /// Dangling links are also followed.
 std::filesystem::path real_path(std::filesystem::path const& path);

@@ -118,6 +118,7 @@ spdlog::sink_ptr make_console(LogOptions const& options) {
 
 /// The lock of a console file; none for a pipe, say. Parent folders are created.
 LockedFile lock_file(std::filesystem::path const& path) {
+    check_is_name_of_file(path);
     if (path.has_parent_path()) {
         std::filesystem::create_directories(path.parent_path());
     }

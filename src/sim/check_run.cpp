@@ -42,6 +42,10 @@ void check_files(Scenario const& scenario, CheckOptions const& options, Problems
         problems.add(fmt::format("--picture: '{}' is a file that the run reads or writes; choose another file",
                                  options.picture));
     }
+    std::error_code error;
+    if (std::filesystem::exists(options.picture, error) && !std::filesystem::is_regular_file(options.picture, error)) {
+        problems.add(fmt::format("--picture: '{}' is there, and not a file; choose another name", options.picture));
+    }
 }
 
 /// Whether all keys that determine the world are right. Light, motion and readings of sensors are checked with their
@@ -189,7 +193,7 @@ void draw(Scenario const& scenario, Simulation& simulation, std::string const& f
     Canvas canvas(format.size);
     Painter().paint(canvas, format.camera, simulation.snapshots().take(parts_for(format.paint)), format.paint);
     try {
-        std::filesystem::path const path(file);
+        std::filesystem::path const path = real_path(file);  // a link stays, also one that leads nowhere yet
         std::error_code ignored;
         if (path.has_parent_path()) {
             std::filesystem::create_directories(path.parent_path(), ignored);

@@ -164,6 +164,7 @@ void provide_input(Scenario const& scenario) {
     }
     std::string const& name = scenario.flash_state.input_file;
     try {
+        check_is_name_of_file(name);
         fs::path const path = real_path(name);
         make_parent_folder(path);
         NewFile file(path);
@@ -250,6 +251,7 @@ void FlashState::reserve_output() {
     if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
         throw FileError("it is not a file");
     }
+    check_is_name_of_file(files_.output_file);
     make_parent_folder(path);
     output_ = LockedFile(path);
     if (fs::file_size(path, error) == 0) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/locked_file.hpp"
 #include "base/table_format.hpp"
 #include "render/film_format.hpp"
 #include "sim/flash_state.hpp"
@@ -50,6 +51,11 @@ std::string why_not_writable(std::string const& name) {
     fs::path path = fs::absolute(name, error);
     if (fs::is_directory(path, error)) {
         return "it is a folder";
+    }
+    try {
+        check_is_name_of_file(name);
+    } catch (FileError const& failure) {
+        return failure.what();
     }
     // A file that is not there needs the folder that will contain it, or the folders that will be made for it.
     bool const is_there = fs::exists(path, error);

@@ -27,7 +27,7 @@ class Record:
     @property
     def body(self) -> bytes:
         """All bytes but the checksum."""
-        name = self.category.encode()
+        name = self.category.encode(errors="surrogateescape")
         flash = bytearray(b"\xff" * FLASH)
         for page, data in self.pages.items():
             flash[page * PAGE : (page + 1) * PAGE] = data

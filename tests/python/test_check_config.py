@@ -628,6 +628,33 @@ def test_picture_does_not_replace_a_file_of_the_run(tmp_path: Path) -> None:
     assert (tmp_path / "scene.yaml").read_text() == text
 
 
+def test_picture_does_not_replace_what_is_no_file(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.png")
+    (tmp_path / "folder.png").mkdir()
+    (tmp_path / "link.png").symlink_to("pipe.png")
+    write_scene(tmp_path, {})
+    for name in ("pipe.png", "folder.png", "link.png"):
+        result = run_command(example("helloworld"), tmp_path, [*CHECK, "--picture", name])
+        assert (result.code, result.output) == (2, "")
+        assert result.errors == f"Error: --picture: '{name}' is there, and not a file; choose another name\n"
+    assert (tmp_path / "pipe.png").is_fifo()
+    assert (tmp_path / "link.png").is_symlink()
+
+
+@pytest.mark.parametrize("is_there", [False, True])
+def test_picture_follows_a_link(is_there: bool, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "link.png").symlink_to("elsewhere/start.png")
+    if is_there:
+        (tmp_path / "elsewhere" / "start.png").write_text("an older one")
+    write_scene(tmp_path, {"window_width": 100, "window_height": 100})
+    result = run_command(example("helloworld"), tmp_path, [*CHECK, "--picture", "link.png"])
+    assert result.code == 0, result.text
+    assert (tmp_path / "link.png").is_symlink()
+    assert (tmp_path / "elsewhere" / "start.png").read_bytes().startswith(b"\x89PNG")
+    assert [path.name for path in (tmp_path / "elsewhere").iterdir()] == ["start.png"]
+
+
 # ---- Through `pogosim run` ----
 
 

@@ -228,6 +228,13 @@ def test_console_file_that_cannot_be_written_is_an_error_that_names_it(tmp_path:
         assert f"cannot open the console file '{path}' (console_filename)" in result.errors
 
 
+def test_console_file_with_the_name_of_a_folder_leaves_none(tmp_path: Path) -> None:
+    result = hello(tmp_path, enable_console_logging=True, console_filename="new/console/")
+    assert result.code == 2
+    assert "(console_filename): this is the name of a folder, not of a file" in result.errors
+    assert not (tmp_path / "new").exists()
+
+
 def test_console_file_on_a_full_disk_is_an_error_and_the_data_file_complete(tmp_path: Path) -> None:
     result = hello(tmp_path, "-q", enable_console_logging=True, console_filename="/dev/full")
     assert result.code == 2

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import random
+import subprocess
+import sys
 import tracemalloc
 from pathlib import Path
 
@@ -148,6 +151,31 @@ def test_checksum_is_that_of_all_bytes_whatever_is_known_of_blank_pages() -> Non
     assert checksum_of(body[:-FLASH], body[-FLASH:]) == checksum(body)
 
 
+@pytest.mark.parametrize("arguments", [("show",), ("extract", "-r", "0", "-o", "a.bin")])
+def test_pipe_is_no_archive_and_is_not_waited_for(
+    arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    os.mkfifo("pipe")
+    assert flash(arguments[0], "pipe", *arguments[1:]) == 2
+    told = capsys.readouterr().err
+    assert told == "pogosim flash: pipe is not a file, but a pipe, a socket or a device; expected an archive\n"
+    assert flash(arguments[0], ".", *arguments[1:]) == 2
+    assert capsys.readouterr().err == "pogosim flash: .: is a directory\n"
+
+
+@pytest.mark.parametrize(
+    ("where", "code", "told"),
+    [
+        ("> /dev/full", 2, "pogosim flash: cannot go on: No space left on device\n"),
+        ("| exec true", 141, ""),  # as the shell says of SIGPIPE
+    ],
+)
+def test_output_that_cannot_be_printed_is_not_blamed_on_the_archive(where: str, code: int, told: str) -> None:
+    command = f"{sys.executable} -m pogosim flash show x.flash {where}; exit ${{PIPESTATUS[0]}}"
+    ended = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (code, "", told)
+
+
 # ---- extract and make ----
 
 
@@ -178,6 +206,14 @@ def test_extract_refuses_damaged_memory(capsys: pytest.CaptureFixture[str]) -> N
     assert "the record of robot #0 of category 'robots' is damaged" in capsys.readouterr().err
 
 
+def test_category_may_have_any_bytes() -> None:
+    Path("a.bin").write_bytes(b"")
+    assert flash("make", "y.flash", "--from", "\udcff", "2", "a.bin", "--from", "r" * 65535, "1", "a.bin") == 0
+    data = Path("y.flash").read_bytes()
+    assert data.endswith(archive([Record(2, "\udcff")])[len(EMPTY) :])
+    assert flash("show", "y.flash") == 0
+
+
 def test_short_binary_is_followed_by_blank_memory() -> None:
     Path("a.bin").write_bytes(b"abc")
     assert flash("make", "y.flash", "--from", "robots", "2", "a.bin") == 0
@@ -194,6 +230,10 @@ def test_short_binary_is_followed_by_blank_memory() -> None:
         (("--from", "robots", "1", "b.bin"), "b.bin: no such file or directory"),
         (("--from", "robots", "1", "long.bin"), "long.bin is longer than flash memory, which has 1507328 bytes"),
         (("--from", "r", "1", "a.bin", "--from", "r", "1", "a.bin"), "--from r 1 is given twice"),
+        (("--from", "r" * 65536, "1", "a.bin"), "expected at most 65535 bytes"),
+        (("--from", "\u00e9" * 32768, "1", "a.bin"), "expected at most 65535 bytes"),
+        (("--from", "robots", "1", "pipe"), "pipe is not a file, but a pipe, a socket or a device; expected flash"),
+        (("--from", "robots", "1", "."), ".: is a directory"),
         (("-c", "missing.yaml"), "cannot read the configuration missing.yaml"),
         (("-c", "c.yaml", "--from", "robots", "9", "a.bin"), "c.yaml has no robot #9 of category 'robots'"),
     ],
@@ -201,6 +241,7 @@ def test_short_binary_is_followed_by_blank_memory() -> None:
 def test_wrong_makings_are_refused(arguments: tuple[str, ...], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path("a.bin").write_bytes(b"a")
     Path("long.bin").write_bytes(bytes(FLASH + 1))
+    os.mkfifo("pipe")
     configuration({"robots": {"type": "pogobot", "nb": 2}})
     assert flash("make", "y.flash", *arguments) == 2
     assert reason in capsys.readouterr().err

@@ -239,6 +239,9 @@ def test_no_damage_goes_unnoticed(program: Compile, tmp_path: Path, seed: int) -
         ({"output_file": "scene.yaml"}, "flash_state.output_file: 'scene.yaml' is the same file as the configuration"),
         ({"input_file": "scene.yaml"}, "flash_state.input_file: 'scene.yaml': it is not an archive of flash memory"),
         ({"output_file": "y" * 250}, "File name too long"),
+        ({"output_file": "y/"}, "flash_state.output_file: cannot write 'y/': this is the name of a folder"),
+        ({"output_file": "y/z/."}, "flash_state.output_file: cannot write 'y/z/.': this is the name of a folder"),
+        ({"input_file": "y/"}, "flash_state.input_file: cannot write 'y/' (create_if_missing): this is the name of"),
         ({"output_file": ["a"]}, "flash_state.output_file: expected a string, found a list"),
         ({"create_if_missing": "perhaps"}, "flash_state.create_if_missing: expected true or false"),
     ],
@@ -249,6 +252,12 @@ def test_wrong_files_are_refused(program: Compile, tmp_path: Path, state: Settin
     assert message in result.errors
     assert result.robot_lines == []
     assert left_in(tmp_path) == []
+
+
+def test_name_of_a_folder_is_told_by_a_check_too(program: Compile, tmp_path: Path) -> None:
+    result = flash(program, tmp_path, "read", {"output_file": "y/"}, None, "--check-config")
+    assert result.code == 2
+    assert "flash_state.output_file: 'y/' cannot be written: this is the name of a folder" in result.errors
 
 
 def test_archive_is_no_other_file_of_the_run(program: Compile, tmp_path: Path) -> None:

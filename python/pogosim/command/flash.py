@@ -7,11 +7,13 @@ import io
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import BinaryIO
 
 from pogosim.command.parser import Parser, complain
 from pogosim.counted import counted
 from pogosim.flash_archive import (
     FLASH_BYTES,
+    LONGEST_CATEGORY,
     PAGE_COUNT,
     ArchiveError,
     Record,
@@ -65,17 +67,29 @@ def parser(prog: str) -> Parser:
     return made
 
 
+def opened(name: str, expected: str) -> BinaryIO:
+    """Open a file to read it; a pipe is not waited for.
+
+    Raises:
+        FlashError: It is not a file.
+        OSError: It cannot be opened.
+    """
+    if not Path(name).is_file() and not Path(name).is_dir() and Path(name).exists():
+        raise FlashError(f"{name} is not a file, but a pipe, a socket or a device; expected {expected}")
+    return Path(name).open("rb")
+
+
 def read_records(name: str) -> Iterator[tuple[Record, bool]]:
     """Yield the records of an archive, each of 1.5 MB, and whether the checksum of each is right."""
-    with Path(name).open("rb") as file:
+    with opened(name, "an archive") as file:
         try:
             yield from records_of(file)
         except ArchiveError as error:
             raise FlashError(f"{name}: {error}") from None
 
 
-def show(options: argparse.Namespace) -> int:
-    """List the records of an archive."""
+def show(options: argparse.Namespace) -> tuple[int, list[str]]:
+    """List the records of an archive. Returns the exit code, and lines to print."""
     rows = [
         {
             "category": record.category,
@@ -89,22 +103,22 @@ def show(options: argparse.Namespace) -> int:
     ]
     damaged = sum(row["checksum"] == "wrong" for row in rows)
     if options.json:
-        say(json.dumps({"file": options.archive, "ok": damaged == 0, "flash_bytes": FLASH_BYTES, "records": rows}))
-        return DAMAGED if damaged else 0
-    say(f"{options.archive}: {counted(len(rows), 'record')}, each of {PAGE_COUNT} pages of 256 bytes")
+        about = {"file": options.archive, "ok": damaged == 0, "flash_bytes": FLASH_BYTES, "records": rows}
+        return DAMAGED if damaged else 0, [json.dumps(about)]
+    lines = [f"{options.archive}: {counted(len(rows), 'record')}, each of {PAGE_COUNT} pages of 256 bytes"]
     if rows:
         titles = ("category", "id", "written pages", "directions", "powers (right, left, back)", "checksum")
         cells = [[text_of(value) for value in row.values()] for row in rows]
         widths = [max(map(len, column)) for column in zip(titles, *cells, strict=True)]
-        for line in (titles, *cells):
-            say("  ".join(f"{cell:{width}}" for cell, width in zip(line, widths, strict=True)).rstrip())
+        for row in (titles, *cells):
+            lines.append("  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
     if damaged:
-        say(f"{counted(damaged, 'record')} damaged: the simulator refuses this archive")
-    return DAMAGED if damaged else 0
+        lines.append(f"{counted(damaged, 'record')} damaged: the simulator refuses this archive")
+    return DAMAGED if damaged else 0, lines
 
 
-def extract(options: argparse.Namespace) -> int:
-    """Write the flash memory of one robot."""
+def extract(options: argparse.Namespace) -> tuple[int, list[str]]:
+    """Write the flash memory of one robot. Returns the exit code, and lines to print."""
     output = real_output(options.output)
     if leads_to(options.output, options.archive):
         raise OutputError(f"{options.output} is the archive, which would be lost; choose another --output")
@@ -129,14 +143,12 @@ def extract(options: argparse.Namespace) -> int:
     pages = len(record.written_pages())
     if options.json:
         about = {"file": options.output, "category": record.category, "id": record.identifier, "written_pages": pages}
-        say(json.dumps(about))
-    else:
-        say(f"{options.output}: {FLASH_BYTES} bytes, {counted(pages, 'page')} not blank")
-    return 0
+        return 0, [json.dumps(about)]
+    return 0, [f"{options.output}: {FLASH_BYTES} bytes, {counted(pages, 'page')} not blank"]
 
 
-def make(options: argparse.Namespace) -> int:
-    """Write an archive."""
+def make(options: argparse.Namespace) -> tuple[int, list[str]]:
+    """Write an archive. Returns the exit code, and lines to print."""
     output = real_output(options.archive)
     for file in ([] if options.config is None else [options.config]) + [file for *_, file in options.binaries]:
         if leads_to(options.archive, file):
@@ -156,6 +168,12 @@ def make(options: argparse.Namespace) -> int:
             raise FlashError(f"{options.config} has no robot #{identifier} of category '{category}'")
         given.add(owner)
         memories[owner] = flash_of(file)
+    for category, _ in memories:
+        if len(category.encode(errors="surrogateescape")) > LONGEST_CATEGORY:
+            raise FlashError(
+                f"the category '{category[:20]}...' has a longer name than an archive can have: expected at most "
+                f"{LONGEST_CATEGORY} bytes"
+            )
     records = [
         Record(category, identifier) if flash is None else Record(category, identifier, flash=flash)
         for (category, identifier), flash in sorted(
@@ -166,10 +184,8 @@ def make(options: argparse.Namespace) -> int:
         write_archive(file, records)
     if options.json:
         listed = [{"category": record.category, "id": record.identifier} for record in records]
-        say(json.dumps({"file": options.archive, "records": listed}))
-    else:
-        say(f"{options.archive}: {counted(len(records), 'record')}")
-    return 0
+        return 0, [json.dumps({"file": options.archive, "records": listed})]
+    return 0, [f"{options.archive}: {counted(len(records), 'record')}"]
 
 
 def check_nothing_is_lost(name: str) -> None:
@@ -242,7 +258,7 @@ def id_of(text: str) -> int:
 
 def flash_of(name: str) -> bytes:
     """Return flash memory that begins with the bytes of a file."""
-    with Path(name).open("rb") as file:
+    with opened(name, "flash memory") as file:
         data = file.read(FLASH_BYTES + 1)
     if len(data) > FLASH_BYTES:
         raise FlashError(f"{name} is longer than flash memory, which has {FLASH_BYTES} bytes")
@@ -261,8 +277,10 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim flash") ->
     """Run the command. Returns its exit code: 0 done, 1 a record is damaged, 2 nothing could be done."""
     options = parser(prog).parse_args(arguments)
     try:
-        return ACTIONS[options.action](options)
+        code, lines = ACTIONS[options.action](options)
     except (FlashError, OutputError) as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, told(error, options.archive))
+    say(*lines)
+    return code
