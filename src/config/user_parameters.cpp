@@ -67,6 +67,15 @@ T read_of_type(Place const& place, Range const& range) {
     return value;
 }
 
+/// Whether words stand in a name as they are: "traits" in "nb_traits".
+bool has_words(std::string const& name, std::string const& words) {
+    auto const apart = [](std::string text) {
+        std::ranges::replace(text, '.', '_');
+        return fmt::format("_{}_", text);
+    };
+    return apart(name).find(apart(words)) != std::string::npos;
+}
+
 bool has_misspelt_option(Node const& map) {
     return std::ranges::any_of(map.entries,
                                [](Node::Entry const& entry) { return !misspelt_option(entry.key).empty(); });
@@ -96,6 +105,9 @@ Node const* UserParameters::ask(std::string const& name) {
     Node const* const node = find_path(parameters_, name);
     if (node != nullptr) {
         bool const is_first = read_.insert(node).second;
+        if (is_first) {
+            found_.push_back(name);
+        }
         if (node->blank && is_first) {
             log().warn("{}: {}: {}; the program keeps its own", node->where(), shown(path_of(name)),
                        is_open_option(*node) ? node->scalar : "expected a value, found nothing");
@@ -235,8 +247,12 @@ UnreadParameters UserParameters::unread() const {
         if (auto const word = misspelt_option(std::string_view(path).substr(path.rfind('.') + 1)); !word.empty()) {
             hint = fmt::format("; did you mean '{}'?", word);
         }
+        bool const is_set = node->source == kSetSource;
+        if (is_set && hint.empty()) {
+            hint = hint_of_set(path);
+        }
         all.push_back(fmt::format("{} ({}{})", shown(path), node->where(), hint));
-        if (!hint.empty()) {
+        if (is_set || !hint.empty()) {
             suspects.push_back(all.back());
         }
     }
@@ -250,6 +266,17 @@ UnreadParameters UserParameters::unread() const {
                              suspects.empty() ? "" : " more");
     }
     return {.all = fmt::format("{}", fmt::join(all, ", ")), .brief = std::move(brief)};
+}
+
+std::string UserParameters::hint_of_set(std::string const& path) const {
+    std::vector<std::string> asked = found_;
+    asked.insert(asked.end(), missed_.begin(), missed_.end());
+    if (std::string hint = did_you_mean(shown(path), asked); !hint.empty()) {
+        return hint;
+    }
+    // "traits" is near to no name, but a word of nb_traits.
+    std::erase_if(asked, [&](std::string const& name) { return !has_words(name, path); });
+    return asked.size() == 1 ? fmt::format("; did you mean '{}'?", asked.front()) : "";
 }
 
 bool UserParameters::any_part_was_read(Node const& node) const {

@@ -31,7 +31,7 @@ enum class Conversions {
 /// Values that the program has not read.
 struct UnreadParameters {
     std::string all;    // "walk.sped (conf/a.yaml:14; did you mean 'walk.speed'?), ..."; empty: there are none
-    std::string brief;  // those that are near to a name that the program has asked for, and how many others there are
+    std::string brief;  // those of --set, those near to a name that the program has asked for, and how many others
 };
 
 class UserParameters final : public ParameterSource {
@@ -78,6 +78,8 @@ private:
         Node const* node;
     };
 
+    /// "; did you mean 'x'?" of one that --set names, which is meant for this program; or an empty string.
+    std::string hint_of_set(std::string const& path) const;
     bool any_part_was_read(Node const& node) const;
     void collect_unread(Node const& node, std::string const& path, std::vector<Unread>& unread) const;
 
@@ -87,6 +89,7 @@ private:
     bool has_refused_ = false;
     std::unordered_set<Node const*> read_;
     std::unordered_set<Node const*> of_other_programs_;  // of another type than asked for, which has been said
+    std::vector<std::string> found_;                     // asked for, each once
     std::vector<std::string> missed_;                    // asked for, but not there
 };
 

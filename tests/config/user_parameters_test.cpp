@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "config/tree.hpp"
 #include "config/yaml_text.hpp"
 #include "config_file.hpp"
 
@@ -116,4 +117,19 @@ TEST(UserParameters, NameThatIsNearToSeveralUnreadOnesIsNoSlipOfThem) {
     near_both.text("walk_speed", 100);
     EXPECT_EQ(near_both.unread().all,
               "turn_mx (x.yaml:1), turn_mix (x.yaml:2), walk_sped (x.yaml:3; did you mean 'walk_speed'?)");
+}
+
+TEST(UserParameters, UnreadOneOfTheCommandLineIsNamedWithWhatTheProgramReads) {
+    Node tree = parse_yaml("use_compass: true\nuse_compas: false\nof_others: 1\n", "x.yaml");
+    for (char const* const text : {"use_kompass=false", "traits=5", "speed=1", "colour=red"}) {
+        apply_override(tree, text);
+    }
+    UserParameters given(tree);
+    for (char const* const name : {"use_compass", "nb_traits", "walk.speed", "turn.speed"}) {
+        given.text(name, 100);
+    }
+    // One of the file may be for another program that reads both; "speed" may be either.
+    EXPECT_EQ(given.unread().brief,
+              "use_kompass (--set; did you mean 'use_compass'?), traits (--set; did you mean 'nb_traits'?), "
+              "speed (--set), colour (--set) and 2 more (-v lists them)");
 }

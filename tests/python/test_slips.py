@@ -374,6 +374,21 @@ def test_unused_parameters_without_a_near_name_are_counted(program: Compile, tmp
     ]
 
 
+def test_unused_parameters_of_the_command_line_are_named_with_what_the_program_reads(
+    program: Compile, tmp_path: Path
+) -> None:
+    settings = {"parameters.turn_duration": 400, "parameters.of_others": 1}
+    slips = ["--set", "parameters.turn_durtion=5", "--set", "parameters.duration=5", "--set", "parameters.colour=red"]
+    result = slip(program, tmp_path, "nothing", settings, *slips)
+    assert result.code == 0
+    assert warnings(result) == [
+        "parameters never read by the program: turn_durtion (--set; did you mean 'turn_duration'?), "
+        "duration (--set; did you mean 'turn_duration'?), colour (--set) and 1 more (-v lists them)"
+    ]
+    strict = slip(program, tmp_path, "nothing", settings, *slips, "--strict")
+    assert (strict.code, "turn_durtion (--set; did you mean 'turn_duration'?)" in strict.errors) == (2, True)
+
+
 def test_all_unused_parameters_are_listed_with_verbose(program: Compile, tmp_path: Path) -> None:
     result = slip(program, tmp_path, "nothing", UNREAD, "-v")
     assert f"[debug] {unread(tmp_path, all_of_them=True)}\n" in result.text
