@@ -61,7 +61,7 @@ def test_rows_are_those_of_single_runs_with_the_same_seeds(tmp_path: Path) -> No
     ("options", "said"),
     [
         (["--seeds", "5"], "--seeds: expected the first and the last seed, such as 0:9, both from 0 to 4294967295"),
-        (["--seeds", "5:4"], "found '5:4'"),
+        (["--seeds", "5:4"], "--seeds: the first seed is greater than the last; expected 4:5; found '5:4'"),
         (["--seeds", "0:4294967296"], "found '0:4294967296'"),
         (["--seeds", "-1:4"], "expected one argument"),
         (["--seeds=-1:4"], "found '-1:4'"),

@@ -153,6 +153,30 @@ def test_plan_warns_and_refuses_as_run_does(tmp_path: Path) -> None:
     assert plan(tmp_path, "--only-output", "other.feather").code == 1
 
 
+def test_plan_takes_the_options_of_run(tmp_path: Path) -> None:
+    write_options(tmp_path, {"seed": 3})
+    words = ["--seeds", "3:4", "-S", str(example("helloworld")), "-o", "results", "-t", "tmp", "-j", "2", "--keep-temp"]
+    shown = plan(tmp_path, *words)
+    assert (shown.code, shown.errors) == (0, "")
+    assert shown.output.splitlines()[0] == "2 combinations x 2 seeds: 4 runs"
+    assert [path.name for path in tmp_path.iterdir()] == ["many.yaml"]
+    for wrong, said in ((["-S", "none"], "the simulator none does not exist"), (["-j", "-1"], "--jobs: expected a")):
+        refused, run = plan(tmp_path, *words, *wrong), subcommand(tmp_path, "run", *wrong)
+        assert (refused.code, run.code) == (2, 2)
+        assert said in refused.errors
+        assert said in run.errors
+    derived = report(plan(tmp_path, "-r", "2", "--seed-from", "config", "--json"))
+    assert subcommand(tmp_path, "run", "-r", "2", "--seed-from", "config").code == 0
+    rows, _ = load_dataframe(tmp_path / "results" / "result.feather")
+    assert {task["seed"] for task in derived["tasks"]} == set(rows["seed"])
+
+
+def test_list_of_outputs_needs_no_program(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    listed = run_main(tmp_path, ["-c", "many.yaml", "--list-outputs"])
+    assert (listed.code, listed.output, listed.errors) == (0, "result.feather\n", "")
+
+
 def test_json_of_failures_and_errors_says_what_is_wrong(tmp_path: Path) -> None:
     write_options(tmp_path, {"objects.robots.nb": 2})
     broken = script(tmp_path / "broken", '[ "$seed" = 1 ] && exit 3')

@@ -247,15 +247,29 @@ def test_jobs_of_candidates_and_of_their_runs_are_runs_at_the_same_time() -> Non
         ({"retry_new_seed": 1}, "optimization.retry_new_seed: expected true or false, found 1"),
         ({"qd": {"features_domain": [[1, 0]]}}, "optimization.qd.features_domain: expected the least and the greatest"),
         ({"qd": {"features_domain": [0, 1]}}, "optimization.qd.features_domain: expected the least and the greatest"),
-        ({"qd": {"features_domain": [[0, 1]], "ranges": [[0, 1]]}}, "both say the range of features"),
-        ({"seeds": "some"}, "--seeds: expected common, fresh or blocks, found 'some'"),
-        ({"seeds": "blocks", "budget": 10**7, "runs": 100}, "need more seeds than there are"),
+        (
+            {"qd": {"features_domain": [[0, 1]], "ranges": [[0, 1]]}},
+            "optimization.qd.ranges and optimization.qd.features_domain both say the range of features",
+        ),
+        ({"seeds": "some"}, "optimization.seeds: expected common, fresh or blocks, found 'some'"),
+        ({"seeds": "blocks", "budget": 10**7, "runs": 100}, "optimization.budget: 10000000 times 100 runs need more"),
     ],
 )
 def test_wrong_settings_are_named(section: dict[str, Any], said: str) -> None:
     with pytest.raises(OptimizeError) as caught:
         settings(section)
     assert said in str(caught.value)
+
+
+def test_messages_name_a_setting_by_where_it_stands(tmp_path: Path) -> None:
+    with pytest.raises(OptimizeError, match=r"^optimization\.qd\.ranges and --qd-features-domain both say"):
+        settings({"qd": {"ranges": [[0, 1]]}}, qd_features_domain="0:1")
+    assert settings({"seeds": "fresh"}, seeds="common").place_of("seeds") == "--seeds"
+    assert settings({"seeds": "fresh"}) == Settings(seeds="fresh")
+    shape = theirs(tmp_path, {"qd": {**THEIRS["qd"], "shape": [4]}})
+    assert (shape.code, "optimization.qd.shape: there are 2 features" in shape.errors) == (2, True), shape.errors
+    unknown = theirs(tmp_path / "unknown", {"algorithm": "sgd"})
+    assert "optimization.algorithm: expected one of cmaes, random" in unknown.errors
 
 
 @pytest.mark.parametrize(

@@ -119,7 +119,7 @@ def runner_of(arguments: argparse.Namespace, is_campaign: bool) -> PogobotBatchR
     """Return the batch that options ask for.
 
     Args:
-        arguments: Those of `add_choice_options`, and of `add_run_options` if runs are to be done.
+        arguments: Those of `add_choice_options` and of `add_run_options`.
         is_campaign: Results have the seeds, and failed runs are repeated with others if not asked for otherwise.
 
     Raises:
@@ -128,23 +128,13 @@ def runner_of(arguments: argparse.Namespace, is_campaign: bool) -> PogobotBatchR
     check_names(arguments)
     from pogosim.batch.runner import PogobotBatchRunner  # takes a while
 
-    if "temp_base" not in arguments:
-        return PogobotBatchRunner(
-            arguments.config,
-            arguments.runs,
-            ".",
-            ".",
-            arguments.output_dir,
-            only_output=arguments.only_output,
-            seeds=asked_seeds(arguments),
-        )
     workers = arguments.workers
     if is_campaign and workers is not None:
         workers = at_least(0, workers, "--jobs") or None
     return PogobotBatchRunner(
         arguments.config,
         arguments.runs,
-        arguments.simulator_binary or "",
+        "." if arguments.simulator_binary is None else arguments.simulator_binary,  # a plan or a list needs none
         arguments.temp_base,
         arguments.output_dir,
         backend=arguments.backend,

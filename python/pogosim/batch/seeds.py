@@ -21,6 +21,10 @@ def seeds_between(text: str, name: str) -> range:
     """
     found = RANGE.fullmatch(text)
     first, last = (int(found[1]), int(found[2])) if found else (1, 0)
+    if found and last < first <= LARGEST:
+        raise BatchError(
+            f"{name}: the first seed is greater than the last; expected {last}:{first}; found {shown(text)}"
+        )
     if not first <= last <= LARGEST:
         raise BatchError(
             f"{name}: expected the first and the last seed, such as 0:9, both from 0 to {LARGEST}; found {shown(text)}"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pogosim.batch.ending import Report, RunsFailedError
 from pogosim.batch.errors import BatchError, tell
+from pogosim.batch.identity import find_program
 from pogosim.batch.run_options import Parser, add_choice_options, add_run_options, check_names, runner_of
 from pogosim.counted import counted
 from pogosim.nearest_name import nearest_name
@@ -36,13 +37,15 @@ class Subcommand(NamedTuple):
 
 
 def add_plan_options(options: Parser) -> None:
-    """Add the options of `plan`."""
-    add_choice_options(options)
+    """Add the options of `plan`: those of `run`, so that one word makes a plan of a batch, and its own."""
+    add_campaign_options(options, needs_program=False)
     options.add_argument("--show-tasks", action="store_true", help="list all runs")
 
 
 def plan(arguments: argparse.Namespace) -> Report:
     """Say which runs a batch would do."""
+    if arguments.simulator_binary is not None:
+        find_program(arguments.simulator_binary)
     runner = runner_of(arguments, is_campaign=True)
     tasks = list(planned(runner))
     outputs = list(dict.fromkeys(str(task["output"]) for task in tasks))
@@ -127,10 +130,10 @@ def task(arguments: argparse.Namespace) -> Report:
 # ---- run ----
 
 
-def add_campaign_options(options: Parser) -> None:
+def add_campaign_options(options: Parser, needs_program: bool = True) -> None:
     """Add the options of `run`."""
     add = options.add_argument
-    add("-S", "--simulator-binary", metavar="PROGRAM", required=True, help="program compiled for Pogosim")
+    add("-S", "--simulator-binary", metavar="PROGRAM", required=needs_program, help="program compiled for Pogosim")
     add(
         *("-j", "--jobs", "--workers"),
         dest="workers",

@@ -158,7 +158,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
         configuration = Configuration(parsed.config)
         section = configuration.entries.get(SECTION)
         settings = settings_from(section, vars(parsed), configuration.where, lambda text: log.warning("%s", text))
-        check_optimizer(settings.optimizer)
+        check_optimizer(settings)
         space = space_of(configuration)
         optimizer = optimizer_for(space, settings)
         from pogosim.optimize.execution import optimize  # takes a while

@@ -55,7 +55,7 @@ def objective_of(settings: Settings, beside: Path) -> Objective:
         return objective
     for name in ("objective_func", "features_func"):
         if getattr(settings, name) is not None:
-            raise OptimizeError(f"--{name.replace('_', '-')} goes with --objective FILE.py")
+            raise OptimizeError(f"{settings.place_of(name)} goes with --objective FILE.py")
     log.warning(
         "No objective script provided; DEFAULT fitness = mean MSD (features default to [max MSD, std MSD]). "
         "Yours: --objective FILE.py"
@@ -100,8 +100,10 @@ def optimize(
     with_features = settings.optimizer in WITH_FEATURES
     if with_features and settings.qd_init_samples + 1 >= settings.max_evals:
         log.warning(
-            "all evaluations but the first are random samples: --max-evals is %d, and --qd-init-samples %d",
+            "all evaluations but the first are random samples: %s is %d, and %s %d",
+            settings.place_of("max_evals"),
             settings.max_evals,
+            settings.place_of("qd_init_samples"),
             settings.qd_init_samples,
         )
     folder = Path(settings.output_dir)

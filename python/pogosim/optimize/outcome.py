@@ -123,7 +123,7 @@ def summary_of(search: Search, status: str) -> dict[str, Any]:
         "seeds": settings.seeds,
         "seed_block_offset": settings.first_seed,
         "parallelism": {"candidate_jobs": settings.candidate_jobs, "batch_jobs": settings.batch_jobs},
-        "settings": asdict(settings),
+        "settings": {name: value for name, value in asdict(settings).items() if name != "places"},
     }
 
 

@@ -25,6 +25,7 @@ MOST_PROBLEMS = 10  # that are mentioned
 IRRELEVANT = (
     *("retries", "backend", "output_dir", "temp_base", "keep_temp", "candidate_jobs", "batch_jobs"),
     "objective",  # its digest counts
+    "places",
 )
 ADDED = ("retry_new_seed", "qd_features_domain", "objective_names")
 

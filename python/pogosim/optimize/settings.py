@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from pogosim.batch.option_words import shown
@@ -60,6 +60,7 @@ class Settings:
         objective_func: Name of the objective; None: the first of `objective_names` that there is.
         objective_names: See there.
         features_func: Name of the feature function; None: the usual one.
+        places: Where settings stand that the configuration says, by name; see `place_of`.
     """
 
     optimizer: str = "cmaes"
@@ -89,6 +90,11 @@ class Settings:
     objective_func: str | None = None
     objective_names: tuple[str, ...] = OBJECTIVE_NAMES
     features_func: str | None = None
+    places: Mapping[str, str] = field(default_factory=dict, compare=False)
+
+    def place_of(self, name: str) -> str:
+        """Return how a message calls a setting: where it stands in the configuration, or its option."""
+        return self.places.get(name) or option_of(name)
 
     @property
     def block(self) -> int:
@@ -121,6 +127,11 @@ class Settings:
         """Seeds from the first one of all to the last that may be needed, whatever the policy."""
         of_final = self.final_runs * (self.retries + 1 if self.retry_new_seed else 1)
         return self.first_seed + self.max_evals * self.block + of_final
+
+
+def option_of(name: str) -> str:
+    """Return the option of a setting on the command line."""
+    return f"--{name.replace('_', '-')}"
 
 
 def whole(least: int, most: int) -> Callable[[Any], int]:
@@ -274,6 +285,7 @@ def settings_from(
     if section is not None and not isinstance(section, dict):
         raise OptimizeError(f"{where((SECTION,))}: expected a map of settings, found {shown(section)}")
     chosen: dict[str, Any] = {}
+    places: dict[str, str] = {}
     for path, value in flattened(section or {}).items():
         if path in UNUSED:
             warn(f"{where((SECTION, *path))}: has no effect here")
@@ -281,21 +293,26 @@ def settings_from(
             say_unknown(path, where((SECTION, *path)), warn)
         elif value is not None:
             name, check = KEYS[path]
-            chosen[name] = checked(check, value, where((SECTION, *path)))
-    for field in fields(Settings):
-        value = options.get(field.name)
+            places[name] = where((SECTION, *path))
+            chosen[name] = checked(check, value, places[name])
+    for name in (own.name for own in fields(Settings)):
+        value = options.get(name)
         if value is not None:
-            chosen[field.name] = checked(CHECKS[field.name], value, f"--{field.name.replace('_', '-')}")
+            places.pop(name, None)
+            chosen[name] = checked(CHECKS[name], value, option_of(name))
     if isinstance((section or {}).get(OBJECTIVE), dict):
         chosen["objective_names"] = NAMES_OF_MAP
-    settings = Settings(**chosen)
+    settings = Settings(**chosen, places=places)
     if settings.seeds not in POLICIES:
-        raise OptimizeError(f"--seeds: expected {', '.join(POLICIES[:-1])} or {BLOCKS}, found '{settings.seeds}'")
+        known = f"{', '.join(POLICIES[:-1])} or {BLOCKS}"
+        raise OptimizeError(f"{settings.place_of('seeds')}: expected {known}, found '{settings.seeds}'")
     if settings.qd_ranges and settings.qd_features_domain:
-        raise OptimizeError("--qd-ranges and --qd-features-domain both say the range of features; remove one of them")
+        both = " and ".join(map(settings.place_of, ("qd_ranges", "qd_features_domain")))
+        raise OptimizeError(f"{both} both say the range of features; remove one of them")
     if settings.seed_count > LAST_SEED:
         raise OptimizeError(
-            f"--max-evals: {settings.max_evals} times {settings.runs} runs need more seeds than there are"
+            f"{settings.place_of('max_evals')}: {settings.max_evals} times {settings.runs} runs need more seeds than "
+            "there are"
         )
     return settings
 

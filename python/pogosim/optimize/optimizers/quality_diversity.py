@@ -53,10 +53,11 @@ def feature_ranges(features: Floats, settings: Settings) -> list[tuple[float, fl
     count = features.shape[1]
     if len(settings.qd_shape) != count:
         example = ",".join(["20"] * count)
-        raise OptimizeError(f"--qd-shape: there are {count} features, so expected as many numbers, such as {example}")
+        place = settings.place_of("qd_shape")
+        raise OptimizeError(f"{place}: there are {count} features, so expected as many numbers, such as {example}")
     if known := settings.qd_features_domain or settings.qd_ranges:
         if len(known) != count:
-            name = "--qd-features-domain" if settings.qd_features_domain else "--qd-ranges"
+            name = settings.place_of("qd_features_domain" if settings.qd_features_domain else "qd_ranges")
             example = ",".join(["0:1"] * count)
             raise OptimizeError(f"{name}: there are {count} features, so expected as many, such as {example}")
         return list(known)

@@ -25,14 +25,16 @@ OPTIMIZERS = {
 WITH_FEATURES = ("mapelites", "cma_me", "cma_mae")
 
 
-def check_optimizer(name: str) -> None:
+def check_optimizer(settings: Settings) -> None:
     """Check the name of an optimiser.
 
     Raises:
         OptimizeError: There is none of that name.
     """
-    if name not in OPTIMIZERS:
-        raise OptimizeError(f"--optimizer: expected one of {', '.join(OPTIMIZERS)}; found '{name}'")
+    if settings.optimizer not in OPTIMIZERS:
+        known = ", ".join(OPTIMIZERS)
+        place = settings.place_of("optimizer")
+        raise OptimizeError(f"{place}: expected one of {known}; found '{settings.optimizer}'")
 
 
 def optimizer_for(space: Space, settings: Settings) -> Optimizer:
@@ -41,7 +43,7 @@ def optimizer_for(space: Space, settings: Settings) -> Optimizer:
     Raises:
         OptimizeError: There is none of that name, or it needs a package that is not installed.
     """
-    check_optimizer(settings.optimizer)
+    check_optimizer(settings)
     module, name = OPTIMIZERS[settings.optimizer]
     chosen: Any = getattr(importlib.import_module(f"pogosim.optimize.optimizers.{module}"), name)
     made: Optimizer = chosen(space, settings)
