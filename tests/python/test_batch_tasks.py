@@ -324,6 +324,17 @@ def test_missing_runs_are_named(tmp_path: Path) -> None:
     assert merge(tmp_path, "tmp", "-c", "many.yaml", "--append", into="more").errors == ""
 
 
+def test_missing_runs_of_one_of_two_batches_with_other_seeds_are_named(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    for seeds in ("0:1", "2:3"):
+        assert subcommand(tmp_path, "run", "--seeds", seeds, "-t", seeds.replace(":", "-"), "--keep-temp").code == 0
+    assert merge(tmp_path, "0-1", "2-3", "-c", "many.yaml").errors == ""
+    shutil.rmtree(folder_of(tmp_path / "2-3", 1, 3))
+    result = merge(tmp_path, "0-1", "2-3", "-c", "many.yaml")
+    said = "1 of 8 runs is missing, the first: run 1 of results/result.feather, objects.robots.nb: 3"
+    assert (result.code, result.errors) == (0, f"pogobatch merge: {said}\n")
+
+
 def test_configuration_that_is_written_in_another_way_is_the_same(tmp_path: Path) -> None:
     (tmp_path / "conf" / "arenas").mkdir(parents=True)
     shutil.copy(ROOT / "arenas" / "disk.csv", tmp_path / "conf" / "arenas" / "mine.csv")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import logging
+import operator
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -156,34 +159,36 @@ def missing_runs(
 ) -> tuple[list[MissingRun], int]:
     """Return the runs that are missing, and how many there should be.
 
-    Each combination should have the same runs as all others together. With a configuration, each of its combinations
+    Each combination should have the same runs as all others together, one number several times if batches with other
+    seeds are merged. With a configuration, each of its combinations
     should have the runs 0, 1, ... up to the greatest number that there is, or as many as `_rundr` in it says.
 
     Args:
         by_output: The runs that are there, by file of results.
         expected: What the configuration says; None: there is none.
     """
-    runs_of: dict[Any, set[int]] = {}
+    runs_of: dict[Any, Counter[int]] = {}
     named: dict[Any, tuple[str, dict[str, Any]]] = {}
     for output, artifacts in by_output.items():
         for first, runs in by_combination(artifacts):
             which: Any = first.combination if expected is None else expected.number_of(first)
             if which is None:
                 continue
-            runs_of.setdefault(which, set()).update(runs)
+            runs_of.setdefault(which, Counter()).update(runs)
             named[which] = (output, first.columns if expected is None else expected.choices_of(which))
     if not runs_of:
         return [], 0
-    wanted = set().union(*runs_of.values())
+    wanted = functools.reduce(operator.or_, runs_of.values())
     combinations = list(runs_of)
     if expected is not None:
-        wanted = set(range(max(max(wanted) + 1, len(expected.configuration.seeds or ()))))
+        wanted = wanted | Counter(range(max(max(wanted) + 1, len(expected.configuration.seeds or ()))))
         combinations = list(range(len(expected.combinations)))
     missing = []
     for which in combinations:
         output, choices = named.get(which) or ("", expected.choices_of(which) if expected is not None else {})
-        missing += [MissingRun(output, run, for_json(choices)) for run in sorted(wanted - runs_of.get(which, set()))]
-    return missing, len(combinations) * len(wanted)
+        left = wanted - runs_of.get(which, Counter())
+        missing += [MissingRun(output, run, for_json(choices)) for run in sorted(left.elements())]
+    return missing, len(combinations) * wanted.total()
 
 
 def warn_of_missing(missing: Sequence[MissingRun], count: int) -> None:
