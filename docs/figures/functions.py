@@ -66,7 +66,7 @@ def arguments(member: Member) -> list[tuple[str, str]]:
     found = []
     for part in re.sub(r"\(\*\s*(\w+)\s*\)\s*\([^)]*\)", r" \1", inner).split(","):
         kind, _, name = part.strip().rpartition(" ")
-        found.append((kind, name.lstrip("*")))
+        found.append((kind, name.lstrip("*").partition("[")[0]))
     return found
 
 
