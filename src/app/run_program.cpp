@@ -126,6 +126,13 @@ LogOptions logging_of(CommandLine const& options) {
     return logging;
 }
 
+/// Prints an error. Returns the exit code of a run that would otherwise have ended with `code`.
+ExitCode report(char const* error, ExitCode code) {
+    flush_logs();
+    std::fprintf(stderr, "Error: %s\n", error);
+    return code == ExitCode::done ? ExitCode::usage : code;
+}
+
 /// --check-config.
 Ended check(pogosim_program const& program, CommandLine const& options) {
     start_logging(logging_of(options));
@@ -143,7 +150,7 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
     flush_logs();
     if (result.interrupted) {
         for (std::string const& message : problems.messages()) {
-            std::fprintf(stderr, "Error: %s\n", escaped(message).c_str());
+            report(escaped(message).c_str(), ExitCode::interrupted);
         }
         return {.code = ExitCode::interrupted, .user_code_was_aborted = result.user_code_was_aborted};
     }
@@ -206,13 +213,6 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - begin;
     return {code, simulation->restart(), simulation->crash_handler().was_left_by_force(),
             options.quiet ? "" : simulation->summary(wall.count())};
-}
-
-/// Prints an error. Returns the exit code of a run that would otherwise have ended with `code`.
-ExitCode report(char const* error, ExitCode code) {
-    flush_logs();
-    std::fprintf(stderr, "Error: %s\n", error);
-    return code == ExitCode::done ? ExitCode::usage : code;
 }
 
 /// Destructors of libraries may crash when memory is short.
