@@ -15,7 +15,7 @@ from typing import Any
 from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.manifests import config_hash, for_json
-from pogosim.batch.option_words import CHOICES, CombinationsError, shown
+from pogosim.batch.option_words import CHOICES, CombinationsError, chosen_in, shown
 from pogosim.batch.result_metadata import Earlier, configuration_in
 from pogosim.batch.run_files import ALL_OUTPUTS, FILES_BESIDE
 from pogosim.batch.single_task import TaskArtifact
@@ -88,7 +88,7 @@ class Expected:
 
     def choices_of(self, number: int) -> dict[str, Any]:
         """Return what tells a combination from others: keys and values."""
-        return {key.removeprefix(f"{CHOICES}."): values[number] for key, values in self.varied.items()}
+        return chosen_in(self.varied, number)
 
     @cached_property
     def varied(self) -> dict[str, list[Any]]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pogosim.batch.completeness import (
     Expected,
+    MissingRun,
     missing_runs,
     warn_of_indistinguishable,
     warn_of_missing,
@@ -20,9 +21,9 @@ from pogosim.batch.errors import BatchError, given
 from pogosim.batch.manifests import TASK, read_manifest
 from pogosim.batch.names import is_linked_out, leads_out
 from pogosim.batch.parts import OF_CAMPAIGNS, Part, RunFile
-from pogosim.batch.result_metadata import COMBINATIONS, Earlier, manifest
+from pogosim.batch.result_metadata import COMBINATIONS, Earlier, columns_as_text, manifest
 from pogosim.batch.results import check_columns, check_output, schema_of, write_results
-from pogosim.batch.single_task import TaskArtifact, columns_as_text
+from pogosim.batch.single_task import TaskArtifact
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RETRY, RUN, SEED, run_numbers
 from pogosim.table_formats import FEATHER, format_of
@@ -83,11 +84,27 @@ def merge_task_artifacts(
     Raises:
         BatchError: Nothing is to be merged, a run is there twice, or a file cannot be read or written.
     """
+    return merge_runs(artifacts, output_dir, config_path, append).outputs
+
+
+class Merged(NamedTuple):
+    """What a merge has done."""
+
+    outputs: list[str]  # paths of the files of results
+    missing: list[MissingRun]  # runs that are not there although others are; none are looked for with `append`
+
+
+def merge_runs(
+    artifacts: Sequence[TaskArtifact], output_dir: PathLike, config_path: PathLike | None, append: bool
+) -> Merged:
+    """Do what `merge_task_artifacts` does, and return what is missing as well."""
     if not artifacts:
         raise BatchError("there are no runs to merge")
     refuse_same_runs(artifacts)
     folder = given.path("output_dir", output_dir)
-    by_output = grouped(artifacts, folder)
+    by_output: dict[str, list[TaskArtifact]] = {}
+    for artifact in artifacts:
+        by_output.setdefault(output_of(artifact, folder), []).append(artifact)
     expected = None if config_path is None else Expected(Configuration(given.path("config_path", config_path)))
     for artifact in artifacts:
         check_columns(artifact.schema, list(artifact.columns), str(artifact.folder), OF_CAMPAIGNS)
@@ -96,35 +113,14 @@ def merge_task_artifacts(
     parts = {output: numbered(own, earlier[output]) for output, own in parts.items()}
     if expected is not None:
         warn_of_others(artifacts, expected)
-    if not append:
-        warn_of_missing(*missing_runs(by_output, expected))
+    missing, count = ([], 0) if append else missing_runs(by_output, expected)
+    warn_of_missing(missing, count)
     for output, own in by_output.items():
         warn_of_indistinguishable(output, own, earlier[output])
     for output, own in by_output.items():
         own_text = own[0].configuration_text if expected is None else expected.configuration.text
         write_results(output, parts[output], own_text, OF_CAMPAIGNS, earlier[output])
-    return list(by_output)
-
-
-def grouped(artifacts: Iterable[TaskArtifact], folder: Path) -> dict[str, list[TaskArtifact]]:
-    """Return runs by their files of results in a folder."""
-    by_output: dict[str, list[TaskArtifact]] = {}
-    for artifact in artifacts:
-        by_output.setdefault(output_of(artifact, folder), []).append(artifact)
-    return by_output
-
-
-def missing_in(
-    artifacts: Sequence[TaskArtifact], output_dir: PathLike, config_path: PathLike | None
-) -> list[dict[str, Any]]:
-    """Return the runs that are missing in a merge, see `missing_runs`: maps that can be written as JSON.
-
-    Raises:
-        BatchError: The configuration cannot be read, or its options are wrong.
-    """
-    by_output = grouped(artifacts, given.path("output_dir", output_dir))
-    expected = None if config_path is None else Expected(Configuration(given.path("config_path", config_path)))
-    return [asdict(run) for run in missing_runs(by_output, expected)[0]]
+    return Merged(list(by_output), missing)
 
 
 def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:

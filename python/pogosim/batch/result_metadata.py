@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -37,8 +37,13 @@ class Earlier:
     combinations: list[dict[str, Any]]
 
     def has_columns(self, text: str) -> bool:
-        """Tell whether a combination has these constant columns, as JSON with sorted keys."""
-        return any(json.dumps(entry["columns"], sort_keys=True, default=str) == text for entry in self.combinations)
+        """Tell whether a combination has these constant columns, see `columns_as_text`."""
+        return any(columns_as_text(entry["columns"]) == text for entry in self.combinations)
+
+
+def columns_as_text(columns: Mapping[str, Any]) -> str:
+    """Return columns as a text, which is the same for the same columns."""
+    return json.dumps(columns, sort_keys=True, default=str)
 
 
 def manifest(parts: Sequence[Part], earlier: Earlier | None) -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +18,7 @@ from pogosim.batch.names import NamesError, file_name, new_columns
 from pogosim.batch.option_words import CHOICES, CombinationsError, shown
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
+from pogosim.batch.result_metadata import columns_as_text
 from pogosim.batch.results import check_columns, schema_of
 from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, Task, attempt_in, simulators, with_last_line
 from pogosim.batch.seeds import listed_seeds
@@ -94,11 +94,6 @@ class TaskArtifact:
         except WRONG_VALUES:
             return {}
         return entries if isinstance(entries, dict) else {}
-
-
-def columns_as_text(columns: Mapping[str, Any]) -> str:
-    """Return columns as a text, which is the same for the same columns."""
-    return json.dumps(columns, sort_keys=True, default=str)
 
 
 class TaskError(BatchError):

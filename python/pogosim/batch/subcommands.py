@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pogosim.batch.ending import Report, RunsFailedError
@@ -188,17 +189,19 @@ def add_merge_options(options: Parser) -> None:
 def merge(arguments: argparse.Namespace) -> Report:
     """Join runs that were done one by one."""
     check_names(arguments)
-    from pogosim.batch.merging import discover_task_artifacts, merge_task_artifacts, missing_in
+    from pogosim.batch.merging import discover_task_artifacts, merge_runs
 
     artifacts = discover_task_artifacts(arguments.inputs)
-    outputs = merge_task_artifacts(
-        artifacts, arguments.output_dir, config_path=arguments.config, append=arguments.append
-    )
+    outputs, missing = merge_runs(artifacts, arguments.output_dir, arguments.config, arguments.append)
     tell(f"{counted(len(artifacts), 'run')} merged. Generated output files:")
     for output in outputs:
         tell(f" - {output}")
-    missing = [] if arguments.append else missing_in(artifacts, arguments.output_dir, arguments.config)
-    return {"inputs": arguments.inputs, "task_count": len(artifacts), "outputs": outputs, "missing": missing}
+    return {
+        "inputs": arguments.inputs,
+        "task_count": len(artifacts),
+        "outputs": outputs,
+        "missing": [asdict(run) for run in missing],
+    }
 
 
 # ---- cluster ----
