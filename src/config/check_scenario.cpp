@@ -11,6 +11,7 @@
 #include <regex>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "base/log.hpp"
@@ -198,6 +199,44 @@ void check_walls(Scenario const& scenario) {
     }
 }
 
+/// The highest level that a lamp can have by itself, sensor counts.
+int brightest_level(LampSpec const& lamp) {
+    struct Brightest {
+        int operator()(SpotSpec const& spot) const {
+            return std::max({spot.value, spot.mode == LightMode::uniform ? 0 : spot.edge_value,
+                             spot.photo_start_at_s < 0.0F ? 0 : spot.photo_start_value});
+        }
+        int operator()(RotatingRaySpec const& ray) const { return std::max(ray.value, ray.white_frame_value); }
+        int operator()(AlternatingRaysSpec const& rays) const { return std::max(rays.value, rays.white_frame_value); }
+    };
+    return std::visit(Brightest(), lamp);
+}
+
+/// Levels of lamps have 15 bits, however many those of the sensors' converter are.
+void check_light_levels(Scenario const& scenario) {
+    constexpr int kMuchFewerBits = kLightBits - 3;
+    ObjectConfig const* brightest = nullptr;
+    int level = 0;
+    for (ObjectConfig const& object : scenario.objects) {
+        if (object.spec.lamp && (brightest == nullptr || brightest_level(*object.spec.lamp) > level)) {
+            brightest = &object;
+            level = brightest_level(*object.spec.lamp);
+        }
+    }
+    for (ObjectConfig const& object : scenario.objects) {
+        int const bits = object.spec.robot ? object.spec.robot->sensors.photosensor_bits : kLightBits;
+        if (brightest != nullptr && level > 0 && bits <= kMuchFewerBits && level < 1 << bits) {
+            log().warn(
+                "{}: objects.{}: no lamp is brighter than {}, which light sensors of {} bits, such as those of "
+                "'{}', read as {}: the levels of lamps go up to {} with any photosensors_bits; perhaps they "
+                "should be {} times higher",
+                brightest->line, shown(brightest->category), level, bits, shown(object.category),
+                level >> (kLightBits - bits), (1 << kLightBits) - 1, 1 << (kLightBits - bits));
+            return;
+        }
+    }
+}
+
 void check_formation(Scenario const& scenario) {
     constexpr std::array<std::string_view, 3> kArena{"arena", "null", ""};
     std::string const& root = scenario.formation.root_object;
@@ -230,6 +269,7 @@ void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& r
     if (objects_are_right) {
         collect([&] { check_object_count(scenario); });
         collect([&] { check_recorded_categories(scenario); });
+        collect([&] { check_light_levels(scenario); });
     }
     collect([&] { check_file_names(scenario); });
     collect([&] { check_frames_name(scenario); });

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/exact_math.hpp"
 #include "base/log.hpp"
+#include "config/lamp_keys.hpp"
 #include "config/shape_keys.hpp"
 
 namespace pogosim {
@@ -90,6 +92,35 @@ Interval in_radians(Interval const& angles, AngleUnit unit) {
 template <class Angle>
 std::optional<Angle> in_radians(std::optional<Angle> const& angle, AngleUnit unit) {
     return angle ? std::optional(in_radians(*angle, unit)) : std::nullopt;
+}
+
+bool looks_like_radians(std::vector<double> const& degrees) {
+    return !degrees.empty() &&
+           std::ranges::all_of(degrees, [](double angle) { return std::abs(angle) <= kAngle.usual_max; }) &&
+           std::ranges::any_of(degrees, [](double angle) { return angle != std::round(angle); });
+}
+
+/// Warns of an angle that is none in the unit of the map. In degrees, only a direction in the arena can be recognised:
+/// an offset may well be small.
+void warn_of_other_unit(MapReader const& reader, std::string_view key, AngleUnit unit, bool is_direction = false) {
+    Node const* const node = reader.find(key);
+    if (node == nullptr) {
+        return;
+    }
+    std::vector<double> angles;
+    for (Node const& angle : node->kind == Node::Kind::sequence ? node->items : std::vector{*node}) {
+        if (auto const number = number_of(angle)) {
+            angles.push_back(*number);
+        }
+    }
+    Place const place{*node, reader.path_of(key)};
+    UnitSlips slips;
+    if (unit == AngleUnit::radians) {
+        slips.look_at(place, {.range = any().usually_up_to(kAngle.usual_max), .unit = "rad"});
+    } else if (is_direction && looks_like_radians(angles)) {
+        slips.look_at(place, {.range = any().usually_from(kAngle.usual_max), .unit = "degrees"});
+    }
+    slips.warn();
 }
 
 // ---- world_field: three ways to say the field at the origin. ----
@@ -176,6 +207,9 @@ void read_field(MapReader& reader, MagnetometerConfig& config) {
     FieldAtOrigin at_origin{.form = form_of_field(reader)};
     read_keys(reader, field_keys(), at_origin);
     read_keys(reader, gradient_keys(), field);
+    if (at_origin.form == FieldForm::polar) {
+        warn_of_other_unit(reader, "magnetic_north_angle", config.angle_unit, /*is_direction=*/true);
+    }
     field.at_origin = field_at_origin(at_origin, radians_in(config.angle_unit));
     if (config.spec.scales_with_field && field.at_origin[0] == 0.0 && field.at_origin[1] == 0.0) {
         log().warn("{}: {}: the field has no horizontal part at its origin, so readings do not depend on the heading",
@@ -213,6 +247,7 @@ void read_domain(MapReader& reader, AngleUnit unit, MagneticDomain& domain) {
     auto const theta =
         read_angle<std::optional<Interval>>(reader, "theta", "Headings for which it is meant; default: all.");
     read_keys(reader, policy_keys(), domain);
+    warn_of_other_unit(reader, "theta", unit, /*is_direction=*/true);
     for (auto const& [key, interval] : {std::pair{"x", domain.x_mm}, {"y", domain.y_mm}, {"theta", theta}}) {
         if (interval && !(interval->min < interval->max)) {
             fail_at({*reader.find(key), reader.path_of(key)},
@@ -266,6 +301,7 @@ void read_variation(MapReader& reader, AngleUnit unit, MagnetometerVariation& va
               variation);
     variation.angle_offset_rad = in_radians(
         read_angle<Interval>(reader, "angle_offset", "Added to the angle of the field in the robot's frame."), unit);
+    warn_of_other_unit(reader, "angle_offset", unit);
     read_axes(reader, {"noise_stddev", variation.noise_stddev, between(0, 1e6),
                        "Standard deviation of Gaussian noise on each reading."});
 }
@@ -290,6 +326,18 @@ std::array<Key<MagneticEllipse>, 2> vertical_keys() {
     };
 }
 
+/// The other way round, the same ellipse is turned by 90 degrees.
+void warn_of_radii(MapReader const& reader, MagneticEllipse const& ellipse) {
+    bool const is_written = reader.find("major_radius") != nullptr || reader.find("minor_radius") != nullptr;
+    if (is_written && ellipse.minor_radius.max > ellipse.major_radius.max) {
+        log().warn(
+            "{}: {}: minor_radius, {}, goes above major_radius, {}: the long axis is then at 90 degrees to "
+            "ellipse_rotation; if it should not be, exchange them",
+            reader.place().node.where(), reader.place().path, value_text(ellipse.minor_radius),
+            value_text(ellipse.major_radius));
+    }
+}
+
 void read_ellipse(MapReader& reader, AngleUnit unit, MagneticEllipse& ellipse, bool is_used) {
     read_axes(reader, {"center", ellipse.centre, kCounts, "Centre of the curve."}, is_used);
     read_keys(reader, radius_keys(), ellipse, is_used);
@@ -300,6 +348,11 @@ void read_ellipse(MapReader& reader, AngleUnit unit, MagneticEllipse& ellipse, b
                                         "Added to the angle of the field in the robot's frame.", is_used),
                    unit);
     read_keys(reader, vertical_keys(), ellipse, is_used);
+    if (is_used) {
+        warn_of_other_unit(reader, "ellipse_rotation", unit);
+        warn_of_other_unit(reader, "sensor_phase_offset", unit);
+        warn_of_radii(reader, ellipse);
+    }
 }
 
 void read_harmonic(MapReader& reader, MagneticHarmonic& harmonic, bool is_used) {
@@ -412,6 +465,9 @@ void read_table(MapReader& reader, AngleUnit unit, MagnetometerTable& table, boo
                                           "world_field.",
                                           is_used),
         unit);
+    if (is_used) {
+        warn_of_other_unit(reader, "calibration_field_angle", unit, /*is_direction=*/true);
+    }
     reader.read_map("columns", [&](MapReader& inner) {
         read_keys(inner, column_keys<std::string>(any(), "Names of the columns, with a header."), table.columns,
                   is_used && table.has_header);
@@ -422,6 +478,16 @@ void read_table(MapReader& reader, AngleUnit unit, MagnetometerTable& table, boo
     });
     if (is_used) {
         refuse_delimiter(reader, table);
+    }
+}
+
+/// A map that has keys, but not the source that it is for.
+void warn_of_unused_map(MapReader const& reader, std::string_view key, std::string_view source,
+                        std::string_view advice) {
+    Node const* const map = reader.find(key);
+    if (map != nullptr && !map->entries.empty()) {
+        log().warn("{}: {}: has no effect with source: {}{}; {}", map->where(), reader.path_of(key), source,
+                   reader.find("source") == nullptr ? ", the default" : "", advice);
     }
 }
 
@@ -440,6 +506,11 @@ MagnetometerConfig read_magnetometer_map(MapReader& reader) {
     reader.read_map("robot_variation", [&](MapReader& inner) { read_variation(inner, unit, spec.variation); });
     reader.read_map("procedural", [&](MapReader& inner) { read_procedural(inner, unit, spec, !has_table); });
     reader.read_map("csv", [&](MapReader& inner) { read_table(inner, unit, config.table, has_table); });
+    if (has_table) {
+        warn_of_unused_map(reader, "procedural", "csv", "remove it, or set source: procedural");
+    } else {
+        warn_of_unused_map(reader, "csv", "procedural", "set source: csv, or remove it");
+    }
     if (has_table && config.table.file.empty()) {
         fail_at({*reader.find("source"), reader.path_of("source")},
                 "csv needs csv.file, a table of headings and readings");

@@ -11,6 +11,7 @@
 #include "base/nearest_name.hpp"
 #include "config/old_names.hpp"
 #include "config/option_keys.hpp"
+#include "config/other_level.hpp"
 
 namespace pogosim {
 
@@ -172,6 +173,9 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     std::string hint = new_place(path);
     if (hint.empty() && path_.empty()) {
         hint = inner_place(map_, key, value);
+    }
+    if (hint.empty()) {
+        hint = other_level(path_, key, map_);
     }
     if (hint.empty()) {
         hint = did_you_mean(shown(key), names);

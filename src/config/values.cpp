@@ -126,6 +126,7 @@ constexpr std::array kSimilarUnits{
     SimilarUnit{"mm/s", "metres per second", 1e3},
     SimilarUnit{"mm2", "square metres", 1e6},
     SimilarUnit{"rad", "degrees", kDegree},
+    SimilarUnit{"degrees", "radians", 1.0 / kDegree},
     SimilarUnit{"rad/s", "degrees per second", kDegree},
 };
 

@@ -38,9 +38,21 @@ bool are_given(int16_t const* x, int16_t const* y, int16_t const* z) {
     return true;
 }
 
+/// One such call may be there to discard old data, before another one that waits.
+void look_for_calls_without_time(std::uint16_t timeout_ms) {
+    pogosim::Magnetometer& self = context.controller->magnetometer;
+    if (timeout_ms == 0 && self.did_not_wait) [[unlikely]] {
+        context.services->warn_once(
+            "magn_read_XYZ() is called again and again with timeout_ms 0: a real robot then does not look for data, "
+            "and returns 1 each time, as with magnetometer.timing: robot; new data come every 20 ms, so wait longer");
+    }
+    self.did_not_wait = timeout_ms == 0;
+}
+
 /// Afterwards the robot may be in another thread, see waiting.cpp.
 [[gnu::noinline]] bool wait_for_data(std::uint16_t timeout_ms) {
     if (context.world->magnetometer.timing == pogosim::MagnetometerTiming::at_once) {
+        look_for_calls_without_time(timeout_ms);
         return true;
     }
     pogosim::Controller const& self = *context.controller;

@@ -85,6 +85,7 @@ struct Accelerometer {
 struct Magnetometer {
     std::uint64_t samples = 0;           // how often it has read new data
     std::array<std::int16_t, 3> last{};  // x, y, z
+    bool did_not_wait = false;           // timing at_once: its last call had no time to wait
     std::int64_t taken = 0;              // data_number() of the last ones
 };
 

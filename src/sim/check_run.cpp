@@ -30,6 +30,24 @@ namespace pogosim {
 
 namespace {
 
+void check_picture(Scenario const& scenario, std::string const& film, std::string const& picture, Problems& problems) {
+    std::error_code error;
+    std::filesystem::path const folder = real_path(picture).parent_path();
+    if (!std::filesystem::is_directory(folder, error)) {
+        problems.add(
+            fmt::format("--picture: '{}' cannot be written: there is no folder '{}'; make it, or choose "
+                        "another file",
+                        picture, folder.string()));
+    }
+    if (is_used_file(scenario, film, picture)) {
+        problems.add(
+            fmt::format("--picture: '{}' is a file that the run reads or writes; choose another file", picture));
+    }
+    if (std::filesystem::exists(picture, error) && !std::filesystem::is_regular_file(picture, error)) {
+        problems.add(fmt::format("--picture: '{}' is there, and not a file; choose another name", picture));
+    }
+}
+
 void check_files(Scenario const& scenario, CheckOptions const& options, Problems& problems) {
     std::string const& film = options.run.film;
     problems.collect([&] { find_file(scenario, Setting::arena_file, scenario.arena_file); });
@@ -38,13 +56,8 @@ void check_files(Scenario const& scenario, CheckOptions const& options, Problems
     }
     problems.collect([&] { check_used_files(scenario, film); });
     check_output_files(scenario, film, problems);
-    if (!options.picture.empty() && is_used_file(scenario, film, options.picture)) {
-        problems.add(fmt::format("--picture: '{}' is a file that the run reads or writes; choose another file",
-                                 options.picture));
-    }
-    std::error_code error;
-    if (std::filesystem::exists(options.picture, error) && !std::filesystem::is_regular_file(options.picture, error)) {
-        problems.add(fmt::format("--picture: '{}' is there, and not a file; choose another name", options.picture));
+    if (!options.picture.empty()) {
+        check_picture(scenario, film, options.picture, problems);
     }
 }
 
@@ -80,8 +93,7 @@ Scenario without_outputs(Scenario scenario) {
     scenario.output.enable_console_logging = false;
     scenario.view.save_video_period_s = -1.0;
     scenario.flash_state.output_file.clear();
-    std::error_code ignored;
-    if (scenario.flash_state.create_if_missing && !std::filesystem::exists(scenario.flash_state.input_file, ignored)) {
+    if (starts_blank(scenario)) {
         scenario.flash_state.input_file.clear();
     }
     scenario.threads = 1;
@@ -193,12 +205,7 @@ void draw(Scenario const& scenario, Simulation& simulation, std::string const& f
     Canvas canvas(format.size);
     Painter().paint(canvas, format.camera, simulation.snapshots().take(parts_for(format.paint)), format.paint);
     try {
-        std::filesystem::path const path = real_path(file);  // a link stays, also one that leads nowhere yet
-        std::error_code ignored;
-        if (path.has_parent_path()) {
-            std::filesystem::create_directories(path.parent_path(), ignored);
-        }
-        write_png(path, canvas);
+        write_png(real_path(file), canvas);  // a link stays, also one that leads nowhere yet
     } catch (FileError const& error) {
         throw OutputError(
             fmt::format("--picture: '{}' cannot be written: {}; choose another file", file, error.what()));
@@ -206,8 +213,9 @@ void draw(Scenario const& scenario, Simulation& simulation, std::string const& f
 }
 
 std::string summary_of(World const& world) {
-    std::size_t const others = world.objects.size() - world.robots.size();
-    std::string text = counted(world.robots.size(), "robot");
+    std::size_t const robots = count_of_robots(world);
+    std::size_t const others = world.objects.size() - robots;
+    std::string text = counted(robots, "robot");
     if (others > 0) {
         text += ", " + counted(others, "other object");
     }
@@ -228,6 +236,9 @@ CheckResult check_run(ProgramImage const& program, Scenario const& written, Chec
     }
     check_files(scenario, options, problems);
     check_magnetometers(scenario, problems);
+    if (problems.empty() && starts_blank(scenario)) {
+        warn_of_blank_start(scenario);
+    }
     std::unique_ptr<Simulation> simulation = built_as_written(program, scenario, options, problems);
     bool const is_stand_in = simulation == nullptr;
     if (is_stand_in) {

@@ -242,6 +242,9 @@ FlashState::FlashState(Scenario const& scenario, World const& world, Controllers
     if (!files_.input_file.empty()) {
         input_ = open_input(scenario);
         input_records_ = restore(scenario, input_, robots_, controllers);
+        if (input_records_ == 0) {
+            warn_of_blank_start(scenario);
+        }
     }
 }
 
@@ -309,6 +312,35 @@ void check_flash_output(Scenario const& scenario) {
                         "begin with PGFLASH; choose another file, or remove it",
                         place_of(scenario, Setting::flash_output_file), files.output_file));
     }
+}
+
+bool starts_blank(Scenario const& scenario) {
+    FlashStateConfig const& files = scenario.flash_state;
+    std::error_code error;
+    if (files.input_file.empty()) {
+        return false;
+    }
+    if (!fs::exists(files.input_file, error)) {
+        return files.create_if_missing;
+    }
+    if (!fs::is_regular_file(files.input_file, error)) {
+        return false;  // opening a pipe would wait
+    }
+    std::string const head = flash_archive_head(0);
+    std::ifstream file(files.input_file, std::ios::binary);
+    std::string start(head.size(), '\0');
+    return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == head;
+}
+
+void warn_of_blank_start(Scenario const& scenario) {
+    FlashStateConfig const& files = scenario.flash_state;
+    if (!files.output_file.empty() && real_path(files.input_file) == real_path(files.output_file)) {
+        return;
+    }
+    log().warn(
+        "{}: '{}' has no records, so the flash memory of all robots is blank at the start; if it should not be, "
+        "check the name (where there is no file, create_if_missing makes one without records)",
+        place_of(scenario, Setting::flash_input_file), files.input_file);
 }
 
 void check_flash_input(Scenario const& scenario) {

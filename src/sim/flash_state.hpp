@@ -51,6 +51,13 @@ private:
 /// Throws ConfigError if the output file is there, and neither empty nor an archive: the run would replace it.
 void check_flash_output(Scenario const& scenario);
 
+/// Whether an input archive is named from which no robot gets anything: it has no records, or is not there and need not
+/// be.
+bool starts_blank(Scenario const& scenario);
+
+/// Says so, since a misspelt name looks the same. Not of an archive that is the output, too: a first run fills it.
+void warn_of_blank_start(Scenario const& scenario);
+
 /// Looks at the input archive without any robots. Throws ConfigError if it has to exist and does not, or is damaged.
 void check_flash_input(Scenario const& scenario);
 

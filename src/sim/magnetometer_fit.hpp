@@ -12,6 +12,7 @@ namespace pogosim {
 struct MagneticRow {
     double angle_rad = 0.0;  // of the field in the robot's frame
     Axes reading{};          // counts
+    std::size_t line = 0;    // of the table, for messages
 };
 
 struct MagneticFit {

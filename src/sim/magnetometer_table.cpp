@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "base/counted.hpp"
@@ -29,6 +30,52 @@ constexpr double kLargestAngle = 1e6;  // in either unit; beyond, turns and more
 /// Places of angle, x, y and z in a line.
 using Places = std::array<std::size_t, 1 + kAxisCount>;
 
+/// The delimiter with which a line has enough fields, if it does not have them with this one.
+std::optional<char> other_delimiter(std::string const& line, char delimiter) {
+    constexpr std::string_view kUsual = ";\t,|";
+    constexpr std::size_t kFields = std::tuple_size_v<Places>;
+    auto const found = std::ranges::find_if(
+        kUsual, [&](char other) { return other != delimiter && split_fields(line, other).size() >= kFields; });
+    bool const is_enough = split_fields(line, delimiter).size() >= kFields;
+    return is_enough || found == kUsual.end() ? std::nullopt : std::optional(*found);
+}
+
+std::string in_yaml(char delimiter) {
+    return delimiter == '\t' ? "\"\\t\"" : fmt::format("\"{}\"", delimiter);
+}
+
+/// What to do about a first line that does not name the columns.
+std::string header_advice(std::string const& line, std::vector<std::string> const& names, char delimiter) {
+    if (auto const other = other_delimiter(line, delimiter)) {
+        return fmt::format("Set magnetometer.csv.delimiter to {}", in_yaml(*other));
+    }
+    if (std::ranges::all_of(names, [](std::string const& name) { return parse_number(name).has_value(); })) {
+        return "These are numbers: set magnetometer.csv.has_header to false";
+    }
+    std::string const names_of_all =
+        names.size() == std::tuple_size_v<Places>
+            ? fmt::format(", perhaps as {{angle: {}, x: {}, y: {}, z: {}}}", in_quotes(names[0]), in_quotes(names[1]),
+                          in_quotes(names[2]), in_quotes(names[3]))
+            : "";
+    return fmt::format("Name the columns in magnetometer.csv.columns{}", names_of_all);
+}
+
+/// What may be wrong with a line that has no numbers; empty if that cannot be known.
+std::string row_advice(std::string const& line, char delimiter) {
+    if (auto const other = other_delimiter(line, delimiter)) {
+        return fmt::format(" (perhaps magnetometer.csv.delimiter: {})", in_yaml(*other));
+    }
+    bool const has_comma = std::ranges::any_of(split_fields(line, delimiter), [](std::string field) {
+        std::size_t const comma = field.find(',');
+        if (comma == std::string::npos) {
+            return false;
+        }
+        field[comma] = '.';
+        return parse_number(field).has_value();
+    });
+    return has_comma ? " (write 0.5 for 0,5)" : "";
+}
+
 Places places_in_header(std::string const& file, CsvLine const& line, MagnetometerTable const& table) {
     std::vector<std::string> const names = split_fields(line.text, table.delimiter.front());
     auto const& [angle, x, y, z] = table.columns;
@@ -42,10 +89,9 @@ Places places_in_header(std::string const& file, CsvLine const& line, Magnetomet
                 return std::ranges::find(wanted, name) == wanted.end();
             });
             std::string const near = did_you_mean(wanted[i], others);
-            throw ConfigError(
-                fmt::format("{}:{}: there is no column {} in {}{} Name the columns in magnetometer.csv.columns, or set "
-                            "magnetometer.csv.has_header to false",
-                            file, line.number, in_quotes(wanted[i]), in_quotes(line.text), near.empty() ? "." : near));
+            throw ConfigError(fmt::format("{}:{}: there is no column {} in {}{} {}", file, line.number,
+                                          in_quotes(wanted[i]), in_quotes(line.text), near.empty() ? "." : near,
+                                          header_advice(line.text, names, table.delimiter.front())));
         }
         places[i] = static_cast<std::size_t>(found - names.begin());
     }
@@ -98,7 +144,8 @@ void report(std::string const& file, InvalidRows const& invalid, MagnetometerTab
     if (invalid.count == 0) {
         return;
     }
-    std::string const found = fmt::format("expected {}, found {}", invalid.expected, in_quotes(invalid.first.text));
+    std::string const found = fmt::format("expected {}, found {}{}", invalid.expected, in_quotes(invalid.first.text),
+                                          row_advice(invalid.first.text, table.delimiter.front()));
     if (!table.skip_invalid_rows) {
         throw ConfigError(fmt::format("{}:{}: {} (magnetometer.csv.skip_invalid_rows: true skips such rows)", file,
                                       invalid.first.number, found));
@@ -132,7 +179,7 @@ std::vector<MagneticRow> read_magnetometer_table(std::filesystem::path const& pa
             invalid.note(line, "an angle up to a million and readings of 16 bits, from -32768 to 32767");
         } else {
             auto const [angle, x, y, z] = *numbers;
-            rows.push_back({.angle_rad = field_angle_rad - unit * angle, .reading = {x, y, z}});
+            rows.push_back({.angle_rad = field_angle_rad - unit * angle, .reading = {x, y, z}, .line = line.number});
         }
     }
     report(file, invalid, table);

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "base/log.hpp"
 #include "config/places.hpp"
 #include "sim/find_file.hpp"
+#include "sim/magnetometer_doubts.hpp"
 #include "sim/magnetometer_fit.hpp"
 #include "sim/magnetometer_table.hpp"
 
@@ -37,16 +40,18 @@ MagneticFit fit_to_table(Scenario const& scenario) {
     Axes const& field = scenario.magnetometer.spec.field.at_origin;
     std::filesystem::path const file = find_file(scenario, Setting::magnetometer_table, table.file);
     double const field_angle_rad = table.field_angle_rad.value_or(exact::atan2(field[1], field[0]));
+    std::string const place = place_of(scenario, Setting::magnetometer_table);
     std::vector<MagneticRow> const rows = read_magnetometer_table(file, table, field_angle_rad);
     auto const fit = fit_magnetic_curve(rows, table.harmonic_order, table.ridge);
     if (!fit) {
-        throw ConfigError(
-            fmt::format("{}: '{}' has {} at {}; a curve of harmonic_order {} needs at least {}, all around the "
-                        "turn. Take readings at more headings, or lower magnetometer.csv.harmonic_order",
-                        place_of(scenario, Setting::magnetometer_table), file.string(),
-                        counted(rows.size(), "valid row"), counted(count_headings(rows), "different heading"),
-                        table.harmonic_order, coefficient_count(table.harmonic_order)));
+        throw ConfigError(fmt::format(
+            "{}: '{}' has {} at {}; these cover {:.0f} of 360 degrees, and a curve of harmonic_order {} needs at least "
+            "{}, all around the turn.{} Take readings at more headings, or lower magnetometer.csv.harmonic_order",
+            place, file.string(), counted(rows.size(), "valid row"), counted(count_headings(rows), "different heading"),
+            360.0 - largest_gap_rad(rows) * 180.0 / std::numbers::pi, table.harmonic_order,
+            coefficient_count(table.harmonic_order), note_on_unit(rows, table, field_angle_rad)));
     }
+    warn_of_doubts(place, file.string(), rows, table, field_angle_rad);
     log().info("magnetometer: {} fitted to {} of '{}'; root mean square of the residuals: x {:.3g}, y {:.3g}, z {:.3g}",
                counted(static_cast<std::size_t>(table.harmonic_order), "harmonic"), counted(rows.size(), "row"),
                file.string(), fit->rms_error[0], fit->rms_error[1], fit->rms_error[2]);

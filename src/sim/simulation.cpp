@@ -311,7 +311,7 @@ std::string Simulation::summary(double wall_s) const {
     std::string const speed =
         times_real < 1000.0 ? fmt::format("{:.3g}", times_real) : fmt::format("{:.0f}", times_real);
     return fmt::format("{:.9g} s of {} simulated in {:.2f} s, {} x real time; {}", world_.time_s(),
-                       counted(world_.robots.size(), "robot"), wall_s, speed, record);
+                       counted(count_of_robots(world_), "robot"), wall_s, speed, record);
 }
 
 std::optional<Restart> Simulation::restart() {

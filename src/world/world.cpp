@@ -17,6 +17,14 @@ std::int16_t LightMap::at(Vec2 point_mm) const {
     return level[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
 }
 
+std::size_t count_of_robots(World const& world) {
+    std::size_t count = 0;
+    for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
+        count += world.spec_of(robot).emitters == Emitters::outline ? 0 : 1;
+    }
+    return count;
+}
+
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad) {
     bodies.position_mm[body] = position_mm;
     bodies.heading_rad[body] = wrap_angle(heading_rad);

@@ -207,6 +207,9 @@ constexpr std::uint16_t id_on_air(std::uint32_t id) {
     return static_cast<std::uint16_t>(id);
 }
 
+/// How many robots there are for people: not the walls and membranes that run programs.
+std::size_t count_of_robots(World const& world);
+
 /// Moves a body to another pose, at rest.
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad);
 

@@ -309,6 +309,52 @@ TEST(MagnetometerKeys, ValuesInUseAreReadBackAsTheyAre) {
     EXPECT_EQ(root.entries.back().value.find("csv"), nullptr);  // has no effect
 }
 
+TEST(MagnetometerKeys, AnglesThatLookLikeAnotherUnitAreWarnings) {
+    EXPECT_EQ(warnings_of("  world_field: {magnetic_north_angle: 1.57}\n"),
+              "x.yaml:7: magnetometer.world_field.magnetic_north_angle: 1.57 degrees is unusually small; if you meant "
+              "radians, write 89.9544\n");
+    EXPECT_EQ(
+        warnings_of("  angle_unit: rad\n  world_field: {magnetic_north_angle: 90}\n"),
+        "x.yaml:8: magnetometer.world_field.magnetic_north_angle: 90 rad is unusually large; if you meant degrees, "
+        "write 1.5708\n");
+    EXPECT_EQ(warnings_of("  domain: {theta: [-3.14, 3.14]}\n"),
+              "x.yaml:7: magnetometer.domain.theta.0: -3.14 degrees is unusually small, like another number of this "
+              "list; if you meant radians, write -179.909\n");
+    for (std::string const angles : {"  domain: {theta: [0, 360]}\n", "  robot_variation: {angle_offset: [-20, 20]}\n",
+                                     "  procedural: {ellipse: {ellipse_rotation: [16.5]}}\n",
+                                     "  procedural: {ellipse: {sensor_phase_offset: [7]}}\n",
+                                     "  source: csv\n  csv: {file: a.csv, calibration_field_angle: 45}\n"}) {
+        EXPECT_NE(warnings_of("  angle_unit: rad\n" + angles).find(" rad is unusually large"), std::string::npos)
+            << angles;
+        EXPECT_EQ(warnings_of(angles), "");
+    }
+    for (std::string const angles :
+         {"  world_field: {magnetic_north_angle: 5}\n", "  world_field: {magnetic_north_angle: 0}\n",
+          "  robot_variation: {angle_offset: [-1.5, 1.5]}\n", "  procedural: {ellipse: {ellipse_rotation: [1.5]}}\n",
+          "  angle_unit: rad\n  domain: {theta: [0, 6.2832]}\n"}) {
+        EXPECT_EQ(warnings_of(angles), "");
+    }
+}
+
+TEST(MagnetometerKeys, MinorRadiusAboveTheMajorOneIsAWarning) {
+    EXPECT_EQ(warnings_of("  procedural: {ellipse: {minor_radius: [170]}}\n"),
+              "x.yaml:7: magnetometer.procedural.ellipse: minor_radius, [170], goes above major_radius, [160]: "
+              "the long axis is then at 90 degrees to ellipse_rotation; if it should not be, exchange them\n");
+    EXPECT_EQ(warnings_of("  procedural: {ellipse: {major_radius: [150, 170], minor_radius: [140, 160]}}\n"), "");
+}
+
+TEST(MagnetometerKeys, MapOfTheOtherSourceIsAWarning) {
+    EXPECT_EQ(warnings_of("  csv: {file: a.csv}\n"),
+              "x.yaml:7: magnetometer.csv: has no effect with source: procedural, the default; set source: csv, or "
+              "remove it\n");
+    EXPECT_EQ(warnings_of("  source: procedural\n  csv: {file: a.csv}\n"),
+              "x.yaml:8: magnetometer.csv: has no effect with source: procedural; set source: csv, or remove it\n");
+    EXPECT_EQ(warnings_of(kCsv + "  csv: {file: a.csv}\n  procedural: {ellipse: {major_radius: [5]}}\n"),
+              "x.yaml:9: magnetometer.procedural: has no effect with source: csv; remove it, or set source: "
+              "procedural\n");
+    EXPECT_EQ(warnings_of("  csv: {}\n"), "");
+}
+
 TEST(MagnetometerKeys, OptionsOfABatchStandAnywhere) {
     Scenario const scenario = load(kRobots +
                                    "magnetometer:\n"

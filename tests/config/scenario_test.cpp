@@ -810,6 +810,30 @@ TEST(Scenario, SensorsAreIdealUnlessTheConfigurationSaysOtherwise) {
     EXPECT_FALSE(robot("").battery);
 }
 
+TEST(Scenario, LampsWithLevelsOfTheSensorsConverterAreAWarning) {
+    auto const warnings_of = [](std::string const& sensors, std::string const& lamp) {
+        Warnings const warnings;
+        load("objects:\n  robots: {type: pogobot, geometry: disk, " + sensors + "}\n  lamp: {type: " + lamp + "}\n");
+        return warnings.text();
+    };
+    std::string const ten = "photosensors_bits: 10";
+    std::string const spot = "static_light, geometry: global, ";
+    EXPECT_EQ(
+        warnings_of(ten, spot + "value: 800"),
+        "x.yaml:3: objects.lamp: no lamp is brighter than 800, which light sensors of 10 bits, such as those of "
+        "'robots', read as 25: the levels of lamps go up to 32767 with any photosensors_bits; perhaps they should "
+        "be 32 times higher\n");
+    EXPECT_NE(warnings_of("sensor_model: robot", spot + "value: 1023"), "");
+    EXPECT_EQ(warnings_of(ten, spot + "value: 1024"), "");
+    EXPECT_EQ(warnings_of(ten, spot + "value: 0"), "");
+    EXPECT_EQ(warnings_of(ten, spot + "value: 0, light_mode: gradient, edge_value: 2000"), "");
+    EXPECT_EQ(warnings_of(ten, spot + "value: 800, photo_start_at: 1"), "");
+    EXPECT_EQ(warnings_of(ten, spot + "value: 800}\n  sun: {type: " + spot + "value: 20000"), "");
+    EXPECT_EQ(warnings_of(ten, "rotating_ray_of_light, geometry: global, value: 800"), "");
+    EXPECT_EQ(warnings_of("photosensors_bits: 13", spot + "value: 800"), "");
+    EXPECT_EQ(warnings_of("radius: 26.5", spot + "value: 800"), "");
+}
+
 TEST(Scenario, SensorModelSetsTheDefaultsOfItsKeys) {
     SensorSpec const sensors = robot("    sensor_model: robot\n").sensors;
     EXPECT_EQ(sensors.photosensor_bits, 10);

@@ -88,6 +88,23 @@ TEST(UnknownKey, PlaceOneLevelFurtherInIsNamed) {
               Lines{"x.yaml:6: unknown key 'others' is ignored; did you mean 'objects.others'?"});
 }
 
+TEST(UnknownKey, LevelThatHasItIsNamed) {
+    for (std::string const key : {"sensor_model", "imu_gravity", "battery", "photosensors_bits", "radius"}) {
+        EXPECT_EQ(warnings_of(kRobots + key + ": 5\n"),
+                  Lines{"x.yaml:6: unknown key '" + key + "' is ignored; it belongs in a category, as objects.robots." +
+                        key});
+    }
+    EXPECT_EQ(warnings_of(kRobots + "light_mode: gradient\n"),
+              Lines{"x.yaml:6: unknown key 'light_mode' is ignored; it belongs in a category, as "
+                    "objects.<category>.light_mode"});
+    for (std::string const key : {"magnetometer", "flash_state", "time_step"}) {
+        EXPECT_EQ(warnings_of(kRobots + "    " + key + ": {}\n"),
+                  Lines{"x.yaml:6: unknown key 'objects.robots." + key + "' is ignored; it belongs at the top level"});
+    }
+    EXPECT_EQ(load_error(kRobots + "battery: {capacity_mah: 3}\n", {.overrides = {}, .strict = true}),
+              "x.yaml:6: unknown key 'battery'; it belongs in a category, as objects.robots.battery (--strict)");
+}
+
 TEST(UnknownKey, BracesAndPercentSignsInItAreShownAsTheyAre) {
     EXPECT_EQ(warnings_of(kRobots + "'{}%s': 3\n"), Lines{"x.yaml:6: unknown key '{}%s' is ignored"});
 }

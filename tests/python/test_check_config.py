@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flash_files import EMPTY
 from PIL import Image
 from running import ROOT, Run, Settings, compile_text, example, run, run_command, write_scene
 
@@ -107,6 +108,17 @@ def test_right_configuration_is_one_line_and_exit_code_0(tmp_path: Path) -> None
     result = check(example("helloworld"), tmp_path, settings)
     assert (result.code, result.errors) == (0, "")
     assert result.output == "scene.yaml: no mistakes found: 3 robots, 2 other objects, 1 lamp\n"
+
+
+def test_walls_and_membranes_with_a_program_are_not_counted_as_robots(tmp_path: Path) -> None:
+    settings = {
+        "objects.walls": {"type": "pogowall", "geometry": "arena", "nb": 1},
+        "objects.membrane": {"type": "membrane", "geometry": "disk", "radius": 60, "num_dots": 20, "nb": 1},
+        "objects.heavy": {"type": "pogobject", "geometry": "disk", "radius": 50, "nb": 1},
+        "simulation_time": 0.1,
+    }
+    assert check(example("helloworld"), tmp_path, settings).output.endswith(": 4 robots, 2 other objects\n")
+    assert "0.1 s of 4 robots simulated" in run(example("helloworld"), tmp_path, settings).summary
 
 
 @pytest.mark.parametrize("name", ["run_and_tumble", "hanabi", "phototaxis", "walls", "vicsek", "heartbeat_sdk"])
@@ -278,9 +290,17 @@ def test_program_is_started_without_leaving_a_trace(tmp_path: Path) -> None:
 
 
 def test_archive_of_flash_memory_is_neither_made_nor_replaced(tmp_path: Path) -> None:
-    files = {"flash_state": {"input_file": "in.flash", "output_file": "new/out.flash"}}
+    files = {"flash_state": {"input_file": "in.flash", "output_file": "in.flash"}}
     result = check(example("helloworld"), tmp_path, files)
     assert (result.code, result.errors) == (0, "")
+    files["flash_state"]["output_file"] = "new/out.flash"
+    blank = "flash_state.input_file: 'in.flash' has no records, so the flash memory of all robots is blank at the start"
+    result = check(example("helloworld"), tmp_path, files)
+    assert (result.code, len(result.errors.splitlines()), result.errors.count(blank)) == (0, 1, 1)
+    (tmp_path / "in.flash").write_bytes(EMPTY)
+    again = check(example("helloworld"), tmp_path, files)
+    assert again.errors.partition("[warning]")[2] == result.errors.partition("[warning]")[2] != ""
+    (tmp_path / "in.flash").unlink()
     (tmp_path / "broken.flash").write_text("no archive")
     assert places(check(example("helloworld"), tmp_path, {"flash_state": {"input_file": "broken.flash"}})) == [
         "flash_state.input_file"
@@ -587,10 +607,10 @@ def test_picture_shows_the_start_and_is_all_that_is_written(tmp_path: Path) -> N
     (tmp_path / "kept.txt").write_text("kept")
     write_scene(tmp_path, {"window_width": 300, "window_height": 200})
     before = set(contents(tmp_path))
-    result = run_command(program, tmp_path, [*CHECK, "--picture", "new/start.png"])
+    result = run_command(program, tmp_path, [*CHECK, "--picture", "start.png"])
     assert (result.code, result.errors) == (0, "")
-    assert set(contents(tmp_path)) - before == {"new", "new/start.png"}
-    with Image.open(tmp_path / "new" / "start.png") as picture:
+    assert set(contents(tmp_path)) - before == {"start.png"}
+    with Image.open(tmp_path / "start.png") as picture:
         assert picture.size == (300, 200)
         red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB")).astype(int), 2, 0)
     assert np.any(green > 2 * np.maximum(red, blue))  # the LEDs that user_init has set
@@ -606,6 +626,10 @@ def test_picture_is_not_drawn_of_a_wrong_configuration(tmp_path: Path) -> None:
         (["--picture", "start.png"], "--picture requires --check-config"),
         (["--check-config", "--picture", "start.jpg"], "expected the name of a picture, .png, found 'start.jpg'"),
         (["--check-config", "--picture", "scene.yaml/start.png"], "'scene.yaml/start.png' cannot be written"),
+        (
+            ["--check-config", "--picture", "new/start.png"],
+            "'new/start.png' cannot be written: there is no folder '",
+        ),
         (["--check-config", "--picture"], "--picture needs a value"),
     ],
 )

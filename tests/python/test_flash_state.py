@@ -141,6 +141,28 @@ def test_missing_input_becomes_an_archive_without_records(program: Compile, tmp_
     assert "there was no" not in again.output
 
 
+def test_input_without_records_is_a_warning_in_each_run_that_nothing_is_restored(
+    program: Compile, tmp_path: Path
+) -> None:
+    """A misspelt name looks the same, and the program then finds no calibration."""
+    said = "flash_state.input_file: 'x' has no records, so the flash memory of all robots is blank at the start"
+    for _ in range(2):
+        result = flash(program, tmp_path, "read", {"input_file": "x", "output_file": "y"}, {"simulation_time": 0.1})
+        assert (result.code, result.errors.count(said)) == (0, 1), result.errors
+    write_options(tmp_path, {"parameters.kind": "read", "flash_state": {"input_file": "z"}})
+    said = said.replace("'x'", "'z'")
+    for _ in range(2):
+        many = batch(tmp_path, "-r", "2", program=program("flash.c"))
+        assert (many.code, many.errors.count(said)) == (0, 1), many.errors
+    assert (tmp_path / "z").read_bytes() == EMPTY
+
+
+def test_first_run_of_an_archive_that_goes_from_run_to_run_has_no_warning(program: Compile, tmp_path: Path) -> None:
+    for _ in range(2):
+        result = flash(program, tmp_path, "write", {"input_file": "x", "output_file": "./x"})
+        assert (result.code, result.errors.count("has no records")) == (0, 0)
+
+
 def test_missing_input_may_be_an_error(program: Compile, tmp_path: Path) -> None:
     result = flash(program, tmp_path, "read", {"input_file": "x", "create_if_missing": False, "output_file": "y"})
     assert result.code == 2

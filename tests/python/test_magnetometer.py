@@ -16,7 +16,7 @@ from in_process import pogosim
 from pogosim import Simulation
 from pogosim.calibration.command import main
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, Run, compile_program, run, run_command, write_scene
+from running import PROGRAMS, ROOT, Run, compile_program, compile_text, run, run_command, write_scene
 
 SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 REFERENCE = ROOT / "conf" / "example_magnetometer_reference.csv"
@@ -185,8 +185,28 @@ def test_on_a_robot_programs_wait_for_new_data(reader: Path, tmp_path: Path) -> 
 @pytest.mark.parametrize(("timing", "status"), [("robot", 1), ("at_once", 0)])
 def test_timeout_of_zero_reads_nothing_on_a_robot(reader: Path, tmp_path: Path, timing: str, status: int) -> None:
     given = {"magnetometer": {"timing": timing}, "parameters": {"timeout_ms": 0}, "simulation_time": 0.5}
-    rows = run(reader, tmp_path, given).frame()
+    result = run(reader, tmp_path, given)
+    rows = result.frame()
     assert set(rows.loc[rows["time"] > 0.1, "status"]) == {status}
+    assert result.errors.count("magn_read_XYZ() is called again and again with timeout_ms 0") == (timing == "at_once")
+
+
+DISCARDS = """#include "pogobase.h"
+typedef struct { int16_t x, y, z; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static void user_init(void) {}
+static void user_step(void) {
+    magn_read_XYZ(&mydata->x, &mydata->y, &mydata->z, 0);
+    magn_read_XYZ(&mydata->x, &mydata->y, &mydata->z, 20);
+}
+int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+"""
+
+
+def test_program_that_discards_old_data_before_it_waits_has_no_warning(tmp_path: Path) -> None:
+    result = run(compile_text(tmp_path, DISCARDS), tmp_path, {"simulation_time": 0.5})
+    assert (result.code, result.errors) == (0, "")
 
 
 def test_program_of_the_sdk_reads_it(tmp_path: Path) -> None:
@@ -224,6 +244,34 @@ WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
         {},
         "at 1 different heading;",
     ),
+    "radians": (
+        "angle,mag_x,mag_y,mag_z\n" + "".join(f"{math.radians(5 * i):.4f},1,2,3\n" for i in range(72)),
+        {},
+        "at 72 different headings; these cover 6 of 360 degrees, and a curve of harmonic_order 2 needs at least 5, all "
+        "around the turn. If the table has radians, set magnetometer.csv.input_angle_unit to radians.",
+    ),
+    "semicolons": (
+        "angle;mag_x;mag_y;mag_z\n1;2;3;4\n",
+        {},
+        """there is no column 'angle' in 'angle;mag_x;mag_y;mag_z'. Set magnetometer.csv.delimiter to ";"\n""",
+    ),
+    "tabs": ("angle\tmag_x\tmag_y\tmag_z\n", {}, 'Set magnetometer.csv.delimiter to "\\t"\n'),
+    "other names": (
+        "heading,mx,my,mz\n1,2,3,4\n",
+        {},
+        "Name the columns in magnetometer.csv.columns, perhaps as {angle: 'heading', x: 'mx', y: 'my', z: 'mz'}\n",
+    ),
+    "numbers alone": ("1,2,3,4\n", {}, "These are numbers: set magnetometer.csv.has_header to false\n"),
+    "decimal commas": (
+        "angle;mag_x;mag_y;mag_z\n0,5;1;2;3\n",
+        {"delimiter": ";", "skip_invalid_rows": False},
+        "found '0,5;1;2;3' (write 0.5 for 0,5)",
+    ),
+    "semicolons without a header": (
+        "0.5;1;2;3\n",
+        {"has_header": False, "skip_invalid_rows": False},
+        """found '0.5;1;2;3' (perhaps magnetometer.csv.delimiter: ";")""",
+    ),
     "invalid row": (
         "angle,mag_x,mag_y,mag_z\n0,1,2,3\n# more\n10,1,x,3\n",
         {"skip_invalid_rows": False},
@@ -259,7 +307,7 @@ def test_table_that_determines_no_curve_is_refused(reader: Path, tmp_path: Path,
 def rows_of_table(separator: str = ",") -> list[str]:
     return [
         separator.join(
-            [str(10 * i), *(f"{400 + 100 * f(math.radians(10 * i)):.0f}" for f in (math.cos, math.sin)), "5"]
+            [str(10 * i), *(f"{400 + 100 * f(math.radians(-10 * i)):.0f}" for f in (math.cos, math.sin)), "5"]
         )
         for i in range(36)
     ]
@@ -313,7 +361,7 @@ def test_rows_that_no_sensor_can_have_measured_are_skipped(reader: Path, tmp_pat
 
 def test_each_axis_has_the_noise_of_its_own_residuals(reader: Path, tmp_path: Path) -> None:
     def reading(heading: int, sign: int) -> str:
-        x, y = 400 + 100 * math.cos(math.radians(heading)), 400 + 100 * math.sin(math.radians(heading))
+        x, y = 400 + 100 * math.cos(math.radians(heading)), 400 - 100 * math.sin(math.radians(heading))
         return f"{heading},{x},{y + 20 * sign},{400 + 5 * sign}"
 
     rows = [reading(10 * i, sign) for i in range(36) for sign in (-1, 1)]
@@ -323,6 +371,58 @@ def test_each_axis_has_the_noise_of_its_own_residuals(reader: Path, tmp_path: Pa
     assert found["mag_x"].std().to_numpy() == pytest.approx(0, abs=0.6)
     assert found["mag_y"].std().to_numpy() == pytest.approx(20, rel=0.15)
     assert found["mag_z"].std().to_numpy() == pytest.approx(5, rel=0.15)
+
+
+def angle_of(row: str) -> int:
+    return int(row.partition(",")[0])
+
+
+HALVES = [
+    ("below a half turn", [row for row in rows_of_table() if angle_of(row) <= 180], 180),
+    ("a sector is missing", [row for row in rows_of_table() if not 45 <= angle_of(row) <= 215], 180),
+    ("a quarter is missing", [row for row in rows_of_table() if not 0 < angle_of(row) < 100], 100),
+]
+
+
+@pytest.mark.parametrize(("rows", "gap"), [half[1:] for half in HALVES], ids=[half[0] for half in HALVES])
+def test_headings_on_one_side_are_a_warning(reader: Path, tmp_path: Path, rows: list[str], gap: int) -> None:
+    result = table_run(reader, tmp_path, "\n".join(["angle,mag_x,mag_y,mag_z", *rows]), {})
+    assert result.code == 0, result.text
+    (warning,) = result.errors.splitlines()
+    assert f"magnetometer.csv.file: 'table.csv' has no readings in {gap} of 360 degrees, where" in warning
+    assert "radians" not in warning
+
+
+def test_headings_all_around_the_turn_are_enough(reader: Path, tmp_path: Path) -> None:
+    rows = [row for row in rows_of_table() if angle_of(row) % 90 == 0]
+    result = table_run(reader, tmp_path, "\n".join(["angle,mag_x,mag_y,mag_z", *rows]), {"harmonic_order": 1})
+    assert (result.code, result.errors) == (0, "")
+
+
+def test_table_of_headings_that_count_the_other_way_is_a_warning(reader: Path, tmp_path: Path) -> None:
+    rows = [f"{-angle_of(row)},{row.partition(',')[2]}" for row in rows_of_table()]
+    result = table_run(reader, tmp_path, "\n".join(["angle,mag_x,mag_y,mag_z", *rows]), {})
+    assert result.code == 0
+    (warning,) = result.errors.splitlines()
+    assert "as the headings of 'table.csv' grow, x and y run around their ellipse the other way" in warning
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_outliers_of_a_table_are_named(reader: Path, tmp_path: Path, count: int) -> None:
+    rows = rows_of_table()
+    for i in range(count):
+        rows[7 + 11 * i] = f"{70 + 110 * i},9999,{350 + i},5"
+    result = table_run(reader, tmp_path, "\n".join(["angle,mag_x,mag_y,mag_z", *rows]), {})
+    assert result.code == 0
+    (warning,) = result.errors.splitlines()
+    more = "" if count == 1 else ", like 2 more"
+    assert f"table.csv:9: 9999, 350, 5 is far from the curve of the other rows{more}; it distorts the fit" in warning
+    assert "the noise of all robots larger" in warning
+    rows[7] = "70,434,330,5"  # 24 counts beside the curve
+    for i in range(1, count):
+        rows[7 + 11 * i] = rows_of_table()[7 + 11 * i]
+    result = table_run(reader, tmp_path, "\n".join(["angle,mag_x,mag_y,mag_z", *rows]), {})
+    assert "table.csv:9: 434, 330, 5 is far from the curve" in result.errors
 
 
 def test_data_file_does_not_replace_the_table(reader: Path, tmp_path: Path) -> None:

@@ -217,6 +217,19 @@ WRONG: dict[str, tuple[list[str], str, str]] = {
     "narrow": ([f"{i / 10},{i % 7},{i % 5},3" for i in range(90)], "angle,mag_x,mag_y,mag_z", "cover 9 of 360"),
     "no signal": (lines_of(FLAT), "angle,mag_x,mag_y,mag_z", "hardly depend on the heading"),
     "constant": ([f"{5 * i},400,400,400" for i in range(72)], "angle,mag_x,mag_y,mag_z", "hardly depend"),
+    "half a turn": (OWN[:37], "angle,mag_x,mag_y,mag_z", "no readings in 180 of 360 degrees"),
+    "a sector": ([*OWN[:9], *OWN[44:]], "angle,mag_x,mag_y,mag_z", "no readings in 180 of 360 degrees"),
+    "decimal commas": (
+        [row.replace(".", ",") for row in lines_of(table(coefficients(160.0, 140.0, 0.3, 0.1)), ";")],
+        "angle;mag_x;mag_y;mag_z",
+        "; write 0.5 for 0,5; expected the columns",
+    ),
+    "one wrong reading of a few": (
+        [*OWN[0:48:6], "240,9999,400,425", *OWN[54::6]],
+        "angle,mag_x,mag_y,mag_z",
+        "table.csv: the reading 9999, 400, 425 at 240 degrees is far from the curve of the other rows; correct",
+    ),
+    "clockwise the other way": (lines_of(table(MIRRORED)), "angle,mag_x,mag_y,mag_z", "use its table with source: csv"),
     "y up": (lines_of(table(MIRRORED)), "angle,mag_x,mag_y,mag_z", "add --y-up"),
 }
 
@@ -234,6 +247,19 @@ def test_table_that_determines_no_ellipse_is_refused(
     assert output.err.startswith("pogosim calibrate magnetometer: ")
     assert expected in output.err
     assert not (tmp_path / "picture.png").exists()
+
+
+def test_outliers_are_a_warning_and_the_rest_is_fitted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = OWN.copy()
+    for place in (10, 30, 50):
+        angle, x, y, z = rows[place].split(",")
+        rows[place] = f"{angle},{float(x) + 60:.0f},{y},{z}"
+    assert called(tmp_path, written(tmp_path, rows)) == 0
+    errors = capsys.readouterr().err
+    assert len(errors.splitlines()) == 1
+    assert " at 50 degrees is far from the curve of the other rows, like 2 more; correct or delete it" in errors
+    assert called(tmp_path, written(tmp_path, OWN)) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_y_up_reads_what_would_be_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -52,12 +52,16 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate 
         from pogosim.magnetometer.block import configuration_block  # takes a while
         from pogosim.magnetometer.figure import picture
         from pogosim.magnetometer.fit import check_ellipse, fit_curve
+        from pogosim.magnetometer.outliers import doubt
         from pogosim.magnetometer.table import read_reading_table
 
         field_angle_rad = math.radians(options.field_angle)
         table = read_reading_table(Path(options.table), options.angle_unit, options.y_up, lambda text: warn(prog, text))
         fitted = fit_curve(table, options.harmonics, field_angle_rad)
-        check_ellipse(fitted, table.source)
+        doubts = doubt(table, options.harmonics, field_angle_rad)
+        check_ellipse(fitted, table.source, doubts)
+        if doubts:
+            warn(prog, doubts)
         block = configuration_block(fitted, field_angle_rad)
         with partial_output(place) as partial:
             partial.write_bytes(picture(table, fitted, field_angle_rad))

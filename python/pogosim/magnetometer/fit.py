@@ -19,6 +19,7 @@ HIGHEST_ORDER = 32  # as in the simulator
 LARGEST_CONDITION = 1e8  # of the squares of the basis
 DIFFERENT_RAD = 1e-3
 SIGNIFICANT = 4.0  # standard errors
+LARGEST_GAP_RAD = math.pi / 2.0 + 1e-6  # between headings, beyond which the ellipse is a guess
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,11 @@ def fit_curve(table: ReadingTable, order: int, field_angle_rad: float) -> CurveF
             f"degrees; a curve of {order} harmonics needs more than {count} rows, at {count} headings or more all "
             "around the turn: take readings at more headings, or lower --harmonics"
         )
+    if (gap := largest_gap(angle)) > LARGEST_GAP_RAD:
+        raise CalibrationError(
+            f"{table.source} has no readings in {math.degrees(gap):.0f} of 360 degrees: the curve is a guess there, "
+            "and the ellipse may be wrong; take readings at headings all around the turn"
+        )
     coefficients = np.asarray(np.linalg.solve(squares, matrix.T @ table.reading), dtype=np.float64)
     covariance = np.asarray(np.linalg.inv(squares), dtype=np.float64)
     residual = table.reading - matrix @ coefficients
@@ -121,8 +127,9 @@ def ellipse_of(coefficients: Floats) -> Ellipse:
     matrix = coefficients[1:3, :2].T
     if np.linalg.det(matrix) < 0.0:
         raise CalibrationError(
-            "as the angle of the table grows, readings run around the ellipse the other way; if its angles are "
-            "counter-clockwise, add --y-up"
+            "as the angle of the table grows, readings run around the ellipse the other way than with source: "
+            "procedural; if its angles count counter-clockwise seen from above, add --y-up. If they count clockwise, "
+            "the sensor of this robot runs that way: use its table with source: csv, which fits it as it is"
         )
     left, (major, minor), right = np.linalg.svd(matrix)
     if np.linalg.det(left) < 0.0:  # both are reflections
@@ -133,15 +140,16 @@ def ellipse_of(coefficients: Floats) -> Ellipse:
     return Ellipse(float(major), float(minor), rotation, math.atan2(right[1, 0], right[0, 0]))
 
 
-def check_ellipse(fitted: CurveFit, source: str) -> None:
-    """Raise CalibrationError if readings do not go around an ellipse."""
+def check_ellipse(fitted: CurveFit, source: str, doubt: str = "") -> None:
+    """Raise CalibrationError if readings do not go around an ellipse; `doubt`: about rows that explain it."""
     size = math.sqrt(float(np.sum(fitted.coefficients[1:3, :2] ** 2)))
     error = math.sqrt(float(np.sum(fitted.errors()[1:3, :2] ** 2)))
     if size <= SIGNIFICANT * error or size < 1e-9 * (1.0 + float(np.abs(fitted.coefficients[0]).max())):
-        raise CalibrationError(
+        unclear = (
             f"{source}: x and y hardly depend on the heading: the first harmonic has {size:.3g} +- {error:.2g} counts; "
             "check that the angles belong to the readings"
         )
+        raise CalibrationError(doubt or unclear)
 
 
 def about_phase(fitted: CurveFit, phase: float) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,7 @@ SYNONYMS = {
     "y": ("mag_y", "magn_y", "my", "y"),
     "z": ("mag_z", "magn_z", "mz", "z"),
 }
+DECIMAL_COMMA = re.compile(r"[-+]?[0-9]+,[0-9]+")
 EXPECTED = "expected the columns angle, mag_x, mag_y and mag_z"
 TURN = {"degrees": 360.0, "radians": 2.0 * math.pi}
 MOST_COLUMNS = 1000
@@ -134,14 +136,21 @@ def numbers(rows: pd.DataFrame, path: Path, warn: Warn) -> pd.DataFrame:
     for axis in AXES:
         converted[axis] = converted[axis].where(converted[axis].between(*COUNTS))
     complete = converted.dropna()
-    if complete.empty:
-        raise CalibrationError(f"{path} has no row of four numbers, an angle and readings of 16 bits; {EXPECTED}")
     if left_out := len(rows) - len(complete):
         first = int(np.flatnonzero(converted.isna().any(axis="columns").to_numpy())[0])
+        cells = rows.iloc[first].tolist()
+        has_comma = any(DECIMAL_COMMA.fullmatch(str(cell).strip()) for cell in cells)
+        found = f"the first one is {shortened(cells)}{'; write 0.5 for 0,5' if has_comma else ''}"
+        if complete.empty:
+            raise CalibrationError(
+                f"{path} has no row of four numbers, an angle and readings of 16 bits: {found}; {EXPECTED}"
+            )
         warn(
             f"{path}: {left_out} of {len(rows)} rows are not four numbers, an angle and readings of 16 bits, and are "
-            f"left out; the first one is {shortened(rows.iloc[first].tolist())}"
+            f"left out; {found}"
         )
+    if complete.empty:
+        raise CalibrationError(f"{path} has no row of four numbers, an angle and readings of 16 bits; {EXPECTED}")
     kept: pd.DataFrame = complete.reset_index(drop=True)
     return kept
 
