@@ -8,7 +8,7 @@
 #include "base/escaped.hpp"
 #include "base/nearest_name.hpp"
 #include "pogosim/version.h"
-#include "robot/crash_handler.hpp"
+#include "process/crash_handler.hpp"
 
 namespace pogosim {
 

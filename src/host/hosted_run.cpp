@@ -4,11 +4,10 @@
 
 #include <chrono>
 #include <exception>
-#include <utility>
 
 #include "base/error.hpp"
 #include "config/scenario.hpp"
-#include "robot/program_image.hpp"
+#include "robot/context.hpp"
 #include "sim/used_files.hpp"
 
 using namespace pogosim;
@@ -40,16 +39,26 @@ char letter_of(LogLine const& line) {
 
 }  // namespace
 
+pogosim::HostedProgram::HostedProgram(std::filesystem::path const& file) {
+    WithoutRobot const nobody;
+    image_ = load_program(file);
+}
+
+pogosim::HostedProgram::~HostedProgram() {
+    WithoutRobot const nobody;
+    image_.reset();
+}
+
 pogosim_run::pogosim_run(pogosim_run_options const& options) {
     LogOptions logging;
     logging.on_line = [this](LogLine const& line) { lines_.push_back(line); };
     log_ = std::make_shared<Log>(logging);
     LogScope const scope(log_.get());
-    ProgramImage program = load_program(options.program);
+    program_.emplace(options.program);
     RunOptions run_options;
     run_options.log = log_;
     run_options.conversions = options.strict != 0 ? Conversions::typed : Conversions::lenient;
-    simulation_ = std::make_unique<Simulation>(std::move(program), scenario_of(options), run_options);
+    simulation_ = std::make_unique<Simulation>(program_->image(), scenario_of(options), run_options);
     for (Category const& category : simulation_->world().categories) {
         categories_ += (categories_.empty() ? "" : "\n") + category.name;
     }

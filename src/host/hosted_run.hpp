@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +12,27 @@
 #include "base/fair_mutex.hpp"
 #include "base/log.hpp"
 #include "pogosim/host.h"
+#include "process/program_image.hpp"
 #include "sim/simulation.hpp"
+
+namespace pogosim {
+
+/// A program that is loaded, and unloaded again behind the run. What constructors and destructors of its static objects
+/// do is done by no robot, although one of another run may have run last in this thread.
+class HostedProgram {
+public:
+    explicit HostedProgram(std::filesystem::path const& file);
+    ~HostedProgram();
+    HostedProgram(HostedProgram const&) = delete;
+    HostedProgram& operator=(HostedProgram const&) = delete;
+
+    ProgramImage const& image() const { return *image_; }
+
+private:
+    std::optional<ProgramImage> image_;
+};
+
+}  // namespace pogosim
 
 /// As declared in pogosim/host.h. Functions throw what the functions there turn into a status. Functions of host.h hold
 /// `in_use` while they look at a run or change it; step() passes it on between two steps.
@@ -45,6 +66,7 @@ private:
     std::vector<pogosim::LogLine> lines_;
     std::string messages_;
     std::shared_ptr<pogosim::Log> log_;
+    std::optional<pogosim::HostedProgram> program_;
     std::unique_ptr<pogosim::Simulation> simulation_;
     std::string categories_;
     std::string columns_;

@@ -6,9 +6,9 @@
 #include <mutex>
 #include <string>
 
+#include "process/crash_handler.hpp"
+#include "process/program_image.hpp"
 #include "robot/context.hpp"
-#include "robot/crash_handler.hpp"
-#include "robot/program_image.hpp"
 #include "robot/require_robot.hpp"
 
 using pogosim::BoundVariable;

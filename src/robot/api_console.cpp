@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/log.hpp"
+#include "process/crash_handler.hpp"
+#include "process/forked_child.hpp"
 #include "robot/context.hpp"
-#include "robot/crash_handler.hpp"
-#include "robot/forked_child.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/waiting.hpp"
 

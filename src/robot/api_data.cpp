@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "process/crash_handler.hpp"
 #include "robot/context.hpp"
-#include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/slip.hpp"
 

@@ -6,11 +6,11 @@
 #include <cstdlib>
 
 #include "pogosim/program.h"
+#include "process/crash_handler.hpp"
+#include "process/crash_message.hpp"
+#include "process/forked_child.hpp"
 #include "robot/chips.hpp"
 #include "robot/context.hpp"
-#include "robot/crash_handler.hpp"
-#include "robot/crash_message.hpp"
-#include "robot/forked_child.hpp"
 #include "robot/require_robot.hpp"
 
 using pogosim::context;

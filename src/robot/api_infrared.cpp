@@ -8,9 +8,9 @@
 
 #include "base/log.hpp"
 #include "pogosim/program.h"
+#include "process/crash_handler.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
-#include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/slip.hpp"

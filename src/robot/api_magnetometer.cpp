@@ -5,8 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "process/crash_handler.hpp"
 #include "robot/context.hpp"
-#include "robot/crash_handler.hpp"
 #include "robot/magnetometer.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"

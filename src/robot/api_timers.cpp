@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "pogosim/program.h"
+#include "process/forked_child.hpp"
 #include "robot/context.hpp"
-#include "robot/forked_child.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/slip.hpp"
 #include "robot/waiting.hpp"

@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "process/crash_handler.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
-#include "robot/crash_handler.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/sensing.hpp"

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "process/fibers.hpp"
+#include "process/guarded_memory.hpp"
+#include "process/program_image.hpp"
 #include "robot/context.hpp"
-#include "robot/fibers.hpp"
-#include "robot/guarded_memory.hpp"
-#include "robot/program_image.hpp"
 #include "robot/robot_memory.hpp"
 #include "robot/shared_state.hpp"
 #include "robot/step_chips.hpp"

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
+#include "process/crash_handler.hpp"
 #include "robot/context.hpp"
-#include "robot/crash_handler.hpp"
 
 namespace pogosim {
 

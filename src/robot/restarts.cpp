@@ -4,8 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "process/crash_handler.hpp"
 #include "robot/controllers.hpp"
-#include "robot/crash_handler.hpp"
 
 namespace pogosim {
 

@@ -9,18 +9,7 @@
 
 #include "base/counted.hpp"
 #include "base/memory.hpp"
-
-// A program built with -fsanitize=address has forbidden bytes between its variables, which are copied with the rest.
-#if defined(__SANITIZE_ADDRESS__)
-#define POGOSIM_SEES_ALL_BYTES __attribute__((no_sanitize("address"), noinline))
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define POGOSIM_SEES_ALL_BYTES __attribute__((no_sanitize("address"), noinline))
-#endif
-#endif
-#ifndef POGOSIM_SEES_ALL_BYTES
-#define POGOSIM_SEES_ALL_BYTES
-#endif
+#include "process/program_bytes.hpp"
 
 namespace pogosim {
 
@@ -68,13 +57,6 @@ POGOSIM_SEES_ALL_BYTES inline bool are_same_blocks(std::byte const* a, std::byte
     return (even[0] | even[1]) == 0;
 }
 
-POGOSIM_SEES_ALL_BYTES void copy_bytes(std::byte* to, std::byte const* from, std::size_t count) {
-    auto volatile* const target = to;
-    for (std::size_t i = 0; i < count; ++i) {
-        target[i] = from[i];
-    }
-}
-
 POGOSIM_SEES_ALL_BYTES bool is_same(std::byte const* a, std::byte const* b, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         if (*const_cast<std::byte const volatile*>(a + i) != b[i]) {
@@ -87,10 +69,6 @@ POGOSIM_SEES_ALL_BYTES bool is_same(std::byte const* a, std::byte const* b, std:
 constexpr std::uint64_t kTicksBetweenLooks = 64;  // of each robot
 
 }  // namespace
-
-void copy_program_bytes(std::byte* to, std::byte const* from, std::size_t count) {
-    copy_bytes(to, from, count);
-}
 
 RobotMemory::RobotMemory(std::span<std::span<std::byte> const> pieces, std::uint32_t robots) : robots_(robots) {
     for (std::span<std::byte> const piece : pieces) {
@@ -108,7 +86,7 @@ RobotMemory::RobotMemory(std::span<std::span<std::byte> const> pieces, std::uint
 /// Copies all blocks of the program.
 void RobotMemory::read_program(std::span<std::byte> to) const {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-        copy_bytes(to.data() + i * kBlockBytes, blocks_[i].place, blocks_[i].bytes);
+        copy_program_bytes(to.data() + i * kBlockBytes, blocks_[i].place, blocks_[i].bytes);
     }
 }
 
@@ -166,7 +144,7 @@ void RobotMemory::put(Block const& block, std::byte const* from) {
     if (block.bytes == kBlockBytes) {
         copy_block(block.place, from);
     } else {
-        copy_bytes(block.place, from, block.bytes);
+        copy_program_bytes(block.place, from, block.bytes);
     }
 }
 
@@ -174,7 +152,7 @@ void RobotMemory::take(Block const& block, std::byte* to) {
     if (block.bytes == kBlockBytes) {
         copy_block(to, block.place);
     } else {
-        copy_bytes(to, block.place, block.bytes);
+        copy_program_bytes(to, block.place, block.bytes);
     }
 }
 
@@ -303,7 +281,7 @@ bool RobotMemory::is_same_for_all(std::uint32_t own_slot) const {
 }
 
 void RobotMemory::read(std::uint32_t copy, std::byte const* place, std::span<std::byte> to) const {
-    copy_bytes(to.data(), place, to.size());
+    copy_program_bytes(to.data(), place, to.size());
     if (copy == loaded_) {
         return;
     }
@@ -313,8 +291,8 @@ void RobotMemory::read(std::uint32_t copy, std::byte const* place, std::span<std
         std::byte const* const first = std::max<std::byte const*>(place, block.place);
         std::byte const* const last = std::min<std::byte const*>(end, block.place + block.bytes);
         if (first < last) {
-            copy_bytes(to.data() + (first - place), content(copy, i) + (first - block.place),
-                       static_cast<std::size_t>(last - first));
+            copy_program_bytes(to.data() + (first - place), content(copy, i) + (first - block.place),
+                               static_cast<std::size_t>(last - first));
         }
     }
 }
@@ -338,10 +316,10 @@ void RobotMemory::give_to_all(std::span<std::byte const> place) {
 void RobotMemory::give(std::size_t block, std::size_t at, std::size_t bytes) {
     auto const [place, size, own_slot] = blocks_[block];
     std::size_t const offset = block * kBlockBytes + at;
-    copy_bytes(same_.data() + offset, place + at, bytes);
-    copy_bytes(other_.data() + offset, place + at, bytes);
+    copy_program_bytes(same_.data() + offset, place + at, bytes);
+    copy_program_bytes(other_.data() + offset, place + at, bytes);
     for (std::uint32_t robot = 0; robot < robots_ && own_slot != kSame; ++robot) {
-        copy_bytes(slot(robot, own_slot) + at, place + at, bytes);
+        copy_program_bytes(slot(robot, own_slot) + at, place + at, bytes);
     }
 }
 

@@ -10,13 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "robot/guarded_memory.hpp"
+#include "process/guarded_memory.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
-
-/// Bytes of a program's variables, and those that a sanitizer forbids between them.
-void copy_program_bytes(std::byte* to, std::byte const* from, std::size_t count);
 
 class RobotMemory {
 public:

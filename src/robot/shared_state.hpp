@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "process/program_image.hpp"
 #include "robot/context.hpp"
-#include "robot/program_image.hpp"
 
 namespace pogosim {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/worker_pool.hpp"
+#include "process/crash_handler.hpp"
 #include "robot/controllers.hpp"
-#include "robot/crash_handler.hpp"
 #include "robot/outbox.hpp"
 #include "robot/shared_state.hpp"
 

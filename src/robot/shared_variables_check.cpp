@@ -14,7 +14,7 @@
 
 #include "base/escaped.hpp"
 #include "base/log.hpp"
-#include "robot/elf_file.hpp"
+#include "process/elf_file.hpp"
 #include "robot/shared_state.hpp"
 
 #ifdef POGOSIM_HAS_LIBDW

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "process/program_image.hpp"
 #include "robot/context.hpp"
-#include "robot/program_image.hpp"
 
 namespace pogosim {
 

@@ -14,9 +14,9 @@
 #include <cstdint>
 #include <utility>
 
+#include "process/crash_handler.hpp"
+#include "process/forked_child.hpp"
 #include "robot/controllers.hpp"
-#include "robot/crash_handler.hpp"
-#include "robot/forked_child.hpp"
 #include "robot/sensing.hpp"
 
 namespace pogosim {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/log.hpp"
-#include "robot/backtrace.hpp"
+#include "process/backtrace.hpp"
+#include "process/source_place.hpp"
 #include "robot/controllers.hpp"
-#include "robot/source_place.hpp"
 
 namespace pogosim {
 

@@ -5,7 +5,7 @@
 
 #include "base/problems.hpp"
 #include "config/scenario.hpp"
-#include "robot/program_image.hpp"
+#include "process/program_image.hpp"
 #include "sim/simulation.hpp"
 
 namespace pogosim {

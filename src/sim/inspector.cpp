@@ -6,8 +6,8 @@
 #include <array>
 #include <tuple>
 
+#include "process/variable_text.hpp"
 #include "robot/sensing.hpp"
-#include "robot/variable_text.hpp"
 #include "world/observed_motion.hpp"
 
 namespace pogosim {

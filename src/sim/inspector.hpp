@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "comms/visibility.hpp"
+#include "process/program_variables.hpp"
 #include "render/inspection.hpp"
 #include "robot/controllers.hpp"
 #include "robot/printed_lines.hpp"
-#include "robot/program_variables.hpp"
 #include "sim/recent_motion.hpp"
 #include "sim/recorded_rows.hpp"
 #include "sim/touching.hpp"

@@ -7,9 +7,9 @@
 #include <cerrno>
 #include <csignal>
 
-#include "robot/caught_signals.hpp"
-#include "robot/crash_handler.hpp"
-#include "robot/crash_message.hpp"
+#include "process/caught_signals.hpp"
+#include "process/crash_handler.hpp"
+#include "process/crash_message.hpp"
 
 namespace pogosim {
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "physics/physics_engine.hpp"
-#include "robot/crash_handler.hpp"
-#include "robot/crash_message.hpp"
+#include "process/crash_handler.hpp"
+#include "process/crash_message.hpp"
 #include "sim/output_files.hpp"
 #include "sim/run_metadata.hpp"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "config/scenario.hpp"
+#include "process/crash_handler.hpp"
 #include "record/data_file.hpp"
 #include "robot/controllers.hpp"
-#include "robot/crash_handler.hpp"
 #include "sim/message_recorder.hpp"
 #include "sim/recorded_rows.hpp"
 #include "sim/row_times.hpp"

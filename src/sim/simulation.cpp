@@ -17,8 +17,9 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/places.hpp"
+#include "process/source_place.hpp"
 #include "robot/program_checks.hpp"
-#include "robot/source_place.hpp"
+#include "robot/running_robot.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
 #include "sim/lamps_of.hpp"
@@ -84,7 +85,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       seed_(seed_of(scenario_)),
       world_(build_world(scenario_, seed_)),
       parameters_(scenario_, options_.conversions),
-      crash_handler_(reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
+      crash_handler_(code_of_robots(), reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       controllers_(std::move(program), world_, services_, seed_,
                    static_cast<std::size_t>(scenario_.robot_stack_kib) * 1024),

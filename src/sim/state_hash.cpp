@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "robot/address_space.hpp"
+#include "process/address_space.hpp"
 #include "robot/robot_memory.hpp"
 
 namespace pogosim {

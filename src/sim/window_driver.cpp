@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "base/log.hpp"
-#include "robot/crash_handler.hpp"
+#include "process/crash_handler.hpp"
 #include "sim/simulation.hpp"
 
 namespace pogosim {

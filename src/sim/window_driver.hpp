@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/crash_handler.hpp"
+#include "process/crash_handler.hpp"
 #include "sim/pacer.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "sim/window_module.hpp"

@@ -1,5 +1,5 @@
 // What the state hash takes for an address.
-#include "robot/address_space.hpp"
+#include "process/address_space.hpp"
 
 #include <gtest/gtest.h>
 

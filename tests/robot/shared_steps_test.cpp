@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/worker_pool.hpp"
+#include "robot/running_robot.hpp"
 #include "sim/build_world.hpp"
 #include "support/scenes.hpp"
 #include "support/test_program.hpp"
@@ -36,7 +37,7 @@ struct Outcome {
 /// A swarm with its programs, and nothing else of a simulation.
 class Swarm {
 public:
-    Swarm() : handler_(nullptr, 10.0), thread_(handler_) { context.outbox = nullptr; }
+    Swarm() : handler_(code_of_robots(), nullptr, 10.0), thread_(handler_) { context.outbox = nullptr; }
 
     Outcome run(std::uint32_t threads) {
         // The program and the simulator are in one file here: only the test knows that robots share nothing.

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "robot/caught_signals.hpp"
-#include "robot/crash_message.hpp"
+#include "process/caught_signals.hpp"
+#include "process/crash_message.hpp"
 #include "sim/interrupt.hpp"
 #include "support/scenes.hpp"
 #include "support/test_program.hpp"

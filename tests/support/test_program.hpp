@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "interface/pogobase_inside.hpp"
-#include "robot/program_image.hpp"
+#include "process/program_image.hpp"
 
 /// User data of the test program.
 struct TestData {

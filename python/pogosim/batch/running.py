@@ -11,7 +11,7 @@ from pathlib import Path
 
 from pogosim.lines import printable
 
-# In a line of the log of a run whose robot waits in wall-clock time (src/robot/blocked_watch.cpp).
+# In a line of the log of a run whose robot waits in wall-clock time (src/process/blocked_watch.cpp).
 BLOCKED = "for 2 s of wall-clock time"  # at once, or in short calls
 LOOK_EVERY_S = 2.0
 FIRST_LINE_S = 60.0  # after this time without a run that ends, and twice, four times, ... as long

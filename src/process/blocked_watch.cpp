@@ -1,0 +1,222 @@
+#include "process/blocked_watch.hpp"
+
+#ifdef __linux__
+
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "base/background_thread.hpp"
+#include "process/crash_handler_state.hpp"
+#include "process/crash_message.hpp"
+#include "process/source_place.hpp"
+#include "process/stack_of_thread.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLookPeriod{250};
+constexpr int kBlockedLooks = 8;  // 2 s, counted in looks so that time in which this process is stopped does not count
+constexpr int kIdleLooks = 40;    // 10 s without a run, after which the thread of the watch ends
+
+/// The system call in which a thread waits.
+struct SystemCall {
+    long number = -1;
+    std::uintptr_t stack_pointer = 0;
+    std::uintptr_t program_counter = 0;
+};
+
+std::string content_of(pid_t thread, char const* file) {
+    std::array<char, 64> path{};
+    std::snprintf(path.data(), path.size(), "/proc/self/task/%d/%s", static_cast<int>(thread), file);
+    std::array<char, 512> text{};
+    int const descriptor = open(path.data(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) {
+        return "";
+    }
+    ssize_t const bytes = read(descriptor, text.data(), text.size());
+    close(descriptor);
+    return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, bytes))};
+}
+
+/// Whether the kernel reports the thread as sleeping: not stopped (by a debugger, say), nor waiting for a disk or a
+/// processor.
+bool is_sleeping(pid_t thread) {
+    std::string const stat = content_of(thread, "stat");
+    std::size_t const end_of_name = stat.rfind(") ");
+    return end_of_name != std::string::npos && stat.compare(end_of_name + 2, 1, "S") == 0;
+}
+
+std::optional<SystemCall> system_call_of(pid_t thread) {
+    // "number argument ... argument stack-pointer program-counter", or "running".
+    std::string const text = content_of(thread, "syscall");
+    std::size_t const before_counter = text.rfind(' ');
+    if (before_counter == std::string::npos || before_counter == 0) {
+        return std::nullopt;
+    }
+    std::size_t const before_pointer = text.rfind(' ', before_counter - 1);
+    if (before_pointer == std::string::npos) {
+        return std::nullopt;
+    }
+    constexpr int base = 16;
+    return SystemCall{.number = std::atol(text.c_str()),
+                      .stack_pointer = std::strtoull(text.c_str() + before_pointer + 1, nullptr, base),
+                      .program_counter = std::strtoull(text.c_str() + before_counter + 1, nullptr, base)};
+}
+
+/// Writing may block because the reader of the output is slow.
+bool writes(SystemCall const& call) {
+    constexpr std::array<long, 5> writing{SYS_write, SYS_writev, SYS_pwrite64, SYS_fsync, SYS_fdatasync};
+    return std::ranges::find(writing, call.number) != writing.end();
+}
+
+class BlockedWatch {
+public:
+    BlockedWatch() : process_(getpid()) {}
+
+    bool is_of_this_process() const { return process_ == getpid(); }
+
+    void begin(CrashHandlerState& handler) {
+        std::lock_guard const lock(mutex_);
+        watched_.push_back({.handler = &handler});
+        if (!has_thread_) {
+            has_thread_ = true;
+            try {
+                start_background_thread("watching over blocked calls", [this] { serve(); }).detach();
+            } catch (std::system_error const&) {  // without the thread, there are no warnings
+                has_thread_ = false;
+            }
+        }
+    }
+
+    void end(CrashHandlerState& handler) {
+        std::lock_guard const lock(mutex_);
+        std::erase_if(watched_, [&](Watched const& watched) { return watched.handler == &handler; });
+    }
+
+private:
+    struct Watched {
+        CrashHandlerState* handler = nullptr;
+        unsigned long calls = 0;  // of user code, when it was first found asleep
+        int blocked_looks = 0;    // looks in a row that found it asleep, in one call or in many short ones
+    };
+
+    void serve() {
+        std::unique_lock lock(mutex_);
+        for (int looks_in_vain = 0; looks_in_vain <= kIdleLooks;) {
+            lock.unlock();
+            std::this_thread::sleep_for(kLookPeriod);
+            lock.lock();
+            looks_in_vain = watched_.empty() ? looks_in_vain + 1 : 0;
+            for (Watched& watched : watched_) {
+                look(watched);
+            }
+        }
+        has_thread_ = false;
+    }
+
+    static void look(Watched& watched) {
+        CrashHandlerState const& handler = *watched.handler;
+        unsigned long const calls = handler.calls.load(std::memory_order_acquire);
+        CrashHandlerState& run = handler.helped != nullptr ? *handler.helped : *watched.handler;
+        if (run.is_told_of_blocked) {
+            return;
+        }
+        bool const sleeps = handler.inside && is_sleeping(handler.thread_id);
+        std::optional<SystemCall> const call = sleeps ? system_call_of(handler.thread_id) : std::nullopt;
+        if (!call || writes(*call)) {
+            watched.blocked_looks = 0;
+            return;
+        }
+        if (watched.blocked_looks++ == 0) {
+            watched.calls = calls;
+        }
+        if (watched.blocked_looks >= kBlockedLooks) {
+            char const* const how = calls == watched.calls
+                                        ? "has blocked for 2 s of wall-clock time"
+                                        : "blocks again and again: for 2 s of wall-clock time by now";
+            run.is_told_of_blocked = tell(handler, *call, calls, how);
+        }
+    }
+
+    /// The watched thread may continue meanwhile, but its run cannot end before this returns (mutex_). False if the
+    /// call has returned by now.
+    static bool tell(CrashHandlerState const& handler, SystemCall const& call, unsigned long calls, char const* how) {
+        void const* const place =
+            place_in_stack({call.stack_pointer, call.program_counter, handler.thread_id}, handler.program_base);
+        std::string const where = handler.running.place_of(handler.thread_of_code, place, [&] {
+            return handler.inside && handler.calls.load(std::memory_order_acquire) == calls;
+        });
+        if (where.empty()) {
+            return false;
+        }
+        SignalText<1024> text;
+        text << "pogosim: warning: " << where.c_str() << ", " << how
+             << ", and the run with it. Robots wait in simulated time, "
+                "with msleep(), usleep() or sleep() (docs/porting.md)\n";
+        text.write_to_stderr();
+        return true;
+    }
+
+    pid_t process_;
+    std::mutex mutex_;
+    std::vector<Watched> watched_;
+    bool has_thread_ = false;
+};
+
+/// Never destroyed, since its thread may outlive the last run. A child of fork() has no such thread.
+std::atomic<BlockedWatch*> watch_of_process = nullptr;
+
+}  // namespace
+
+void watch_over_blocked(CrashHandlerState& handler) {
+    static std::mutex making;
+    handler.thread_id = static_cast<pid_t>(syscall(SYS_gettid));
+    handler.thread_of_code = handler.running.of_this_thread();
+    BlockedWatch* watch = watch_of_process;
+    if (watch == nullptr || !watch->is_of_this_process()) {
+        std::lock_guard const lock(making);
+        watch = watch_of_process;
+        if (watch == nullptr || !watch->is_of_this_process()) {
+            watch = new BlockedWatch;
+            watch_of_process = watch;
+        }
+    }
+    watch->begin(handler);
+}
+
+void end_watch_over_blocked(CrashHandlerState& handler) {
+    BlockedWatch* const watch = watch_of_process;
+    if (watch != nullptr && watch->is_of_this_process()) {
+        watch->end(handler);
+    }
+}
+
+}  // namespace pogosim
+
+#else
+
+namespace pogosim {
+
+void watch_over_blocked(CrashHandlerState& /*handler*/) {}
+void end_watch_over_blocked(CrashHandlerState& /*handler*/) {}
+
+}  // namespace pogosim
+
+#endif

@@ -1,0 +1,134 @@
+#include "process/crash_name.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "process/fibers.hpp"
+
+namespace pogosim {
+
+namespace {
+
+struct CrashName {
+    int signal;
+    char const* name;
+};
+constexpr std::array kNames{
+    CrashName{SIGSEGV, "segmentation fault"},
+    CrashName{SIGBUS, "bus error"},
+    CrashName{SIGFPE, "arithmetic error (such as an integer division by zero)"},
+    CrashName{SIGILL, "illegal instruction"},
+    CrashName{SIGTRAP, "trap instruction"},
+    CrashName{SIGSYS, "forbidden system call"},
+    CrashName{SIGABRT, "abort() (such as a failed assert or an uncaught C++ exception)"},
+};
+static_assert(kNames.size() == kCrashSignals.size());
+
+// How far from the stack pointer a function may touch memory, plus the last pages before the end, which the system
+// keeps free.
+constexpr std::uintptr_t kStackMarginBytes = 65536;
+constexpr std::uintptr_t kBytesPerKib = 1024;
+
+// Where the processor of the robot has its registers (LiteX SoC: CSR). Systems with 64 bits put nothing there.
+constexpr std::uintptr_t kFirstRegister = 0xf0000000;
+constexpr std::uintptr_t kEndOfRegisters = 0xf0010000;
+
+struct Stack {
+    std::uintptr_t end = 0;  // its lowest address
+    std::uintptr_t bytes = 0;
+};
+
+thread_local Stack noted;
+
+/// Null on unknown architectures.
+void* stack_pointer([[maybe_unused]] void const* signal_context) {
+#if defined(__linux__) && defined(__x86_64__)
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RSP]);
+#elif defined(__linux__) && defined(__aarch64__)
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.sp);
+#else
+    return nullptr;
+#endif
+}
+
+/// Both the stack pointer and the faulting address are at or beyond the end of the stack.
+bool is_stack_overflow(Stack const& stack, siginfo_t const& info, void const* signal_context) {
+    auto const pointer = reinterpret_cast<std::uintptr_t>(stack_pointer(signal_context));
+    auto const touched = reinterpret_cast<std::uintptr_t>(info.si_addr);
+    std::uintptr_t const first = stack.end + std::min(kStackMarginBytes, stack.bytes / 4);
+    return stack.end > 0 && pointer != 0 && pointer < first && touched < first && touched + kStackMarginBytes > pointer;
+}
+
+}  // namespace
+
+void note_stack() {
+#ifdef __linux__
+    pthread_attr_t attributes;
+    void* end = nullptr;
+    std::size_t bytes = 0;
+    if (pthread_getattr_np(pthread_self(), &attributes) == 0) {
+        if (pthread_attr_getstack(&attributes, &end, &bytes) == 0) {
+            noted = {.end = reinterpret_cast<std::uintptr_t>(end), .bytes = bytes};
+        }
+        pthread_attr_destroy(&attributes);
+    }
+#endif
+}
+
+CrashText crash_name(int signal, siginfo_t const& info, void const* signal_context) {
+    CrashText text;
+    bool const has_address = (signal == SIGSEGV || signal == SIGBUS) && info.si_code > 0;
+    std::span const fiber = running_fiber_stack();
+    Stack const stack =
+        fiber.empty() ? noted : Stack{.end = reinterpret_cast<std::uintptr_t>(fiber.data()), .bytes = fiber.size()};
+    if (has_address && is_stack_overflow(stack, info, signal_context)) {
+        text << "stack overflow: the ";
+        text.whole(stack.bytes / kBytesPerKib)
+            << " KiB of the stack are full (" << (fiber.empty() ? "ulimit -s" : "robot_stack_size")
+            << "), as after a function that calls itself without end, or with large local arrays; a real robot has 128 "
+               "KiB of memory in all";
+        return text;
+    }
+    auto const* const crash =
+        std::find_if(kNames.begin(), kNames.end(), [&](CrashName const& c) { return c.signal == signal; });
+    text << crash->name;
+    if (has_address) {
+        text << " at address ";
+        text.address(info.si_addr);
+        auto const address = reinterpret_cast<std::uintptr_t>(info.si_addr);
+        if (address >= kFirstRegister && address < kEndOfRegisters) {
+            text << ", which is a register of the hardware on the robot: those are not simulated";
+        }
+    }
+    return text;
+}
+
+void const* return_address([[maybe_unused]] void const* signal_context) {
+#if defined(__linux__) && defined(__x86_64__)
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): a call leaves its return address on the stack
+    return *reinterpret_cast<void* const*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RSP]);
+#elif defined(__linux__) && defined(__aarch64__)
+    constexpr int kLinkRegister = 30;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): a call leaves its return address in a register
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.regs[kLinkRegister]);
+#else
+    return nullptr;
+#endif
+}
+
+void* program_counter([[maybe_unused]] void const* signal_context) {
+#if defined(__linux__) && defined(__x86_64__)
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RIP]);
+#elif defined(__linux__) && defined(__aarch64__)
+    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.pc);
+#else
+    return nullptr;
+#endif
+}
+
+}  // namespace pogosim
