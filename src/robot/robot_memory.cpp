@@ -343,13 +343,13 @@ void RobotMemory::end_common_change() {
 /// The last change of a byte is the one that counts.
 void RobotMemory::note_common_change(std::byte* place, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) {
-        copy_bytes(&changed_.emplace_back(ChangedByte{.place = place + i}).value, place + i, 1);
+        copy_program_bytes(&changed_.emplace_back(ChangedByte{.place = place + i}).value, place + i, 1);
     }
 }
 
 void RobotMemory::repeat_common_changes() {
     for (ChangedByte const& byte : changed_) {
-        copy_bytes(byte.place, &byte.value, 1);
+        copy_program_bytes(byte.place, &byte.value, 1);
     }
 }
 
