@@ -114,7 +114,7 @@ def small_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("small_figures")
-@pytest.mark.parametrize("tool", ["picture", "film", *sorted(set(ANALYSES) - {"messages"})])
+@pytest.mark.parametrize("tool", ["picture", "film", *sorted(set(ANALYSES.own) - {"messages"})])
 def test_tools_do_bounded_work_whatever_the_positions(tool: str, tmp_path: Path) -> None:
     for number, (name, positions) in enumerate(SWARMS.items()):
         file = write_rows(tmp_path / f"{number}.feather", rows_of(positions), metadata_of())

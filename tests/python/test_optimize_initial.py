@@ -26,7 +26,7 @@ def objective_fn(df):
 )
 
 
-@pytest.mark.parametrize("name", OPTIMIZERS)
+@pytest.mark.parametrize("name", OPTIMIZERS.own)
 def test_initial_values_are_the_first_evaluation_whatever_the_optimizer(name: str, tmp_path: Path) -> None:
     write_search(tmp_path)
     result = search(tmp_path, "--optimizer", name, "--max-evals", "8", "--final-runs", "0", *FEW)

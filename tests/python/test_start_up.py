@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from pogosim.command.main import SUBCOMMANDS
+from pogosim.command.main import COMMANDS
 from pogosim.reports.command import ANALYSES
 
 HEAVY = (
@@ -43,8 +43,8 @@ def said_and_imported(folder: Path, commands: list[list[str]]) -> list[tuple[int
 
 def all_commands() -> list[list[str]]:
     """Return all commands that have options of their own."""
-    names = [[name] for name in SUBCOMMANDS]
-    return [*names, *(["analyze", name] for name in ANALYSES), *(["arena", name] for name in ARENA_ACTIONS)]
+    names = [[name] for name in COMMANDS.own]
+    return [*names, *(["analyze", name] for name in ANALYSES.own), *(["arena", name] for name in ARENA_ACTIONS)]
 
 
 def test_help_and_version_import_no_large_package(tmp_path: Path) -> None:
@@ -67,7 +67,7 @@ def test_wrong_usage_imports_no_large_package(tmp_path: Path) -> None:
         ["film", "data.feather", "-o", "out.exe"],
         ["picture", "data.feather", "out.png", "--dpi", "0"],
         ["calibrate", "none.csv", "-c", "c.yaml"],
-        *(["analyze", name, "-i", "none.feather"] for name in ANALYSES),
+        *(["analyze", name, "-i", "none.feather"] for name in ANALYSES.own),
         ["optimize", "-c", "c.yaml", "-S", "none", "--max-evals", "0"],
         ["optimize", "-c", "c.yaml", "-S", "none", "--optimizer", "luck"],
         ["optimize", "-c", "none.yaml", "-S", "none"],

@@ -112,7 +112,7 @@ class Runs:
         self.settings = RunSettings(
             path, program_digest(path), beside, self.temporary, retries, gui=False, retry_new_seed=retry_new_seed
         )
-        world = world_digest(configuration.entries, (Path.cwd(), beside), self.settings.digests)
+        world = world_digest(configuration.entries, self.settings.folders, self.settings.digests)
         self.digests = {"configuration": world, "program": self.settings.program_digest}
         self.simulator_s = 0.0
         self.warned: dict[str, str] = {}  # the first warning of each kind

@@ -22,6 +22,7 @@ from pogosim.batch.errors import reason
 from pogosim.batch.identity import PYTHON
 from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.running import Watch
+from pogosim.extensions import MODELS_VARIABLE
 from pogosim.lines import printable
 from pogosim.recover import DAMAGED, is_complete
 
@@ -66,6 +67,7 @@ class Task:
     keep_temp: bool
     replacements: tuple[int, ...] = ()  # seeds of its second, third, ... attempt; empty: its own seed
     says: tuple[str, ...] = QUIET
+    models_path: str = ""  # folders of robot models, as POGOSIM_PATH of the simulator
 
     def seed_of(self, attempt: int) -> int:
         """Return the seed of an attempt, from 0 on."""
@@ -117,7 +119,7 @@ class Simulators:
         self.watch.begin()
         self.slots = threading.BoundedSemaphore(at_once)
 
-    def run(self, command: Sequence[str], folder: str, log: Path) -> tuple[int, float]:
+    def run(self, command: Sequence[str], folder: str, log: Path, models_path: str) -> tuple[int, float]:
         """Run a program to its end.
 
         Returns:
@@ -129,10 +131,10 @@ class Simulators:
         """
         with self.slots:
             started_s = time.monotonic()
-            code = self.run_now(command, folder, log)
+            code = self.run_now(command, folder, log, models_path)
             return code, time.monotonic() - started_s
 
-    def run_now(self, command: Sequence[str], folder: str, log: Path) -> int:
+    def run_now(self, command: Sequence[str], folder: str, log: Path, models_path: str) -> int:
         """Do what `run` does, at once; returns the exit code."""
         if self.is_stopping:
             raise StoppedError
@@ -140,6 +142,7 @@ class Simulators:
             process = subprocess.Popen(
                 [*watch(), *command],
                 cwd=folder,
+                env=os.environ | {MODELS_VARIABLE: models_path} if models_path else None,
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -287,7 +290,7 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
     path = write_configuration(task, folder, configuration)
     arguments = ["-c", str(path), *task.says, "--seed", str(task.seed_of(number))]
     command = [*starting(task.program), *arguments, *([] if task.gui else ["-g"])]
-    code, simulator_s = simulators.run(command, task.working_folder, folder / LOG)
+    code, simulator_s = simulators.run(command, task.working_folder, folder / LOG, task.models_path)
     data = folder / FRAMES / task.data
     problem, is_fatal, is_certain = "", False, False
     log = ""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,8 +16,11 @@ from pogosim.batch.run import QUIET, Task
 from pogosim.batch.run_files import outputs_of, with_files_beside, with_places
 from pogosim.batch.seeds import replacements
 from pogosim.batch.temporary import TemporaryFolder
+from pogosim.extensions import models_path
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.yaml_1_2 import plain
+
+log = logging.getLogger("pogobatch")
 
 
 @dataclass
@@ -42,6 +47,12 @@ class RunSettings:
     retry_new_seed: bool = False  # a run that failed is repeated with another seed
     says: tuple[str, ...] = QUIET
     digests: dict[Path, str] = field(default_factory=dict)  # of files that configurations name
+    models_path: str = field(default_factory=lambda: models_path(log.warning))
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Folders in which files that a configuration names are searched, in this order."""
+        return (Path.cwd(), self.configuration_folder, *map(Path, filter(None, self.models_path.split(os.pathsep))))
 
 
 def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> None:
@@ -62,7 +73,7 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
     if format_of(outputs["data_filename"]) != FEATHER:  # that of the results is another matter
         outputs["data_filename"] = f"{Path(outputs['data_filename']).stem}.feather"
     text = dump_configuration(world) if world else ""
-    digest = world_digest(world, (Path.cwd(), settings.configuration_folder), settings.digests)
+    digest = world_digest(world, settings.folders, settings.digests)
     others = replacements(seeds, settings.retries) if settings.retry_new_seed else [()] * len(seeds)
     return [
         Task(
@@ -82,6 +93,7 @@ def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSetting
             keep_temp=settings.temporary.is_kept,
             replacements=others[run],
             says=settings.says,
+            models_path=settings.models_path,
         )
         for run, seed in enumerate(seeds)
     ]

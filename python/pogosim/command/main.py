@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
+import functools
 import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import pogosim
-from pogosim.command.parser import complain
+from pogosim.command.parser import complain, warn
+from pogosim.extensions import ExtensionError, Own, Table, takes
 from pogosim.lines import say, say_error
 from pogosim.nearest_name import nearest_name
 
@@ -19,38 +19,41 @@ INTERRUPTED = 130
 NO_READER = 141  # as a shell says of a program that SIGPIPE has ended
 
 
-class Subcommand(NamedTuple):
-    """A subcommand; its module has `main(arguments, prog) -> exit code`, and is imported when it is called."""
-
-    module: str
-    summary: str
-
-
-SUBCOMMANDS = {
-    "new": Subcommand("pogosim.command.new", "make a project: a program, a configuration and a Makefile"),
-    "run": Subcommand("pogosim.command.run", "compile a project or a source file, and run it"),
-    "batch": Subcommand("pogosim.batch.command_line", "run a program many times, with every combination of options"),
-    "optimize": Subcommand(
-        "pogosim.optimize.command", "search for the parameters that make an objective as large as possible"
-    ),
-    "analyze": Subcommand("pogosim.reports.command", "compute what robots did: tables and figures of a data file"),
-    "picture": Subcommand("pogosim.picture.command", "draw the trajectories of a run"),
-    "film": Subcommand("pogosim.film.command", "make a film of a run, or a page to replay it in a browser"),
-    "recover": Subcommand("pogosim.command.recover", "make a complete data file of a run that was killed"),
-    "flash": Subcommand("pogosim.command.flash", "look into archives of robots' flash memory, and make them"),
-    "arena": Subcommand("pogosim.geometry.command", "draw, check, scale and convert arenas"),
-    "calibrate": Subcommand("pogosim.calibration.command", "fit the motion of simulated robots to tracks of real ones"),
-    "fit-comm": Subcommand("pogosim.communication.fit_command", "fit a law of reception to measurements"),
-    "best-psend": Subcommand("pogosim.communication.sending_command", "compute how often robots should send"),
-    "doctor": Subcommand("pogosim.command.doctor", "say what works on this machine, and what is missing for what"),
-    "path": Subcommand("pogosim.command.path", "print the folder of the simulator, POGOSIM_DIR of Makefiles"),
-}
+COMMANDS = Table(
+    "pogosim.commands",
+    "command",
+    "a function main(arguments, prog) that returns the exit code",
+    lambda found: callable(found) and takes(found, [], "prog"),
+    {
+        "new": Own("pogosim.command.new:main", "make a project: a program, a configuration and a Makefile"),
+        "run": Own("pogosim.command.run:main", "compile a project or a source file, and run it"),
+        "batch": Own("pogosim.batch.command_line:main", "run a program many times, with every combination of options"),
+        "optimize": Own(
+            "pogosim.optimize.command:main", "search for the parameters that make an objective as large as possible"
+        ),
+        "analyze": Own("pogosim.reports.command:main", "compute what robots did: tables and figures of a data file"),
+        "picture": Own("pogosim.picture.command:main", "draw the trajectories of a run"),
+        "film": Own("pogosim.film.command:main", "make a film of a run, or a page to replay it in a browser"),
+        "recover": Own("pogosim.command.recover:main", "make a complete data file of a run that was killed"),
+        "flash": Own("pogosim.command.flash:main", "look into archives of robots' flash memory, and make them"),
+        "arena": Own("pogosim.geometry.command:main", "draw, check, scale and convert arenas"),
+        "calibrate": Own(
+            "pogosim.calibration.command:main", "fit the motion of simulated robots to tracks of real ones"
+        ),
+        "fit-comm": Own("pogosim.communication.fit_command:main", "fit a law of reception to measurements"),
+        "best-psend": Own("pogosim.communication.sending_command:main", "compute how often robots should send"),
+        "doctor": Own("pogosim.command.doctor:main", "say what works on this machine, and what is missing for what"),
+        "path": Own("pogosim.command.path:main", "print the folder of the simulator, POGOSIM_DIR of Makefiles"),
+    },
+    is_shared=False,  # commands start at once
+)
 
 
 def usage() -> list[str]:
     """Return what `pogosim --help` prints."""
-    width = max(map(len, SUBCOMMANDS))
-    listed = [f"  {name:{width}}  {command.summary}" for name, command in SUBCOMMANDS.items()]
+    summaries = COMMANDS.listed(functools.partial(warn, "pogosim"))
+    width = max(map(len, summaries))
+    listed = [f"  {name:{width}}  {summary}" for name, summary in summaries.items()]
     return [
         "Usage: pogosim COMMAND [OPTIONS]",
         "",
@@ -69,7 +72,7 @@ def unknown(name: str) -> str:
     """Return what is said of a name that is no subcommand."""
     if name.startswith("-"):
         return f"pogosim: there is no option {name} before the command; pogosim --help lists all commands"
-    near = nearest_name(name, SUBCOMMANDS)
+    near = nearest_name(name, COMMANDS.names())
     question = f"; did you mean '{near}'?" if near else "; pogosim --help lists all commands"
     return f"pogosim: there is no command '{name}'{question}"
 
@@ -77,7 +80,7 @@ def unknown(name: str) -> str:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line. Returns the exit code, which is 2 for wrong usage."""
     name, *rest = list(sys.argv[1:] if arguments is None else arguments) or [""]
-    prog = f"pogosim {name}" if name in SUBCOMMANDS else "pogosim"
+    prog = f"pogosim {name}" if name in COMMANDS.own else "pogosim"
     return ended(prog, lambda: run(name, rest))
 
 
@@ -142,16 +145,19 @@ def run(name: str, arguments: Sequence[str]) -> int:
     if not name:
         say_error(*usage())
         return WRONG_USAGE
-    if name not in SUBCOMMANDS:
-        say_error(unknown(name))
-        return WRONG_USAGE
-    return call(name, arguments, f"pogosim {name}")
+    try:
+        if COMMANDS.find(name) is None:
+            say_error(unknown(name))
+            return WRONG_USAGE
+        return call(name, arguments, f"pogosim {name}")
+    except ExtensionError as error:
+        return complain("pogosim", error)
 
 
 def call(name: str, arguments: Sequence[str], prog: str) -> int:
     """Import a subcommand, and run it under a name; returns the exit code."""
-    code: int = importlib.import_module(SUBCOMMANDS[name].module).main(arguments, prog)
-    return code
+    code: int | None = COMMANDS.load(name)(arguments, prog)
+    return code or 0
 
 
 if __name__ == "__main__":

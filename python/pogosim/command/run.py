@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import os
 import subprocess
 import sys
@@ -10,7 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.command.compilers import COMPILERS, words_of
-from pogosim.command.parser import Parser, complain
+from pogosim.command.parser import Parser, complain, warn
+from pogosim.extensions import let_find_models
 from pogosim.installation import Installation, InstallationError, find_installation
 
 EPILOG = """All other options are the simulator's: -c CONFIG, -g (no window), -s SEED, --set KEY=VALUE and others.
@@ -123,6 +125,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim run") -> i
     configuration = what / "conf" / "test.yaml"
     if not has_configuration(options) and configuration.is_file():
         options = ["-c", str(configuration), *options]
+    let_find_models(functools.partial(warn, prog))
     sys.stdout.flush()
     try:
         os.execv(program, [str(program), *options])

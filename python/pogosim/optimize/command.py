@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import logging
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import pogosim
@@ -16,10 +17,10 @@ from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
 from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.slurm_options import add_slurm_options
-from pogosim.command.parser import Parser, warnings_told
+from pogosim.command.parser import Parser, warn, warnings_told
 from pogosim.lines import LineFormatter
 from pogosim.optimize.errors import OptimizeError
-from pogosim.optimize.optimizers.table import OPTIMIZERS, WITH_FEATURES, check_optimizer, optimizer_for
+from pogosim.optimize.optimizers.table import OPTIMIZERS, check_optimizer, optimizer_for
 from pogosim.optimize.settings import SECTION, Settings, settings_from
 from pogosim.outputs import OutputError
 
@@ -35,8 +36,13 @@ Exit codes: 0 the search is complete; 2 usage, configuration or file error; 3 al
 log = logging.getLogger("pogosim.optimize")
 
 
-def parser(prog: str) -> Parser:
-    """Return the parser of the command line; `prog` is the name of the command."""
+def parser(prog: str, optimizers: Iterable[str] = OPTIMIZERS.own) -> Parser:
+    """Return the parser of the command line.
+
+    Args:
+        prog: Name of the command.
+        optimizers: Names that its help lists.
+    """
     usual = Settings()
     options = Parser(
         prog=prog,
@@ -51,7 +57,7 @@ def parser(prog: str) -> Parser:
     add("-O", "--objective", metavar="FILE.py", help="Python file with the function objective_fn(df) (mean MSD)")
     add("--objective-func", metavar="NAME", help="name of that function (objective_fn, or else compute_objective)")
     add("--features-func", metavar="NAME", help="name of the function that returns features (fd_fn)")
-    add("--optimizer", metavar="NAME", help=f"{', '.join(OPTIMIZERS)} ({usual.optimizer})")
+    add("--optimizer", metavar="NAME", help=f"{', '.join(optimizers)} ({usual.optimizer})")
     add("--max-evals", type=int, metavar="N", help=f"how many candidates are evaluated ({usual.max_evals})")
     add("--sigma0", type=float, metavar="S", help=f"first step size of CMA-ES, ranges being 1 ({usual.sigma0})")
     add("--popsize", type=int, metavar="N", help="candidates per generation (as usual for the optimiser)")
@@ -100,7 +106,9 @@ def parser(prog: str) -> Parser:
 
 def add_quality_diversity_options(options: argparse.ArgumentParser, usual: Settings) -> None:
     """Add the options of MAP-Elites, CMA-ME and CMA-MAE."""
-    group = options.add_argument_group("quality-diversity", f"For the optimisers {', '.join(WITH_FEATURES)}.")
+    group = options.add_argument_group(
+        "quality-diversity", "For optimisers that need features (mapelites, cma_me, cma_mae)."
+    )
     add = group.add_argument
     cells = ",".join(map(str, usual.qd_shape))
     add("--qd-shape", metavar="N,N", help=f"cells of the archive along each feature ({cells})")
@@ -150,7 +158,9 @@ def space_of(configuration: Configuration) -> Space:
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
     """Run the command. Returns its exit code, see its help."""
-    parsed = parser(prog).parse_args(arguments)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    others = OPTIMIZERS.loaded_others(functools.partial(warn, prog)) if {"-h", "--help"} & set(words) else ()
+    parsed = parser(prog, [*OPTIMIZERS.own, *others]).parse_args(words)
     start_logging(parsed.verbose)
     catch_signals()
     try:

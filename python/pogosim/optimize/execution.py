@@ -19,7 +19,6 @@ from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
 from pogosim.optimize.optimizers.base import Optimizer
-from pogosim.optimize.optimizers.table import WITH_FEATURES
 from pogosim.optimize.outcome import finish, refresh
 from pogosim.optimize.results import check_outputs, remove_stale
 from pogosim.optimize.search import Search, description_of
@@ -97,7 +96,7 @@ def optimize(
         OptimizeError, BatchError, OutputError: It cannot be done.
     """
     objective = objective_of(settings, configuration.path.absolute().parent)
-    with_features = settings.optimizer in WITH_FEATURES
+    with_features = getattr(optimizer, "needs_features", False)
     if with_features and settings.qd_init_samples + 1 >= settings.max_evals:
         log.warning(
             "all evaluations but the first are random samples: %s is %d, and %s %d",

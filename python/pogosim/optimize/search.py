@@ -27,7 +27,7 @@ IRRELEVANT = (
     "objective",  # its digest counts
     "places",
 )
-ADDED = ("retry_new_seed", "qd_features_domain", "objective_names")
+ADDED = ("retry_new_seed", "qd_features_domain", "objective_names", "own")
 
 log = logging.getLogger("pogosim.optimize")
 

@@ -60,6 +60,7 @@ class Settings:
         objective_func: Name of the objective; None: the first of `objective_names` that there is.
         objective_names: See there.
         features_func: Name of the feature function; None: the usual one.
+        own: What the configuration says under the name of the optimiser, for those of other packages.
         places: Where settings stand that the configuration says, by name; see `place_of`.
     """
 
@@ -90,6 +91,7 @@ class Settings:
     objective_func: str | None = None
     objective_names: tuple[str, ...] = OBJECTIVE_NAMES
     features_func: str | None = None
+    own: Mapping[str, Any] = field(default_factory=dict)
     places: Mapping[str, str] = field(default_factory=dict, compare=False)
 
     def place_of(self, name: str) -> str:
@@ -286,7 +288,11 @@ def settings_from(
         raise OptimizeError(f"{where((SECTION,))}: expected a map of settings, found {shown(section)}")
     chosen: dict[str, Any] = {}
     places: dict[str, str] = {}
-    for path, value in flattened(section or {}).items():
+    section = dict(section or {})
+    name = options.get("optimizer") or section.get("algorithm")
+    if isinstance(name, str) and name not in MAPS and isinstance(section.get(name), dict):
+        chosen["own"], places["own"] = section.pop(name), where((SECTION, name))
+    for path, value in flattened(section).items():
         if path in UNUSED:
             warn(f"{where((SECTION, *path))}: has no effect here")
         elif path not in KEYS:
@@ -300,7 +306,7 @@ def settings_from(
         if value is not None:
             places.pop(name, None)
             chosen[name] = checked(CHECKS[name], value, option_of(name))
-    if isinstance((section or {}).get(OBJECTIVE), dict):
+    if isinstance(section.get(OBJECTIVE), dict):
         chosen["objective_names"] = NAMES_OF_MAP
     settings = Settings(**chosen, places=places)
     if settings.seeds not in POLICIES:

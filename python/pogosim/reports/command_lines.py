@@ -2,11 +2,40 @@
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+
 from pogosim.analysis.defaults import MIN_SPEED_MM_S
 from pogosim.command.numbers import at_least, positive, whole
 from pogosim.command.parser import Parser
+from pogosim.extensions import located
 
 NEIGHBOURS = "neighbors_list"  # the column that programs usually have
+
+Analyze = Callable[[argparse.Namespace, str], None]
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """An analysis.
+
+    Attributes:
+        summary: What it computes, a line of `pogosim analyze --help`.
+        parser: Returns the parser of its options, given how the command is called ("pogosim analyze NAME").
+        analyze: Writes tables and figures, given the options and how the command is called. As "module:function", it is
+            imported when the command line is understood.
+    """
+
+    summary: str
+    parser: Callable[[str], Parser]
+    analyze: Analyze | str
+
+    @property
+    def work(self) -> Analyze:
+        """What writes tables and figures."""
+        found: Analyze = located(self.analyze) if isinstance(self.analyze, str) else self.analyze
+        return found
 
 
 def analysis_parser(prog: str, description: str) -> Parser:
@@ -179,3 +208,26 @@ def arena(prog: str) -> Parser:
     parser = analysis_parser(prog, "Says how large arenas are, what room they have, and how much of them was visited.")
     add_arenas(parser)
     return parser
+
+
+LOCOMOTION = Analysis(
+    "speeds, displacements, diffusion, persistence, densities", locomotion, "pogosim.reports.locomotion:analyze"
+)
+NEIGHBORS = Analysis(
+    "distances to neighbours, degrees, Fano factor, clusters", neighbors, "pogosim.reports.neighbors:analyze"
+)
+NETWORK = Analysis(
+    "components and Laplacian spectra of the proximity graph", network, "pogosim.reports.network:analyze"
+)
+COVERAGE = Analysis(
+    "Voronoi cells and the share of the arena within reach", coverage, "pogosim.reports.coverage:analyze"
+)
+COLLECTIVE = Analysis(
+    "order, pair correlations, structure factor, flow, milling", collective, "pogosim.reports.collective:analyze"
+)
+MESSAGES = Analysis(
+    "what became of messages; reception by distance and cluster size", messages, "pogosim.reports.messages:analyze"
+)
+ARENA = Analysis(
+    "size, area and room of the arenas, and how much of them was visited", arena, "pogosim.reports.arena:analyze"
+)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import logging
 import os
 import sys
 from collections.abc import Callable
@@ -29,6 +30,7 @@ from pathlib import Path
 from typing import Any
 
 from pogosim import __version__
+from pogosim.extensions import let_find_models
 from pogosim.installation import InstallationError, find_installation
 from pogosim.lines import printable
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
@@ -135,6 +137,7 @@ def library() -> ctypes.CDLL:
             function.argtypes = arguments
     except (OSError, AttributeError) as error:
         raise SimulationError(f"the simulator's library {path} cannot be used: {error}") from None
+    let_find_models(logging.getLogger("pogosim").warning)
     version = loaded.pogosim_host_version().decode().removeprefix("v")
     if version != __version__:
         raise SimulationError(f"{path} is of Pogosim {version}, and this package of {__version__}: build it again")

@@ -38,6 +38,8 @@ class Optimizer(Protocol):
 
     Whatever is random in it comes from `settings.seed`, and it must not depend on time or on the machine: a search is
     continued by asking and telling everything again. The order is: ask, begin, tell, ask, tell, ...
+
+    A class with an attribute `needs_features = True` is told the features of candidates, too.
     """
 
     def __init__(self, space: Space, settings: Settings) -> None: ...

@@ -76,6 +76,8 @@ class MapElites:
         ranges: Least and greatest value of each feature in the grid.
     """
 
+    needs_features = True
+
     def __init__(self, space: Space, settings: Settings) -> None:
         self.archives: Any = imported("ribs.archives", settings.optimizer)
         self.space = space
