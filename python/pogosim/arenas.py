@@ -15,8 +15,7 @@ from typing import Any
 from pogosim.batch.option_words import OptionsError
 from pogosim.batch.options import single_value
 from pogosim.command.main import ended
-from pogosim.command.numbers import positive
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, positive
 from pogosim.geometry.actions import PICTURES, checked_output, guarded, show_arena
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
 from pogosim.geometry.command import DEFAULT_AREA_MM2, DEFAULT_RADIUS_MM

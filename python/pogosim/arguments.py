@@ -67,6 +67,14 @@ def is_file_name(text: str) -> bool:
     return True
 
 
+def number(value: Any, default: float) -> float:
+    """Return a configuration's value as a number; `default` if it is none."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return default
+
+
 @dataclass(frozen=True)
 class Arguments:
     """Checks of arguments. A value of another kind raises `error`, with the name of the argument.

@@ -67,3 +67,8 @@ class LineFormatter(logging.Formatter):
     def format(self, record: logging.LogRecord) -> str:
         """Return the line."""
         return printable(super().format(record))
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things: "1 job", "2 jobs"."""
+    return f"{number} {what}{'s' if number != 1 else ''}"

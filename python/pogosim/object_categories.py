@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from pogosim.arguments import number
 from pogosim.batch.paths import set_in_dict
-from pogosim.configuration_values import number
 from pogosim.run_columns import is_one_run
 from pogosim.scene import RAYS, SPOTS, TALKERS, entries, read_periodic, type_of
 from pogosim.several_files import configuration_of

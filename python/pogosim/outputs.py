@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import glob
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Union
 
@@ -87,3 +88,19 @@ def partial_output(path: Path) -> Iterator[Path]:
         raise
     finally:
         partial.unlink(missing_ok=True)
+
+
+def check_readable(names: Iterable[str]) -> None:
+    """Open files, to find errors early. Folders, pipes and files of a pattern are checked later.
+
+    Raises:
+        OSError: One cannot be read.
+    """
+    for name in names:
+        path = Path(name)
+        if path.exists() and not path.is_file():
+            continue  # opening a pipe would wait for a writer
+        if glob.has_magic(name) and not path.exists():
+            continue
+        with path.open("rb"):
+            pass

@@ -11,7 +11,7 @@ import warnings
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.ambiguity import AmbiguousStepsWarning as AmbiguousStepsWarning
+from pogosim.errors import AmbiguousStepsWarning as AmbiguousStepsWarning
 
 Floats = npt.NDArray[np.float64]
 

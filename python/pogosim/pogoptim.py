@@ -10,8 +10,8 @@ from __future__ import annotations
 import sys
 
 from pogosim.command.main import pogoptim
+from pogosim.errors import OptimizeError
 from pogosim.optimize.command import main
-from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.objective import fd_fn, objective_fn
 
 __all__ = ["OptimizeError", "fd_fn", "main", "objective_fn"]

@@ -9,8 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from pogosim.command.main import ended
-from pogosim.command.numbers import positive
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, positive
 from pogosim.geometry.actions import checked_output, convert, guarded
 from pogosim.geometry.arena_file import read_arena
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.path import Path as Outline
 
-from pogosim.configuration_values import number
+from pogosim.arguments import number
 from pogosim.periodic import minimum_image
 
 Floats = npt.NDArray[np.float64]

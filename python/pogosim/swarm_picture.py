@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import sys
 
+from pogosim.errors import PictureError
 from pogosim.picture.command import main
-from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw, notes, round_length, title
 from pogosim.picture.layers import draw_scene, thinned, trail_segments
 from pogosim.picture.palette import DARK_LED, FLOOR, INK, PAPER, led_brightness, led_colours

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pyarrow as pa
+import yaml
 
 # One of these is in each file of a run or a batch.
 OF_RUNS = ("configuration", "resolved_configuration", "arena_polygons", "combinations", "program_version")
@@ -44,3 +45,31 @@ def saved_attrs(texts: dict[str, str]) -> list[dict[str, Any]]:
         if isinstance(attrs, dict):
             found.append(attrs)
     return found
+
+
+class SharedMap(dict[str, Any]):
+    """A dictionary whose deep copy is itself."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> SharedMap:
+        return self
+
+
+class SharedList(list[Any]):
+    """A list whose deep copy is itself."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> SharedList:
+        return self
+
+
+def shared(value: Any) -> Any:
+    """Return a map or a list that deep copies share; any other value as it is."""
+    if isinstance(value, dict):
+        return SharedMap(value)
+    return SharedList(value) if isinstance(value, list) else value
+
+
+# YAML writes them as what they are. Not all builds of PyYAML have those in C.
+for name in ("SafeDumper", "Dumper", "CSafeDumper", "CDumper"):
+    if dumper := getattr(yaml, name, None):
+        dumper.add_representer(SharedMap, dumper.represent_dict)
+        dumper.add_representer(SharedList, dumper.represent_list)

@@ -19,7 +19,7 @@ import pytest
 from pogosim.analysis.neighbourhood import degrees, nearest_distances
 from pogosim.analysis.trajectories import trajectories_of
 from pogosim.confidence import mean_over_runs
-from pogosim.picture.errors import PictureError
+from pogosim.errors import PictureError
 from pogosim.picture.swarm import read_recording
 from pogosim.pogobatch import BatchError, PogobotBatchRunner
 from pogosim.utils import load_dataframe

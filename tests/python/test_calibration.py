@@ -17,7 +17,6 @@ import pytest
 import yaml
 from pogosim.calibration import rounding, statistics
 from pogosim.calibration.command import main
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.fit import bias_range
 from pogosim.calibration.identifiability import verdicts, weakest_direction, without_own_effect
 from pogosim.calibration.reading import TrackTable, column_of, read_track_table
@@ -25,6 +24,7 @@ from pogosim.calibration.results import PROTOCOL
 from pogosim.calibration.scene_of_tracks import handedness
 from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
 from pogosim.calibration.units import UnitOptions, in_millimetres, in_radians, y_down
+from pogosim.errors import CalibrationError
 from running import SCENE, Run, build_folder, compile_program, run
 
 ARENA: dict[str, Any] = {"arena_file": "arenas/square.csv", "arena_surface": 2.25e6}  # 1.5 m

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from pogosim import compute_optimal_psend
-from pogosim.analysis.errors import AnalysisError
 from pogosim.compat import MODULES, functions_of
+from pogosim.errors import AnalysisError
 from pogosim.reports import figures
 from pogosim.reports.command import main as analyze
 from pogosim.utils import load_dataframe

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 from pogosim.analysis.correlations import correlation_length, pair_correlation, vector_correlation
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.floor import covered_fraction, floor_of_centres, set_covariance
 from pogosim.analysis.fluctuations import mean_square_speed, number_fluctuations
 from pogosim.analysis.structure_factor import structure_factor
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
+from pogosim.errors import AnalysisError
 from swarms import Floats, freud_system, metadata_of, rows_of
 
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 import yaml
 from pogosim.calibration.command import main
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.tracks import Floats
+from pogosim.errors import CalibrationError
 from pogosim.magnetometer.block import configuration_block, noise_lines, phase_near
 from pogosim.magnetometer.fit import CurveFit, basis, ellipse_errors, ellipse_of, fit_curve
 from pogosim.magnetometer.table import ReadingTable, read_reading_table

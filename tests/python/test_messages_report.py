@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.reception import attempts, outcomes, reception_rates, wilson_interval
 from pogosim.communication.reception_law import DynamicLaw
+from pogosim.errors import AnalysisError
 from pogosim.reports.command import analyze
 from running import run_shipped
 from swarms import metadata_of, rows_of, write_rows

@@ -11,7 +11,6 @@ from pogosim.analysis.displacement import (
     mean_squared_displacement,
     msd_per_agent,
 )
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.motion import (
     angular_velocity,
     net_displacement,
@@ -29,6 +28,7 @@ from pogosim.analysis.persistence import (
     velocity_autocorrelation,
 )
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
+from pogosim.errors import AnalysisError
 from swarms import Floats, brownian_walk, metadata_of, rows_of
 
 

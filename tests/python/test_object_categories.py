@@ -10,11 +10,10 @@ import numpy as np
 import pandas as pd
 import pytest
 from batches import batch, write_options
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.motion import speed
 from pogosim.analysis.trajectories import trajectories_of
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import read_track_table
+from pogosim.errors import AnalysisError, CalibrationError
 from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.picture.swarm import read_recording
 from pogosim.utils import load_dataframe

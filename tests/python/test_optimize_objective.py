@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from pogosim.optimize.errors import OptimizeError
+from pogosim.errors import OptimizeError
 from pogosim.optimize.objective import Objective, load_objective
 from pogosim.pogoptim import fd_fn, objective_fn
 

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 import yaml
 from batches import run_main, script
-from pogosim.optimize.errors import OptimizeError
+from pogosim.errors import OptimizeError
 from pogosim.optimize.execution import workers_of
 from pogosim.optimize.settings import Settings, settings_from
 from pogosim.pogoptim import main

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pogosim.optimize.errors import OptimizeError
+from pogosim.errors import OptimizeError
 from pogosim.optimize.objective import Judgement
 from pogosim.optimize.optimizers.base import Answer, Optimizer
-from pogosim.optimize.optimizers.mutation import mutated
-from pogosim.optimize.optimizers.quality_diversity import CmaMe, MapElites, folded
+from pogosim.optimize.optimizers.quality_diversity import CmaMe, MapElites, folded, mutated
 from pogosim.optimize.optimizers.table import OPTIMIZERS, optimizer_for
 from pogosim.optimize.optimizers.tpe import Tpe
 from pogosim.optimize.settings import Settings

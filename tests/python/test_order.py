@@ -5,12 +5,12 @@ import pandas as pd
 import pytest
 from pogosim.analysis.bond_order import bond_order
 from pogosim.analysis.directions import directions_of_headings, directions_of_motion
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.milling import centre_of_mass, milling
 from pogosim.analysis.motion import velocity
 from pogosim.analysis.neighbourhood import pairs_within
 from pogosim.analysis.order import local_alignment, nematic_order, polar_order
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
+from pogosim.errors import AnalysisError
 from swarms import Floats, freud_system, metadata_of, rows_of
 
 

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from pogosim.errors import PictureError
 from pogosim.picture.colouring import Legend, Scale, colouring_of
-from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw, draw_series
 from pogosim.picture.links import link_segments, links_at_end, proximity_pairs
 from pogosim.picture.palette import NO_LED

@@ -10,8 +10,8 @@ from pogosim.analysis.displacement import (
     mean_squared_displacement,
     squared_displacement,
 )
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of, unwrapped
+from pogosim.errors import AnalysisError
 from swarms import brownian_walk, metadata_of, rows_of
 
 

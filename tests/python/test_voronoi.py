@@ -5,9 +5,9 @@ import pytest
 import shapely
 from pogosim.analysis.arena import Arena
 from pogosim.analysis.coverage import coverage_over_time, covered_area
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.analysis.voronoi import voronoi_areas, voronoi_cells
+from pogosim.errors import AnalysisError
 from swarms import Floats, metadata_of, rows_of
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

@@ -17,7 +17,7 @@ import traceback
 from typing import Any
 
 import pogosim
-from pogosim.simulation.columns import Columns
+from pogosim.simulation.arrays import Columns
 
 SETTINGS: dict[str, Any] = {"simulation_time": 5, "parameters.gain": 1.0}
 TIMES = 300  # of each, one after the other

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.analysis.voronoi import Cells, one_each, voronoi_areas, voronoi_cells
+from pogosim.errors import AnalysisError
 
 
 def coverage_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.DataFrame:

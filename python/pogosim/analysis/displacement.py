@@ -11,8 +11,8 @@ import pandas as pd
 from scipy import fft
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories, trajectories_of, unwrapped
+from pogosim.errors import AnalysisError
 
 # Numbers that are transformed at once: 100 MB of spectra.
 MAX_CELLS = 4_000_000

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.errors import AnalysisError
 
 if TYPE_CHECKING:
     import shapely

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.neighbourhood import Integers
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.errors import AnalysisError
 
 
 @dataclass(frozen=True)

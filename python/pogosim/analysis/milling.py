@@ -9,8 +9,8 @@ import numpy as np
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.defaults import MIN_SPEED_MM_S
 from pogosim.analysis.directions import unit_vectors
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.errors import AnalysisError
 
 
 def centre_of_mass(run: Trajectories) -> Floats:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.analysis.arena import Floats
-from pogosim.configuration_values import number
+from pogosim.arguments import number
 from pogosim.scene import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 
 Setting = Callable[[str], Any]

@@ -19,10 +19,10 @@ import numpy.typing as npt
 import pandas as pd
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.robot_sizes import Sizes, sizes_of
 from pogosim.arguments import Arguments
 from pogosim.batch.paths import get_by_dotted_path
+from pogosim.errors import AnalysisError
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.periodic import steps_of

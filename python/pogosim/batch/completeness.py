@@ -20,7 +20,7 @@ from pogosim.batch.result_metadata import Earlier, configuration_in
 from pogosim.batch.run_files import ALL_OUTPUTS, FILES_BESIDE
 from pogosim.batch.single_task import TaskArtifact
 from pogosim.batch.sweeps import resolved
-from pogosim.counted import counted
+from pogosim.lines import counted
 from pogosim.varied import NO_PARAMETERS, differ, leaves, varied_parameters
 
 OF_VIEW = ("GUI", "progress_bar", "mm_to_pixels")  # which a run adds to its configuration

@@ -16,8 +16,7 @@ from tqdm.contrib.logging import logging_redirect_tqdm
 
 from pogosim.batch.option_words import shown
 from pogosim.batch.run import Outcome, Task
-from pogosim.counted import counted
-from pogosim.lines import printable
+from pogosim.lines import counted, printable
 
 log = logging.getLogger("pogobatch")
 

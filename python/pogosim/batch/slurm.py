@@ -23,8 +23,8 @@ from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm_jobs import Jobs, check_commands, own_folder
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB, TIME, SlurmJobs
 from pogosim.batch.slurm_worker import do_in_job
-from pogosim.counted import counted
 from pogosim.extras import installing
+from pogosim.lines import counted
 
 LOSSES_PER_RUN = 5
 ROLES = ("scheduler", "worker", "client")

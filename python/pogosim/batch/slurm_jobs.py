@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pogosim.batch.errors import BatchError, one_line, tell
 from pogosim.batch.run import tail
-from pogosim.counted import counted
+from pogosim.lines import counted
 
 COMMANDS = ("sbatch", "squeue", "scancel")
 ENDED = re.compile("BOOT_FAIL|CANCELLED|COMPLETED|DEADLINE|FAILED|NODE_FAIL|OUT_OF_MEMORY|PREEMPTED|REVOKED|TIMEOUT")

@@ -11,7 +11,7 @@ from pogosim.batch.ending import Report, RunsFailedError
 from pogosim.batch.errors import BatchError, tell
 from pogosim.batch.identity import find_program
 from pogosim.batch.run_options import Parser, add_choice_options, add_run_options, check_names, runner_of
-from pogosim.counted import counted
+from pogosim.lines import counted
 from pogosim.nearest_name import nearest_name
 
 if TYPE_CHECKING:

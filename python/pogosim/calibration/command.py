@@ -8,16 +8,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.batch.ending import catch_signals
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.parameters import NAMES
 from pogosim.calibration.results import LINES, PICTURE, RESULT, write_protocol
 from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM
 from pogosim.command.new import ProjectError
-from pogosim.command.numbers import positive, whole
-from pogosim.command.parser import Parser, complain
-from pogosim.inputs import check_readable
+from pogosim.command.parser import Parser, complain, positive, whole
+from pogosim.errors import CalibrationError
 from pogosim.installation import InstallationError
-from pogosim.outputs import OutputError, told
+from pogosim.outputs import OutputError, check_readable, told
 
 INTERRUPTED = 130
 MAGNETOMETER = "magnetometer"  # in place of a file: the fit of a magnetometer

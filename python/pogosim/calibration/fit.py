@@ -16,7 +16,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.identifiability import without_own_effect
 from pogosim.calibration.parameters import ALL, BIAS, BIAS_LIMIT, NOISES, PARAMETERS, TRACKER
 from pogosim.calibration.rounding import rounded, rounding_noise, with_random_digits
@@ -24,6 +23,7 @@ from pogosim.calibration.simulation import Bias, Candidate, Simulator
 from pogosim.calibration.statistics import Statistics, quantile, statistics_of, turn_rates
 from pogosim.calibration.tracks import Floats, Tracks
 from pogosim.calibration.units import with_headings
+from pogosim.errors import CalibrationError
 
 BIAS_STEP = 40  # motor power units, to either side, to see what a bias does
 LOG_STEP, STEP = 0.15, 1.0  # in scales of a parameter, to see what it does

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from pogosim.arguments import number
 from pogosim.batch.options import single_value
-from pogosim.calibration.errors import CalibrationError
-from pogosim.configuration_values import number
+from pogosim.errors import CalibrationError
 
 BIAS = "angular_systematic_bias_domain"
 BIAS_LIMIT = 1023  # motor power units

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.trackmate import MARK, encoding_of, spots
+from pogosim.errors import CalibrationError
 from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.run_columns import RUN, is_one_run
 from pogosim.table_formats import is_binary, is_our_metadata, metadata_path

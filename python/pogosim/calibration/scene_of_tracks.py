@@ -11,13 +11,13 @@ import shapely
 import shapely.ops
 
 from pogosim.arenas import area_of, find_arena
+from pogosim.arguments import number
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.options import single_value
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks
-from pogosim.configuration_values import number
+from pogosim.errors import CalibrationError
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
 from pogosim.scene import POGOBOT_RADIUS_MM, read_periodic, type_of
 from pogosim.yaml_1_2 import plain

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from pogosim.arguments import number
 from pogosim.batch.errors import BatchError
 from pogosim.batch.rows import Runs
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.parameters import BIAS
 from pogosim.calibration.tracks import Floats, Tracks
-from pogosim.configuration_values import number
+from pogosim.errors import CalibrationError
 
 TIME_STEP_S = 0.01  # default of the configuration
 PLACEMENT = ("nb", "x", "y", "angle", "poses", "area", "initial_formation")

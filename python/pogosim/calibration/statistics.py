@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.parameters import NOISES
 from pogosim.calibration.tracks import Floats, Ints, Tracks
+from pogosim.errors import CalibrationError
 
 WINDOW_S = 0.4  # over which speeds and turn rates are taken
 LAGS_S = (0.04, 0.08, 0.16, 0.32, 0.64, 1.0)  # of jitter

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import TrackTable, Warn
+from pogosim.errors import CalibrationError
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

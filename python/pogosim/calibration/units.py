@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks, continuous
 from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM, RARE_LENGTHS_MM
+from pogosim.errors import CalibrationError
 
 ARENA_TOLERANCE = 1.1  # tracks may extend over so much more than the arena: cameras are not perfect
 SMALL_SHARE = 0.1  # of the arena; tracks within less suggest another unit

@@ -15,7 +15,6 @@ import numpy as np
 from pogosim.batch.backends import Workers
 from pogosim.batch.errors import BatchError
 from pogosim.batch.rows import Runs
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile, tracker_errors
 from pogosim.calibration.parameters import BIAS, chosen, start_bias, start_values
 from pogosim.calibration.reading import read_track_table
@@ -35,6 +34,7 @@ from pogosim.calibration.units import (
 )
 from pogosim.command.parser import warn
 from pogosim.command.run import RunError, program_of
+from pogosim.errors import CalibrationError
 from pogosim.installation import InstallationError, find_installation
 from pogosim.lines import say
 from pogosim.outputs import partial_output, real_output

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import BinaryIO
 
 from pogosim.command.parser import Parser, complain
-from pogosim.counted import counted
 from pogosim.flash_archive import (
     FLASH_BYTES,
     LONGEST_CATEGORY,
@@ -22,7 +21,7 @@ from pogosim.flash_archive import (
     records_of,
     write_archive,
 )
-from pogosim.lines import say
+from pogosim.lines import counted, say
 from pogosim.outputs import OutputError, leads_to, partial_output, real_output, told
 
 IDS = 65536

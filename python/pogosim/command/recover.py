@@ -6,9 +6,8 @@ import os
 from collections.abc import Sequence
 
 from pogosim.command.parser import Parser, complain
-from pogosim.inputs import check_readable
 from pogosim.lines import say
-from pogosim.outputs import OutputError
+from pogosim.outputs import OutputError, check_readable
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") -> int:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from pogosim.command.numbers import finite, positive, whole
-from pogosim.command.parser import Parser, complain
+from pogosim.command.parser import Parser, complain, finite, positive, whole
 from pogosim.communication.fit_settings import OBJECTIVES
 from pogosim.communication.reception_law import LAWS, SHORT_HEADER_BYTES, parameter_names
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from pogosim.command.numbers import finite, positive
-from pogosim.command.parser import Parser, complain
+from pogosim.command.parser import Parser, complain, finite, positive
 from pogosim.communication.reception_law import LAWS, DynamicLaw, Law, PowerLaw, parameter_names, parameters_of
 from pogosim.communication.sending import SENDING_DEFAULTS, SendingError, best_sending
 from pogosim.lines import say

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.network import averaged_spectra, graph_over_time, instantaneous_spectra
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.compat.table_function import Table, table_function
+from pogosim.errors import AnalysisError
 from pogosim.reports.command_lines import network
 from pogosim.reports.network import windows_of
 from pogosim.reports.options import labelled

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from pogosim.command.parser import Parser
 from pogosim.film.encoder import FORMATS, PAGE, check_ffmpeg
-from pogosim.inputs import check_readable
-from pogosim.outputs import OutputError, leads_to, real_output
+from pogosim.outputs import OutputError, check_readable, leads_to, real_output
 from pogosim.picture.options import add_what_to_draw, moment, positive, report
 
 

@@ -9,8 +9,8 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from pogosim.errors import PictureError
 from pogosim.outputs import partial_output
-from pogosim.picture.errors import PictureError
 
 # As films that runs make of themselves, docs/pictures.md: H.264 and VP9 in the colours of players, and for GIF a
 # palette for each frame.

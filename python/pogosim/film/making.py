@@ -8,13 +8,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pogosim.command.parser import warn
-from pogosim.counted import counted
+from pogosim.errors import PictureError
 from pogosim.film.encoder import PAGE, encode
 from pogosim.film.replay import write_replay
 from pogosim.film.stills import Look, Stills, size_for
 from pogosim.fonts import without_tex
-from pogosim.lines import say
-from pogosim.picture.errors import PictureError
+from pogosim.lines import counted, say
 from pogosim.picture.loading import load, sayings
 from pogosim.picture.swarm import Recording
 

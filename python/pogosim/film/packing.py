@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from pogosim.errors import PictureError
 from pogosim.picture.colouring import SHADES, Scale, holds_numbers, label_of, numbers_of, scale_of, swatches_of
-from pogosim.picture.errors import PictureError
 from pogosim.scene import Floats
 
 MISSING = 65535  # the code of no value

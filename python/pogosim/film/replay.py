@@ -14,14 +14,14 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from pogosim.counted import counted
+from pogosim.errors import PictureError
 from pogosim.film.first_picture import first_picture
 from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, quantised, shades_of
 from pogosim.film.timeline import Timeline, timeline_of
+from pogosim.lines import counted
 from pogosim.outputs import partial_output
 from pogosim.picture import layers
 from pogosim.picture.colouring import scale_of
-from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import notes, title
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.speed import with_speed

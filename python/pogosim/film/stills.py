@@ -12,12 +12,12 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from pogosim.errors import PictureError
 from pogosim.film.brush import Brush
 from pogosim.film.moving import Moving
 from pogosim.film.timeline import timeline_of
 from pogosim.fonts import any_characters, literal
 from pogosim.picture import layers
-from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw_key, draw_notes, draw_scale_bar, notes, title, width_of_key
 from pogosim.picture.palette import INK, PAPER
 from pogosim.picture.swarm import OBJECT, Recording, Swarm

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from pogosim.errors import PictureError
 from pogosim.periodic import minimum_image
-from pogosim.picture.errors import PictureError
 from pogosim.picture.swarm import Recording
 from pogosim.scene import Floats, bounds
 from pogosim.times import slack_s

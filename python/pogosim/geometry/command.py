@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from pogosim.command.numbers import positive
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, positive
 
 DEFAULT_AREA_MM2 = 1.0e6  # of the key arena_surface
 DEFAULT_RADIUS_MM = 26.5  # of robots

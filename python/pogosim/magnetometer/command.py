@@ -6,12 +6,10 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from pogosim.calibration.errors import CalibrationError
-from pogosim.command.numbers import finite, whole
-from pogosim.command.parser import Parser, complain, warn
-from pogosim.inputs import check_readable
+from pogosim.command.parser import Parser, complain, finite, warn, whole
+from pogosim.errors import CalibrationError
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to, partial_output, real_output, told
+from pogosim.outputs import OutputError, check_readable, leads_to, partial_output, real_output, told
 
 PICTURE = "magnetometer.png"
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.tracks import Floats
+from pogosim.errors import CalibrationError
 from pogosim.magnetometer.table import ReadingTable
 
 HIGHEST_ORDER = 32  # as in the simulator

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from pogosim.calibration.errors import CalibrationError
 from pogosim.calibration.reading import Warn, separator
 from pogosim.calibration.tracks import Floats
+from pogosim.errors import CalibrationError
 
 AXES = ("x", "y", "z")
 SYNONYMS = {

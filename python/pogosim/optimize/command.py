@@ -10,7 +10,6 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import pogosim
-from pogosim.ambiguity import AmbiguousStepsWarning
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.ending import catch_signals
 from pogosim.batch.errors import BatchError, is_text, reason
@@ -18,8 +17,8 @@ from pogosim.batch.names import NamesError
 from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warn, warnings_told
+from pogosim.errors import AmbiguousStepsWarning, OptimizeError
 from pogosim.lines import LineFormatter
-from pogosim.optimize.errors import OptimizeError
 from pogosim.optimize.optimizers.table import OPTIMIZERS, check_optimizer, optimizer_for
 from pogosim.optimize.settings import SECTION, Settings, settings_from
 from pogosim.outputs import OutputError

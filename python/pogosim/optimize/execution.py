@@ -15,7 +15,7 @@ from pogosim.batch.rows import Runs
 from pogosim.batch.run_files import found_beside
 from pogosim.batch.slurm_options import slurm_jobs
 from pogosim.batch.tasks import check_logs_data
-from pogosim.optimize.errors import OptimizeError
+from pogosim.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective
 from pogosim.optimize.optimizers.base import Optimizer

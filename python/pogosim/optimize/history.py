@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from pogosim.batch.errors import cannot
-from pogosim.counted import counted
-from pogosim.optimize.errors import OptimizeError
+from pogosim.errors import OptimizeError
+from pogosim.lines import counted
 from pogosim.optimize.objective import Judgement
 
 JOURNAL = "search.jsonl"

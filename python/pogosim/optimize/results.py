@@ -18,7 +18,7 @@ from pogosim.batch.configuration import dump_configuration
 from pogosim.batch.errors import cannot
 from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.batch.run_files import with_files_beside
-from pogosim.optimize.errors import OptimizeError
+from pogosim.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Evaluation
 from pogosim.optimize.settings import SECTION
 from pogosim.optimize.variables import Space, Values, as_json

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from pogosim.batch.rows import RUN_FAILED, Runs, kind_of
-from pogosim.optimize.errors import OptimizeError
+from pogosim.errors import OptimizeError
 from pogosim.optimize.history import Evaluation, Journal
 from pogosim.optimize.objective import Judgement, Objective
 from pogosim.optimize.optimizers.base import Answer, Floats, Optimizer

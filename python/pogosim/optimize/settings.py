@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from pogosim.batch.option_words import shown
+from pogosim.errors import OptimizeError
 from pogosim.nearest_name import advice, nearest_name
-from pogosim.optimize.errors import OptimizeError
 from pogosim.yaml_1_2 import plain
 
 SECTION = "optimization"

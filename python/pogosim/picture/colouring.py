@@ -14,8 +14,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import Colormap, ListedColormap
 
+from pogosim.errors import PictureError
 from pogosim.nearest_name import nearest_name
-from pogosim.picture.errors import PictureError
 from pogosim.picture.palette import NO_LED
 from pogosim.picture.speed import SPEED
 from pogosim.scene import Floats

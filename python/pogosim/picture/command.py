@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.command.parser import Parser
-from pogosim.inputs import check_readable
-from pogosim.outputs import OutputError, leads_to, real_output
+from pogosim.outputs import OutputError, check_readable, leads_to, real_output
 from pogosim.picture.options import add_what_to_draw, moment, positive, report
 
 PICTURES = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "svgz", "tif", "tiff", "webp")

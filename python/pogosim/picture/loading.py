@@ -9,9 +9,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pogosim.ambiguity import AmbiguousStepsWarning
 from pogosim.command.parser import warn
-from pogosim.picture.errors import PictureError
+from pogosim.errors import AmbiguousStepsWarning, PictureError
 from pogosim.picture.options import cannot_read
 from pogosim.picture.swarm import Recording, read_recording
 

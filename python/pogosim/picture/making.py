@@ -8,9 +8,9 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from pogosim.errors import PictureError
 from pogosim.fonts import any_characters, without_tex
 from pogosim.lines import say
-from pogosim.picture.errors import PictureError
 from pogosim.picture.figure import draw, draw_series, title
 from pogosim.picture.loading import load, sayings
 from pogosim.picture.swarm import Recording

@@ -7,10 +7,9 @@ import math
 import os
 from collections.abc import Callable
 
-from pogosim.ambiguity import AmbiguousStepsWarning
 from pogosim.command.parser import complain, warnings_told
+from pogosim.errors import AmbiguousStepsWarning, PictureError
 from pogosim.outputs import OutputError
-from pogosim.picture.errors import PictureError
 
 
 def positive(text: str) -> float:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from pogosim.errors import PictureError
 from pogosim.picture.colouring import is_internal
-from pogosim.picture.errors import PictureError
 from pogosim.run_columns import RUN, is_one_run, tells_runs_apart
 from pogosim.scene import Floats
 

@@ -10,11 +10,11 @@ import numpy.typing as npt
 import pandas as pd
 
 from pogosim.arguments import Arguments
+from pogosim.errors import PictureError
 from pogosim.far_away import is_near
 from pogosim.object_categories import with_categories
 from pogosim.outputs import PathLike
 from pogosim.picture.colouring import Colouring, checked_column, colouring_of, legend_of_categories
-from pogosim.picture.errors import PictureError
 from pogosim.picture.palette import NO_LED, led_colours
 from pogosim.picture.selection import checked, one_run
 from pogosim.picture.speed import OBJECT as OBJECT_COLUMN

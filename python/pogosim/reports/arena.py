@@ -11,15 +11,15 @@ import shapely
 from matplotlib.figure import Figure
 from shapely import affinity
 
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.analysis.walls import distance_to_walls
 from pogosim.command.parser import warn
+from pogosim.errors import AnalysisError
 from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.drawing import draw
 from pogosim.geometry.validity import Room, problems, room_for
+from pogosim.reports.coverage import with_arenas
 from pogosim.reports.figures import save
-from pogosim.reports.missing_arenas import with_arenas
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
 

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.milling import centre_of_arena
 from pogosim.analysis.motion import speed
 from pogosim.analysis.trajectories import Trajectories, need_columns
 from pogosim.command.parser import warn
+from pogosim.errors import AnalysisError
 from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
 from pogosim.reports.collective_metrics import METRICS, Metric
 from pogosim.reports.collective_summary import write_details, write_summaries

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.analysis.trajectories import Trajectories
-from pogosim.counted import counted
+from pogosim.lines import counted
 from pogosim.reports.collective_metrics import METRICS
 from pogosim.reports.collective_swarm import Settings
 from pogosim.reports.figures import groups_of

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 from pogosim.command.parser import complain, warn
 from pogosim.extensions import ExtensionError, Own, Table
-from pogosim.inputs import check_readable
 from pogosim.lines import say, say_error
 from pogosim.nearest_name import nearest_name
+from pogosim.outputs import check_readable
 from pogosim.reports.command_lines import Analysis
 
 ANALYSES = Table(

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pogosim.analysis.defaults import MIN_SPEED_MM_S
-from pogosim.command.numbers import at_least, positive, whole
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, at_least, positive, whole
 from pogosim.extensions import located
 
 NEIGHBOURS = "neighbors_list"  # the column that programs usually have

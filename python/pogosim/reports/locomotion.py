@@ -12,7 +12,7 @@ import pandas as pd
 from pogosim.analysis.density import count_outside
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.parser import warn
-from pogosim.counted import counted
+from pogosim.lines import counted
 from pogosim.reports.figures import group_names, group_of
 from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
 from pogosim.reports.locomotion_figures import RunTables, draw_all

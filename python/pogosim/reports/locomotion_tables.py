@@ -18,7 +18,6 @@ from pogosim.analysis.displacement import (
     mean_squared_displacement,
     msd_per_agent,
 )
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.motion import (
     angular_velocity,
     net_displacement,
@@ -34,6 +33,7 @@ from pogosim.analysis.persistence import (
     velocity_autocorrelation,
 )
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.errors import AnalysisError
 from pogosim.reports.options import labelled
 
 

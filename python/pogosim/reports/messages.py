@@ -15,10 +15,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.reception import attempts, outcomes, reception_rates
 from pogosim.analysis.trajectories import label_columns
 from pogosim.command.parser import warn
+from pogosim.errors import AnalysisError
 from pogosim.fonts import literal
 from pogosim.reports.figures import new_figure, save
 from pogosim.reports.options import output_folder, write_table

@@ -11,10 +11,10 @@ from pathlib import Path
 import pandas as pd
 import pyarrow
 
-from pogosim.analysis.errors import AnalysisError
 from pogosim.analysis.robot_sizes import DifferentRobotsWarning
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.parser import complain, warn, warnings_told
+from pogosim.errors import AnalysisError
 from pogosim.fonts import without_tex
 from pogosim.lines import say
 from pogosim.outputs import OutputError, leads_to, told

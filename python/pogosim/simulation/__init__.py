@@ -1,6 +1,6 @@
 """Runs inside this process: `Simulation`, one run, and `VectorSimulation`, many at once."""
 
-from pogosim.simulation.columns import Columns
+from pogosim.simulation.arrays import Columns
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
 from pogosim.simulation.run import Simulation
 from pogosim.simulation.vector import VectorSimulation

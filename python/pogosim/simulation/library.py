@@ -10,7 +10,10 @@ import ctypes
 import functools
 import logging
 import os
+import signal
 import sys
+import threading
+import time
 from collections.abc import Callable
 from ctypes import (
     POINTER,
@@ -34,7 +37,21 @@ from pogosim.extensions import let_find_models
 from pogosim.installation import InstallationError, find_installation
 from pogosim.lines import printable
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
-from pogosim.simulation.interrupts import interrupt_soon
+
+DELAY_S = 0.05  # in which the finaliser returns
+
+
+def interrupt_soon() -> None:
+    """Interrupt the main thread, as Ctrl-C does, after the finaliser that calls this."""
+
+    def interrupt() -> None:
+        time.sleep(DELAY_S)
+        main = threading.main_thread().ident
+        if main is not None and callable(signal.getsignal(signal.SIGINT)):  # else the signal would end the process
+            signal.pthread_kill(main, signal.SIGINT)  # ends its sleep, too
+
+    threading.Thread(target=interrupt, name="pogosim-interrupt", daemon=True).start()
+
 
 OK, OVER, USAGE, PROGRAM_FAILED = range(4)
 

@@ -19,13 +19,11 @@ import numpy.typing as npt
 from pogosim.arguments import shown
 from pogosim.lines import printable
 from pogosim.outputs import PathLike
-from pogosim.simulation.arrays import NO_BODY, RunState, check_process
-from pogosim.simulation.columns import Columns
-from pogosim.simulation.current_run import CurrentRun
+from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process
+from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
 from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
-from pogosim.simulation.saved_rows import write_copy
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
 

@@ -14,6 +14,11 @@ from pogosim.optimize.variables import Space
 
 if TYPE_CHECKING:
     from pogosim.optimize.objective import Judgement  # which imports pandas
+import importlib
+from typing import Any
+
+from pogosim.errors import OptimizeError
+from pogosim.extras import installing
 
 Floats = npt.NDArray[np.float64]
 
@@ -71,3 +76,18 @@ def default_population(dimensions: int) -> int:
     N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, 2016, table 1.
     """
     return 4 + int(3 * np.log(dimensions))
+
+
+def imported(name: str, optimizer: str) -> Any:
+    """Import a package.
+
+    Raises:
+        OptimizeError: It is not installed; says how to install it.
+    """
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        package = name.partition(".")[0]
+        raise OptimizeError(
+            f"--optimizer {optimizer} needs the Python package '{package}'; install it: {installing('optimize')}"
+        ) from None

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from pogosim.errors import OptimizeError
 from pogosim.extensions import ExtensionError, Own, Table, takes
-from pogosim.optimize.errors import OptimizeError
 
 if TYPE_CHECKING:
     from pogosim.optimize.optimizers.base import Optimizer

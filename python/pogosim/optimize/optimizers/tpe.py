@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from pogosim.optimize.domain import Categorical, Whole
-from pogosim.optimize.optimizers.base import Answer, Floats, default_population
-from pogosim.optimize.optimizers.packages import imported
+from pogosim.optimize.optimizers.base import Answer, Floats, default_population, imported
 from pogosim.optimize.settings import Settings
 from pogosim.optimize.variables import Space, Variable
 

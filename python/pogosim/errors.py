@@ -1,0 +1,23 @@
+"""What keeps a tool from doing what it is asked for, and what it warns of; light, so that command lines can name it."""
+
+from __future__ import annotations
+
+
+class AnalysisError(ValueError):
+    """Data do not have what an analysis needs; says what, and what to do."""
+
+
+class AmbiguousStepsWarning(RuntimeWarning):
+    """Rows are so far apart in time that robots may have gone another way than the shortest."""
+
+
+class CalibrationError(Exception):
+    """Robots cannot be calibrated so; says what, where, and what to do."""
+
+
+class OptimizeError(Exception):
+    """The search cannot be done. The message is one line: where, what, what was expected, what to do."""
+
+
+class PictureError(Exception):
+    """The file holds nothing that can be drawn, or the picture cannot be made; says why."""
