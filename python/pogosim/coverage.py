@@ -1,6 +1,6 @@
-"""Voronoi cells and coverage: `python -m pogosim.coverage` is `pogosim analyze coverage`; its functions, for scripts.
+"""Voronoi cells and coverage: functions for scripts, see `pogosim.compat`.
 
-python -m pogosim.coverage -i results/result.feather -o figures
+`python -m pogosim.coverage` is `pogosim analyze coverage`.
 """
 
 from __future__ import annotations
@@ -9,16 +9,12 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from pogosim.analysis.coverage import coverage_over_time, covered_area
-from pogosim.analysis.voronoi import voronoi_areas, voronoi_cells
 from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
-__all__ = ["coverage_over_time", "covered_area", "main", "voronoi_areas", "voronoi_cells"]
-
 
 def __getattr__(name: str) -> Any:
-    """Find a function of `pogosim.compat`."""
+    """Find a function of the analysis, or of `pogosim.compat.coverage`."""
     return attribute("coverage", name)
 
 

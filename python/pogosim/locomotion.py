@@ -1,6 +1,6 @@
-"""How robots move: `python -m pogosim.locomotion -i results/result.feather -o locomotion`.
+"""How robots move: functions for scripts, see `pogosim.compat`.
 
-The same as `pogosim analyze locomotion`; its functions are those of `pogosim.analysis`.
+`python -m pogosim.locomotion` is `pogosim analyze locomotion`.
 """
 
 from __future__ import annotations
@@ -9,54 +9,12 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from pogosim.analysis.density import count_density, kernel_density
-from pogosim.analysis.displacement import (
-    compute_msd_per_agent,
-    diffusion_coefficient,
-    diffusion_coefficients,
-    diffusion_exponent,
-    displacement_by_lag,
-    mean_squared_displacement,
-    msd_per_agent,
-    squared_displacement,
-)
-from pogosim.analysis.motion import angular_velocity, path_length, peclet_numbers, speed, straightness, velocity
-from pogosim.analysis.persistence import (
-    heading_autocorrelation,
-    persistence_length,
-    persistence_time,
-    velocity_autocorrelation,
-)
 from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
-__all__ = [
-    "angular_velocity",
-    "compute_msd_per_agent",
-    "count_density",
-    "diffusion_coefficient",
-    "diffusion_coefficients",
-    "diffusion_exponent",
-    "displacement_by_lag",
-    "heading_autocorrelation",
-    "kernel_density",
-    "main",
-    "mean_squared_displacement",
-    "msd_per_agent",
-    "path_length",
-    "peclet_numbers",
-    "persistence_length",
-    "persistence_time",
-    "speed",
-    "squared_displacement",
-    "straightness",
-    "velocity",
-    "velocity_autocorrelation",
-]
-
 
 def __getattr__(name: str) -> Any:
-    """Find a function of `pogosim.compat`."""
+    """Find a function of the analysis, or of `pogosim.compat.locomotion`."""
     return attribute("locomotion", name)
 
 

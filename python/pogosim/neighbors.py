@@ -1,6 +1,6 @@
-"""Neighbours of robots: `python -m pogosim.neighbors` is `pogosim analyze neighbors`; and its functions, for scripts.
+"""Neighbours of robots: functions for scripts, see `pogosim.compat`.
 
-python -m pogosim.neighbors -i results/result.feather -o figures
+`python -m pogosim.neighbors` is `pogosim analyze neighbors`.
 """
 
 from __future__ import annotations
@@ -9,35 +9,12 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
-from pogosim.analysis.neighbourhood import (
-    cluster_sizes,
-    clusters,
-    degrees,
-    fano_factor,
-    nearest_distances,
-    neighbour_pairs,
-    neighbours,
-)
 from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
-__all__ = [
-    "cluster_sizes",
-    "clusters",
-    "degrees",
-    "fano_factor",
-    "listed_distance",
-    "listed_neighbours",
-    "main",
-    "nearest_distances",
-    "neighbour_pairs",
-    "neighbours",
-]
-
 
 def __getattr__(name: str) -> Any:
-    """Find a function of `pogosim.compat`."""
+    """Find a function of the analysis, or of `pogosim.compat.neighbors`."""
     return attribute("neighbors", name)
 
 

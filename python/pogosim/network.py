@@ -1,6 +1,6 @@
-"""Proximity graphs: `python -m pogosim.network` is `pogosim analyze network`; and its functions, for scripts.
+"""Proximity graphs: functions for scripts, see `pogosim.compat`.
 
-python -m pogosim.network -i results/result.feather -o figures
+`python -m pogosim.network` is `pogosim analyze network`.
 """
 
 from __future__ import annotations
@@ -9,25 +9,12 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from pogosim.analysis.laplacian import Spectrum, largest_component, spectrum
-from pogosim.analysis.network import averaged_spectra, contact_time_s, graph_over_time, instantaneous_spectra
 from pogosim.compat import attribute
 from pogosim.reports.command import analyze
 
-__all__ = [
-    "Spectrum",
-    "averaged_spectra",
-    "contact_time_s",
-    "graph_over_time",
-    "instantaneous_spectra",
-    "largest_component",
-    "main",
-    "spectrum",
-]
-
 
 def __getattr__(name: str) -> Any:
-    """Find a function of `pogosim.compat`."""
+    """Find a function of the analysis, or of `pogosim.compat.network`."""
     return attribute("network", name)
 
 

@@ -8,7 +8,7 @@ Each table that an analysis writes, `NAME.csv`, is a function `compute_NAME(rows
 module that is named after the analysis: `am`, `locomotion`, `neighbors`, `network` and `coverage`. It returns what
 `pogosim analyze` would write, with columns for the run, the arena and the varied parameters. `metadata` is needed only
 if the rows have lost their `attrs`. Options are those of the command line, by the same names: `compute_psi_k(rows,
-psi_k=4)`.
+psi_k=4)`. These modules have the functions of `pogosim.analysis` that belong to the analysis, too.
 """
 
 from __future__ import annotations
@@ -18,7 +18,17 @@ from typing import Any
 
 from pogosim.nearest_name import nearest_name
 
-MODULES = ("am", "coverage", "locomotion", "neighbors", "network")
+# Modules of pogosim.analysis whose functions each module has.
+MODULES = {
+    "am": (
+        *("bond_order", "correlations", "directions", "flow", "fluctuations", "milling", "motion", "order"),
+        "structure_factor",
+    ),
+    "coverage": ("coverage", "voronoi"),
+    "locomotion": ("density", "displacement", "motion", "persistence"),
+    "neighbors": ("listed_neighbours", "neighbourhood"),
+    "network": ("laplacian", "network"),
+}
 
 
 def functions_of(module: str) -> dict[str, Any]:
@@ -28,16 +38,20 @@ def functions_of(module: str) -> dict[str, Any]:
 
 
 def attribute(module: str, name: str) -> Any:
-    """Return a function of this package for `pogosim.MODULE.name`.
+    """Return a function of `pogosim.analysis` or of this package for `pogosim.MODULE.name`.
 
     Raises:
         AttributeError: There is none; the message names those that there are.
     """
+    if name.startswith("_"):
+        raise AttributeError(f"module 'pogosim.{module}' has no attribute '{name}'")
+    for source in MODULES[module]:
+        found = getattr(importlib.import_module(f"pogosim.analysis.{source}"), name, None)
+        if getattr(found, "__module__", "") == f"pogosim.analysis.{source}":
+            return found
     own = functions_of(module)
     if name in own:
         return own[name]
-    if name.startswith("_"):
-        raise AttributeError(f"module 'pogosim.{module}' has no attribute '{name}'")
     near = nearest_name(name, own)
     question = f" (did you mean {near}?)" if near else ""
     raise AttributeError(
