@@ -63,6 +63,8 @@ struct Box {
     Vec2 min;
     Vec2 max;
 
+    friend constexpr bool operator==(Box const&, Box const&) = default;
+
     constexpr Vec2 size() const { return max - min; }
     constexpr Vec2 centre() const { return 0.5F * (min + max); }
     constexpr bool contains(Vec2 point) const {

@@ -22,6 +22,8 @@ struct Arena {
 
     /// Distance to the nearest wall, mm.
     float distance_to_walls(Vec2 point_mm) const;
+
+    friend bool operator==(Arena const&, Arena const&) = default;
 };
 
 /// "the arena, which spans (0.0, 0.0) to (1000.0, 1000.0) mm", for messages.

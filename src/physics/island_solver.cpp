@@ -34,7 +34,7 @@ constexpr float kMostLateMm = 0.5F;
 // Smaller islands need no initial guess of their impulses: they converge in one or two iterations.
 constexpr std::uint32_t kLargeIsland = 32;
 
-constexpr float kNever = std::numeric_limits<float>::max();
+constexpr float kUnlimited = std::numeric_limits<float>::max();
 constexpr std::uint32_t kMostBlocks = 64;
 
 float push_rate(float h_s) {
@@ -139,7 +139,7 @@ void IslandSolver::mark_overlaps() {
 /// Measures the contacts at the start of a sub-step, and sets the speeds that they demand: bodies that meet within it
 /// bounce at once, others may close their gap, and those that overlap are pushed apart.
 IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts const& contacts, Times const& times) {
-    Four least_gap_mm = all_four(kNever);
+    Four least_gap_mm = all_four(kUnlimited);
     FourInts meets = {};
     dirty_ = 0;
     auto const count = static_cast<std::uint32_t>(contacts_.size());
@@ -161,7 +161,7 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
         // A body that is thrown against another one in this sub-step bounces in the next one, unless it would be deep
         // in the other body by then.
         Four const late_mm_s = -(gap_mm + kMostLateMm) * times.per_h;
-        Four const latest_mm_s = (is_elastic & is_free & ~bounces) ? late_mm_s : all_four(kNever);
+        Four const latest_mm_s = (is_elastic & is_free & ~bounces) ? late_mm_s : all_four(kUnlimited);
         FourInts const demands = speed_mm_s < least_mm_s;
         least_gap_mm = smaller(least_gap_mm, gap_mm);
         meets |= gap_mm + kContactToleranceMm < -speed_mm_s * times.rest_s;
@@ -210,10 +210,10 @@ IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts 
         // None: the disk faces another edge of the wall.
         places.normal_x[i] = gap ? gap->normal.x : 0.0F;
         places.normal_y[i] = gap ? gap->normal.y : 0.0F;
-        places.gap_mm[i] = gap ? gap->distance_mm - contact.law.radius_mm : kNever;
+        places.gap_mm[i] = gap ? gap->distance_mm - contact.law.radius_mm : kUnlimited;
     }
     for (auto i = static_cast<std::uint32_t>(four.size()); i < kLanes; ++i) {
-        places.gap_mm[i] = kNever;
+        places.gap_mm[i] = kUnlimited;
     }
     places.speed_mm_s = velocity_x_mm_s * places.normal_x + velocity_y_mm_s * places.normal_y;
     return places;

@@ -19,6 +19,8 @@ using Axes = std::array<double, kAxisCount>;  // x, y, z
 struct Interval {
     double min = 0.0;
     double max = 0.0;
+
+    friend bool operator==(Interval const&, Interval const&) = default;
 };
 
 struct AxisIntervals {
@@ -27,6 +29,8 @@ struct AxisIntervals {
     Interval z{};
 
     std::array<Interval, kAxisCount> all() const { return {x, y, z}; }
+
+    friend bool operator==(AxisIntervals const&, AxisIntervals const&) = default;
 };
 
 /// A field that is linear in the place.
@@ -35,6 +39,8 @@ struct MagneticField {
     Axes gradient_x{};  // per mm
     Axes gradient_y{};
     Vec2 origin_mm{};
+
+    friend bool operator==(MagneticField const&, MagneticField const&) = default;
 };
 
 enum class DomainPolicy { allow, clamp, refuse };
@@ -46,12 +52,16 @@ struct MagneticDomain {
     std::optional<Interval> heading_rad{};
     bool wrap_heading = true;  // headings count modulo a turn
     DomainPolicy policy = DomainPolicy::allow;
+
+    friend bool operator==(MagneticDomain const&, MagneticDomain const&) = default;
 };
 
 struct MagnetometerOutput {
     double quantization_step = 1.0;  // counts; 0 or less: none
     bool clamp = false;
     AxisIntervals limits{.x = {250.0, 600.0}, .y = {250.0, 600.0}, .z = {250.0, 600.0}};
+
+    friend bool operator==(MagnetometerOutput const&, MagnetometerOutput const&) = default;
 };
 
 /// What differs from robot to robot.
@@ -60,6 +70,8 @@ struct MagnetometerVariation {
     Interval signal_gain{1.0, 1.0};
     Interval angle_offset_rad{};
     AxisIntervals noise_stddev{.x = {3.0, 3.0}, .y = {3.0, 3.0}, .z = {3.0, 3.0}};  // counts
+
+    friend bool operator==(MagnetometerVariation const&, MagnetometerVariation const&) = default;
 };
 
 inline constexpr int kHighestHarmonic = 32;
@@ -68,6 +80,8 @@ struct MagneticHarmonic {
     int order = 2;  // 2 to kHighestHarmonic
     AxisIntervals cosine{};
     AxisIntervals sine{};
+
+    friend bool operator==(MagneticHarmonic const&, MagneticHarmonic const&) = default;
 };
 
 /// The curve that readings describe as a robot turns, drawn by each robot.
@@ -79,6 +93,8 @@ struct MagneticEllipse {
     Interval phase_offset_rad{};
     Interval z_cosine{15.0, 15.0};
     Interval z_sine{-10.0, -10.0};
+
+    friend bool operator==(MagneticEllipse const&, MagneticEllipse const&) = default;
 };
 
 /// Readings by the angle a of the field in the robot's frame: constant + sum of cosine[k-1] cos ka + sine[k-1] sin ka.
@@ -87,6 +103,8 @@ struct MagneticCurve {
     int order = 0;  // how many harmonics are in use
     std::array<Axes, kHighestHarmonic> cosine{};
     std::array<Axes, kHighestHarmonic> sine{};
+
+    friend bool operator==(MagneticCurve const&, MagneticCurve const&) = default;
 };
 
 enum class MagnetometerTiming {
@@ -108,6 +126,8 @@ struct MagnetometerSpec {
     MagneticEllipse ellipse;
     std::vector<MagneticHarmonic> harmonics = std::vector(1, kUsualHarmonic);
     std::optional<MagneticCurve> fitted{};  // to a table: instead of the ellipse and the harmonics
+
+    friend bool operator==(MagnetometerSpec const&, MagnetometerSpec const&) = default;
 };
 
 }  // namespace pogosim

@@ -61,6 +61,46 @@ Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_b
     far_blocks_ = std::make_unique_for_overwrite<std::byte[]>(total);
 }
 
+Mailboxes::Mailboxes(Mailboxes const& other)
+    : queues_(other.queues_),
+      far_(other.far_),
+      dropped_(other.dropped_),
+      malformed_(other.malformed_),
+      commands_(other.commands_),
+      far_blocks_(std::make_unique_for_overwrite<std::byte[]>(far_bytes())) {
+    for (FarQueue const& far : far_) {
+        std::ranges::copy(far.fifo.bytes(other.far_blocks_.get() + far.block),
+                          far_blocks_.get() + far.block + far.fifo.head);
+    }
+}
+
+bool operator==(Mailboxes const& a, Mailboxes const& b) {
+    if (a.queues_.size() != b.queues_.size() || a.dropped_ != b.dropped_ || a.malformed_ != b.malformed_ ||
+        a.commands_ != b.commands_) {
+        return false;
+    }
+    for (std::size_t robot = 0; robot < a.queues_.size(); ++robot) {
+        if (a.queues_[robot].max_count != b.queues_[robot].max_count || a.size(robot) != b.size(robot)) {
+            return false;
+        }
+        // Where a message lies, near or far, depends on what has been read before.
+        auto const [a_near, a_far] = a.waiting(robot);
+        auto const [b_near, b_far] = b.waiting(robot);
+        if (a_near.size() + a_far.size() != b_near.size() + b_far.size()) {
+            return false;
+        }
+        auto const byte = [](auto const& near, auto const& far, std::size_t i) {
+            return i < near.size() ? near[i] : far[i - near.size()];
+        };
+        for (std::size_t i = 0; i < a_near.size() + a_far.size(); ++i) {
+            if (byte(a_near, a_far, i) != byte(b_near, b_far, i)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 void Mailboxes::append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
     // Once a message is in the far block, so are all later ones: messages in the near block are older.
     bool const all_near = queue.waiting == queue.near.count;

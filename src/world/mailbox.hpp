@@ -19,6 +19,8 @@ struct FrameHeader {
     std::uint8_t sender_ir_index = 0;
     std::uint8_t receiver_ir_index = 0;
     std::uint16_t payload_length = 0;
+
+    friend bool operator==(FrameHeader const&, FrameHeader const&) = default;
 };
 
 /// What a packet means to the receiver's library, apart from its program, which gets all but malformed ones.
@@ -37,6 +39,8 @@ struct Transmission {
     float range_mm = 0.0F;            // from an emitter to the receiver's border
     FrameHeader header;
     std::size_t payload_offset = 0;  // into TransmissionQueue::payloads
+
+    friend bool operator==(Transmission const&, Transmission const&) = default;
 };
 
 /// All transmissions of the current step, in the order in which the robots made them.
@@ -51,6 +55,8 @@ struct TransmissionQueue {
         transmissions.clear();
         payloads.clear();
     }
+
+    friend bool operator==(TransmissionQueue const&, TransmissionQueue const&) = default;
 };
 
 /// Every robot's FIFO of received messages. Messages are stored contiguously in the robot's near block, a few cache
@@ -62,6 +68,16 @@ public:
 
     /// `queue_sizes[i]` messages of up to `max_payload_bytes` for robot i; all queues empty.
     Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes);
+
+    // A copy takes as much memory as messages wait.
+    Mailboxes(Mailboxes const& other);
+    Mailboxes(Mailboxes&&) noexcept = default;
+    Mailboxes& operator=(Mailboxes const& other) { return *this = Mailboxes(other); }
+    Mailboxes& operator=(Mailboxes&&) noexcept = default;
+    ~Mailboxes() = default;
+
+    /// The same messages wait, and as many were lost.
+    friend bool operator==(Mailboxes const& a, Mailboxes const& b);
 
     std::size_t robot_count() const { return queues_.size(); }
 
@@ -86,6 +102,8 @@ public:
     struct Commands {
         std::optional<bool> is_muted{};  // what the last one of these says
         bool restart = false;
+
+        friend bool operator==(Commands const&, Commands const&) = default;
     };
     bool has_commands(std::size_t robot) const { return queues_[robot].has_commands != 0; }
     Commands take_commands(std::size_t robot);
@@ -145,6 +163,7 @@ private:
 
     unsigned receive_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
                              PacketKind kind, unsigned faces);
+    std::size_t far_bytes() const { return far_.empty() ? 0 : far_.back().block + far_.back().capacity; }
     void append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
 
     std::vector<Queue> queues_;

@@ -26,6 +26,8 @@ struct BodySpec {
     float friction = 0.3F;         // Coulomb coefficient; two bodies: geometric mean
     float restitution = 0.5F;      // 0 to 1; two bodies: the larger
     bool fixed = false;            // never moves
+
+    friend bool operator==(BodySpec const&, BodySpec const&) = default;
 };
 
 /// No wall makes a body faster than this, mm/s.
@@ -54,6 +56,8 @@ struct ReceptionSpec {
     double delta = 3.52543753;
     double zeta = 0.05720136;
     double theta = 0.001;
+
+    friend bool operator==(ReceptionSpec const&, ReceptionSpec const&) = default;
 };
 
 /// The older four-parameter law with its own parameters, `type: realistic`.
@@ -81,11 +85,15 @@ struct IrSpec {
         }
         return range_by_power_mm ? (*range_by_power_mm)[power - 1U] : range_mm;
     }
+
+    friend bool operator==(IrSpec const&, IrSpec const&) = default;
 };
 
 struct IntRange {
     int min = 0;
     int max = 0;
+
+    friend bool operator==(IntRange const&, IntRange const&) = default;
 };
 
 enum class SensorModel {
@@ -110,6 +118,8 @@ struct SensorSpec {
     float acceleration_noise_m_s2 = 0.0F;    // standard deviation, per reading and axis
     float angular_noise_rad_s = 0.0F;        // of the gyroscope: standard deviation, per reading and axis
     ImuAcceleration acceleration = ImuAcceleration::robot;
+
+    friend bool operator==(SensorSpec const&, SensorSpec const&) = default;
 };
 
 /// The sensors of a real robot: constants of its library, and the noise of the ICM-20689 by its data sheet
@@ -128,6 +138,8 @@ struct BatterySpec {
     double motor_ma = 100.0;         // a motor at full power; in proportion below
     double led_ma = 36.0;            // an LED that is white at full brightness; in proportion below
     double initial_percent = 100.0;  // charge at the start of the run
+
+    friend bool operator==(BatterySpec const&, BatterySpec const&) = default;
 };
 
 enum class Emitters {
@@ -144,6 +156,8 @@ enum class FlashWrites {
 
 /// The part of an object that runs user code.
 struct RobotSpec {
+    friend bool operator==(RobotSpec const&, RobotSpec const&) = default;
+
     IrSpec ir;
     Emitters emitters = Emitters::rim;
     bool has_wheels = true;                 // false: motors are inert
@@ -172,6 +186,8 @@ struct MembraneSpec {
     int cross_span = 3;                   // > 1: weaker springs from each body to the one this many places further on
     float stiffness_hz = 30.0F;           // of the springs; their damping ratio is the body's linear damping
     bool in_data_file = false;            // a row for each body, with its subpart_id
+
+    friend bool operator==(MembraneSpec const&, MembraneSpec const&) = default;
 };
 
 enum class Colormap { rainbow, qualitative };
@@ -183,6 +199,8 @@ struct Orbit {
     float radius_mm = 0.0F;            // 0: the lamp stands still in the centre
     double angular_speed_rad_s = 0.0;  // > 0: clockwise on the screen
     double phase_rad = 0.0;            // where on the circle at time 0, from +x
+
+    friend bool operator==(Orbit const&, Orbit const&) = default;
 };
 
 /// A spot of light, which adds to that of other lamps: `static_light`, `orbiting_static_light`.
@@ -199,6 +217,8 @@ struct SpotSpec {
     float photo_start_at_s = -1.0F;  // >= 0: dark before, flash of photo_start_value, then normal
     float photo_start_duration_s = 1.0F;
     int photo_start_value = 32767;
+
+    friend bool operator==(SpotSpec const&, SpotSpec const&) = default;
 };
 
 /// A lighthouse with a rotating beam: `rotating_ray_of_light`. Its light replaces all other light.
@@ -212,6 +232,8 @@ struct RotatingRaySpec {
     int white_frame_value = 32767;
     double photo_start_at_s = -1.0;  // >= 0: dark until the end of the photo start, then the first flash
     double photo_start_duration_s = 1.0;
+
+    friend bool operator==(RotatingRaySpec const&, RotatingRaySpec const&) = default;
 };
 
 /// Two lighthouses in turn, each through a right angle, a flash before each: `alternating_rays_of_light`. They stand at
@@ -225,6 +247,8 @@ struct AlternatingRaysSpec {
     double long_white_frame_duration_s = 1.0;    // before the first beam
     double short_white_frame_duration_s = 0.03;  // before the second beam
     int white_frame_value = 32767;
+
+    friend bool operator==(AlternatingRaysSpec const&, AlternatingRaysSpec const&) = default;
 };
 
 /// A lamp. A new kind is a struct here, a file in src/light, and a function in src/config/lamp_types.cpp.
@@ -239,6 +263,8 @@ struct ObjectSpec {
     std::optional<RobotSpec> robot;  // runs user code
     std::optional<LampSpec> lamp;    // gives light
     Colormap colormap = Colormap::rainbow;  // drawing only
+
+    friend bool operator==(ObjectSpec const&, ObjectSpec const&) = default;
 };
 
 }  // namespace pogosim
