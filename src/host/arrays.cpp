@@ -52,6 +52,20 @@ pogosim_array leds(std::vector<Leds> const& values) {
                      {sizeof(Leds), sizeof(Rgb), 1});
 }
 
+/// One value of each robot, without that of callback_global_step.
+template <class T>
+pogosim_array of_robots(std::vector<T> const& values) {
+    pogosim_array array = numbers(values);
+    --array.shape[0];
+    return array;
+}
+
+/// A member of each robot's magnetometer.
+template <class T>
+pogosim_array of_magnetometers(std::vector<Magnetometer> const& all, T const& of_first) {
+    return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(all.size()) - 1}, {sizeof(Magnetometer)});
+}
+
 /// A member of each robot's controller.
 template <class T>
 pogosim_array members(Simulation const& simulation, T const& of_first) {
@@ -59,8 +73,9 @@ pogosim_array members(Simulation const& simulation, T const& of_first) {
     return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(all.size())}, {sizeof(Controller)});
 }
 
-pogosim_array magnetometers(Simulation const& simulation, Magnetometer const& of_first) {
-    pogosim_array array = members(simulation, of_first.last.front());
+pogosim_array magnetometers(std::vector<Magnetometer> const& all) {
+    auto const& of_first = all.front();
+    pogosim_array array = of_magnetometers(all, of_first.last.front());
     array.dimensions = 2;
     array.shape[1] = kAxisCount;
     array.stride_bytes[1] = sizeof(of_first.last.front());
@@ -103,15 +118,17 @@ constexpr std::array kArrays{
     NamedArray{"robots.body", [](Simulation const& s) { return numbers(s.world().robots.body); }},
     NamedArray{"robots.led", [](Simulation const& s) { return leds(s.world().robots.led); }},
     NamedArray{"robots.ticks", [](Simulation const& s) { return members(s, first_controller(s).loop.ticks); }},
-    NamedArray{"robots.clock", [](Simulation const& s) { return members(s, first_controller(s).clock_us); }},
-    NamedArray{"robots.messages_sent",
-               [](Simulation const& s) { return members(s, first_controller(s).messages_sent); }},
+    NamedArray{"robots.clock", [](Simulation const& s) { return of_robots(s.world().devices.clock_us); }},
+    NamedArray{"robots.messages_sent", [](Simulation const& s) { return of_robots(s.world().devices.messages_sent); }},
     NamedArray{"robots.messages_received",
-               [](Simulation const& s) { return members(s, first_controller(s).messages_received); }},
+               [](Simulation const& s) { return of_robots(s.world().devices.messages_received); }},
     NamedArray{"robots.magnetometer",
-               [](Simulation const& s) { return magnetometers(s, first_controller(s).magnetometer); }},
+               [](Simulation const& s) { return magnetometers(s.world().devices.magnetometer); }},
     NamedArray{"robots.magnetometer_samples",
-               [](Simulation const& s) { return members(s, first_controller(s).magnetometer.samples); }},
+               [](Simulation const& s) {
+                   auto const& all = s.world().devices.magnetometer;
+                   return of_magnetometers(all, all.front().samples);
+               }},
     NamedArray{"robots.user_data", user_data},
     NamedArray{"light", [](Simulation const& s) { return light(s.world().light); }},
 };

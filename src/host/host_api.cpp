@@ -13,10 +13,10 @@
 
 #include "base/error.hpp"
 #include "base/floating_point.hpp"
+#include "device/sensing.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
 #include "pogosim/version.h"
-#include "robot/sensing.hpp"
 
 using namespace pogosim;
 

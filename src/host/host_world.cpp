@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "device/sensing.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
 #include "pogosim/host.h"
-#include "robot/sensing.hpp"
 
 using namespace pogosim;
 

@@ -25,13 +25,12 @@ void assert_controllers(World const& world, std::span<Controller const> controll
     constexpr std::uint8_t most_ir_power = 3;
     assert(controllers.size() == world.robots.size());
     for (std::size_t i = 0; i < controllers.size(); ++i) {
-        Controller const& controller = controllers[i];
         RobotSpec const& spec = world.spec_of(i);
-        assert(controller.clock_us >= 0);
-        assert(controller.ir_power <= most_ir_power);
+        assert(world.devices.clock_us[i] >= 0);
+        assert(world.devices.ir_power[i] <= most_ir_power);
         assert(world.mailboxes.size(i) <= spec.ir.queue_size);
-        assert_motors(controller.motors, spec);
-        for (std::int32_t const bias : controller.photosensor_bias) {
+        assert_motors(world.devices.motors[i], spec);
+        for (std::int32_t const bias : world.devices.photosensor_bias[i]) {
             assert(bias >= spec.photosensor_bias.min && bias <= spec.photosensor_bias.max);
         }
         VelocityCommand const& command = world.robots.command[i];

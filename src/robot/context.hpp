@@ -105,6 +105,7 @@ struct Context {
     RunServices* services = nullptr;
     Controller* controller = nullptr;  // never null while user code runs
     std::uint32_t robot = kNone;       // index in World::robots; kNone in the context of callback_global_step
+    std::size_t device = 0;            // index in World::devices
     Phase phase = Phase::none;
     Waiting waiting = Waiting::never;
     std::int64_t step_us = 0;        // time of the step: from here on, a robot waits
@@ -119,6 +120,8 @@ struct Context {
     bool has_body() const { return has_robot() && body() != kNone; }
     std::uint32_t body() const { return world->robots.body[robot]; }
     RobotSpec const& spec() const { return world->spec_of(robot); }
+    Devices& devices() const { return world->devices; }
+    std::int64_t& clock_us() const { return world->devices.clock_us[device]; }
 };
 
 /// The context of this thread.

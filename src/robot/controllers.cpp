@@ -16,15 +16,17 @@
 #include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "device/clock.hpp"
+#include "device/motors.hpp"
+#include "device/sensing.hpp"
+#include "device/switched_off.hpp"
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
 #include "robot/assert_controllers.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
-#include "robot/sensing.hpp"
 #include "robot/shared_variables_check.hpp"
-#include "robot/velocity_command.hpp"
 
 extern "C" {
 // `mydata` of programs with DECLARE_USERDATA, a pointer to their own type of user data.
@@ -43,12 +45,10 @@ namespace pogosim {
 namespace {
 
 constexpr std::size_t kUserDataAlignment = 64;  // a cache line; more than any C type asks for
-constexpr double kMicrosecondsPerSecond = 1e6;
 constexpr char const* kSystemCategory = "__system";
 
 // Ids of random streams for purposes other than the noise of one robot's body.
 constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
-constexpr std::uint64_t kImuStreams = std::uint64_t{7} << 32U;
 
 /// Bytes from one robot's user data to the next one's.
 std::size_t stride_of(std::size_t user_data_bytes) {
@@ -95,10 +95,6 @@ std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(unsigned{id} * odd_factor + offset));
 }
 
-int draw_between(IntRange range, RandomStream& stream) {
-    return range.min + static_cast<int>(stream.below(static_cast<std::uint32_t>(range.max - range.min) + 1U));
-}
-
 /// Like the C library, calls main() with arguments, whether it takes them or not. C leaves that undefined, and
 /// clang's sanitizer says so.
 #ifdef __clang__
@@ -121,8 +117,7 @@ Controllers::Controllers(ProgramImage image, World& world, RunServices& services
     };
     allocate_for(purpose, static_cast<double>(count * sizeof(Controller)), [&] { controllers_.resize(count); });
     allocate_user_data();
-    draw_individual_differences(seed);
-    chips_.install(controllers_);
+    draw_seeds(seed);
 }
 
 Controllers::~Controllers() {
@@ -192,21 +187,13 @@ void Controllers::set_for_all(BoundVariable const& bound, ParameterSource& sourc
     }
 }
 
-void Controllers::draw_individual_differences(std::uint64_t seed) {
+void Controllers::draw_seeds(std::uint64_t seed) {
     std::uint64_t const key = mix64(seed + 1);
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
         Controller& self = controllers_[i];
-        RobotSpec const& spec = world_.spec_of(i);
-        RandomStream& stream = world_.robots.stream[i];
         self.random = random_of_program(seed, i);
         self.seeds = RandomStream(seed, kSeedStreams + i);
-        self.imu_noise = RandomStream(seed, kImuStreams + i);
         self.first_seed = scatter_id(id_on_air(world_.robots.id[i]), key);
-        self.motors.bias = static_cast<float>(draw_between(spec.motor_bias, stream));
-        for (std::int32_t& bias : self.photosensor_bias) {
-            bias = draw_between(spec.photosensor_bias, stream);
-        }
-        self.clock_drift_us = std::lround(spec.clock_drift_stddev_us * stream.normal());
     }
     system_.random = random_of_program(seed, kNone);
     system_.seeds = RandomStream(seed, kSeedStreams + kNone);
@@ -222,6 +209,7 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
                .services = &services_,
                .controller = &self,
                .robot = robot,
+               .device = world_.device_of(robot),
                .phase = phase,
                .step_us = step_us_,
                .printed = &self.printed,
@@ -269,20 +257,20 @@ void Controllers::call(std::uint32_t robot, Phase phase, void (*function)(), boo
     if (function == nullptr) {
         return;
     }
-    SwitchedOff const* const off = find_switched_off(robot);
+    SwitchedOff const* const off = find_switched_off(world_, robot);
     std::size_t const transmissions = world_.air.transmissions.size();
     std::size_t const payload_bytes = world_.air.payloads.size();
     int const calls = controller(robot).calls;
     if (off != nullptr) {
-        wake(*off);
+        wake(world_, *off);
     }
     enter(robot, phase);
     context.sees_world = sees_world;
     function();
     leave();
     controller(robot).calls = calls;  // a callback must not use up the calls of a robot that waits
-    if (SwitchedOff* const still_off = find_switched_off(robot)) {
-        rest(*still_off);
+    if (SwitchedOff* const still_off = find_switched_off(world_, robot)) {
+        rest(world_, *still_off);
         world_.air.transmissions.resize(transmissions);
         world_.air.payloads.resize(payload_bytes);
     }
@@ -410,7 +398,7 @@ void Controllers::start_sdk_program() {
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
         bool const is_robot =
             world_.robots.body[i] != kNone && !world_.categories[world_.robots.category[i]].spec.membrane;
-        controllers_[i].clock_us = is_robot ? 0 : kIdle;
+        world_.devices.clock_us[i] = is_robot ? 0 : kIdle;
         if (is_robot) {
             run_on_fiber(i, &Controllers::run_sdk_main);
             controllers_[i].program.registered = true;
@@ -425,8 +413,8 @@ void Controllers::start_sdk_program() {
 void Controllers::run_sdk_main(std::uint32_t robot) {
     run_main(robot);
     controllers_[robot].program.returned = true;
-    controllers_[robot].clock_us = kIdle;
-    command_motors(robot);
+    world_.devices.clock_us[robot] = kIdle;
+    drive(world_, robot);
 }
 
 /// Warns of callbacks that are set too late, since they run once, before the first step.
@@ -467,22 +455,22 @@ void Controllers::end_step() const {
 }
 
 void Controllers::begin_step() {
-    step_us_ = now_us();
+    step_us_ = time_us(world_);
     if (is_restart_due_.exchange(false)) [[unlikely]] {
         restart_robots();
     }
-    for (std::uint32_t const robot : chips_.begin_step(controllers_, step_us_)) {
-        set_alive(robot, false);
+    for (std::uint32_t const robot : chips_.begin_step(world_, step_us_)) {
+        set_alive(world_, robot, false);
     }
     warn_of_unreturned_calls_if_due();
-    if (callback_global_step != nullptr && step_us_ >= system_.clock_us) {
+    if (callback_global_step != nullptr && step_us_ >= world_.devices.clock_us[world_.device_of(kNone)]) {
         enter(kNone, Phase::global_step);
         context.sees_world = true;
         pogo_main_loop_step(callback_global_step);
         leave();
         without_exceptions([this] { services_.access.settle_light(); });
     }
-    hold_switched_off();
+    hold_switched_off(world_);
 }
 
 void Controllers::take_over(Outbox& outbox) {
@@ -527,13 +515,9 @@ ConfiguredVariables Controllers::configured_variables() const {
     return {image_, services_.bound_variables};
 }
 
-std::int64_t Controllers::now_us() const {
-    return std::llround(world_.time_s() * kMicrosecondsPerSecond);
-}
-
 void Controllers::tick(std::uint32_t robot) {
     Controller& self = controllers_[robot];
-    measure_at_tick(world_, robot, self);
+    measure_at_tick(world_, robot);
     enter(robot, Phase::user_step);
     if (are_odd(self.loop, most_loop_hz_)) [[unlikely]] {
         without_exceptions([&] { note_loop_globals(world_, self.loop, most_loop_hz_); });
@@ -541,21 +525,8 @@ void Controllers::tick(std::uint32_t robot) {
     context.waiting = Waiting::always;
     pogo_main_loop_step(self.program.step);
     leave();
-    drift(self, self.loop.loop_timer.origin_us);
-    command_motors(robot);
-}
-
-/// Adds the drift of the robot's clock for the time since `since_us`.
-void Controllers::drift(Controller& self, std::int64_t since_us) {
-    std::int64_t const slept_us = self.clock_us - since_us;
-    self.clock_us += std::max(self.clock_drift_us, -slept_us / 2);  // must not turn the clock back
-}
-
-void Controllers::command_motors(std::uint32_t robot) {
-    Controller const& self = controllers_[robot];
-    if (self.motors.driven && world_.spec_of(robot).has_wheels) {
-        command_velocity(world_, robot, self.motors);
-    }
+    drift_clock(world_, robot, self.loop.loop_timer.origin_us);
+    drive(world_, robot);
 }
 
 bool Controllers::export_row(std::size_t robot, std::uint32_t object, std::span<CellValue> cells) {
@@ -564,9 +535,9 @@ bool Controllers::export_row(std::size_t robot, std::uint32_t object, std::span<
     data.row = {.values = cells, .exported = true};
     data.filling = true;
     data.next_column = 0;
-    std::int64_t const clock_us = controllers_[robot].clock_us;
+    std::int64_t const clock_us = world_.devices.clock_us[robot];
     call(static_cast<std::uint32_t>(robot), Phase::export_data, controllers_[robot].program.export_data);
-    controllers_[robot].clock_us = clock_us;  // how often rows are saved changes nothing
+    world_.devices.clock_us[robot] = clock_us;  // how often rows are saved changes nothing
     data.filling = false;
     data.filled_rows += data.row.exported && controllers_[robot].program.export_data != nullptr ? 1 : 0;
     return data.row.exported;
@@ -603,24 +574,16 @@ void Controllers::warn_of_stacks() const {
 
 void Controllers::tell_at_end(std::uint64_t arrivals) const {
     warn_of_lost_messages(world_, controllers_);
-    warn_of_commands(world_, controllers_);
+    warn_of_commands(world_);
     warn_of_unused_messages(world_, controllers_, arrivals);
     warn_of_undecoded_messages(controllers_);
     warn_of_send_results(controllers_);
-    tell_of_lost_flash_writes(world_, controllers_);
+    tell_of_lost_flash_writes(world_);
     tell_of_ended_programs(controllers_);
 }
 
 void Controllers::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {
     pogosim::tell_of_unset_columns(services_.data, fields);
-}
-
-void Controllers::restore(std::size_t robot, Flash&& flash, std::array<std::uint8_t, kMotorCount> const& directions,
-                          std::array<std::uint16_t, kMotorCount> const& powers) {
-    Controller& self = controllers_[robot];
-    self.flash = std::move(flash);
-    self.motors.stored_direction = directions;
-    self.motors.stored_power = powers;
 }
 
 void Controllers::watch_loop_rates() {

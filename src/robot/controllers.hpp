@@ -11,20 +11,21 @@
 #include <string>
 #include <vector>
 
+#include "device/step_chips.hpp"
 #include "process/fibers.hpp"
 #include "process/guarded_memory.hpp"
 #include "process/program_image.hpp"
 #include "robot/context.hpp"
 #include "robot/robot_memory.hpp"
 #include "robot/shared_state.hpp"
-#include "robot/step_chips.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
 class Controllers {
 public:
-    /// Makes a controller for each robot of the world and one for the global step. `services` and `world` outlive this.
+    /// Makes a controller for each robot of the world, whose devices are set up, and one for the global step.
+    /// `services` and `world` outlive this.
     Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed, std::size_t stack_bytes);
     ~Controllers();
 
@@ -75,7 +76,8 @@ public:
     /// One step: begin_step(), run_robots() of all, end_step().
     void run_step();
 
-    /// The part of a step before the robots: restarts, chips that work at each step, and the global step.
+    /// The part of a step before the robots: restarts, chips that work at each step, and the global step. While a robot
+    /// is switched off, only callback_export_data, callback_robot_end and callback_robot_click run.
     void begin_step();
 
     /// The robots from `first` to `last` - 1 that are due. Those that share nothing may run on several threads at a
@@ -107,23 +109,6 @@ public:
     /// callback_robot_end of every robot.
     void end();
 
-    /// Switches a robot off or on. While it is off, only callback_export_data, callback_robot_end and
-    /// callback_robot_click run, its motors hold its body, and its LEDs are dark. Switched on, it continues at its own
-    /// time or now, whichever is later. Does nothing if it is in that state already.
-    void set_alive(std::uint32_t robot, bool alive);
-
-    /// A robot that is switched off, and what it goes on with.
-    struct SwitchedOff {
-        std::uint32_t robot = 0;
-        std::int64_t clock_us = 0;
-        Leds leds{};
-    };
-    /// All robots that are switched off, as in World::switched_off.
-    std::span<SwitchedOff const> switched_off() const { return switched_off_; }
-
-    /// Clock of a robot between two of its ticks, us; of one that is switched off, when that happened.
-    std::int64_t clock_us(std::uint32_t robot) const;
-
     /// Warns, once for each category, of functions of robots that have not returned for long.
     void warn_of_unreturned_calls_at_end();
 
@@ -146,21 +131,10 @@ public:
     /// The state of this robot's controller between two of its ticks.
     Controller const& controller_of(std::size_t robot) const { return controllers_[robot]; }
 
-    /// Gives a robot what it has kept while it was off. Call it before start().
-    void restore(std::size_t robot, Flash&& flash, std::array<std::uint8_t, kMotorCount> const& directions,
-                 std::array<std::uint16_t, kMotorCount> const& powers);
     std::span<Controller const> all() const { return controllers_; }
 
     /// The user data of all robots: bytes from one robot's to the next one's.
     std::size_t user_data_stride() const;
-
-    /// Range of a message that this robot sends at its present emitter power, mm; 0 if it is switched off.
-    float ir_range_mm(std::uint32_t robot) const {
-        if (!is_alive(world_, robot)) {
-            return 0.0F;
-        }
-        return world_.spec_of(robot).ir.range_at_mm(controllers_[robot].ir_power);
-    }
 
     /// The highest main_loop_hz of all robots.
     int highest_loop_hz() const;
@@ -183,7 +157,7 @@ public:
 
 private:
     void allocate_user_data();
-    void draw_individual_differences(std::uint64_t seed);
+    void draw_seeds(std::uint64_t seed);
     void enter(std::uint32_t robot, Phase phase);
     void enter_as_system(std::uint32_t robot, Phase phase);
     [[gnu::noinline]] static void leave();  // see can_change_threads()
@@ -210,15 +184,8 @@ private:
     void repeat_global_setup(std::uint32_t robot);
     void run_global_setup();
     void call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world = false);
-    std::int64_t now_us() const;
-    SwitchedOff* find_switched_off(std::uint32_t robot);
-    void wake(SwitchedOff const& self);
-    void rest(SwitchedOff& self);
-    void hold_switched_off();
     void call_as_system(std::uint32_t robot, Phase phase, void (*function)());
     void tick(std::uint32_t robot);
-    static void drift(Controller& self, std::int64_t since_us);
-    void command_motors(std::uint32_t robot);
     static void note_callbacks(Program& program);
     static void set_callbacks(Program const& program);
     Controller& controller(std::uint32_t robot);
@@ -229,8 +196,7 @@ private:
     World& world_;
     RunServices& services_;
     std::vector<Controller> controllers_;
-    Controller system_;                      // of the global step
-    std::vector<SwitchedOff> switched_off_;  // by robot, ascending
+    Controller system_;  // of the global step
     StepChips chips_;
     GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run

@@ -25,13 +25,13 @@ constexpr std::size_t kRobotMemoryBytes = std::size_t{128} * 1024;  // SRAM of a
 
 /// For each category, whether it has robots and the condition holds for all of them.
 template <class Test>
-std::vector<bool> categories_where_all(World const& world, std::span<Controller const> controllers, Test const& is_so) {
+std::vector<bool> categories_where_all(World const& world, Test const& is_so) {
     std::vector<std::size_t> robots(world.categories.size());
     std::vector<std::size_t> matching(world.categories.size());
-    for (std::size_t i = 0; i < controllers.size(); ++i) {
+    for (std::size_t i = 0; i < world.robots.size(); ++i) {
         std::uint32_t const category = world.robots.category[i];
         ++robots[category];
-        matching[category] += is_so(controllers[i]) ? 1 : 0;
+        matching[category] += is_so(i) ? 1 : 0;
     }
     std::vector<bool> all(world.categories.size());
     for (std::size_t category = 0; category < all.size(); ++category) {
@@ -41,8 +41,7 @@ std::vector<bool> categories_where_all(World const& world, std::span<Controller 
 }
 
 bool sends_never(Controller const& controller) {
-    return controller.loop.send != nullptr && controller.loop.send_percent == 0 && controller.loop.sent == 0 &&
-           controller.messages_sent == 0;
+    return controller.loop.send != nullptr && controller.loop.send_percent == 0 && controller.loop.sent == 0;
 }
 
 bool receives_never(Controller const& controller) {
@@ -162,12 +161,12 @@ void warn_of_lost_messages(World const& world, std::span<Controller const> contr
     }
 }
 
-void warn_of_commands(World const& world, std::span<Controller const> controllers) {
+void warn_of_commands(World const& world) {
     std::vector<std::uint64_t> muted(world.categories.size());
     std::vector<std::uint64_t> restarts(world.categories.size());
-    for (std::size_t i = 0; i < controllers.size(); ++i) {
-        muted[world.robots.category[i]] += controllers[i].infrared.muted_messages;
-        restarts[world.robots.category[i]] += controllers[i].infrared.restarts;
+    for (std::size_t i = 0; i < world.robots.size(); ++i) {
+        muted[world.robots.category[i]] += world.devices.infrared[i].muted_messages;
+        restarts[world.robots.category[i]] += world.devices.infrared[i].restarts;
     }
     for (std::size_t category = 0; category < muted.size(); ++category) {
         std::string const& name = world.categories[category].name;
@@ -183,8 +182,11 @@ void warn_of_commands(World const& world, std::span<Controller const> controller
 }
 
 void warn_of_unused_messages(World const& world, std::span<Controller const> controllers, std::uint64_t arrivals) {
-    auto const mute = categories_where_all(world, controllers, sends_never);
-    auto const deaf = categories_where_all(world, controllers, receives_never);
+    auto const mute = categories_where_all(world, [&](std::size_t robot) {
+        return sends_never(controllers[robot]) && world.devices.messages_sent[robot] == 0;
+    });
+    auto const deaf =
+        categories_where_all(world, [&](std::size_t robot) { return receives_never(controllers[robot]); });
     for (std::size_t category = 0; category < world.categories.size(); ++category) {
         std::string const& name = world.categories[category].name;
         if (mute[category]) {
@@ -254,14 +256,14 @@ void warn_of_undecoded_messages(std::span<Controller const> controllers) {
     }
 }
 
-void tell_of_lost_flash_writes(World const& world, std::span<Controller const> controllers) {
+void tell_of_lost_flash_writes(World const& world) {
     struct Lost {
         std::uint64_t writes = 0;
         std::uint64_t robots = 0;
     };
     std::vector<Lost> lost(world.categories.size());
-    for (std::size_t robot = 0; robot < controllers.size(); ++robot) {
-        if (std::uint64_t const count = controllers[robot].flash.lost_writes; count > 0) {
+    for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
+        if (std::uint64_t const count = world.devices.flash[robot].lost_writes; count > 0) {
             Lost& of_category = lost[world.robots.category[robot]];
             of_category.writes += count;
             ++of_category.robots;

@@ -55,7 +55,7 @@ void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std
 void warn_of_lost_messages(World const& world, std::span<Controller const> controllers);
 
 /// Messages that robots did not send because they were muted, and restarts, by category.
-void warn_of_commands(World const& world, std::span<Controller const> controllers);
+void warn_of_commands(World const& world);
 
 /// Messages that are never read, or that a program intends to send and read but cannot. `arrivals`: messages that
 /// reached robots in the whole run.
@@ -65,7 +65,7 @@ void warn_of_unused_messages(World const& world, std::span<Controller const> con
 void warn_of_undecoded_messages(std::span<Controller const> controllers);
 
 /// Under `flash: nor`, writes to pages that were not erased, by category, if there were several.
-void tell_of_lost_flash_writes(World const& world, std::span<Controller const> controllers);
+void tell_of_lost_flash_writes(World const& world);
 
 /// Programs for the SDK whose main() has returned.
 void tell_of_ended_programs(std::span<Controller const> controllers);

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "device/motors.hpp"
+#include "device/set_up.hpp"
 #include "process/crash_handler.hpp"
 #include "robot/controllers.hpp"
 
@@ -11,15 +13,11 @@ namespace pogosim {
 
 namespace {
 
-/// Clears what a reset of the processor clears.
+/// Clears what a reset of the processor clears of the program.
 void forget(Controller& self) {
     self.program = {};
     self.loop = {};
     self.calls = self.waits = 0;
-    self.motors.power = {};
-    self.motors.direction = self.motors.stored_direction;
-    self.ir_power = Controller{}.ir_power;
-    self.sent_rate = {};
 }
 
 }  // namespace
@@ -30,7 +28,7 @@ void Controllers::ask_for_restart() {
     if (context.waiting != Waiting::always) {
         return;
     }
-    self.clock_us = step_us_ + 1;
+    context.clock_us() = step_us_ + 1;
     self.fiber = running_fiber();
     leave();
     leave_fiber();
@@ -64,11 +62,8 @@ void Controllers::restart(std::uint32_t robot) {
     }
     forget(self);
     self.is_restart_due = false;
-    ++self.infrared.restarts;
-    initialise_infrared(world_.mailboxes, robot, self.infrared);
+    reset_devices(world_, robot, step_us_);
     self.random = random_of_program(services_.seed, robot);
-    self.clock_us = step_us_;
-    world_.robots.led[robot] = {};
     std::memset(self.user_data, 0, user_data_bytes());
     if (own_memory_) {
         without_exceptions([&] {
@@ -93,7 +88,7 @@ void Controllers::restart(std::uint32_t robot) {
         repeat_global_setup(robot);
         run_on_fiber(robot, &Controllers::run_init);
     }
-    command_motors(robot);
+    drive(world_, robot);
 }
 
 }  // namespace pogosim

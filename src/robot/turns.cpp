@@ -14,10 +14,12 @@
 #include <cstdint>
 #include <utility>
 
+#include "device/clock.hpp"
+#include "device/motors.hpp"
+#include "device/sensing.hpp"
 #include "process/crash_handler.hpp"
 #include "process/forked_child.hpp"
 #include "robot/controllers.hpp"
-#include "robot/sensing.hpp"
 
 namespace pogosim {
 
@@ -80,15 +82,15 @@ void Controllers::wait() {
     if (self.waits_in == Phase::main) {
         note_callbacks(self.program);
         warn_of_late_callbacks();
-        drift(self, self.went_on_us);
+        drift_clock(world_, robot, self.went_on_us);
     }
-    command_motors(robot);
+    drive(world_, robot);
     leave_fiber();
 }
 
 void Controllers::go_on(std::uint32_t robot) {
     Controller& self = controllers_[robot];
-    measure_at_tick(world_, robot, self);
+    measure_at_tick(world_, robot);
     int const calls = self.calls;
     enter(robot, self.waits_in);
     if (!can_change_threads() && pthread_equal(self.waits_on, pthread_self()) == 0) {
@@ -98,7 +100,7 @@ void Controllers::go_on(std::uint32_t robot) {
     }
     self.calls = calls;
     context.waiting = Waiting::always;
-    self.went_on_us = self.clock_us;
+    self.went_on_us = world_.devices.clock_us[robot];
     if (self.waits_in == Phase::main) {
         set_callbacks(self.program);
     }
@@ -137,7 +139,7 @@ void Controllers::run_robots(std::uint32_t first, std::uint32_t last) {
 }
 
 bool Controllers::is_due(std::uint32_t robot) const {
-    return step_us_ >= controllers_[robot].clock_us;
+    return step_us_ >= world_.devices.clock_us[robot];
 }
 
 bool Controllers::is_waiting(std::uint32_t robot) const {
@@ -155,7 +157,7 @@ void Controllers::take_turns(Turns& turns) {
             return;  // run_robots() resumes its own fiber
         }
         if (self.loop.loop_hz == 0) {
-            self.clock_us = step_us_;  // without a sleep the clock follows the steps
+            world_.devices.clock_us[robot] = step_us_;  // without a sleep the clock follows the steps
         }
         tick(robot);
         if (self.fiber != nullptr) {

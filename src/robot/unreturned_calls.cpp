@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/log.hpp"
+#include "device/clock.hpp"
 #include "process/backtrace.hpp"
 #include "process/source_place.hpp"
 #include "robot/controllers.hpp"
@@ -93,7 +94,7 @@ void Controllers::warn_of_unreturned_calls_if_due() {
 }
 
 void Controllers::warn_of_unreturned_calls_at_end() {
-    warn_of_unreturned_calls(std::min(kLongAtEndUs, now_us() / kPartOfRunAtEnd), /*most=*/false);
+    warn_of_unreturned_calls(std::min(kLongAtEndUs, time_us(world_) / kPartOfRunAtEnd), /*most=*/false);
 }
 
 /// `least_us`: shorter calls do not count. `most`: warns only about categories half of whose robots are in such a call,
@@ -104,7 +105,7 @@ void Controllers::warn_of_unreturned_calls(std::int64_t least_us, bool most) {
     }
     is_warned_.resize(world_.categories.size());
     std::vector<Unreturned> categories(world_.categories.size());
-    std::int64_t const now_us = this->now_us();
+    std::int64_t const now_us = time_us(world_);
     for (Controller const& self : controllers_) {
         Unreturned& category = categories[world_.robots.category[&self - controllers_.data()]];
         category.longest_call_us = std::max(category.longest_call_us, self.longest_call_us);

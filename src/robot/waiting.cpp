@@ -10,7 +10,7 @@ namespace {
 
 /// After it, nothing that belongs to this thread may be used: the robot may go on in another one.
 void wait_for_step(Waiting least) {
-    if (context.waiting >= least && context.controller->clock_us > context.step_us) {
+    if (context.waiting >= least && context.clock_us() > context.step_us) {
         context.services->access.controllers->wait();
     }
 }
@@ -18,25 +18,25 @@ void wait_for_step(Waiting least) {
 }  // namespace
 
 void sleep_until(std::int64_t clock_us) {
-    Controller& self = *context.controller;
-    if (clock_us <= self.clock_us) {
+    std::int64_t& own_us = context.clock_us();
+    if (clock_us <= own_us) {
         note_call();
         return;
     }
     // Long sleeps in a loop in a callback, which does not wait, end there; a robot that is switched off stays so.
-    self.clock_us = std::min(clock_us, std::max(self.clock_us, kIdle - 1));
-    self.calls = 0;
+    own_us = std::min(clock_us, std::max(own_us, kIdle - 1));
+    context.controller->calls = 0;
     wait_for_step(Waiting::always);
 }
 
 void take_time_to_read_clock() {
-    context.controller->clock_us += kCallUs;
+    context.clock_us() += kCallUs;
     wait_for_step(Waiting::always);
 }
 
 void take_time_to_read_input() {
     if (context.waiting != Waiting::never) {
-        context.controller->clock_us += kCallUs;
+        context.clock_us() += kCallUs;
         wait_for_step(Waiting::for_inputs);
     }
 }

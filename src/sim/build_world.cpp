@@ -19,6 +19,7 @@
 #include "base/memory.hpp"
 #include "config/places.hpp"
 #include "config/range.hpp"
+#include "device/set_up.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
 #include "physics/coinciding_centres.hpp"
@@ -307,6 +308,8 @@ World built_world(Scenario const& scenario, std::uint32_t seed) {
     part_bodies(world.bodies);
     warn_of_repeated_ids(world);
     make_mailboxes(world);
+    auto const devices = [&] { return fmt::format("the devices of {}", counted(world.robots.size(), "robot")); };
+    allocate_for(devices, std::nullopt, [&] { set_up_devices(world, seed); });
     world.light = make_light_map(world.arena, world.periodic, scenario.light_map_columns, scenario.light_map_rows);
     assert_structure(world);
     return world;

@@ -10,6 +10,7 @@
 
 #include "base/counted.hpp"
 #include "base/locked_file.hpp"
+#include "device/flash.hpp"
 
 namespace pogosim {
 

@@ -19,8 +19,7 @@
 #include <istream>
 #include <string>
 
-#include "robot/controller.hpp"
-#include "robot/flash.hpp"
+#include "world/devices.hpp"
 
 namespace pogosim {
 

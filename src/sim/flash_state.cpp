@@ -47,11 +47,11 @@ RobotsByOwner robots_by_owner(Scenario const& scenario, World const& world) {
     return robots;
 }
 
-FlashRecord record_of(FlashOwner const& owner, Controller const& controller) {
+FlashRecord record_of(FlashOwner const& owner, Devices const& devices, std::size_t robot) {
     return {.owner = owner,
-            .directions = controller.motors.stored_direction,
-            .powers = controller.motors.stored_power,
-            .flash = controller.flash};
+            .directions = devices.motors[robot].stored_direction,
+            .powers = devices.motors[robot].stored_power,
+            .flash = devices.flash[robot]};
 }
 
 void write_all(int descriptor, std::string_view bytes) {
@@ -200,11 +200,13 @@ std::uint32_t read_input(Scenario const& scenario, std::istream& file, std::func
 }
 
 /// Returns the number of records. Throws ConfigError if some robots have none, unless there are none at all.
-std::uint32_t restore(Scenario const& scenario, std::istream& file, RobotsByOwner robots, Controllers& controllers) {
+std::uint32_t restore(Scenario const& scenario, std::istream& file, RobotsByOwner robots, Devices& devices) {
     std::size_t const count = robots.size();
     std::uint32_t const records = read_input(scenario, file, [&](FlashRecord&& record) {
         if (auto const robot = robots.extract(record.owner)) {
-            controllers.restore(robot.mapped(), std::move(record.flash), record.directions, record.powers);
+            devices.flash[robot.mapped()] = std::move(record.flash);
+            devices.motors[robot.mapped()].stored_direction = record.directions;
+            devices.motors[robot.mapped()].stored_power = record.powers;
         }
     });
     if (records > 0 && !robots.empty()) {
@@ -220,8 +222,7 @@ std::uint32_t restore(Scenario const& scenario, std::istream& file, RobotsByOwne
 
 }  // namespace
 
-FlashState::FlashState(Scenario const& scenario, World const& world, Controllers& controllers)
-    : files_(scenario.flash_state) {
+FlashState::FlashState(Scenario const& scenario, World& world) : files_(scenario.flash_state) {
     if (files_.input_file.empty() && files_.output_file.empty()) {
         return;
     }
@@ -241,7 +242,7 @@ FlashState::FlashState(Scenario const& scenario, World const& world, Controllers
     }
     if (!files_.input_file.empty()) {
         input_ = open_input(scenario);
-        input_records_ = restore(scenario, input_, robots_, controllers);
+        input_records_ = restore(scenario, input_, robots_, world.devices);
         if (input_records_ == 0) {
             warn_of_blank_start(scenario);
         }
@@ -263,7 +264,7 @@ void FlashState::reserve_output() {
     NewFile const trial(path);  // a folder in which nothing can be written is known before the run
 }
 
-void FlashState::save(Controllers const& controllers) {
+void FlashState::save(World const& world) {
     if (files_.output_file.empty()) {
         return;
     }
@@ -273,7 +274,7 @@ void FlashState::save(Controllers const& controllers) {
             write_all(file.descriptor(), flash_archive_record(record));
         };
         auto const state_of = [&](FlashOwner const& owner, std::uint32_t robot) {
-            return record_of(owner, controllers.controller_of(robot));
+            return record_of(owner, world.devices, robot);
         };
         write_all(file.descriptor(),
                   flash_archive_head(static_cast<std::uint32_t>(input_records_ > 0 ? input_records_ : robots_.size())));

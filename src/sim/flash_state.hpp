@@ -10,7 +10,6 @@
 
 #include "base/locked_file.hpp"
 #include "config/scenario.hpp"
-#include "robot/controllers.hpp"
 #include "sim/flash_archive.hpp"
 #include "world/world.hpp"
 
@@ -25,12 +24,12 @@ public:
     /// archive without records, removed again if nothing is saved. Throws ConfigError for an archive that does not fit
     /// the robots and for an output file that is something else, OutputError for a file that cannot be written. Does
     /// nothing if no file is named.
-    FlashState(Scenario const& scenario, World const& world, Controllers& controllers);
+    FlashState(Scenario const& scenario, World& world);
 
     /// Writes the output archive, at once as a whole: the records of the input in its order, with those of robots of
     /// this run as they are now; without an input, or with one that has no records, robots sorted by category and id.
     /// Throws OutputError; the file is then as before.
-    void save(Controllers const& controllers);
+    void save(World const& world);
 
     /// For the message of a run that does not save: ". The archive 'x' is as before". Empty if there is no output.
     std::string note() const;

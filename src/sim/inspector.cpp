@@ -6,8 +6,10 @@
 #include <array>
 #include <tuple>
 
+#include "device/infrared.hpp"
+#include "device/sensing.hpp"
+#include "device/switched_off.hpp"
 #include "process/variable_text.hpp"
-#include "robot/sensing.hpp"
 #include "world/observed_motion.hpp"
 
 namespace pogosim {
@@ -30,40 +32,39 @@ void add_motion(World const& world, Object const& object, Inspection& inspection
     inspection.angular_velocity_rad_s = observed_motion(world, object).angular_velocity_rad_s;
 }
 
-void add_controller(Controller const& controller, Inspection& inspection) {
-    inspection.ticks = controller.loop.ticks;
-    std::ranges::copy(controller.motors.power, inspection.motor_power.begin());
-    std::ranges::copy(controller.motors.direction, inspection.motor_direction.begin());
-    inspection.messages_sent = controller.messages_sent;
-    inspection.messages_received = controller.messages_received;
-    inspection.is_muted = controller.infrared.is_muted != 0;
-    std::ranges::copy(controller.magnetometer.last, inspection.magnetometer.begin());
-    inspection.magnetometer_samples = controller.magnetometer.samples;
+void add_devices(Devices const& devices, std::size_t robot, Inspection& inspection) {
+    std::ranges::copy(devices.motors[robot].power, inspection.motor_power.begin());
+    std::ranges::copy(devices.motors[robot].direction, inspection.motor_direction.begin());
+    inspection.messages_sent = devices.messages_sent[robot];
+    inspection.messages_received = devices.messages_received[robot];
+    inspection.is_muted = devices.infrared[robot].is_muted != 0;
+    std::ranges::copy(devices.magnetometer[robot].last, inspection.magnetometer.begin());
+    inspection.magnetometer_samples = devices.magnetometer[robot].samples;
 }
 
-void add_sensors(World const& world, std::uint32_t body, Controller const& controller, Inspection& inspection) {
+void add_sensors(World const& world, std::uint32_t robot, Inspection& inspection) {
     for (std::size_t sensor = 0; sensor < inspection.light.size(); ++sensor) {
-        inspection.light[sensor] = light_at_sensor(world, body, sensor);
+        inspection.light[sensor] = light_at_sensor(world, world.robots.body[robot], sensor);
     }
-    inspection.acceleration_m_s2 = acceleration_m_s2(world, body, controller.accelerometer);
+    inspection.acceleration_m_s2 = acceleration_m_s2(world, robot);
 }
 
 }  // namespace
 
 Inspection Inspector::inspect(std::uint32_t robot) {
     Object const& object = object_of(world_, robot);
-    Controller const& controller = controllers_.controller_of(robot);
     Inspection inspection;
     inspection.robot = robot;
-    inspection.clock_s = static_cast<double>(controllers_.clock_us(robot)) * kSecondsPerUs;
+    inspection.clock_s = static_cast<double>(clock_us(world_, robot)) * kSecondsPerUs;
     inspection.id = world_.robots.id[robot];
     inspection.category = world_.categories[world_.robots.category[robot]].name;
     inspection.led = world_.robots.led[robot];
     inspection.messages_waiting = static_cast<std::size_t>(world_.mailboxes.size(robot));
-    add_controller(controller, inspection);
+    inspection.ticks = controllers_.ticks(robot);
+    add_devices(world_.devices, robot, inspection);
     if (object.body != kNone) {
         add_motion(world_, object, inspection);
-        add_sensors(world_, object.body, controller, inspection);
+        add_sensors(world_, robot, inspection);
         auto const [shortly_mm, shortly_s] = recent_motion_.of(robot, Inspection::kSpeedWindowS);
         inspection.speed_mm_s = shortly_s > 0.0 ? shortly_mm / static_cast<float>(shortly_s) : 0.0F;
         RecentMotion::Displacement const recent = recent_motion_.of(robot, RecentMotion::kWindowS);
@@ -119,7 +120,7 @@ std::vector<std::string> Inspector::names_of_touched(Object const& object) const
 
 std::vector<Neighbour> Inspector::neighbours_of(std::uint32_t robot) {
     std::vector<Neighbour> neighbours;
-    float const range_mm = controllers_.ir_range_mm(robot);
+    float const range_mm = ir_range_mm(world_, robot);
     bool const is_outline = world_.spec_of(robot).emitters == Emitters::outline;
     visibility_.update(world_);
     for (Receiver const& receiver : visibility_.receivers(world_, robot, kAllFaces, range_mm)) {

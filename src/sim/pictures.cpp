@@ -201,8 +201,8 @@ void Pictures::check_film_speed(Scenario const& scenario) {
     }
 }
 
-std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& world, Controllers const& controllers,
-                                         Lighting const& lighting, std::string const& film) {
+std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& world, Lighting const& lighting,
+                                         std::string const& film) {
     if (!makes_frames(scenario) && film.empty()) {
         return nullptr;
     }
@@ -211,17 +211,16 @@ std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& 
         check_film_speed(scenario);
     }
     try_frames(scenario);
-    return std::unique_ptr<Pictures>(new Pictures(scenario, world, controllers, lighting, film));
+    return std::unique_ptr<Pictures>(new Pictures(scenario, world, lighting, film));
 }
 
-Pictures::Pictures(Scenario const& scenario, World const& world, Controllers const& controllers,
-                   Lighting const& lighting, std::string const& film)
+Pictures::Pictures(Scenario const& scenario, World const& world, Lighting const& lighting, std::string const& film)
     : scenario_(scenario),
       world_(world),
       names_(scenario.view.frames_name),
       lock_(lock_frames(scenario, names_)),
       film_(film),
-      taker_(world, controllers, lighting),
+      taker_(world, lighting),
       parts_(parts_for(picture_format(scenario, world).paint)),
       frame_times_(scenario.view.save_video_period_s, 1),
       film_times_(film_period_s(scenario), 0),

@@ -10,7 +10,6 @@
 #include "render/frame_lock.hpp"
 #include "render/frame_names.hpp"
 #include "render/picture_writer.hpp"
-#include "robot/controllers.hpp"
 #include "sim/multiples.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "world/world.hpp"
@@ -24,8 +23,8 @@ class Pictures {
 public:
     /// Null if the run makes no pictures. `film`: empty for none. All references outlive it. Throws ConfigError if
     /// frames or the film cannot be written, and OutOfMemory.
-    static std::unique_ptr<Pictures> make(Scenario const& scenario, World const& world, Controllers const& controllers,
-                                          Lighting const& lighting, std::string const& film);
+    static std::unique_ptr<Pictures> make(Scenario const& scenario, World const& world, Lighting const& lighting,
+                                          std::string const& film);
 
     /// Throws ConfigError for frames that no run could draw. Touches no file.
     static void check_frames(Scenario const& scenario);
@@ -42,8 +41,7 @@ public:
     bool finish();
 
 private:
-    Pictures(Scenario const& scenario, World const& world, Controllers const& controllers, Lighting const& lighting,
-             std::string const& film);
+    Pictures(Scenario const& scenario, World const& world, Lighting const& lighting, std::string const& film);
 
     void delete_old_frames() const;
 

@@ -17,6 +17,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "config/places.hpp"
+#include "device/switched_off.hpp"
 #include "process/source_place.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/running_robot.hpp"
@@ -89,12 +90,12 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},
       controllers_(std::move(program), world_, services_, seed_,
                    static_cast<std::size_t>(scenario_.robot_stack_kib) * 1024),
-      flash_state_(scenario_, world_, controllers_),
+      flash_state_(scenario_, world_),
       lighting_(make_lighting(scenario_, world_)),
       workers_(thread_count(scenario_, world_)),
       physics_(make_physics(scenario_, world_, workers_)),
       recorder_(scenario_, world_, controllers_, services_.data, seed_),
-      pictures_(Pictures::make(scenario_, world_, controllers_, lighting_, options_.film)),
+      pictures_(Pictures::make(scenario_, world_, lighting_, options_.film)),
       stages_(options_.measure_stages) {
     services_.access.is_free = [this](Object const& object, Vec2 place_mm) {
         return free_places().is_free(object, place_mm);
@@ -110,7 +111,7 @@ std::int64_t Simulation::step_count() const {
 
 SnapshotTaker& Simulation::snapshots() {
     if (!snapshots_) {
-        snapshots_ = std::make_unique<SnapshotTaker>(world_, controllers_, lighting_);
+        snapshots_ = std::make_unique<SnapshotTaker>(world_, lighting_);
     }
     return *snapshots_;
 }
@@ -221,7 +222,7 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     }
     is_complete_ = !interrupted();
     if (is_complete_) {
-        flash_state_.save(controllers_);
+        flash_state_.save(world_);
     }
     return is_complete_ ? ExitCode::done : ExitCode::interrupted;
 }
@@ -463,7 +464,7 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
 
 void Simulation::set_alive(std::uint32_t robot, bool alive) {
     Thread const thread(*this);
-    controllers_.set_alive(robot, alive);
+    pogosim::set_alive(world_, robot, alive);
     touches_.add(Touch::alive, world_.time_s());
 }
 

@@ -112,7 +112,7 @@ public:
     /// that the run was touched. Throws ConfigError for a place in a wall or outside of the arena.
     bool set_pose(std::uint32_t object, Vec2 centre_mm, float heading_rad);
 
-    /// Switches a robot (index into World::robots) off or on, see Controllers::set_alive(). The data file says that the
+    /// Switches a robot (index into World::robots) off or on, see device/switched_off.hpp. The data file says that the
     /// run was touched.
     void set_alive(std::uint32_t robot, bool alive);
 

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "device/infrared.hpp"
+
 namespace pogosim {
 
-SnapshotTaker::SnapshotTaker(World const& world, Controllers const& controllers, Lighting const& lighting)
-    : world_(world),
-      controllers_(controllers),
-      lighting_(lighting),
-      scenery_(std::make_shared<Scenery const>(make_scenery(world))) {}
+SnapshotTaker::SnapshotTaker(World const& world, Lighting const& lighting)
+    : world_(world), lighting_(lighting), scenery_(std::make_shared<Scenery const>(make_scenery(world))) {}
 
 Snapshot SnapshotTaker::take(SnapshotParts parts) {
     Bodies const& bodies = world_.bodies;
@@ -32,8 +31,8 @@ Snapshot SnapshotTaker::take(SnapshotParts parts) {
     }
     if (parts.links) {
         range_mm_.clear();
-        for (std::size_t robot = 0; robot < world_.robots.size(); ++robot) {
-            range_mm_.push_back(controllers_.ir_range_mm(robot));
+        for (std::uint32_t robot = 0; robot < world_.robots.size(); ++robot) {
+            range_mm_.push_back(ir_range_mm(world_, robot));
         }
         snapshot.links = link_finder_.find(world_, range_mm_);
     }

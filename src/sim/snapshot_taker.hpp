@@ -8,7 +8,6 @@
 
 #include "light/lighting.hpp"
 #include "render/snapshot.hpp"
-#include "robot/controllers.hpp"
 #include "sim/link_finder.hpp"
 #include "world/world.hpp"
 
@@ -17,7 +16,7 @@ namespace pogosim {
 class SnapshotTaker {
 public:
     /// All references outlive this.
-    SnapshotTaker(World const& world, Controllers const& controllers, Lighting const& lighting);
+    SnapshotTaker(World const& world, Lighting const& lighting);
 
     std::shared_ptr<Scenery const> const& scenery() const { return scenery_; }
 
@@ -35,7 +34,6 @@ private:
     std::shared_ptr<LightMap const> light();
 
     World const& world_;
-    Controllers const& controllers_;
     Lighting const& lighting_;
     std::shared_ptr<Scenery const> scenery_;
     std::shared_ptr<LightMap const> light_;  // the last one handed out

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "device/flash.hpp"
 #include "process/address_space.hpp"
 #include "robot/robot_memory.hpp"
 
@@ -74,8 +75,10 @@ void add_world(Hash& hash, World const& world) {
     hash.add_bytes(world.air.payloads);
 }
 
-void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailboxes, std::size_t robot) {
-    hash.add(controller.clock_us);
+void add_robot(Hash& hash, Controller const& controller, World const& world, std::size_t robot) {
+    Devices const& devices = world.devices;
+    Mailboxes const& mailboxes = world.mailboxes;
+    hash.add(devices.clock_us[robot]);
     LoopGlobals const& loop = controller.loop;
     hash.add(loop.ticks);
     hash.add(loop.loop_hz);
@@ -86,12 +89,12 @@ void add_robot(Hash& hash, Controller const& controller, Mailboxes const& mailbo
     hash.add(loop.received);
     hash.add(loop.milliseconds);
     for (std::size_t motor = 0; motor < kMotorCount; ++motor) {
-        hash.add(controller.motors.power[motor]);
-        hash.add(controller.motors.direction[motor]);
+        hash.add(devices.motors[robot].power[motor]);
+        hash.add(devices.motors[robot].direction[motor]);
     }
-    hash.add(controller.ir_power);
-    hash.add(controller.messages_sent);
-    hash.add(controller.messages_received);
+    hash.add(devices.ir_power[robot]);
+    hash.add(devices.messages_sent[robot]);
+    hash.add(devices.messages_received[robot]);
     hash.add(controller.random);
     hash.add(controller.seeds);
     hash.add(mailboxes.size(robot));
@@ -141,12 +144,13 @@ void add_own_memory(Hash& hash, Controllers const& controllers) {
 }
 
 /// What is left in an emptying battery, and the noise that an inertial unit would have next.
-void add_chips(Hash& hash, Controller const& controller, RobotSpec const& spec) {
+void add_chips(Hash& hash, World const& world, std::size_t robot) {
+    RobotSpec const& spec = world.spec_of(robot);
     if (spec.battery) {
-        hash.add(static_cast<float>(controller.battery.used_mas));
+        hash.add(static_cast<float>(world.devices.battery[robot].used_mas));
     }
     if (spec.sensors.acceleration_noise_m_s2 > 0.0F || spec.sensors.angular_noise_rad_s > 0.0F) {
-        hash.add(controller.imu_noise);
+        hash.add(world.devices.imu_noise[robot]);
     }
 }
 
@@ -157,25 +161,25 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
     add_world(hash, world);
     auto const all = controllers.all();
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
-        add_robot(hash, all[robot], world.mailboxes, robot);
+        add_robot(hash, all[robot], world, robot);
     }
     // Adds nothing where none of these has changed.
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
-        add_magnetometer(hash, all[robot].magnetometer, robot);
-        add_flash(hash, all[robot].flash, robot);
+        add_magnetometer(hash, world.devices.magnetometer[robot], robot);
+        add_flash(hash, world.devices.flash[robot], robot);
     }
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
-        add_chips(hash, all[robot], world.spec_of(robot));
+        add_chips(hash, world, robot);
     }
-    for (Controllers::SwitchedOff const& off : controllers.switched_off()) {
+    for (SwitchedOff const& off : world.when_switched_on) {
         hash.add(off.robot);
         hash.add(off.clock_us);
         add_leds(hash, off.leds);
     }
     for (std::size_t robot = 0; robot < all.size(); ++robot) {
-        if (all[robot].infrared.is_muted != 0 || world.mailboxes.has_commands(robot)) {
+        if (world.devices.infrared[robot].is_muted != 0 || world.mailboxes.has_commands(robot)) {
             hash.add(robot);
-            hash.add(all[robot].infrared.is_muted);
+            hash.add(world.devices.infrared[robot].is_muted);
         }
     }
     for (std::size_t lamp = 0; lamp < world.lamps.size(); ++lamp) {

@@ -8,13 +8,6 @@
 
 namespace pogosim {
 
-/// A step of a body. Accelerometers note one for every robot and tick; its velocity is computed only when it is read.
-struct BodyStep {
-    Vec2 start_mm;
-    Vec2 end_mm;
-    Vec2 engine_mm_s;  // the engine's velocity after it
-};
-
 inline BodyStep last_step(World const& world, std::uint32_t body) {
     Bodies const& bodies = world.bodies;
     return {.start_mm = bodies.start_mm[body],

@@ -4,14 +4,15 @@
 //   sim       writes  step; before the first step, all that the configuration determines, time_step_s last
 //   light     writes  light.level: of all cells at first and whenever a static lamp goes on or off, otherwise of the
 //                     cells under moving lamps
-//   robot     writes  robots.led, robots.command, air; takes messages out of mailboxes; draws from robots.stream
+//   device    writes  devices, robots.led, robots.command, air; takes messages out of mailboxes; draws from
+//                     robots.stream; for what drives the robots
 //   comms     writes  mailboxes; clears air; draws from robots.stream
 //   physics   writes  position_mm, heading_rad, heading_dir, velocity_mm_s, angular_velocity_rad_s, start_mm and
 //                     start_rad of bodies; clears robots.command[i].pending
 //   record, render and view only read
 //
-// Callbacks of the whole run, which run before the robots, also write poses, switched_off (by way of
-// Controllers) and the settings of lamps (pogosim/world.h).
+// Callbacks of the whole run, which run before the robots, also write poses, switched_off and the settings of lamps
+// (pogosim/world.h).
 //
 // No stage keeps a version of its own. What is written between two steps takes effect:
 //
@@ -36,6 +37,7 @@
 #include "base/random.hpp"
 #include "geometry/arena.hpp"
 #include "world/data_table.hpp"
+#include "world/devices.hpp"
 #include "world/magnetometer_spec.hpp"
 #include "world/mailbox.hpp"
 #include "world/specs.hpp"
@@ -70,6 +72,8 @@ struct Bodies {
     std::vector<BodySpec> spec;
 
     std::size_t size() const { return position_mm.size(); }
+
+    friend bool operator==(Bodies const&, Bodies const&) = default;
 };
 
 /// A joint between two bodies.
@@ -82,12 +86,16 @@ struct Joint {
     float stiffness_hz = 0.0F;   // of the spring, with the masses at its ends
     float damping_ratio = 0.0F;  // 1: critical
     float max_stretch = 0.0F;    // a spring is never longer than 1 + this times its length; 0: no limit
+
+    friend bool operator==(Joint const&, Joint const&) = default;
 };
 
 /// A ring of bodies, clockwise on the screen, that preserves the area it encloses.
 struct Membrane {
     std::uint32_t body = 0;  // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;
+
+    friend bool operator==(Membrane const&, Membrane const&) = default;
 };
 
 /// The velocity that a robot's motors command.
@@ -95,6 +103,8 @@ struct VelocityCommand {
     Vec2 velocity_mm_s;
     float angular_velocity_rad_s = 0.0F;
     bool pending = false;  // set at a control tick, cleared when physics has imposed it
+
+    friend bool operator==(VelocityCommand const&, VelocityCommand const&) = default;
 };
 
 /// Objects that run user code. Shape: one entry per robot, in order of creation.
@@ -107,6 +117,17 @@ struct Robots {
     std::vector<RandomStream> stream;  // noise of motors and sensors, losses on the air
 
     std::size_t size() const { return id.size(); }
+
+    friend bool operator==(Robots const&, Robots const&) = default;
+};
+
+/// What a robot that is switched off goes on with.
+struct SwitchedOff {
+    std::uint32_t robot = 0;    // index into World::robots
+    std::int64_t clock_us = 0;  // when it was switched off
+    Leds leds{};
+
+    friend bool operator==(SwitchedOff const&, SwitchedOff const&) = default;
 };
 
 /// Changes that a program or a host has made to a lamp.
@@ -125,11 +146,15 @@ struct PlacedLamp {
     LampSetting setting;
 
     Vec2 place_mm() const { return start_mm + setting.moved_mm; }
+
+    friend bool operator==(PlacedLamp const&, PlacedLamp const&) = default;
 };
 
 struct Category {
     std::string name;
     ObjectSpec spec;
+
+    friend bool operator==(Category const&, Category const&) = default;
 };
 
 /// One thing that the data file has a row for: it has a body, runs user code, or both.
@@ -140,6 +165,8 @@ struct Object {
     std::uint32_t body = kNone;    // index into World::bodies, of the first of body_count
     std::uint32_t body_count = 0;  // more than one: a membrane, in this order
     Vec2 fixed_mm{};               // its place if it has no body; for arena walls: the centre of their bounding box
+
+    friend bool operator==(Object const&, Object const&) = default;
 };
 
 /// Where an object with Emitters::outline sends and receives.
@@ -148,6 +175,8 @@ struct Outline {
     std::vector<Polygon> polygons;  // mm, of a fixed object; empty: the outline runs through the bodies of a membrane
     std::uint32_t body = kNone;     // the membrane, as in Object
     std::uint32_t body_count = 0;
+
+    friend bool operator==(Outline const&, Outline const&) = default;
 };
 
 /// Light levels on a grid over the bounding box of the outer wall. Row 0 lies along the top.
@@ -161,6 +190,8 @@ struct LightMap {
 
     /// Level of the cell under the point; outside the map, that of the nearest cell.
     std::int16_t at(Vec2 point_mm) const;
+
+    friend bool operator==(LightMap const&, LightMap const&) = default;
 };
 
 /// Tolerance, in steps or periods, of a time that should be a whole number of them.
@@ -187,7 +218,9 @@ struct World {
     std::vector<Joint> joints;
     std::vector<Membrane> membranes;
     Robots robots;
-    std::vector<std::uint32_t> switched_off;  // robots, ascending, by Controllers::set_alive(): they are deaf and mute
+    Devices devices;
+    std::vector<std::uint32_t> switched_off;    // robots, ascending, by set_alive(): they are deaf and mute
+    std::vector<SwitchedOff> when_switched_on;  // what these go on with, in the same order
     std::vector<Outline> outlines;
     std::vector<PlacedLamp> lamps;  // in the order of the configuration
     LightMap light;
@@ -199,6 +232,11 @@ struct World {
     double time_s() const { return static_cast<double>(step) * time_step_s; }
 
     RobotSpec const& spec_of(std::size_t robot) const { return *categories[robots.category[robot]].spec.robot; }
+
+    /// Index into `devices` of a robot; of kNone: of callback_global_step.
+    std::size_t device_of(std::uint32_t robot) const { return robot == kNone ? robots.size() : robot; }
+
+    friend bool operator==(World const&, World const&) = default;
 };
 
 /// The id in pogobot_helper_getid() and in message headers. Robots have ids of 16 bits, so they repeat after 65536.

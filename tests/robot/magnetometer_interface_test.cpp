@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "robot/magnetometer.hpp"
+#include "device/magnetometer.hpp"
 #include "support/lone_robot.hpp"
 #include "support/objects.hpp"
 

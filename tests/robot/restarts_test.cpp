@@ -39,6 +39,7 @@ protected:
         EXPECT_FALSE(simulation_->start());
     }
 
+    Devices const& devices() const { return simulation_->world().devices; }
     Controller const& robot() const { return simulation_->controllers().controller_of(0); }
 
     void step_until_it_is_due() {
@@ -55,14 +56,14 @@ TEST_F(Restarts, LedsAreDarkPowerIsTheDefaultAndMotorsHaveTheirStoredDirections)
     step_until_it_is_due();
     World const& world = simulation_->world();
     ASSERT_NE(world.robots.led[0], Leds{});
-    ASSERT_EQ(robot().ir_power, kPower);
-    ASSERT_NE(robot().motors.direction, stored);
+    ASSERT_EQ(devices().ir_power[0], kPower);
+    ASSERT_NE(devices().motors[0].direction, stored);
     ASSERT_FALSE(testing::run_for(*simulation_, 0.1));
     EXPECT_EQ(starts, 2);
     EXPECT_EQ(world.robots.led[0], Leds{});
-    EXPECT_EQ(robot().ir_power, Controller{}.ir_power);
-    EXPECT_EQ(robot().motors.direction, stored);
-    EXPECT_EQ(robot().motors.stored_direction, stored);
+    EXPECT_EQ(devices().ir_power[0], kUsualIrPower);
+    EXPECT_EQ(devices().motors[0].direction, stored);
+    EXPECT_EQ(devices().motors[0].stored_direction, stored);
 }
 
 TEST_F(Restarts, RobotThatIsSwitchedOffRestartsWhenItIsSwitchedOn) {

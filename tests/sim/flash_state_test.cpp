@@ -16,12 +16,11 @@ TEST(FlashState, RobotWhoseIdHasMoreThan16BitsIsRefused) {
     TemporaryFolder const folder;
     Scenario scenario;
     scenario.flash_state.output_file = folder / "x.flash";
-    auto& world = const_cast<World&>(simulation.world());
-    auto& controllers = const_cast<Controllers&>(simulation.controllers());
+    World& world = simulation.world();
     world.robots.id[0] = kIdsOnAir - 1;
-    EXPECT_NO_THROW(FlashState(scenario, world, controllers));
+    EXPECT_NO_THROW(FlashState(scenario, world));
     world.robots.id[0] = kIdsOnAir;
-    EXPECT_THROW(FlashState(scenario, world, controllers), ConfigError);
+    EXPECT_THROW(FlashState(scenario, world), ConfigError);
 }
 
 }  // namespace

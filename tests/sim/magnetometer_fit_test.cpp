@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "robot/magnetometer.hpp"
+#include "device/magnetometer.hpp"
 
 namespace pogosim {
 namespace {

@@ -34,9 +34,8 @@ int main() {
     world.mailboxes.push(2, {}, {});
 
     pogosim::Controller controller;
-    controller.clock_us = 2'500'000;
     controller.loop.ticks = 156;
-    controller.motors.power = {512, 0, 7};
+    world.devices.clock_us = {0, 2'500'000};
     pogosim::Leds const leds{{{255, 128, 0}, {}, {}, {}, {0, 0, 25}}};
     stop_here(world, controller, leds);
     return 0;

@@ -104,11 +104,10 @@ class MembersPrinter:
 
 
 class ControllerPrinter(MembersPrinter):
-    """The robot's time in s, and how often it ticked; then all members."""
+    """How often the robot ticked; then all members."""
 
     def to_string(self) -> str:
-        text = f"controller at {int(self.value['clock_us']) / 1e6:.6f} s"
-        return text + f", {int(self.value['loop']['ticks'])} ticks"
+        return f"controller after {int(self.value['loop']['ticks'])} ticks"
 
 
 class ArraysPrinter(MembersPrinter):
@@ -165,6 +164,7 @@ PRINTERS: dict[str, Callable[[gdb.Value], object]] = {
     "pogosim::Controller": ControllerPrinter,
     "pogosim::World": WorldPrinter,
     "pogosim::Mailboxes": MailboxesPrinter,
+    "pogosim::Devices": ArraysPrinter,
     **dict.fromkeys(ARRAYS, ArraysPrinter),
 }
 LEDS = re.compile(r"std::(\w+::)*array<pogosim::Rgb, ")
@@ -274,6 +274,16 @@ class Controller(gdb.Function):
         return controller_of(int(robot))
 
 
+class Device(gdb.Function):
+    """$device(ID, "motors"): what World::devices has of a robot, as of its last tick."""
+
+    def __init__(self) -> None:
+        super().__init__("device")
+
+    def invoke(self, robot: gdb.Value, name: gdb.Value) -> gdb.Value:
+        return elements(context()["world"].dereference()["devices"][name.string()])[index_of(int(robot))]
+
+
 def user_data_type() -> gdb.Type | None:
     """Return the type of the program's user data: REGISTER_USERDATA leaves a constant of it with every compiler."""
     registered = gdb.lookup_static_symbol("pogo_user_data_type")
@@ -336,7 +346,7 @@ def name_mydata(_: object = None) -> None:
 
 
 gdb.printing.register_pretty_printer(gdb.current_objfile(), Printers(), replace=True)
-for function in (World, RunningRobot, Ticks, Controller, UserData, MyData):
+for function in (World, RunningRobot, Ticks, Controller, Device, UserData, MyData):
     function()
 name_mydata()
 gdb.events.new_objfile.connect(name_mydata)

@@ -1,0 +1,54 @@
+// pogolib/flash.h
+#include "device/flash.hpp"
+#include "robot/context.hpp"
+#include "robot/require_robot.hpp"
+#include "robot/slip.hpp"
+
+using pogosim::context;
+using pogosim::require_argument;
+using pogosim::require_robot;
+
+namespace {
+
+bool is_page(char const* function, std::uint16_t page, char const* outcome) {
+    bool const known = page < pogosim::kFlashPageCount;
+    if (!known) [[unlikely]] {
+        pogosim::note_slip({function, "page", "0 to 5887 (POGOBOT_USER_FLASH_PAGE_COUNT - 1)", outcome}, page);
+    }
+    return known;
+}
+
+/// Once for each category.
+void note_lost_bits(std::uint16_t page) {
+    context.services->warn_once_of(
+        {.text = "was not erased", .function = "write_page_flash", .argument = get_current_robot_category()},
+        "write_page_flash(): page {} was not erased before, and a write only clears bits (flash: nor), so the page "
+        "does not contain what was written; call erase_write_section_flash() first, which erases all pages",
+        page);
+}
+
+}  // namespace
+
+void read_page_flash(uint16_t page, char* buf) {
+    require_robot(__func__);
+    require_argument(buf, __func__, "buf");
+    if (is_page(__func__, page, "nothing is read")) {
+        pogosim::read_page(context.devices().flash[context.device], page, reinterpret_cast<std::byte*>(buf));
+    }
+}
+
+void write_page_flash(uint16_t page, void const* data) {
+    require_robot(__func__);
+    require_argument(data, __func__, "data");
+    if (!is_page(__func__, page, "nothing is written")) {
+        return;
+    }
+    if (!pogosim::write_page(*context.world, context.device, page, static_cast<std::byte const*>(data))) {
+        note_lost_bits(page);
+    }
+}
+
+void erase_write_section_flash() {
+    require_robot(__func__);
+    pogosim::erase(context.devices().flash[context.device]);
+}

@@ -1,0 +1,26 @@
+// Clocks of robots, us. Each has its own, which drifts; that of a robot that is not due stands ahead of the step's.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Time of the step.
+inline std::int64_t time_us(World const& world) {
+    constexpr double us_per_s = 1e6;
+    return std::llround(world.time_s() * us_per_s);
+}
+
+/// Adds the drift of a robot's clock for the time since it showed `since_us`: once for each tick, and never so much
+/// that the clock turns back.
+inline void drift_clock(World& world, std::uint32_t robot, std::int64_t since_us) {
+    std::int64_t& clock_us = world.devices.clock_us[robot];
+    std::int64_t const slept_us = clock_us - since_us;
+    clock_us += std::max(world.devices.clock_drift_us[robot], -slept_us / 2);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,29 @@
+// What the inertial measurement unit of a robot gives: plain functions of its motion.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/random.hpp"
+#include "base/vec2.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+struct ImuReading {
+    std::array<float, 3> acceleration{};      // to the right, forward, up
+    std::array<float, 3> angular_velocity{};  // rad/s; [2] counter-clockwise seen from above
+};
+
+/// What the accelerometer feels upwards, m/s2, of a body that accelerates upwards: its weight is added, so it is g at
+/// rest and 0 in free fall. Without gravity: the acceleration alone.
+float felt_upwards_m_s2(float acceleration_m_s2, bool has_gravity);
+
+/// `acceleration_m_s2`: x forward, y to the right. `turning_rad_s`: clockwise on the screen. Draws from `noise` only if
+/// the spec has noise.
+ImuReading imu_reading(SensorSpec const& spec, Vec2 acceleration_m_s2, float turning_rad_s, RandomStream& noise);
+
+/// What a robot reads, which has a body.
+ImuReading read_imu(World& world, std::uint32_t robot);
+
+}  // namespace pogosim

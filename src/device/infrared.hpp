@@ -1,0 +1,69 @@
+// The infrared port of a robot: what it sends is put on the air, and comms delivers it after every robot has run; what
+// it receives waits in its mailbox. Commands of the remote control: remote_control.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+inline constexpr std::uint8_t kMostIrPower = 3;
+
+/// What a robot sends. Emitters: bit d is emitter d.
+struct Packet {
+    std::uint8_t emitters = kAllFaces;
+    std::uint8_t power = 0;  // 0 to kMostIrPower; 0 sends nothing
+    PacketKind kind = PacketKind::message;
+    FrameHeader header{};            // payload_length: that of the payload
+    std::uint16_t header_bytes = 0;  // as the law of reception counts them
+    std::span<std::byte const> payload{};
+
+    bool radiates() const { return emitters != 0 && power != 0; }
+};
+
+/// A long message of this type, by a list of the emitters' powers, as receivers see it.
+Packet long_packet(World const& world, std::uint32_t robot, std::uint8_t emitters, std::uint8_t power_list,
+                   std::span<std::byte const> payload, std::uint8_t type);
+
+/// A short message, whose header says neither sender nor emitter, at the power of the robot's port.
+Packet short_packet(World const& world, std::size_t device, std::uint8_t emitters, std::span<std::byte const> payload);
+
+/// A packet as a program has composed it of bytes, header first: what robots cannot read is malformed.
+/// `declared_length`: bytes of its payload as the sender has said, or negative.
+Packet composed_packet(World const& world, std::size_t device, std::span<std::byte const> bytes,
+                       std::int64_t declared_length);
+
+// Lists of powers have two bits for each emitter.
+
+/// The list that drives these emitters with the power of the robot's port.
+std::uint8_t power_list(World const& world, std::size_t device, std::uint8_t emitters);
+/// The largest power of a list; emitters of different power are not told apart.
+std::uint8_t highest_power(std::uint8_t list);
+/// Emitters with a power that is not 0.
+std::uint8_t emitters_in(std::uint8_t list);
+
+/// Chance that a robot sends in the time of a tick, for the law of reception, where no main loop knows it: what it has
+/// done in the last second or two. Counts this time as one at which it sends.
+float watched_send_probability(World& world, std::uint32_t robot);
+
+/// Puts a packet that radiates on the air, and counts it. `air`: World::air, or that of the
+/// robot's part of the swarm.
+void transmit(World& world, std::uint32_t robot, TransmissionQueue& air, Packet const& packet, float send_probability);
+
+/// Whether a robot is muted; counts a message that is not sent because of that.
+bool is_muted_for_message(World& world, std::size_t device);
+
+/// Powers above kMostIrPower count as that.
+void set_ir_power(World& world, std::size_t device, std::uint8_t power);
+
+/// Range of a message that this robot sends at its present emitter power, mm; 0 if it is switched off.
+float ir_range_mm(World const& world, std::uint32_t robot);
+
+/// Takes the oldest message out of the robot's mailbox; `payload` gets as many of its bytes as fit. False if there is
+/// none.
+bool receive(World& world, std::uint32_t robot, FrameHeader& header, std::span<std::byte> payload);
+
+}  // namespace pogosim

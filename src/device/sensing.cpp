@@ -1,0 +1,63 @@
+#include "device/sensing.hpp"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "world/observed_motion.hpp"
+
+namespace pogosim {
+
+namespace {
+
+/// Unit vectors from the centre to the photosensors, in the robot's frame: 180, 320 and 40 degrees.
+constexpr std::array<Vec2, kPhotosensorCount> kPhotosensors{Vec2{-1.0F, 0.0F}, Vec2{0.76604444F, -0.64278761F},
+                                                            Vec2{0.76604444F, 0.64278761F}};
+constexpr float kMmPerM = 1000.0F;
+
+}  // namespace
+
+int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor) {
+    Bodies const& bodies = world.bodies;
+    Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor], bodies.heading_dir[body]);
+    return world.light.at(wrapped(world, bodies.position_mm[body] + offset));
+}
+
+double mean_light(World const& world, std::uint32_t body) {
+    double sum = 0.0;
+    for (std::size_t sensor = 0; sensor < kPhotosensorCount; ++sensor) {
+        sum += light_at_sensor(world, body, sensor);
+    }
+    return sum / kPhotosensorCount;
+}
+
+double light_of(World const& world, Object const& object) {
+    bool const has_sensors = object.robot != kNone && object.body_count == 1;
+    return has_sensors ? mean_light(world, object.body) : world.light.at(wrapped(world, centre_mm(world, object)));
+}
+
+void measure_velocity(World& world, std::uint32_t robot, std::int64_t now_us) {
+    constexpr float seconds_per_us = 1e-6F;
+    std::uint32_t const body = world.robots.body[robot];
+    if (body == kNone) {
+        return;
+    }
+    Accelerometer& meter = world.devices.accelerometer[robot];
+    meter.previous = meter.current;
+    meter.current = last_step(world, body);
+    bool const first = !std::exchange(meter.has_measured, true);
+    meter.interval_s = first ? 0.0F : static_cast<float>(now_us - meter.current_us) * seconds_per_us;
+    meter.current_us = now_us;
+}
+
+Vec2 acceleration_m_s2(World const& world, std::uint32_t robot) {
+    Accelerometer const& meter = world.devices.accelerometer[robot];
+    if (meter.interval_s <= 0.0F) {
+        return {};
+    }
+    Vec2 const change = observed_velocity_mm_s(world, meter.current) - observed_velocity_mm_s(world, meter.previous);
+    Vec2 const axis = world.bodies.heading_dir[world.robots.body[robot]];
+    return (1.0F / (meter.interval_s * kMmPerM)) * Vec2{dot(change, axis), cross(axis, change)};
+}
+
+}  // namespace pogosim

@@ -1,0 +1,33 @@
+// Readings of a robot's sensors without noise and bias.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Light level at a photosensor (0 back, 1 front left, 2 front right) of a robot with this body, sensor counts.
+int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor);
+
+/// Mean of the three photosensors, sensor counts.
+double mean_light(World const& world, std::uint32_t body);
+
+/// Light at an object, sensor counts, without noise: mean of the sensors of a rigid robot; of others, in the middle.
+double light_of(World const& world, Object const& object);
+
+/// An accelerometer notes the velocity of its robot at this time.
+void measure_velocity(World& world, std::uint32_t robot, std::int64_t now_us);
+
+/// The same at a tick, by the robot's own clock: its ticks are evenly spaced there, and do not coincide with steps.
+inline void measure_at_tick(World& world, std::uint32_t robot) {
+    if (!world.devices.accelerometer[robot].at_each_step) {
+        measure_velocity(world, robot, world.devices.clock_us[robot]);
+    }
+}
+
+/// Mean acceleration between the last two measurements in the robot's frame, m/s2: x forward, y to the right.
+Vec2 acceleration_m_s2(World const& world, std::uint32_t robot);
+
+}  // namespace pogosim

@@ -1,0 +1,17 @@
+// The devices of all robots at the start of a run.
+#pragma once
+
+#include <cstdint>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Fills World::devices for the robots of the world: biases and clock drift are drawn from each robot's own stream.
+void set_up_devices(World& world, std::uint64_t seed);
+
+/// Clears what a reset of the processor clears, which begins anew at this time: powers, counters of the infrared port,
+/// messages that wait, LEDs. What the hardware keeps stays: calibration, flash memory, stored settings of the motors.
+void reset_devices(World& world, std::uint32_t robot, std::int64_t now_us);
+
+}  // namespace pogosim
