@@ -207,9 +207,9 @@ def communication_radius_of(settings: dict[str, Any]) -> float:
     return number(settings.get("communication_radius"), COMMUNICATION_RADIUS_MM)
 
 
-def read_periodic(*configurations: dict[str, Any] | None) -> bool:
-    """Tell whether what leaves the arena comes back on the other side, if any of the configurations says so."""
-    return any(str((own or {}).get("boundary_condition")).lower() == "periodic" for own in configurations)
+def read_periodic(configuration: dict[str, Any]) -> bool:
+    """Tell whether what leaves the arena comes back on the other side."""
+    return str(configuration.get("boundary_condition")).lower() == "periodic"
 
 
 def read_top_speed(configuration: dict[str, Any]) -> float | None:

@@ -33,6 +33,7 @@ from pogosim.scene import (
     read_periodic,
     read_top_speed,
 )
+from pogosim.several_files import configuration_of
 from pogosim.times import slack_s, with_exact_times
 from pogosim.utils import load_dataframe
 
@@ -166,11 +167,11 @@ def read_recording(
     rows = rows[is_near(rows)]
     if color_by not in (None, SPEED, "led_rgb"):
         checked_column(rows, str(color_by))
-    configuration = metadata["configuration"]
+    configuration = configuration_of(metadata)
     categories = read_categories(configuration)
     rows = completed(with_defaults(with_categories(rows, metadata)))
-    is_periodic = read_periodic(configuration, metadata.get("resolved_configuration"))
-    top_speed_mm_s = read_top_speed(metadata.get("resolved_configuration") or configuration)
+    is_periodic = read_periodic(configuration)
+    top_speed_mm_s = read_top_speed(configuration)
     if color_by == SPEED:
         rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic and polygons else None, top_speed_mm_s)
     rows, colouring = coloured(rows, categories, color_by)
