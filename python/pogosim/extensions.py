@@ -10,12 +10,12 @@ import functools
 import importlib
 import os
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
+    from pathlib import Path  # takes a while, and few commands need it here
 
 MODELS_VARIABLE = "POGOSIM_PATH"  # folders that the simulator searches for models of robots
 MODELS = ("*.yaml", "*.yml")
@@ -226,6 +226,8 @@ def takes(function: Any, *arguments: Any) -> bool:
 
 def folders_of(entry: Any) -> list[Path]:
     """Return the folders with models that an entry names."""
+    from pathlib import Path
+
     if isinstance(entry, ModuleType):
         own = [str(Path(entry.__file__).parent)] if entry.__file__ else []
         places = list(getattr(entry, "__path__", own))

@@ -18,7 +18,7 @@ from pogosim.batch.run_options import (
     add_run_options,
     runner_of,
 )
-from pogosim.batch.subcommands import SUBCOMMANDS, overview, subparser, tell_outputs, unknown
+from pogosim.batch.subcommands import SUBCOMMANDS, overview, subparser, tell_outputs, unknown_subcommand
 from pogosim.lines import say, say_error
 
 EPILOG = """Finished runs of a batch that was interrupted are kept in the folder for temporary files: the same command
@@ -75,7 +75,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
     if name == "help":
         return help_of(words[1:], prog)
     if name and name not in SUBCOMMANDS:
-        say_error(unknown(name, prog))
+        say_error(unknown_subcommand(name, prog))
         return WRONG
     if name:
         prog = f"{prog} {name}"
@@ -98,7 +98,7 @@ def help_of(words: Sequence[str], prog: str) -> int:
         say(*overview(prog))
         return DONE
     if words[0] not in SUBCOMMANDS:
-        say_error(unknown(words[0], prog))
+        say_error(unknown_subcommand(words[0], prog))
         return WRONG
     subparser(words[0], f"{prog} {words[0]}").print_help()
     return DONE

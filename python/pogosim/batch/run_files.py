@@ -13,6 +13,7 @@ OUTPUTS_ASKED_FOR = {"message_log": "messages.feather", "flash_state.output_file
 ALL_OUTPUTS = (*OUTPUTS, *OUTPUTS_ASKED_FOR)
 
 FILES_BESIDE = ("arena_file", "formation_filename", "magnetometer.csv.file")
+MODEL = "robot_model"  # of a category, a file beside it, too
 
 
 def is_nested(setting: str) -> bool:
@@ -71,7 +72,19 @@ def with_files_beside(entries: dict[str, Any], folder: Path) -> dict[str, Any]:
     for setting in FILES_BESIDE:
         if (name := value_at(entries, setting)) is not None:
             entries = changed(entries, setting, found_beside(name, folder))
-    return entries
+    objects = entries.get("objects")
+    return {**entries, "objects": with_models_beside(objects, folder)} if isinstance(objects, dict) else entries
+
+
+def with_models_beside(node: Any, folder: Path) -> Any:
+    """Return categories, or entries of one, with the paths of robot models that a single run finds in a folder."""
+    if isinstance(node, list):
+        return [with_models_beside(own, folder) for own in node]
+    if not isinstance(node, dict):
+        return node
+    if MODEL in node:
+        return {**node, MODEL: found_beside(node[MODEL], folder)}
+    return {name: with_models_beside(own, folder) for name, own in node.items()}
 
 
 def found_beside(name: Any, folder: Path) -> Any:

@@ -12,7 +12,7 @@ from pogosim.batch.errors import BatchError, tell
 from pogosim.batch.identity import find_program
 from pogosim.batch.run_options import Parser, add_choice_options, add_run_options, check_names, runner_of
 from pogosim.lines import counted
-from pogosim.nearest_name import nearest_name
+from pogosim.nearest_name import listed, unknown
 
 if TYPE_CHECKING:
     from pogosim.batch.runner import PogobotBatchRunner
@@ -253,20 +253,18 @@ def subparser(name: str, prog: str) -> Parser:
 
 def overview(prog: str) -> list[str]:
     """Return what `pogobatch help` prints."""
-    width = max(map(len, SUBCOMMANDS))
-    listed = [f"  {name:{width}}  {own.summary}" for name, own in SUBCOMMANDS.items()]
+    summaries = {name: own.summary for name, own in SUBCOMMANDS.items()}
+    summaries["help"] = f"print this help; {prog} help SUBCOMMAND: that of a subcommand"
     return [
         f"Usage: {prog} SUBCOMMAND [OPTIONS], or {prog} -c CONFIG -S PROGRAM [OPTIONS]",
         "",
         "Subcommands:",
-        *listed,
-        f"  {'help':{width}}  print this help; {prog} help SUBCOMMAND: that of a subcommand",
+        *listed(summaries),
         "",
         f"Without a subcommand, {prog} does a batch whose results have the column run alone; {prog} --help.",
     ]
 
 
-def unknown(name: str, prog: str) -> str:
+def unknown_subcommand(name: str, prog: str) -> str:
     """Return what is said of a word that is no subcommand."""
-    near = nearest_name(name, [*SUBCOMMANDS, "help"])
-    return f"{prog}: there is no subcommand '{name}'" + (f"; did you mean '{near}'?" if near else f"; see {prog} help")
+    return f"{prog}: {unknown('subcommand', name, [*SUBCOMMANDS, 'help'], f'see {prog} help')}"

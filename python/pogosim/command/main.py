@@ -12,7 +12,7 @@ import pogosim
 from pogosim.command.parser import complain, warn
 from pogosim.extensions import ExtensionError, Own, Table, takes
 from pogosim.lines import say, say_error
-from pogosim.nearest_name import nearest_name
+from pogosim.nearest_name import listed, unknown
 
 WRONG_USAGE = 2
 INTERRUPTED = 130
@@ -51,16 +51,13 @@ COMMANDS = Table(
 
 def usage() -> list[str]:
     """Return what `pogosim --help` prints."""
-    summaries = COMMANDS.listed(functools.partial(warn, "pogosim"))
-    width = max(map(len, summaries))
-    listed = [f"  {name:{width}}  {summary}" for name, summary in summaries.items()]
     return [
         "Usage: pogosim COMMAND [OPTIONS]",
         "",
         "Simulates swarms of Pogobots.",
         "",
         "Commands:",
-        *listed,
+        *listed(COMMANDS.listed(functools.partial(warn, "pogosim"))),
         "",
         "Options:",
         "  -h, --help     print this help; pogosim COMMAND --help: that of a command",
@@ -68,13 +65,11 @@ def usage() -> list[str]:
     ]
 
 
-def unknown(name: str) -> str:
+def unknown_command(name: str) -> str:
     """Return what is said of a name that is no subcommand."""
     if name.startswith("-"):
         return f"pogosim: there is no option {name} before the command; pogosim --help lists all commands"
-    near = nearest_name(name, COMMANDS.names())
-    question = f"; did you mean '{near}'?" if near else "; pogosim --help lists all commands"
-    return f"pogosim: there is no command '{name}'{question}"
+    return f"pogosim: {unknown('command', name, COMMANDS.names(), 'pogosim --help lists all commands')}"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -147,7 +142,7 @@ def run(name: str, arguments: Sequence[str]) -> int:
         return WRONG_USAGE
     try:
         if COMMANDS.find(name) is None:
-            say_error(unknown(name))
+            say_error(unknown_command(name))
             return WRONG_USAGE
         return call(name, arguments, f"pogosim {name}")
     except ExtensionError as error:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pogosim.command.parser import complain, warn
 from pogosim.extensions import ExtensionError, Own, Table
 from pogosim.lines import say, say_error
-from pogosim.nearest_name import nearest_name
+from pogosim.nearest_name import listed, unknown
 from pogosim.outputs import check_readable
 from pogosim.reports.command_lines import Analysis
 
@@ -27,16 +27,13 @@ ANALYSES = Table(
 
 def usage(prog: str) -> list[str]:
     """Return what `pogosim analyze --help` prints."""
-    summaries = ANALYSES.listed(functools.partial(warn, prog))
-    width = max(map(len, summaries))
-    listed = [f"  {name:{width}}  {summary}" for name, summary in summaries.items()]
     return [
         f"usage: {prog} ANALYSIS -i FILE -o DIR [OPTIONS]",
         "",
         "Computes what robots did, and writes tables (CSV) and figures (PDF, PNG).",
         "",
         "Analyses:",
-        *listed,
+        *listed(ANALYSES.listed(functools.partial(warn, prog))),
         "",
         f"{prog} ANALYSIS --help prints the options of an analysis.",
     ]
@@ -53,9 +50,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim analyze") 
         return 2
     try:
         if ANALYSES.find(name) is None:
-            near = nearest_name(name, ANALYSES.names())
-            question = f"; did you mean '{near}'?" if near else f"; {prog} --help lists all analyses"
-            return complain(prog, f"there is no analysis '{name}'{question}")
+            return complain(prog, unknown("analysis", name, ANALYSES.names(), f"{prog} --help lists all analyses"))
     except ExtensionError as error:
         return complain(prog, error)
     return analyze(name, rest, f"{prog} {name}")
