@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml
 from pogosim.pogobatch import main
-from running import Run, example, scene
+from running import Run, example, ran, scene
 
 COMMAND = [sys.executable, "-m", "pogosim.pogobatch"]
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
@@ -79,10 +79,7 @@ def batch_apart(folder: Path, *more: str, program: Path | None = None) -> Run:
 
 def ended(command: list[str], folder: Path) -> Run:
     """Run a command to its end."""
-    done = subprocess.run(
-        command, cwd=folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=120, check=False
-    )
-    return Run(done.returncode, done.stdout, done.stderr, folder)
+    return ran(folder, *command, env=ENVIRONMENT)
 
 
 def start_batch(folder: Path, *more: str, program: Path | None = None) -> subprocess.Popen[str]:

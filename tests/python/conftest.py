@@ -8,13 +8,14 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import pogosim
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs/figures", "examples/learning")]
 
 from display import Display, open_display  # noqa: E402
-from running import PROGRAMS, compile_program  # noqa: E402
+from running import PROGRAMS, SHARED, compile_program  # noqa: E402
 
 Compile = Callable[[str], Path]
 
@@ -64,6 +65,19 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Compile:
         return compiled[name]
 
     return compile_once
+
+
+@pytest.fixture(scope="session")
+def hosted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The shared object of tests/programs/hosted.c, whose robots drive in circles."""
+    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
+
+
+@pytest.fixture
+def sim(hosted: Path, scene: Path) -> Iterator[pogosim.Simulation]:
+    """A run of that program in a scene, which is a fixture of the file."""
+    with pogosim.Simulation(hosted, scene) as simulation:
+        yield simulation
 
 
 @pytest.fixture(scope="module")

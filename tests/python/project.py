@@ -5,11 +5,10 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-from running import ROOT, Run
+from running import ROOT, Run, ran
 
 TEMPLATE = ROOT / "template_prj"
 # Another Pogosim or SDK of this machine must not be found instead of the one under test.
@@ -34,16 +33,7 @@ def copy_template(folder: Path, template: Path = TEMPLATE) -> Path:
 
 def make(folder: Path, *arguments: str, environment: dict[str, str] | None = None) -> Run:
     """Run make in a folder."""
-    ended = subprocess.run(
-        ["make", *arguments],
-        cwd=folder,
-        env=CLEAN | (environment or {}),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+    return ran(folder, "make", *arguments, env=CLEAN | (environment or {}))
 
 
 def made(folder: Path, *arguments: str, environment: dict[str, str] | None = None) -> Run:

@@ -8,20 +8,25 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
 import pandas as pd
 import pyarrow as pa
 import yaml
+from pogosim import recover
 from pogosim.utils import load_dataframe
 from pyarrow import ipc
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = ROOT / "tests" / "programs"
+SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")  # flags of a program that Python loads
 LIBRARY = "libpogosim.dylib" if sys.platform == "darwin" else "libpogosim.so"
 
 SCENE: dict[str, Any] = {
@@ -36,6 +41,7 @@ SCENE: dict[str, Any] = {
     "objects": {"robots": {"type": "pogobot", "nb": 3, "geometry": "disk", "radius": 26.5}},
 }
 
+Floats = npt.NDArray[np.float64]
 Settings = Mapping[str, object]
 
 SUMMARY = re.compile(r"^\S+ s of \d+ robots? simulated in \S+ s, \S+ x real time; .*\n", re.MULTILINE)
@@ -135,10 +141,48 @@ def run_shipped(name: str, folder: Path, settings: Settings | None = None, confi
 
 def run_command(program: Path, folder: Path, arguments: Sequence[str]) -> Run:
     """Run a program with these arguments in a folder."""
-    ended = subprocess.run(
-        [str(program), *arguments], cwd=folder, capture_output=True, text=True, timeout=120, check=False
-    )
+    return ran(folder, program, *arguments)
+
+
+def ran(folder: Path, *command: str | Path, **how: Any) -> Run:
+    """Run a command in a folder to its end; `how` goes to subprocess.run()."""
+    options = {"capture_output": True, "text": True, "timeout": 120, "check": False} | how
+    ended = subprocess.run([*map(str, command)], cwd=folder, **options)
     return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+
+
+def end(process: subprocess.Popen[str], folder: Path) -> Run:
+    """Wait for the end of a program whose output is a pipe."""
+    output, errors = process.communicate(timeout=60)
+    return Run(process.returncode, output, errors, folder)
+
+
+def wait_for_rows(path: Path) -> None:
+    """Wait until a run has written rows into a file."""
+    for _ in range(600):
+        time.sleep(0.05)
+        try:
+            if recover.read_unfinished(path).table.num_rows > 0:
+                return
+        except (FileNotFoundError, recover.RecoverError):
+            pass  # its head is not there yet, or only a part of it
+    raise AssertionError("no rows come")
+
+
+def warnings(result: Run) -> list[str]:
+    """Return the warnings without date and level; the run has ended well."""
+    assert result.code == 0, result.text
+    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
+
+
+def by_robot(frame: pd.DataFrame, column: str) -> Floats:
+    """One row per time, one column per robot."""
+    return frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
+
+
+def order(frame: pd.DataFrame) -> Floats:
+    """Polar order of the headings over time, 0 to 1."""
+    return np.asarray(np.abs(np.exp(1j * by_robot(frame, "angle")).mean(axis=1)))
 
 
 def without_places(messages: str) -> str:

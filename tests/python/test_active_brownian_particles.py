@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pandas as pd
 import pytest
 from light_field import configuration
-from running import run_shipped
+from running import by_robot, run_shipped
 
 Array = npt.NDArray[np.float64]
 
@@ -36,11 +36,6 @@ def free_robots(max_angular_speed: float) -> dict[str, object]:
         "objects.robots.max_angular_speed": max_angular_speed,
         "parameters.max_angular_speed": max_angular_speed,
     }
-
-
-def by_robot(frame: pd.DataFrame, column: str) -> Array:
-    """One row per time, one column per robot."""
-    return frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
 
 
 def mean_squared_displacement(x: Array, y: Array, lag: int) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from pogosim.geometry.svg_file import read_svg
 from pogosim.geometry.validity import problems, room_for
 from pogosim.utils import load_dataframe
 from project import CLEAN
-from running import ROOT, Run, build_folder, example, run
+from running import ROOT, Run, build_folder, example, ran, run
 
 SQUARE = "0,0\n100,0\n100,100\n0,100\n"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"{attributes}>{content}</svg>'
@@ -25,16 +24,7 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/19
 
 def module(folder: Path, *arguments: str) -> Run:
     """Run `python -m` in a folder."""
-    done = subprocess.run(
-        [sys.executable, "-m", *arguments],
-        cwd=folder,
-        env=CLEAN | {"POGOSIM_DIR": str(build_folder())},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    return Run(done.returncode, done.stdout, done.stderr, folder)
+    return ran(folder, sys.executable, "-m", *arguments, env=CLEAN | {"POGOSIM_DIR": str(build_folder())})
 
 
 def arena(folder: Path, *arguments: str) -> Run:

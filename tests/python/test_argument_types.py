@@ -8,7 +8,7 @@ import fractions
 import functools
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +23,8 @@ from pogosim.errors import PictureError
 from pogosim.picture.swarm import read_recording
 from pogosim.pogobatch import BatchError, PogobotBatchRunner
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, compile_program, write_scene
+from running import ROOT, write_scene
 from swarms import brownian_walk, metadata_of, rows_of, write_rows
-
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 
 
 class Colour(enum.Enum):
@@ -91,12 +89,6 @@ def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The shared object of tests/programs/hosted.c."""
-    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
-
-
-@pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A configuration of three robots, a lamp, and 2 s."""
     robots = {"type": "pogobot", "nb": 3, "geometry": "disk", "radius": 26.5, "communication_radius": 80}
@@ -104,13 +96,6 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     arena = {"arena_file": str(ROOT / "arenas" / "disk.csv"), "save_data_period": 0.5}
     objects = {"robots": robots, "lamp": {**lamp, "x": 500, "y": 500}}
     return write_scene(tmp_path_factory.mktemp("scene"), {**arena, "objects": objects})
-
-
-@pytest.fixture
-def sim(program: Path, scene: Path) -> Iterator[pogosim.Simulation]:
-    """A run of that program in it."""
-    with pogosim.Simulation(program, scene) as simulation:
-        yield simulation
 
 
 def refusal(call: Callable[[], object]) -> str:
@@ -226,9 +211,9 @@ def test_lists_of_all_types_are_lists(value: Any, expected: list[float], sim: po
     assert sim.to_dataframe()["table_1"].iloc[-1] == expected[1]
 
 
-def test_paths_and_enums_are_texts(program: Path, scene: Path, tmp_path: Path) -> None:
+def test_paths_and_enums_are_texts(hosted: Path, scene: Path, tmp_path: Path) -> None:
     settings = {"parameters.name": Colour.RED, "arena_file": ROOT / "arenas" / "square.csv"}
-    with pogosim.Simulation(str(program), str(scene), set=settings, data_file=str(tmp_path / "röws.feather")) as sim:
+    with pogosim.Simulation(str(hosted), str(scene), set=settings, data_file=str(tmp_path / "röws.feather")) as sim:
         assert dict(sim.parameters) == {"name": "red"}
         sim.save_data(str(tmp_path / "copy.feather"))
     assert (tmp_path / "copy.feather").read_bytes() == (tmp_path / "röws.feather").read_bytes()
@@ -290,9 +275,9 @@ def test_wrong_arguments_are_refused(call: Callable[[Any], object], message: str
     assert refusal(lambda: call(sim)).startswith(message)
 
 
-def test_vector_of_runs_takes_seeds_of_numpy(program: Path, scene: Path) -> None:
+def test_vector_of_runs_takes_seeds_of_numpy(hosted: Path, scene: Path) -> None:
     vector: Any = pogosim.VectorSimulation
-    with vector(program, scene, seeds=np.arange(2), threads=np.int64(2)) as runs:
+    with vector(hosted, scene, seeds=np.arange(2), threads=np.int64(2)) as runs:
         runs.step(np.int64(3))
         runs.reset(np.array([5, 6]))
         assert [run.seed for run in runs] == [5, 6]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pogosim
 import pytest
 from project import CLEAN, TEMPLATE
-from running import PROGRAMS, Run, build_folder, write_scene
+from running import PROGRAMS, Run, build_folder, ran, write_scene
 
 SUBCOMMANDS = (
     "new",
@@ -34,16 +34,8 @@ SUBCOMMANDS = (
 
 def command(folder: Path, *arguments: str, environment: Mapping[str, str] | None = None) -> Run:
     """Run `pogosim` in a folder, with the simulator under test."""
-    ended = subprocess.run(
-        [sys.executable, "-m", "pogosim", *arguments],
-        cwd=folder,
-        env=CLEAN | {"POGOSIM_DIR": str(build_folder())} | dict(environment or {}),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+    clean = CLEAN | {"POGOSIM_DIR": str(build_folder())} | dict(environment or {})
+    return ran(folder, sys.executable, "-m", "pogosim", *arguments, env=clean)
 
 
 def refusal(result: Run) -> str:

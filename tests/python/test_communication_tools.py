@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from pogosim import compute_optimal_psend
 from pogosim.communication.measurements import ROBOTS_OWN
 from pogosim.yaml_1_2 import parse_yaml
 from project import CLEAN
-from running import Run, example, run
+from running import Run, example, ran, run
 
 FAST = ("--restarts", "0", "--law", "power")
 PICTURES = {
@@ -28,16 +27,7 @@ OTHERS = {"model_final_results.json", "model_residuals.csv"}
 
 def module(folder: Path, *arguments: str) -> Run:
     """Run `python -m` in a folder."""
-    done = subprocess.run(
-        [sys.executable, "-m", *arguments],
-        cwd=folder,
-        env=CLEAN,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    return Run(done.returncode, done.stdout, done.stderr, folder)
+    return ran(folder, sys.executable, "-m", *arguments, env=CLEAN, timeout=300)
 
 
 def block_of(output: str) -> dict[str, object]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from conftest import Compile
-from running import Run, Settings, compile_text, example, run, run_command
+from running import Run, Settings, compile_text, example, run, run_command, warnings
 
 READS_PARAMETERS = """#include "pogobase.h"
 uint8_t led_mode = 3; float ratio = 0.5f; bool flag = true; float list[2] = {1, 2}; char word[8] = "abc";
@@ -29,11 +29,6 @@ int main(void) {
     return 0;
 }
 """
-
-
-def warnings(result: Run) -> list[str]:
-    assert result.code == 0, result.text
-    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
 
 
 def printed(result: Run) -> str:

@@ -18,7 +18,7 @@ from pictures import difference
 from pogosim.utils import load_dataframe
 from project import CLEAN
 from robot_sdk import make_sdk
-from running import LIBRARY, ROOT, Run, build_folder, compile_program, example, run, run_command
+from running import LIBRARY, ROOT, Run, build_folder, compile_program, example, ran, run, run_command
 
 README = ROOT / "README.md"
 PAGES = [
@@ -110,16 +110,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def shell(commands: str, folder: Path) -> Run:
     """Run commands in a project's folder; the first that fails ends them."""
     environment = CLEAN | {"HOME": str(folder / "home")}
-    ended = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", commands],
-        cwd=folder,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+    return ran(folder, "bash", "-euo", "pipefail", "-c", commands, env=environment, timeout=300)
 
 
 def test_first_program_of_the_readme_runs_as_it_says(tree: Run) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import Run, Settings, example, run
+from running import Run, Settings, by_robot, example, run
 
 Array = npt.NDArray[np.float64]
 LARGE = 1.0e9  # mm^2, in which a few robots do not meet
@@ -26,11 +26,6 @@ def run_example(name: str, folder: Path, settings: Settings) -> Run:
     result = run(example(name), folder, settings)
     assert (result.code, result.errors) == (0, "")
     return result
-
-
-def by_robot(frame: pd.DataFrame, column: str) -> Array:
-    """One row per time, one column per robot."""
-    return frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
 
 
 # ---- helloworld ----

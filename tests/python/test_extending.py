@@ -11,8 +11,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from pogosim import extensions
+from pogosim.batch.run_files import with_files_beside
 from project import CLEAN
-from running import ROOT, Run, build_folder, example, run, write_scene
+from running import ROOT, Run, build_folder, example, ran, run, write_scene
 
 PAGE = ROOT / "docs" / "extending.md"
 FILES = re.compile(r"^`([\w./]+)`:\n\n```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -37,16 +38,7 @@ def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def called(folder: Path, packages: Path, *command: str, module: str = "pogosim") -> Run:
     """Run `pogosim`, or another module, with a folder of packages."""
     environment = CLEAN | {"POGOSIM_DIR": str(build_folder()), "PYTHONPATH": str(packages)}
-    done = subprocess.run(
-        [sys.executable, "-m", module, *command],
-        cwd=folder,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    return Run(done.returncode, done.stdout, done.stderr, folder)
+    return ran(folder, sys.executable, "-m", module, *command, env=environment, timeout=300)
 
 
 def test_command_of_a_package_is_listed_and_runs(packages: Path, tmp_path: Path) -> None:
@@ -129,6 +121,16 @@ def test_folders_of_the_user_come_before_those_of_packages(monkeypatch: pytest.M
     assert extensions.models_path(said.append) == f"/mine:/others:{tmp_path / 'lab_models'}"
     assert said == []
     extensions.entry_points_of.cache_clear()
+
+
+def test_batch_finds_models_beside_its_configuration(tmp_path: Path) -> None:
+    model = tmp_path / "models" / "own.yaml"
+    model.parent.mkdir()
+    model.write_text("radius: 30\n")
+    own, other = {"robot_model": "models/own.yaml", "nb": 3}, {"robot_model": "of_a_package.yaml"}
+    found = with_files_beside({"objects": {"robots": own, "walls": [own, other]}}, tmp_path)
+    there = {"robot_model": str(model), "nb": 3}
+    assert found == {"objects": {"robots": there, "walls": [there, other]}}
 
 
 # ---- Packages with mistakes ----

@@ -15,7 +15,7 @@ from pogosim import recover
 from pogosim.command.recover import main as recover_command
 from pogosim.utils import load_dataframe, read_table
 from pyarrow import feather, ipc
-from running import Run, compile_program, example, run, run_command, start
+from running import Run, compile_program, example, run, run_command, start, wait_for_rows
 
 LONG = {"simulation_time": 1.0e6, "save_data_period": 0.02}
 PROGRAM = """
@@ -28,17 +28,6 @@ void user_init(void) {}
 void user_step(void) { if (pogobot_ticks == 1000) { %s } }
 int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
 """
-
-
-def wait_for_rows(path: Path) -> None:
-    for _ in range(600):
-        time.sleep(0.05)
-        try:
-            if recover.read_unfinished(path).table.num_rows > 0:
-                return
-        except (FileNotFoundError, recover.RecoverError):
-            pass  # its head is not there yet, or only a part of it
-    raise AssertionError("no rows come")
 
 
 def killed_run(folder: Path, settings: dict[str, object] | None = None) -> Path:

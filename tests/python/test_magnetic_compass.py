@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import PROGRAMS, ROOT, Run, compile_program, run, run_shipped
+from running import PROGRAMS, ROOT, Run, by_robot, compile_program, order, run, run_shipped
 
 Array = npt.NDArray[np.float64]
 CALIBRATING, CALIBRATED, NO_ELLIPSE, DRIVING = range(4)
@@ -29,11 +29,6 @@ def drive(name: str, folder: Path, settings: dict[str, object]) -> Run:
     """Run an example that reads and writes the flash file of this folder."""
     flash = str(folder / "robots.flash")
     return run_shipped(name, folder, {"flash_state.input_file": flash, "flash_state.output_file": flash, **settings})
-
-
-def by_robot(frame: pd.DataFrame, column: str) -> Array:
-    """One row per time, one column per robot."""
-    return frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
 
 
 def wrapped(angle: npt.ArrayLike) -> Array:
@@ -170,12 +165,6 @@ def test_robots_that_do_not_turn_find_no_ellipse(tmp_path: Path) -> None:
 
 
 # ---- A flock by compass
-
-
-def order(frame: pd.DataFrame) -> Array:
-    """Length of the mean heading vector at each time."""
-    result: Array = np.abs(np.exp(1j * by_robot(frame, "angle")).mean(axis=1))
-    return result
 
 
 @pytest.fixture(scope="module")

@@ -16,9 +16,8 @@ from in_process import pogosim
 from pogosim import Simulation
 from pogosim.calibration.command import main
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, Run, compile_program, compile_text, run, run_command, write_scene
+from running import PROGRAMS, ROOT, SHARED, Run, compile_program, compile_text, run, run_command, write_scene
 
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 REFERENCE = ROOT / "conf" / "example_magnetometer_reference.csv"
 EXACT: dict[str, Any] = {"noise_stddev": {axis: [0] for axis in "xyz"}}
 PLAIN: dict[str, Any] = {"robot_variation": EXACT, "procedural": {"distortion_harmonics": []}}

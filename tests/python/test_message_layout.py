@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
-from running import ROOT, Run, compile_text, compiler, pkg_config
+from running import ROOT, Run, compile_text, compiler, pkg_config, ran
 
 COMPILERS = [name for names in (("gcc",), ("clang", "clang-14")) if (name := compiler(*names))]
 
@@ -55,8 +54,7 @@ typedef struct { struct { uint32_t low; unsigned long high; } part; int_fast16_t
 def check(program: Path, *options: str) -> Run:
     (tool,) = pkg_config("--variable=shared_state")
     command = [tool, "-Wno-shared-state", *options, program.name]
-    ended = subprocess.run(command, cwd=program.parent, capture_output=True, text=True, timeout=60, check=False)
-    return Run(ended.returncode, ended.stdout, ended.stderr, program.parent)
+    return ran(program.parent, *command, timeout=60)
 
 
 def build(folder: Path, messages: str, name: str = "cc", options: str = "-O0") -> Path:

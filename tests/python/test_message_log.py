@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 import signal
-import time
 from functools import cache
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from pogosim import recover
 from pogosim.command.recover import main as recover_command
 from pogosim.communication.reception_law import DynamicLaw
 from pogosim.utils import load_dataframe, read_table
-from running import ROOT, Run, compile_program, example, run, start, write_scene
+from running import ROOT, Run, compile_program, example, run, start, wait_for_rows, write_scene
 
 # All send for a second, counts what it sends, and what comes to it copy by copy.
 COUNTS = """
@@ -213,20 +212,9 @@ def test_command_line_sets_it_and_no_data_file_is_needed(counts: Path, tmp_path:
 # ---- runs that end early ----
 
 
-def wait_for_messages(path: Path) -> None:
-    for _ in range(600):
-        time.sleep(0.05)
-        try:
-            if recover.read_unfinished(path).table.num_rows > 0:
-                return
-        except (FileNotFoundError, recover.RecoverError):
-            pass  # its head is not there yet
-    raise AssertionError("no rows come")
-
-
 def test_interrupted_run_completes_both_files(counts: Path, tmp_path: Path) -> None:
     process = start(counts, tmp_path, LONG)
-    wait_for_messages(tmp_path / "m.feather")
+    wait_for_rows(tmp_path / "m.feather")
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate()
     assert process.returncode == 130
@@ -249,7 +237,7 @@ def test_crash_of_the_program_completes_both_files(tmp_path: Path) -> None:
 
 def test_killed_run_leaves_its_first_messages(counts: Path, busy: Run, tmp_path: Path) -> None:
     process = start(counts, tmp_path, LONG)
-    wait_for_messages(tmp_path / "m.feather")
+    wait_for_rows(tmp_path / "m.feather")
     process.kill()
     process.communicate()
     path = tmp_path / "m.feather"
@@ -316,7 +304,7 @@ def test_place_where_it_is_put_together_counts_as_an_output(counts: Path, tmp_pa
 
 def test_second_run_that_writes_the_same_log_is_refused(counts: Path, tmp_path: Path) -> None:
     process = start(counts, tmp_path, LONG)
-    wait_for_messages(tmp_path / "m.feather")
+    wait_for_rows(tmp_path / "m.feather")
     second = run(counts, tmp_path, {**LOGGED, "data_filename": "b.feather"})
     process.kill()
     process.communicate()

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Compile
-from running import Run, compile_program, run, run_command, start, without_places, write_scene
+from running import Run, compile_program, end, run, run_command, start, without_places, write_scene
 
 # Robot 1 misbehaves in tick 10, which begins at 0.16 s: ticks last 16 ms.
 WHERE = "in user_step of robot #1 of category 'robots', tick 10, t = 0.1600 s"
@@ -275,11 +275,6 @@ def test_parameter_of_the_wrong_type_is_told_and_the_default_taken(
 def wait_until_it_runs(process: subprocess.Popen[str]) -> None:
     assert process.stdout is not None
     assert "first tick" in process.stdout.readline()
-
-
-def end(process: subprocess.Popen[str], folder: Path) -> Run:
-    output, errors = process.communicate(timeout=60)
-    return Run(process.returncode, output, errors, folder)
 
 
 def test_interrupted_run_ends_with_130_and_complete_data(program: Compile, tmp_path: Path) -> None:

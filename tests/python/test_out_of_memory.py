@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 import resource
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 from conftest import Compile
-from running import Run, compile_program, example, run, write_scene
+from running import Run, compile_program, example, ran, run, write_scene
 
 pytestmark = pytest.mark.skipif(sys.platform == "darwin", reason="macOS has no limit of address space")
 
@@ -27,10 +26,7 @@ def limited(program: Path, folder: Path, settings: Mapping[str, object], kind: i
         resource.setrlimit(kind, (most, most))
 
     command = [str(program), "-c", "scene.yaml", "-g"]
-    ended = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, timeout=120, check=False, preexec_fn=limit
-    )
-    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+    return ran(folder, *command, preexec_fn=limit)
 
 
 @pytest.fixture(scope="module")

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import itertools
 import os
-import subprocess
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import Compile
-from running import PROGRAMS, Run, compile_program, without_places, write_scene
+from running import PROGRAMS, Run, compile_program, ran, without_places, write_scene
 
 BEFORE = ["constructor", "function before main"]
 AFTER = ["destructor", "function after main", "atexit"]
@@ -41,10 +40,7 @@ def outside(program: Compile, folder: Path, place: str, kind: str) -> Run:
     write_scene(folder, {"console_filename": "console.txt", "enable_console_logging": True})
     environment = {**os.environ, "PLACE": place, "KIND": kind}
     command = [str(program("outside.cpp")), "-c", "scene.yaml", "-g"]
-    ended = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False
-    )
-    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+    return ran(folder, *command, env=environment, timeout=60)
 
 
 def saved_times(result: Run) -> list[float]:

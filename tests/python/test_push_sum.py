@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import run_shipped
+from running import by_robot, run_shipped
 
 Array = npt.NDArray[np.float64]
 
@@ -22,11 +22,6 @@ def run(folder: Path, reception: dict[str, object], **settings: object) -> pd.Da
     folder.mkdir(exist_ok=True)
     changes = {"objects.robots.msg_success_rate": reception, **settings}
     return run_shipped("push_sum", folder, changes).frame()
-
-
-def by_robot(frame: pd.DataFrame, column: str) -> Array:
-    """One row per time, one column per robot."""
-    return frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
 
 
 @pytest.fixture(scope="module")

@@ -10,22 +10,15 @@ import pogosim
 import pytest
 from pogosim.table_formats import format_in
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, compile_program, write_scene
+from running import ROOT, write_scene
 
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 FORMATS = {".feather": "feather", ".arrow": "feather", ".ipc": "feather", ".parquet": "parquet", ".csv": "csv"}
 
 
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The shared object of tests/programs/hosted.c."""
-    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
-
-
-def simulation(program: Path, folder: Path, ending: str, **settings: Any) -> pogosim.Simulation:
+def simulation(hosted: Path, folder: Path, ending: str, **settings: Any) -> pogosim.Simulation:
     """Begin a run of three robots and 2 s."""
     scene = write_scene(folder, {"arena_file": str(ROOT / "arenas" / "disk.csv"), "save_data_period": 0.5})
-    return pogosim.Simulation(program, scene, seed=1, set=settings, data_file=folder / f"rows{ending}")
+    return pogosim.Simulation(hosted, scene, seed=1, set=settings, data_file=folder / f"rows{ending}")
 
 
 def refusal(sim: pogosim.Simulation, name: str | Path) -> str:
@@ -41,10 +34,10 @@ def refusal(sim: pogosim.Simulation, name: str | Path) -> str:
 @pytest.mark.parametrize("own", FORMATS)
 @pytest.mark.parametrize("other", [*FORMATS, ""])
 def test_copy_has_the_format_of_its_name_and_the_same_rows(
-    own: str, other: str, program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    own: str, other: str, hosted: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
-    with simulation(program, tmp_path, own) as sim:
+    with simulation(hosted, tmp_path, own) as sim:
         sim.run()
         sim.save_data(tmp_path / f"copy{other}")
         rows, metadata = load_dataframe(tmp_path / f"rows{own}")
@@ -55,8 +48,8 @@ def test_copy_has_the_format_of_its_name_and_the_same_rows(
     assert copied_metadata.keys() == metadata.keys()
 
 
-def test_copy_in_the_same_format_has_the_same_bytes(program: Path, tmp_path: Path) -> None:
-    with simulation(program, tmp_path, ".csv") as sim:
+def test_copy_in_the_same_format_has_the_same_bytes(hosted: Path, tmp_path: Path) -> None:
+    with simulation(hosted, tmp_path, ".csv") as sim:
         sim.run()
         (tmp_path / "copy.csv").write_text("old", encoding="utf-8")
         sim.save_data(tmp_path / "copy.csv")
@@ -64,10 +57,10 @@ def test_copy_in_the_same_format_has_the_same_bytes(program: Path, tmp_path: Pat
         assert (tmp_path / f"copy.{ending}").read_bytes() == (tmp_path / f"rows.{ending}").read_bytes()
 
 
-def test_name_that_says_no_format_or_is_taken_is_refused_in_a_line(program: Path, tmp_path: Path) -> None:
+def test_name_that_says_no_format_or_is_taken_is_refused_in_a_line(hosted: Path, tmp_path: Path) -> None:
     (tmp_path / "notes.csv.yaml").write_text("mine: 1\n", encoding="utf-8")
     (tmp_path / "link.feather").symlink_to(tmp_path / "rows.feather")
-    with simulation(program, tmp_path, ".feather") as sim:
+    with simulation(hosted, tmp_path, ".feather") as sim:
         for name in ("copy.xlsx", "copy.feather.gz", "copy.txt"):
             assert "expected a name that ends in .feather" in refusal(sim, tmp_path / name)
             assert not (tmp_path / name).exists()
@@ -85,11 +78,11 @@ def test_name_that_says_no_format_or_is_taken_is_refused_in_a_line(program: Path
     assert not list(tmp_path.glob("*.pogosim-new"))
 
 
-def test_run_without_rows_and_run_whose_rows_were_removed_are_told_apart(program: Path, tmp_path: Path) -> None:
-    with simulation(program, tmp_path, ".feather", enable_data_logging=False) as sim:
+def test_run_without_rows_and_run_whose_rows_were_removed_are_told_apart(hosted: Path, tmp_path: Path) -> None:
+    with simulation(hosted, tmp_path, ".feather", enable_data_logging=False) as sim:
         sim.run()
         assert "enable_data_logging: false" in refusal(sim, tmp_path / "copy.csv")
-    with simulation(program, tmp_path, ".feather") as sim:
+    with simulation(hosted, tmp_path, ".feather") as sim:
         sim.run()
         sim.data_file.unlink()
         with pytest.raises(pogosim.SimulationError, match=r"rows\.feather is not there any more"):
@@ -100,6 +93,6 @@ def test_run_without_rows_and_run_whose_rows_were_removed_are_told_apart(program
 
 
 @pytest.mark.parametrize("name", ["program", "configuration", "data_file"])
-def test_files_of_a_run_cannot_be_set(name: str, program: Path, tmp_path: Path) -> None:
-    with simulation(program, tmp_path, ".feather") as sim, pytest.raises(AttributeError):
+def test_files_of_a_run_cannot_be_set(name: str, hosted: Path, tmp_path: Path) -> None:
+    with simulation(hosted, tmp_path, ".feather") as sim, pytest.raises(AttributeError):
         setattr(sim, name, "elsewhere")

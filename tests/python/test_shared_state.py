@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from running import PROGRAMS, ROOT, Run, compile_program, compiler, pkg_config
+from running import PROGRAMS, ROOT, Run, compile_program, compiler, pkg_config, ran
 
 CASES = PROGRAMS / "shared_state"
 C_FILES = ["cases.c", "elsewhere.c", "cases.h"]
@@ -29,8 +29,7 @@ Found = set[tuple[str, int, str, int]]  # file, line, name, bytes
 def check(program: Path, *options: str, folder: Path = CASES) -> Run:
     (tool,) = pkg_config("--variable=shared_state")
     command = [tool, *options, str(program)]
-    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
-    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+    return ran(folder, *command, timeout=60)
 
 
 def found_by_tool(report: str) -> Found:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pogosim
 import pytest
-from running import ROOT, Run, Settings, compile_text, compiler, run, write_scene
+from running import ROOT, Settings, compile_text, compiler, run, warnings, write_scene
 
 PROGRAM = """#include "pogobase.h"
 #include <math.h>
@@ -35,11 +35,6 @@ def build(
     folder.mkdir(parents=True, exist_ok=True)
     text = PROGRAM.format(variables=variables, step=step, setup=setup)
     return compile_text(folder, text, name, flags=["-Wall", *flags.split()])
-
-
-def warnings(result: Run) -> list[str]:
-    assert result.code == 0, result.text
-    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
 
 
 def told(program: Path, folder: Path, settings: Settings | None = None) -> list[str]:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
-from running import Run, Settings, compile_program, example, start, write_scene
+from running import Settings, compile_program, end, example, start, write_scene
 
 Build = Callable[[str], Path]
 END_SIGNALS = [
@@ -68,11 +68,6 @@ def build(tmp_path: Path) -> Build:
         return compile_program(tmp_path / "main", source, flags=["-pthread"])
 
     return compile_text
-
-
-def end(process: subprocess.Popen[str], folder: Path) -> Run:
-    output, errors = process.communicate(timeout=60)
-    return Run(process.returncode, output, errors, folder)
 
 
 def start_in(

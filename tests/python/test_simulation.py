@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,11 @@ import numpy as np
 import pogosim
 import pytest
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, compile_program, compiler, example, run, write_scene
+from running import PROGRAMS, ROOT, SHARED, compile_program, compiler, example, run, write_scene
 
 HANABI = ROOT / "examples" / "hanabi" / "hanabi.so"
 TUMBLE = ROOT / "examples" / "run_and_tumble" / "run_and_tumble.so"
 SIMPLE = ROOT / "conf" / "simple.yaml"
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 
 
 @pytest.fixture(autouse=True)
@@ -32,23 +31,10 @@ def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
 
 
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The shared object of tests/programs/hosted.c."""
-    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
-
-
 @pytest.fixture
 def scene(tmp_path: Path) -> Path:
     """A configuration of three robots and 2 s."""
     return write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv"), "save_data_period": 0.5})
-
-
-@pytest.fixture
-def sim(program: Path, scene: Path) -> Iterator[pogosim.Simulation]:
-    """A run of that program in it."""
-    with pogosim.Simulation(program, scene) as simulation:
-        yield simulation
 
 
 def state(simulation: pogosim.Simulation) -> tuple[bytes, ...]:
@@ -57,16 +43,16 @@ def state(simulation: pogosim.Simulation) -> tuple[bytes, ...]:
     return tuple(np.ascontiguousarray(array).tobytes() for array in arrays)
 
 
-def alone(program: Path, seed: int, steps: int) -> tuple[bytes, ...]:
-    with pogosim.Simulation(program, SIMPLE, seed=seed) as simulation:
+def alone(hosted: Path, seed: int, steps: int) -> tuple[bytes, ...]:
+    with pogosim.Simulation(hosted, SIMPLE, seed=seed) as simulation:
         simulation.step(steps)
         return state(simulation)
 
 
-def test_rows_are_those_of_the_command_line(program: Path, scene: Path, tmp_path: Path) -> None:
+def test_rows_are_those_of_the_command_line(hosted: Path, scene: Path, tmp_path: Path) -> None:
     executable = compile_program(tmp_path / "hosted", PROGRAMS / "hosted.c", flags=("-g",))
     on_command_line = run(executable, tmp_path, {"save_data_period": 0.5}).frame()
-    with pogosim.Simulation(program, scene) as simulation:
+    with pogosim.Simulation(hosted, scene) as simulation:
         assert simulation.run() == 200
         assert simulation.is_over
         assert simulation.to_dataframe().equals(on_command_line)
@@ -98,8 +84,8 @@ def test_runs_on_threads_are_what_each_is_alone() -> None:
         assert {simulation.time for simulation in runs} == {0.0}
 
 
-def test_each_run_has_variables_of_its_own(program: Path, scene: Path) -> None:
-    runs = [pogosim.Simulation(program, scene) for _ in range(2)]
+def test_each_run_has_variables_of_its_own(hosted: Path, scene: Path) -> None:
+    runs = [pogosim.Simulation(hosted, scene) for _ in range(2)]
     runs[0].step(100)
     runs[1].step(50)
     last = [simulation.to_dataframe()["steps_of_all"].iloc[-1] for simulation in runs]
@@ -145,8 +131,8 @@ def test_arrays_are_views_that_go_with_the_run(sim: pogosim.Simulation) -> None:
     assert sim.radii.tolist() == [26.5] * 3
 
 
-def test_arrays_outlive_the_run(program: Path, scene: Path) -> None:
-    simulation = pogosim.Simulation(program, scene)
+def test_arrays_outlive_the_run(hosted: Path, scene: Path) -> None:
+    simulation = pogosim.Simulation(hosted, scene)
     simulation.step(10)
     positions, data = simulation.positions, simulation.user_data
     copy = positions.copy()
@@ -217,14 +203,14 @@ def test_wrong_parameters_are_refused_and_change_nothing(
     ],
 )
 def test_failure_ends_one_run_and_no_other(
-    failure: str, kind: type[Exception], message: str, program: Path, scene: Path, tmp_path: Path
+    failure: str, kind: type[Exception], message: str, hosted: Path, scene: Path, tmp_path: Path
 ) -> None:
     file = tmp_path / "rows.feather"
     settings = {"parameters.fail_at_tick": 60, "parameters.failure": failure, "user_code_timeout": 0.2}
-    other = pogosim.Simulation(program, scene, seed=5)
+    other = pogosim.Simulation(hosted, scene, seed=5)
     other.step(30)
     handlers = [signal.getsignal(number) for number in signal.valid_signals()]
-    failing = pogosim.Simulation(program, scene, set=settings, data_file=file)
+    failing = pogosim.Simulation(hosted, scene, set=settings, data_file=file)
     with pytest.raises(kind, match=message):
         failing.run()
     assert failing.is_over
@@ -235,7 +221,7 @@ def test_failure_ends_one_run_and_no_other(
     assert metadata["resolved_configuration"]["parameters"]["failure"] == failure
     assert [signal.getsignal(number) for number in signal.valid_signals()] == handlers
     other.step(70)
-    with pogosim.Simulation(program, scene, seed=5) as undisturbed:
+    with pogosim.Simulation(hosted, scene, seed=5) as undisturbed:
         undisturbed.step(100)
         assert state(other) == state(undisturbed)
     failing.reset()
@@ -244,10 +230,10 @@ def test_failure_ends_one_run_and_no_other(
     other.close()
 
 
-def test_crashes_on_threads_are_those_of_their_runs(program: Path, scene: Path) -> None:
+def test_crashes_on_threads_are_those_of_their_runs(hosted: Path, scene: Path) -> None:
     settings = {"parameters.failure": "crash", "save_data_period": -1}
     runs = [
-        pogosim.Simulation(program, scene, set={**settings, "parameters.fail_at_tick": 5 + 7 * i if i % 2 else -1})
+        pogosim.Simulation(hosted, scene, set={**settings, "parameters.fail_at_tick": 5 + 7 * i if i % 2 else -1})
         for i in range(8)
     ]
     errors: dict[int, str] = {}
@@ -292,10 +278,10 @@ def test_poses_can_be_set(sim: pogosim.Simulation) -> None:
 
 
 def test_messages_and_lines_of_robots_go_to_the_loggers(
-    program: Path, scene: Path, caplog: pytest.LogCaptureFixture
+    hosted: Path, scene: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.INFO)
-    with pogosim.Simulation(program, scene, set={"parameters.gian": 3, "simulation_tme": 1}) as simulation:
+    with pogosim.Simulation(hosted, scene, set={"parameters.gian": 3, "simulation_tme": 1}) as simulation:
         assert ("pogosim.robots", logging.INFO, "[ROBOT #2] [PRINTF] hello from 2") in caplog.record_tuples
         warnings = [message for name, level, message in caplog.record_tuples if (name, level) == ("pogosim", 30)]
         assert "unknown key 'simulation_tme'" in warnings[0]
@@ -303,9 +289,9 @@ def test_messages_and_lines_of_robots_go_to_the_loggers(
     assert "parameters never read by the program: gian" in caplog.text
 
 
-def test_warning_is_not_repeated_after_each_reset(program: Path, scene: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_warning_is_not_repeated_after_each_reset(hosted: Path, scene: Path, caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.INFO)
-    with pogosim.Simulation(program, scene, set={"parameters.gian": 3}) as simulation:
+    with pogosim.Simulation(hosted, scene, set={"parameters.gian": 3}) as simulation:
         for seed in range(3):
             simulation.reset(seed=seed)
     lines = [message for name, _, message in caplog.record_tuples if name == "pogosim"]
@@ -313,24 +299,24 @@ def test_warning_is_not_repeated_after_each_reset(program: Path, scene: Path, ca
     assert caplog.text.count("hello from 2") == 4
 
 
-def test_warning_of_many_runs_is_passed_on_once(program: Path, scene: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_warning_of_many_runs_is_passed_on_once(hosted: Path, scene: Path, caplog: pytest.LogCaptureFixture) -> None:
     settings = {"parameters.gian": 3}
-    with pogosim.VectorSimulation(program, scene, seeds=range(6), threads=3, set=settings) as runs:
+    with pogosim.VectorSimulation(hosted, scene, seeds=range(6), threads=3, set=settings) as runs:
         runs.reset()
     assert caplog.text.count("parameters never read by the program: gian") == 1
     warned: set[str] = set()
     for _ in range(3):
-        pogosim.Simulation(program, scene, set=settings, warned=warned).close()
+        pogosim.Simulation(hosted, scene, set=settings, warned=warned).close()
     assert caplog.text.count("parameters never read by the program: gian") == 2
     assert "Wparameters never read by the program: gian (--set)" in warned
-    pogosim.Simulation(program, scene, set={"parameters.gain2": 3}, warned=warned).close()
+    pogosim.Simulation(hosted, scene, set={"parameters.gain2": 3}, warned=warned).close()
     assert caplog.text.count("parameters never read by the program: gain2") == 1
     wrong: Any = ["gian"]
     with pytest.raises(pogosim.ConfigurationError, match="warned: expected a set, which may be empty, found"):
-        pogosim.Simulation(program, scene, warned=wrong)
+        pogosim.Simulation(hosted, scene, warned=wrong)
 
 
-def test_what_cannot_be_run_is_one_clear_message(program: Path, scene: Path, tmp_path: Path) -> None:
+def test_what_cannot_be_run_is_one_clear_message(hosted: Path, scene: Path, tmp_path: Path) -> None:
     text = tmp_path / "text.so"
     text.write_text("text")
     other = tmp_path / "other.so"
@@ -343,17 +329,17 @@ def test_what_cannot_be_run_is_one_clear_message(program: Path, scene: Path, tmp
         (text, scene, "is no shared object"),
         (other, scene, "is no program for Pogosim"),
         (Path("/bin/true"), scene, "is an executable: name the shared object"),
-        (program, tmp_path / "absent.yaml", "absent.yaml"),
+        (hosted, tmp_path / "absent.yaml", "absent.yaml"),
     ]
     for of_program, configuration, message in cases:
         with pytest.raises(pogosim.ConfigurationError, match=message):
             pogosim.Simulation(of_program, configuration)
     with pytest.raises(pogosim.ConfigurationError, match=r"objects\.robots\.nb: expected an integer"):
-        pogosim.Simulation(program, scene, set={"objects.robots.nb": "many"})
+        pogosim.Simulation(hosted, scene, set={"objects.robots.nb": "many"})
     with pytest.raises(pogosim.ConfigurationError, match="seed: expected an integer from 0 to 4294967295"):
-        pogosim.Simulation(program, scene, seed=2**32)
+        pogosim.Simulation(hosted, scene, seed=2**32)
     with pytest.raises(pogosim.ConfigurationError, match="unknown key"):
-        pogosim.Simulation(program, scene, set={"simulation_tme": 1}, strict=True)
+        pogosim.Simulation(hosted, scene, set={"simulation_tme": 1}, strict=True)
 
 
 def test_executable_stands_for_the_shared_object_beside_it() -> None:
@@ -361,10 +347,10 @@ def test_executable_stands_for_the_shared_object_beside_it() -> None:
         assert simulation.program == HANABI
 
 
-def test_program_that_was_built_again_is_loaded_by_the_next_run(program: Path, scene: Path, tmp_path: Path) -> None:
+def test_program_that_was_built_again_is_loaded_by_the_next_run(hosted: Path, scene: Path, tmp_path: Path) -> None:
     source = (PROGRAMS / "hosted.c").read_text()
     copy = tmp_path / "changing.so"
-    copy.write_bytes(program.read_bytes())
+    copy.write_bytes(hosted.read_bytes())
     simulation = pogosim.Simulation(copy, scene)
     simulation.step(10)
     changed = tmp_path / "changed.c"
@@ -377,9 +363,9 @@ def test_program_that_was_built_again_is_loaded_by_the_next_run(program: Path, s
     simulation.close()
 
 
-def test_type_of_user_data_is_that_of_the_program_that_runs(program: Path, scene: Path, tmp_path: Path) -> None:
+def test_type_of_user_data_is_that_of_the_program_that_runs(hosted: Path, scene: Path, tmp_path: Path) -> None:
     copy = tmp_path / "changing.so"
-    copy.write_bytes(program.read_bytes())
+    copy.write_bytes(hosted.read_bytes())
     with pogosim.Simulation(copy, scene) as simulation:
         assert simulation.user_data.dtype["gain"] == np.float32
         changed = tmp_path / "changed.c"
@@ -480,8 +466,8 @@ def test_program_without_debug_information_has_no_user_data_type(scene: Path, tm
         simulation.user_data  # noqa: B018
 
 
-def test_closed_simulations_say_so(program: Path, scene: Path) -> None:
-    simulation = pogosim.Simulation(program, scene)
+def test_closed_simulations_say_so(hosted: Path, scene: Path) -> None:
+    simulation = pogosim.Simulation(hosted, scene)
     folder = simulation.data_file.parent
     assert folder.is_dir()
     simulation.close()
@@ -493,8 +479,8 @@ def test_closed_simulations_say_so(program: Path, scene: Path) -> None:
             use()
 
 
-def test_second_thread_in_one_simulation_is_an_error(program: Path, scene: Path) -> None:
-    with pogosim.Simulation(program, scene, set={"simulation_time": 1e6, "save_data_period": -1}) as simulation:
+def test_second_thread_in_one_simulation_is_an_error(hosted: Path, scene: Path) -> None:
+    with pogosim.Simulation(hosted, scene, set={"simulation_time": 1e6, "save_data_period": -1}) as simulation:
         stop = threading.Event()
 
         def step_on() -> None:
@@ -512,11 +498,11 @@ def test_second_thread_in_one_simulation_is_an_error(program: Path, scene: Path)
             thread.join()
 
 
-def test_ctrl_c_interrupts_python_and_leaves_the_run_usable(program: Path, scene: Path) -> None:
+def test_ctrl_c_interrupts_python_and_leaves_the_run_usable(hosted: Path, scene: Path) -> None:
     code = (
         "import os, signal, threading, pogosim\n"
         "settings = {'simulation_time': 1e7, 'save_data_period': -1}\n"
-        f"s = pogosim.Simulation({str(program)!r}, {str(scene)!r}, set=settings)\n"
+        f"s = pogosim.Simulation({str(hosted)!r}, {str(scene)!r}, set=settings)\n"
         "threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
         "try:\n    s.run()\nexcept KeyboardInterrupt:\n    t = s.time\n    s.step(5)\n    print('ok', s.time > t > 0)\n"
     )
@@ -524,7 +510,7 @@ def test_ctrl_c_interrupts_python_and_leaves_the_run_usable(program: Path, scene
     assert (done.returncode, done.stdout) == (0, "ok True\n"), done.stderr
 
 
-def test_many_runs_one_after_the_other_leave_nothing_behind(program: Path, scene: Path) -> None:
+def test_many_runs_one_after_the_other_leave_nothing_behind(hosted: Path, scene: Path) -> None:
     def open_files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))
 
@@ -532,20 +518,20 @@ def test_many_runs_one_after_the_other_leave_nothing_behind(program: Path, scene
         return Path("/proc/self/maps").read_text().count("memfd:hosted.so")
 
     for _ in range(3):
-        pogosim.Simulation(program, scene).close()
+        pogosim.Simulation(hosted, scene).close()
     gc.collect()
     files, programs = open_files(), mapped()
     for seed in range(30):
-        with pogosim.Simulation(program, scene, seed=seed) as simulation:
+        with pogosim.Simulation(hosted, scene, seed=seed) as simulation:
             simulation.step(5)
     gc.collect()
     assert (open_files(), mapped()) == (files, programs)
 
 
 @pytest.mark.parametrize("use", ["close", "reset", "end"])
-def test_simulation_in_use_cannot_be_ended_by_another_thread(program: Path, scene: Path, use: str) -> None:
+def test_simulation_in_use_cannot_be_ended_by_another_thread(hosted: Path, scene: Path, use: str) -> None:
     settings = {"simulation_time": 1e6, "save_data_period": -1}
-    with pogosim.Simulation(program, scene, set=settings) as simulation:
+    with pogosim.Simulation(hosted, scene, set=settings) as simulation:
         begun = threading.Event()
 
         def go() -> None:
@@ -568,10 +554,10 @@ def test_simulation_in_use_cannot_be_ended_by_another_thread(program: Path, scen
             assert simulation.steps == 20000
 
 
-def test_each_inside_of_each_is_refused_instead_of_waiting_for_ever(program: Path, scene: Path) -> None:
+def test_each_inside_of_each_is_refused_instead_of_waiting_for_ever(hosted: Path, scene: Path) -> None:
     with (
-        pogosim.VectorSimulation(program, scene, seeds=range(2), threads=1) as runs,
-        pogosim.VectorSimulation(program, scene, seeds=range(2), threads=2) as others,
+        pogosim.VectorSimulation(hosted, scene, seeds=range(2), threads=1) as runs,
+        pogosim.VectorSimulation(hosted, scene, seeds=range(2), threads=2) as others,
     ):
         inner: list[Callable[[pogosim.Simulation], Any]] = [
             lambda _: runs.step(1),
@@ -588,8 +574,8 @@ def test_each_inside_of_each_is_refused_instead_of_waiting_for_ever(program: Pat
         assert runs.step(1) == [1, 1]
 
 
-def test_failure_of_one_of_many_comes_when_all_are_ready(program: Path, scene: Path) -> None:
-    runs = pogosim.VectorSimulation(program, scene, seeds=range(4), threads=3, set={"simulation_time": 30})
+def test_failure_of_one_of_many_comes_when_all_are_ready(hosted: Path, scene: Path) -> None:
+    runs = pogosim.VectorSimulation(hosted, scene, seeds=range(4), threads=3, set={"simulation_time": 30})
     with runs:
         runs[0].parameters["fail_at_tick"] = 3
         with pytest.raises(pogosim.ProgramFailedError):
@@ -642,10 +628,10 @@ def test_numbers_that_are_none_are_refused(sim: pogosim.Simulation) -> None:
 
 
 @pytest.mark.parametrize("seed", [-1, 2**32, 2**64])
-def test_seed_out_of_range_is_refused_and_the_run_goes_on(program: Path, scene: Path, seed: int) -> None:
+def test_seed_out_of_range_is_refused_and_the_run_goes_on(hosted: Path, scene: Path, seed: int) -> None:
     with pytest.raises(pogosim.ConfigurationError, match="seed: expected an integer from 0 to 4294967295"):
-        pogosim.Simulation(program, scene, seed=seed)
-    with pogosim.Simulation(program, scene, seed=5) as simulation:
+        pogosim.Simulation(hosted, scene, seed=seed)
+    with pogosim.Simulation(hosted, scene, seed=5) as simulation:
         simulation.step(3)
         with pytest.raises(pogosim.ConfigurationError, match="seed: expected"):
             simulation.reset(seed)
@@ -658,12 +644,12 @@ def test_simulations_are_not_copied(sim: pogosim.Simulation) -> None:
 
 
 @pytest.mark.parametrize("key", ["data_filename", "message_log"])
-def test_program_is_not_overwritten(program: Path, scene: Path, tmp_path: Path, key: str) -> None:
+def test_program_is_not_overwritten(hosted: Path, scene: Path, tmp_path: Path, key: str) -> None:
     own = tmp_path / "own.so"
-    own.write_bytes(program.read_bytes())
+    own.write_bytes(hosted.read_bytes())
     with pytest.raises(pogosim.ConfigurationError, match="the run would overwrite its program"):
         pogosim.Simulation(own, scene, set={key: str(own)})
-    assert own.read_bytes() == program.read_bytes()
+    assert own.read_bytes() == hosted.read_bytes()
 
 
 def test_parameter_that_the_next_run_refuses_can_be_mended(sim: pogosim.Simulation) -> None:
@@ -678,8 +664,8 @@ def test_parameter_that_the_next_run_refuses_can_be_mended(sim: pogosim.Simulati
     assert sim.user_data["gain"].tolist() == [3.0] * 3
 
 
-def test_error_says_which_of_many_runs_has_failed(program: Path, scene: Path) -> None:
-    with pogosim.VectorSimulation(program, scene, seeds=range(3), set={"simulation_time": 30}) as runs:
+def test_error_says_which_of_many_runs_has_failed(hosted: Path, scene: Path) -> None:
+    with pogosim.VectorSimulation(hosted, scene, seeds=range(3), set={"simulation_time": 30}) as runs:
         runs[2].parameters["fail_at_tick"] = 3
         with pytest.raises(pogosim.ProgramFailedError, match=r"^run 2: .*robot #1"):
             runs.step(100)

@@ -11,9 +11,8 @@ import numpy as np
 import pandas as pd
 import pogosim
 import pytest
-from running import PROGRAMS, ROOT, SCENE, compile_program, write_scene
+from running import PROGRAMS, ROOT, SCENE, SHARED, compile_program, write_scene
 
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 TYPES = {
     "small": np.int8,
     "negative": np.int16,

@@ -19,23 +19,16 @@ import pogosim
 import pytest
 from pogosim.simulation.library import library
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, compile_program, write_scene
+from running import ROOT, write_scene
 from threads_of_a_run import SPECIAL, names_of
 
 FOLDER = Path(pogosim.simulation.__file__).parent
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 
 
 @pytest.fixture(autouse=True)
 def _folders(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> None:
     monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
     monkeypatch.setenv("TMPDIR", str(tmp_path_factory.mktemp("t")))  # short: names of sockets have 107 characters
-
-
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The shared object of tests/programs/hosted.c."""
-    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
 
 
 @pytest.fixture
@@ -59,9 +52,9 @@ def interrupt_in(function: str, call: int, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_run_is_over_though_ctrl_c_came_in_its_last_step(
-    program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
+    hosted: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pogosim.Simulation(program, scene) as simulation:
+    with pogosim.Simulation(hosted, scene) as simulation:
         interrupt_in("pogosim_run_step", 1, monkeypatch)
         with pytest.raises(KeyboardInterrupt):
             simulation.run()
@@ -73,10 +66,10 @@ def test_run_is_over_though_ctrl_c_came_in_its_last_step(
 @pytest.mark.parametrize("function", ["pogosim_run_end", "pogosim_run_close"])
 @pytest.mark.parametrize("is_closed", [True, False])
 def test_ctrl_c_while_a_run_is_freed_reaches_the_program(
-    is_closed: bool, function: str, program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
+    is_closed: bool, function: str, hosted: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     interrupt_in(function, 1, monkeypatch)
-    simulations = [pogosim.Simulation(program, scene)]
+    simulations = [pogosim.Simulation(hosted, scene)]
 
     def forget() -> None:
         if is_closed:
@@ -102,9 +95,9 @@ def test_ctrl_c_while_a_run_is_freed_reaches_the_program(
 
 @pytest.mark.parametrize("function", ["pogosim_run_open", "pogosim_run_end", "pogosim_run_number"])
 def test_reset_that_ctrl_c_interrupted_can_be_done_again(
-    function: str, program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
+    function: str, hosted: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pogosim.Simulation(program, scene, seed=4) as simulation:
+    with pogosim.Simulation(hosted, scene, seed=4) as simulation:
         simulation.step(20)
         with monkeypatch.context() as patch:
             interrupt_in(function, 1, patch)
@@ -155,10 +148,10 @@ def left_over() -> list[str]:
     return sorted(path.name for path in folder.glob("pogosim*"))
 
 
-def test_ctrl_c_at_any_moment_of_the_construction_leaves_no_file(program: Path, scene: Path) -> None:
-    pogosim.Simulation(program, scene).close()  # has imported and loaded everything
+def test_ctrl_c_at_any_moment_of_the_construction_leaves_no_file(hosted: Path, scene: Path) -> None:
+    pogosim.Simulation(hosted, scene).close()  # has imported and loaded everything
     moment, made = 1, list[pogosim.Simulation]()
-    while interrupted_at(moment, lambda: made.append(pogosim.Simulation(program, scene))):
+    while interrupted_at(moment, lambda: made.append(pogosim.Simulation(hosted, scene))):
         assert not left_over(), f"moment {moment}"
         moment += 1
     assert moment > 40
@@ -167,10 +160,10 @@ def test_ctrl_c_at_any_moment_of_the_construction_leaves_no_file(program: Path, 
 
 
 @pytest.mark.parametrize("action", ["reset", "close"])
-def test_ctrl_c_at_any_moment_of_reset_or_close_leaves_no_file(action: str, program: Path, scene: Path) -> None:
+def test_ctrl_c_at_any_moment_of_reset_or_close_leaves_no_file(action: str, hosted: Path, scene: Path) -> None:
     moment, is_interrupted = 1, True
     while is_interrupted:
-        simulation = pogosim.Simulation(program, scene)
+        simulation = pogosim.Simulation(hosted, scene)
         positions = simulation.positions  # keeps the memory of the run
         is_interrupted = interrupted_at(moment, getattr(simulation, action))
         simulation.close()
@@ -181,7 +174,7 @@ def test_ctrl_c_at_any_moment_of_reset_or_close_leaves_no_file(action: str, prog
     assert moment > 10
 
 
-def test_ctrl_c_at_random_moments_of_the_construction_leaves_no_file(program: Path, scene: Path) -> None:
+def test_ctrl_c_at_random_moments_of_the_construction_leaves_no_file(hosted: Path, scene: Path) -> None:
     script = """
 import os, random, signal, sys, threading, time, pogosim
 pogosim.Simulation(*sys.argv[1:]).close()
@@ -195,7 +188,7 @@ for round in range(100):
         interrupts += 1
 print(interrupts)
 """
-    command = [sys.executable, "-c", script, str(program), str(scene)]
+    command = [sys.executable, "-c", script, str(hosted), str(scene)]
     result = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert result.returncode == 0, result.stderr
     assert int(result.stdout) > 50  # Python ignores those in finalisers, and says so
@@ -243,12 +236,12 @@ ENDINGS = {
 
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_temporary_files_are_removed_however_a_script_ends(
-    ending: str, program: Path, scene: Path, tmp_path: Path
+    ending: str, hosted: Path, scene: Path, tmp_path: Path
 ) -> None:
     script = tmp_path / "script.py"
     script.write_text(HEAD + ENDINGS[ending] + "\n")
     ended = subprocess.run(
-        [sys.executable, script, program, scene], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, script, hosted, scene], capture_output=True, text=True, timeout=60, check=False
     )
     fails = {"an exception": 1, "sys.exit": 3, "a failing program": 1, "a wrong configuration": 1}
     assert ended.returncode == fails.get(ending, 0), ended.stderr
@@ -258,9 +251,9 @@ def test_temporary_files_are_removed_however_a_script_ends(
         assert ended.stdout == "6\n"
 
 
-def test_named_file_of_a_forgotten_run_is_complete(program: Path, scene: Path, tmp_path: Path) -> None:
+def test_named_file_of_a_forgotten_run_is_complete(hosted: Path, scene: Path, tmp_path: Path) -> None:
     file = tmp_path / "rows.feather"
-    simulation = pogosim.Simulation(program, scene, data_file=file)
+    simulation = pogosim.Simulation(hosted, scene, data_file=file)
     simulation.step(60)
     positions = simulation.positions
     del simulation
@@ -316,8 +309,8 @@ def answers_in_a_child(simulation: pogosim.Simulation) -> str:
     return " ".join(silent)
 
 
-def test_forked_child_gets_an_error_for_all_that_it_asks(program: Path, scene: Path) -> None:
-    with pogosim.Simulation(program, scene) as simulation:
+def test_forked_child_gets_an_error_for_all_that_it_asks(hosted: Path, scene: Path) -> None:
+    with pogosim.Simulation(hosted, scene) as simulation:
         simulation.step(60)
         positions, columns, objects = simulation.positions, simulation.columns, list(simulation.objects)
         assert in_a_child(lambda: answers_in_a_child(simulation)) == ""
@@ -334,11 +327,11 @@ def test_forked_child_gets_an_error_for_all_that_it_asks(program: Path, scene: P
 
 
 @pytest.mark.parametrize("use", ["in_a_forked_child", "of_a_closed_one"])
-def test_rows_are_refused_before_pandas_is_read(use: str, program: Path, scene: Path) -> None:
+def test_rows_are_refused_before_pandas_is_read(use: str, hosted: Path, scene: Path) -> None:
     script = scene.parent / "script.py"
     script.write_text(
         "import os, sys, pogosim\n"
-        f"simulation = pogosim.Simulation({str(program)!r}, {str(scene)!r})\n"
+        f"simulation = pogosim.Simulation({str(hosted)!r}, {str(scene)!r})\n"
         "def look():\n"
         "    try:\n        simulation.to_dataframe()\n"
         "    except pogosim.SimulationError:\n"
@@ -354,8 +347,8 @@ def test_rows_are_refused_before_pandas_is_read(use: str, program: Path, scene: 
     assert done.stdout == "False\n", done.stderr
 
 
-def test_many_runs_in_a_forked_child_do_not_wait_for_threads_that_it_lacks(program: Path, scene: Path) -> None:
-    with pogosim.VectorSimulation(program, scene, seeds=range(2)) as runs:
+def test_many_runs_in_a_forked_child_do_not_wait_for_threads_that_it_lacks(hosted: Path, scene: Path) -> None:
+    with pogosim.VectorSimulation(hosted, scene, seeds=range(2)) as runs:
         runs.step(5)
         for use in (lambda: runs.step(5), runs.reset, lambda: runs.positions, lambda: runs.is_over):
             assert "belongs to process" in in_a_child(lambda use=use: str(use()))  # type: ignore[misc]
@@ -363,8 +356,8 @@ def test_many_runs_in_a_forked_child_do_not_wait_for_threads_that_it_lacks(progr
         assert runs.step(5) == [5, 5]
 
 
-def test_interrupted_reset_can_be_repeated(program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pogosim.Simulation(program, scene, seed=1) as sim:
+def test_interrupted_reset_can_be_repeated(hosted: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pogosim.Simulation(hosted, scene, seed=1) as sim:
         with monkeypatch.context() as patch:
             interrupt_in("pogosim_run_open", 1, patch)
             with pytest.raises(KeyboardInterrupt):

@@ -8,7 +8,7 @@ import logging
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +16,9 @@ import numpy as np
 import pogosim
 import pytest
 from pogosim.simulation.library import PROTOTYPES, library
-from running import PROGRAMS, ROOT, compile_program, write_scene
+from running import ROOT, write_scene
 from threads_of_a_run import SPECIAL, look_at, names_of
 
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 SCRIPT = Path(__file__).with_name("threads_of_a_run.py")
 # Values for arguments of methods, by their names.
 ARGUMENTS: dict[str, Any] = {
@@ -43,12 +42,6 @@ def _folders_of_the_tree(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Non
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The shared object of tests/programs/hosted.c."""
-    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
-
-
 @pytest.fixture
 def scene(tmp_path: Path) -> Path:
     """A configuration of three robots, a ball and a lamp, 2 s."""
@@ -58,13 +51,6 @@ def scene(tmp_path: Path) -> Path:
     objects = {"robots": robots, "balls": balls, "lamps": {**lamps, "x": 500, "y": 500}}
     arena = {"arena_file": str(ROOT / "arenas" / "disk.csv"), "save_data_period": 0.5}
     return write_scene(tmp_path, {**arena, "objects": objects})
-
-
-@pytest.fixture
-def sim(program: Path, scene: Path) -> Iterator[pogosim.Simulation]:
-    """A run of that program in it."""
-    with pogosim.Simulation(program, scene) as simulation:
-        yield simulation
 
 
 def use(thing: object, name: str) -> None:
@@ -93,11 +79,11 @@ def in_another_thread(function: Callable[[], object]) -> None:
 @pytest.mark.parametrize("disturbance", ["reset", "close"])
 @pytest.mark.parametrize("name", names_of(pogosim.Simulation))
 def test_run_is_kept_until_the_last_call_that_uses_it_returns(
-    name: str, disturbance: str, program: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, disturbance: str, hosted: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before each call of the library, another thread ends the run that the call is about."""
     reader, freed, calls = threading.current_thread(), set[int](), list[Any]()
-    simulation = pogosim.Simulation(program, scene)
+    simulation = pogosim.Simulation(hosted, scene)
 
     def watched(real: Any) -> Callable[..., Any]:
         def call(*arguments: Any) -> Any:
@@ -126,10 +112,10 @@ def test_run_is_kept_until_the_last_call_that_uses_it_returns(
 
 @pytest.mark.parametrize("disturbance", ["reset", "step", "run", "close"])
 def test_threads_look_at_a_simulation_whatever_another_one_does_with_it(
-    disturbance: str, program: Path, scene: Path
+    disturbance: str, hosted: Path, scene: Path
 ) -> None:
     ended = subprocess.run(
-        [sys.executable, SCRIPT, program, scene, disturbance, "2"],
+        [sys.executable, SCRIPT, hosted, scene, disturbance, "2"],
         capture_output=True,
         text=True,
         timeout=120,

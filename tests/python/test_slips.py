@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from conftest import Compile
-from running import Run, Settings, compile_program, compile_text, run
+from running import Run, Settings, compile_program, compile_text, run, warnings
 
 FIRST = "robot #0 of category 'robots', tick 10, t = 0.1600 s: "
 START = "robot #0 of category 'robots', tick 0, t = 0.0000 s: "
@@ -31,12 +31,6 @@ def slip(
         {"parameters.kind": kind, **(settings or {})},
         arguments,
     )
-
-
-def warnings(result: Run) -> list[str]:
-    """Return the warnings without date and level; the run has ended well."""
-    assert result.code == 0, result.text
-    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
 
 
 # ---- In the program ----

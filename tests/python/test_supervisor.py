@@ -11,20 +11,13 @@ import pogosim
 import pytest
 from conftest import Compile
 from pogosim.utils import load_dataframe
-from running import PROGRAMS, ROOT, compile_program, run, run_shipped, write_scene
+from running import ROOT, run, run_shipped, write_scene
 
-SHARED = ("-shared", "-fPIC", "-g", "-Wall", "-Wextra")
 PUCK = {"type": "passive_object", "nb": 2, "geometry": "disk", "radius": 20.0}
 LAMP = {"type": "static_light", "geometry": "disk", "radius": 100.0, "x": 564.0, "y": 564.0, "value": 1000}
 SETTINGS = {"objects.pucks": PUCK, "objects.light": LAMP, "objects.robots.nb": 3}
 ROBOT = 0  # objects in the order of SCENE: three robots, two pucks
 PUCK_1 = 4
-
-
-@pytest.fixture(scope="module")
-def hosted(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The shared object of tests/programs/hosted.c, whose robots drive in circles."""
-    return compile_program(tmp_path_factory.mktemp("hosted") / "hosted.so", PROGRAMS / "hosted.c", flags=SHARED)
 
 
 @pytest.fixture

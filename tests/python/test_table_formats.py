@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import shutil
 import signal
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,12 +13,12 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 from batches import batch, write_options
-from pogosim import recover, swarm_picture
+from pogosim import swarm_picture
 from pogosim.command.recover import main as recover_command
 from pogosim.table_formats import CSV, format_of
 from pogosim.tables import table_writer, write_metadata_beside
 from pogosim.utils import load_dataframe, read_table
-from running import PROGRAMS, Run, compile_program, example, run, start
+from running import PROGRAMS, Run, compile_program, example, run, start, wait_for_rows
 
 FORMATS = ("csv", "parquet")
 LONG: dict[str, object] = {"simulation_time": 1.0e6, "save_data_period": 0.02}
@@ -226,17 +225,6 @@ def test_names_of_every_kind_are_understood(tmp_path: Path, name: str, kind: str
     assert format_of(name) == kind
     ended_well(run(example("helloworld"), tmp_path, {"data_filename": name}))
     assert len(load_dataframe(tmp_path / name)[0]) == 63
-
-
-def wait_for_rows(path: Path) -> None:
-    for _ in range(600):
-        time.sleep(0.05)
-        try:
-            if recover.read_unfinished(path).table.num_rows > 0:
-                return
-        except (FileNotFoundError, recover.RecoverError):
-            pass
-    raise AssertionError("no rows come")
 
 
 @pytest.mark.parametrize("ending", FORMATS)

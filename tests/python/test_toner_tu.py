@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import run_shipped
+from running import by_robot, run_shipped
 
 Array = npt.NDArray[np.float64]
 SIDE = 1200.0  # of the periodic arena, mm
@@ -21,11 +21,6 @@ ALONE: dict[str, object] = {
 
 def run(folder: Path, settings: dict[str, object]) -> pd.DataFrame:
     return run_shipped("toner_tu", folder, settings).frame()
-
-
-def by_robot(frame: pd.DataFrame, column: str) -> Array:
-    """One row per time, one column per robot."""
-    return frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
 
 
 def wanted(frame: pd.DataFrame) -> npt.NDArray[np.complex128]:

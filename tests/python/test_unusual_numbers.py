@@ -5,19 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from running import ROOT, Run, Settings, example, run
+from running import ROOT, Run, Settings, example, run, warnings
 
 SQUARE: Settings = {"arena_file": str(ROOT / "arenas/square.csv"), "simulation_time": 0.1, "time_step": 0.001}
 
 
 def greet(folder: Path, settings: Settings) -> Run:
     return run(example("helloworld"), folder, {**SQUARE, **settings})
-
-
-def warnings(result: Run) -> list[str]:
-    """Return the warnings without date and level; the run has ended well."""
-    assert result.code == 0, result.text
-    return [line.partition("[warning] ")[2] for line in result.errors.splitlines()]
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from running import run_shipped
+from running import by_robot, order, run_shipped
 
 Array = npt.NDArray[np.float64]
 
@@ -16,17 +16,6 @@ Array = npt.NDArray[np.float64]
 def run(folder: Path, settings: dict[str, object]) -> pd.DataFrame:
     folder.mkdir(exist_ok=True)
     return run_shipped("vicsek", folder, settings).frame()
-
-
-def by_robot(frame: pd.DataFrame, column: str) -> Array:
-    """One row per time, one column per robot."""
-    return frame.pivot(index="time", columns="robot_id", values=column).to_numpy(dtype=np.float64)
-
-
-def order(frame: pd.DataFrame) -> Array:
-    """Length of the mean heading vector at each time."""
-    result: Array = np.abs(np.exp(1j * by_robot(frame, "angle")).mean(axis=1))
-    return result
 
 
 def compass_error(frame: pd.DataFrame) -> Array:

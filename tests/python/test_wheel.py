@@ -16,7 +16,7 @@ from pathlib import Path
 import pyarrow
 import pytest
 from project import CLEAN, TEMPLATE
-from running import ROOT, Run, compile_program, run_command, write_scene
+from running import ROOT, Run, compile_program, ran, run_command, write_scene
 
 # Every Linux has these, or gets them with a C compiler.
 OF_THE_SYSTEM = {"linux-vdso.so.1", "libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "libz.so.1"}
@@ -63,16 +63,7 @@ def packages(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def pogosim(packages: Path, folder: Path, *arguments: str) -> Run:
     """Run the command `pogosim` of the installed wheel."""
-    ended = subprocess.run(
-        [sys.executable, "-S", "-m", "pogosim", *arguments],  # -S: not the package of the tree
-        cwd=folder,
-        env=CLEAN | {"PYTHONPATH": str(packages)},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    return Run(ended.returncode, ended.stdout, ended.stderr, folder)
+    return ran(folder, sys.executable, "-S", "-m", "pogosim", *arguments, env=CLEAN | {"PYTHONPATH": str(packages)})
 
 
 @pytest.fixture(scope="module")
