@@ -11,11 +11,15 @@ using pogosim::require_robot;
 namespace {
 
 bool is_page(char const* function, std::uint16_t page, char const* outcome) {
-    bool const known = page < pogosim::kFlashPageCount;
-    if (!known) [[unlikely]] {
+    if (page >= pogosim::kFlashPageCount) [[unlikely]] {
         pogosim::note_slip({function, "page", "0 to 5887 (POGOBOT_USER_FLASH_PAGE_COUNT - 1)", outcome}, page);
+        return false;
     }
-    return known;
+    if (context.has_robot() && page >= context.spec().model.flash_pages) [[unlikely]] {
+        pogosim::note_slip({function, "page", "one of the flash_pages of this robot's model, from 0", outcome}, page);
+        return false;
+    }
+    return true;
 }
 
 /// Once for each category.

@@ -20,9 +20,8 @@
 
 using pogosim::context;
 using pogosim::FrameHeader;
-using pogosim::kAllFaces;
-using pogosim::kFaceCount;
 using pogosim::kind_of_packet;
+using pogosim::kMostFaces;
 using pogosim::note_slip;
 using pogosim::Packet;
 using pogosim::PacketKind;
@@ -84,13 +83,23 @@ std::uint32_t send(Packet const& packet) {
     return kSent;
 }
 
+std::uint8_t own_faces() {
+    return pogosim::faces_of_robot(*context.world, context.device);
+}
+
 std::uint8_t emitters_of(char const* function, ir_direction direction) {
     int const index = static_cast<int>(direction);
     if (index < 0 || index > static_cast<int>(ir_all)) [[unlikely]] {
         note_slip({function, "dir", "ir_front (0) to ir_left (3), or ir_all (4)", "the message goes in all directions"},
                   index);
     }
-    return index >= 0 && index < kFaceCount ? static_cast<std::uint8_t>(1U << index) : kAllFaces;
+    if (index < 0 || index >= static_cast<int>(kMostFaces)) {
+        return own_faces();
+    }
+    if ((own_faces() >> index & 1U) == 0) [[unlikely]] {
+        note_slip({function, "dir", "one of the faces of this robot's model, from 0", "nothing is sent"}, index);
+    }
+    return static_cast<std::uint8_t>(own_faces() & 1U << index);
 }
 
 std::uint8_t own_power_list(std::uint8_t emitters) {
@@ -131,14 +140,17 @@ struct pogosim_slip_descriptor const slip_send_descriptor = {};
 
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
-    return send_long(__func__, kAllFaces, own_power_list(kAllFaces), message, message_size);
+    return send_long(__func__, own_faces(), own_power_list(own_faces()), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
     uint32_t errors = 0;
-    for (unsigned face = 0; face < kFaceCount; ++face) {
+    for (unsigned face = 0; face < kMostFaces; ++face) {
         auto const emitter = static_cast<std::uint8_t>(1U << face);
+        if ((own_faces() & emitter) == 0) {
+            continue;
+        }
         errors += send_long(__func__, emitter, own_power_list(emitter), message, message_size);
     }
     return errors;
@@ -153,7 +165,7 @@ uint32_t pogobot_infrared_sendLongMessage_uniSpe(ir_direction dir, uint8_t* cons
 
 uint32_t pogobot_infrared_sendShortMessage_omni(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
-    return send_short(__func__, kAllFaces, message, message_size);
+    return send_short(__func__, own_faces(), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendShortMessage_uni(ir_direction dir, uint8_t* const message, uint16_t const message_size) {
@@ -171,7 +183,7 @@ uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
     message->header._packet_type = is_command ? ir_t_cmd : ir_t_user;
     message->header._sender_id = pogobot_helper_getid();
     std::uint8_t const list = message->header._emitting_power_list;
-    std::uint8_t const emitters = pogosim::emitters_in(list);
+    std::uint8_t const emitters = pogosim::emitters_in(*context.world, context.device, list);
     if (emitters == 0) [[unlikely]] {
         note_slip({__func__, "_emitting_power_list", "a power that is not 0 for at least one emitter",
                    "nothing is sent, as on a real robot"},

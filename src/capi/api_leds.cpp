@@ -38,6 +38,8 @@ void pogobot_led_setColors(uint8_t const r, uint8_t const g, uint8_t const b, ui
     pogosim::note_call();
     if (id >= pogosim::kLedCount) [[unlikely]] {
         note_slip({__func__, "id", "0 (head) to 4 (left)", "nothing is set"}, id);
+    } else if (context.has_robot() && id >= context.spec().model.leds.size()) [[unlikely]] {
+        note_slip({__func__, "id", "one of the leds of this robot's model, from 0", "nothing is set"}, id);
     } else if (context.has_robot()) {
         pogosim::set_led(*context.world, context.robot, id, {r, g, b});
     }

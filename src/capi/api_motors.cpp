@@ -20,7 +20,7 @@ pogosim::Motors& own_motors() {
 }
 
 bool is_motor(char const* function, motor_id motor) {
-    bool const known = static_cast<int>(motor) >= 0 && static_cast<int>(motor) < kMotorCount;
+    bool const known = static_cast<int>(motor) >= 0 && static_cast<int>(motor) < static_cast<int>(kMotorCount);
     if (!known) [[unlikely]] {
         note_slip({function, "motor", "motorR (0), motorL (1) or motorB (2)", "nothing is set"},
                   static_cast<int>(motor));

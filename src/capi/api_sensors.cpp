@@ -28,6 +28,12 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     if (!context.has_body()) {
         return -1;
     }
+    if (sensor_number >= context.spec().model.light_sensors.size()) [[unlikely]] {
+        pogosim::note_slip(
+            {__func__, "sensor_number", "one of the light_sensors of this robot's model, from 0", "-1 is returned"},
+            sensor_number);
+        return -1;
+    }
     pogosim::World& world = *context.world;
     if (world.lamps.empty()) [[unlikely]] {
         context.services->warn_once(

@@ -1,7 +1,6 @@
 #include "comms/emitter_view.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <iterator>
@@ -25,42 +24,19 @@ float diamond_angle(Vec2 direction) {
     return direction.y >= 0.0F ? 2.0F - side : -2.0F - side;
 }
 
-constexpr std::array<Vec2, kFaceCount> kFaceNormals{Vec2{1.0F, 0.0F}, Vec2{0.0F, 1.0F}, Vec2{-1.0F, 0.0F},
-                                                    Vec2{0.0F, -1.0F}};
-static_assert(kFaceCount == kLanes);
-
-/// A vector in the frames of all faces.
-struct FourVectors {
-    Four x;
-    Four y;
-};
-FourVectors in_frames_of_faces(Vec2 v) {
-    return {Four{v.x, v.y, -v.x, -v.y}, Four{v.y, -v.x, -v.y, v.x}};
-}
-
-Four squared_length(FourVectors const& v) {
-    return v.x * v.x + v.y * v.y;
-}
-
-/// The candidate's centre as the emitters see it: x along the outward normals.
-FourVectors seen_from_emitters(EmitterView::Candidate const& candidate, float rim_mm) {
-    FourVectors seen = in_frames_of_faces(candidate.offset_mm);
-    seen.x -= all_four(rim_mm);
-    return seen;
-}
-
 }  // namespace
 
-std::span<EmitterView::Candidate const> EmitterView::look(unsigned emitters, float rim_mm, float range_mm,
+std::span<EmitterView::Candidate const> EmitterView::look(unsigned emitters, Faces const& faces, float range_mm,
                                                           bool ignore_occlusions) {
     std::span<Candidate> const candidates = std::span(candidates_).first(count_);
     FourInts const also_behind = ignore_occlusions ? ~FourInts{} : FourInts{};
     views_.clear();
     for (Candidate& candidate : candidates) {
-        FourVectors const seen = seen_from_emitters(candidate, rim_mm);
-        Four const distance_mm2 = squared_length(seen);
+        FaceView const seen = seen_from(faces, candidate.offset_mm);
+        Four const distance_mm2 = seen.distance_mm2;
         float const limit_mm = range_mm + candidate.radius_mm;
-        FourInts const is_in_view = ((seen.x >= 0.0F) | also_behind) & (distance_mm2 <= all_four(limit_mm * limit_mm));
+        FourInts const is_in_view =
+            (is_in_cone(seen, faces.emission_cosine2) | also_behind) & (distance_mm2 <= all_four(limit_mm * limit_mm));
         candidate.emitters = bits_of(is_in_view) & emitters;
         // A disk of radius r at distance d hides the directions at angles a from its centre with sin a <= r / d, up to
         // rounding errors. Shadows of nearly 180 degrees are left to the full calculation.
@@ -81,7 +57,7 @@ std::span<EmitterView::Candidate const> EmitterView::look(unsigned emitters, flo
 /// others.
 unsigned EmitterView::emitters_with_shadows() const {
     FourInts has_shadows{};
-    for (std::size_t i = 1; i < views_.size() && bits_of(has_shadows) != kAllFaces; ++i) {
+    for (std::size_t i = 1; i < views_.size() && bits_of(has_shadows) != (1U << kLanes) - 1U; ++i) {
         Views const& view = views_[i];
         for (Views const& other : std::span(views_).first(i)) {
             Four const across = view.x * other.y - view.y * other.x;
@@ -144,27 +120,12 @@ void EmitterView::cover(Interval const& sight) {
     shadows_.push_back(joined);
 }
 
-Vec2 from_nearest_emitter_mm(EmitterView::Candidate const& candidate, float rim_mm) {
+Vec2 from_nearest_emitter_mm(EmitterView::Candidate const& candidate, Faces const& faces) {
     FourInts const sees = mask_of(candidate.emitters);
     Four const distance_mm2 =
-        sees ? squared_length(seen_from_emitters(candidate, rim_mm)) : all_four(std::numeric_limits<float>::infinity());
+        sees ? seen_from(faces, candidate.offset_mm).distance_mm2 : all_four(std::numeric_limits<float>::infinity());
     auto const nearest = static_cast<unsigned>(std::countr_zero(bits_of(distance_mm2 == smallest(distance_mm2))));
-    return candidate.offset_mm - rim_mm * kFaceNormals[nearest];
-}
-
-std::uint8_t faces_that_see(Vec2 emitter_mm, float rim_mm, float range_mm) {
-    FourVectors const seen = in_frames_of_faces(emitter_mm);
-    Four const rim = all_four(rim_mm);
-    Four const distance_mm2 = squared_length(FourVectors{seen.x - rim, seen.y});
-    unsigned const faces = bits_of((seen.x >= rim) & (distance_mm2 <= all_four(range_mm * range_mm)));
-    if (faces != 0) {
-        return static_cast<std::uint8_t>(faces);
-    }
-    unsigned most_ahead = 0;
-    for (unsigned face = 1; face < kFaceCount; ++face) {
-        most_ahead = seen.x[face] > seen.x[most_ahead] ? face : most_ahead;
-    }
-    return static_cast<std::uint8_t>(1U << most_ahead);
+    return candidate.offset_mm - faces.place_mm[nearest];
 }
 
 }  // namespace pogosim

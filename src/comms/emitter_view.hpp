@@ -1,4 +1,4 @@
-// The line of sight from a robot's four emitters to the robots around it, and from an emitter to a robot's faces.
+// The line of sight from a robot's emitters to the robots around it.
 //
 //                front (0)
 //               .---^---.
@@ -8,9 +8,10 @@
 //               '---v---'
 //                back (2)
 //
-// An emitter sits on the rim at 0, 90, 180 and 270 degrees and radiates over the half plane in front of it. It reaches
-// another robot when that robot's border is within range of the emitter, its centre lies in the half plane, and nearer
-// robots that the emitter sees leave at least a part of it uncovered.
+// The emitters of a Pogobot sit on the rim at 0, 90, 180 and 270 degrees, and radiate over the half plane in front of
+// them; a robot's model may have other places and narrower cones. An emitter reaches another robot when that robot's
+// border is within range of the emitter, its centre lies in the cone, and nearer robots that the emitter sees leave at
+// least a part of it uncovered.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +21,7 @@
 
 #include "base/four.hpp"
 #include "base/vec2.hpp"
-#include "world/mailbox.hpp"
+#include "comms/faces.hpp"
 
 namespace pogosim {
 
@@ -47,9 +48,9 @@ public:
         count_ += is_candidate ? 1 : 0;
     }
 
-    /// Finds the added robots that the given emitters (bit d: emitter d), `rim_mm` from the centre, see within
-    /// `range_mm`. With `ignore_occlusions`, emitters radiate in all directions, through everything.
-    std::span<Candidate const> look(unsigned emitters, float rim_mm, float range_mm, bool ignore_occlusions);
+    /// Finds the added robots that the given emitters (bit d: the emitter of face d) see within `range_mm`. With
+    /// `ignore_occlusions`, emitters radiate in all directions, through everything.
+    std::span<Candidate const> look(unsigned emitters, Faces const& faces, float range_mm, bool ignore_occlusions);
 
 private:
     /// A candidate in view of an emitter, before occlusion by others.
@@ -87,11 +88,6 @@ private:
 };
 
 /// Vector from the nearest of the emitters that see a candidate to its centre, in the sender's frame.
-Vec2 from_nearest_emitter_mm(EmitterView::Candidate const& candidate, float rim_mm);
-
-/// Faces of a robot that see a point at `emitter_mm` (relative to the robot's centre, in its own frame) within
-/// `range_mm`, when they are `rim_mm` from the centre: bit d for face d. Never none: if no face
-/// sees the point, the face that points most towards it.
-std::uint8_t faces_that_see(Vec2 emitter_mm, float rim_mm, float range_mm);
+Vec2 from_nearest_emitter_mm(EmitterView::Candidate const& candidate, Faces const& faces);
 
 }  // namespace pogosim

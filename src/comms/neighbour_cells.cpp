@@ -10,7 +10,7 @@ void NeighbourCells::start(World const& world, float cell_mm) {
     poses_.clear();
     slots_.clear();
     for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
-        if (world.spec_of(i).emitters != Emitters::outline) {
+        if (!world.spec_of(i).model.sends_along_outline) {
             std::uint32_t const body = world.robots.body[i];
             disks_.push_back({.robot = i, .body = body, .radius_mm = world.bodies.radius_mm[body]});
             poses_.push_back({world.bodies.position_mm[body], world.bodies.heading_dir[body]});

@@ -10,6 +10,7 @@
 
 #include "base/vec2.hpp"
 #include "world/mailbox.hpp"
+#include "world/robot_model.hpp"
 
 namespace pogosim {
 
@@ -57,7 +58,7 @@ public:
 
 private:
     /// Each robot has a list for each single emitter, and one for all other combinations.
-    static constexpr std::size_t kKinds = 1 + kFaceCount;
+    static constexpr std::size_t kKinds = 1 + kMostFaces;
     static std::size_t kind_of(std::uint8_t emitters) {
         return std::has_single_bit(emitters) ? static_cast<std::size_t>(1 + std::countr_zero(emitters)) : 0;
     }

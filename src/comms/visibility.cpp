@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <iterator>
@@ -15,10 +14,6 @@
 namespace pogosim {
 
 namespace {
-
-/// Unit vectors of the faces' outward normals in the robot's frame: front, right, back, left (y to the right).
-constexpr std::array<Vec2, kFaceCount> kFaceNormals{Vec2{1.0F, 0.0F}, Vec2{0.0F, 1.0F}, Vec2{-1.0F, 0.0F},
-                                                    Vec2{0.0F, -1.0F}};
 
 /// `v` in the frame whose x axis is the unit vector `axis`.
 constexpr Vec2 in_frame_of(Vec2 v, Vec2 axis) {
@@ -33,19 +28,43 @@ std::uint32_t outline_of(World const& world, std::uint32_t robot) {
 
 }  // namespace
 
-float emitter_radius_mm(World const& world, std::uint32_t robot) {
-    return world.spec_of(robot).emitters == Emitters::rim ? world.bodies.radius_mm[world.robots.body[robot]] : 0.0F;
+float face_reach_mm(World const& world, std::uint32_t robot) {
+    RobotModel const& model = world.spec_of(robot).model;
+    float reach_mm = 0.0F;
+    for (Face const& face : model.sends_along_outline ? std::span<Face const>() : std::span(model.faces)) {
+        reach_mm = std::max(reach_mm, length(face.place.at_mm(world.bodies.radius_mm[world.robots.body[robot]])));
+    }
+    return reach_mm;
+}
+
+/// Index of the faces of this robot's make, which are added if they are new.
+std::uint32_t Visibility::faces_index(World const& world, std::uint32_t robot) {
+    RobotModel const& model = world.spec_of(robot).model;
+    std::uint32_t const category = world.robots.category[robot];
+    float const radius_mm = model.sends_along_outline ? 0.0F : world.bodies.radius_mm[world.robots.body[robot]];
+    auto const known = std::ranges::find_if(
+        makes_, [&](Make const& make) { return make.category == category && make.radius_mm == radius_mm; });
+    if (known != makes_.end()) {
+        return static_cast<std::uint32_t>(known - makes_.begin());
+    }
+    makes_.push_back({category, radius_mm});
+    faces_.push_back(model.sends_along_outline ? Faces() : make_faces(model, radius_mm));
+    all_hear_around_ = all_hear_around_ && (model.sends_along_outline || faces_.back().hears_around);
+    return static_cast<std::uint32_t>(faces_.size()) - 1;
 }
 
 void Visibility::start(World const& world) {
     senders_.clear();
+    makes_.clear();
+    faces_.clear();
+    all_hear_around_ = true;
     largest_radius_mm_ = 0.0F;
     float longest_range_mm = 0.0F;
     for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
         RobotSpec const& spec = world.spec_of(i);
-        bool const is_outline = spec.emitters == Emitters::outline;
+        bool const is_outline = spec.model.sends_along_outline;
         std::uint32_t const body = is_outline ? kNone : world.robots.body[i];
-        senders_.push_back({.body = body, .rim_mm = emitter_radius_mm(world, i)});
+        senders_.push_back({.body = body, .faces = faces_index(world, i)});
         longest_range_mm = std::max(longest_range_mm, spec.ir.longest_range_mm());
         if (!is_outline) {
             largest_radius_mm_ = std::max(largest_radius_mm_, world.bodies.radius_mm[body]);
@@ -142,6 +161,9 @@ void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t
     auto const first = static_cast<std::ptrdiff_t>(receivers.size());
     if (senders_[robot].body != kNone) {
         add_robots_in_view(world, robot, emitters, range_mm, search.view, receivers);
+        if (!all_hear_around_) {
+            leave_out_deaf(world, range_mm, static_cast<std::size_t>(first), receivers);
+        }
         if (!outlines_.empty()) {
             add_outlines_near(world, robot, emitters, range_mm, search, receivers);
         }
@@ -163,7 +185,8 @@ void Visibility::add_robots_in_view(World const& world, std::uint32_t robot, std
     Sender const& sender = senders_[robot];
     Vec2 const centre = world.bodies.position_mm[sender.body];
     Vec2 const axis = world.bodies.heading_dir[sender.body];
-    float const rim_range_mm = sender.rim_mm + range_mm;
+    Faces const& faces = faces_[sender.faces];
+    float const rim_range_mm = faces.reach_mm + range_mm;
     view.clear();
     cells_.for_each_run_near(
         centre, search_radius_mm(sender, range_mm), [&](std::span<NeighbourCells::Neighbour const> neighbours) {
@@ -175,10 +198,11 @@ void Visibility::add_robots_in_view(World const& world, std::uint32_t robot, std
                 view.add_if(is_near & (other.robot != robot), other.robot, in_frame_of(offset, axis), other.radius_mm);
             }
         });
-    for (EmitterView::Candidate const& seen : view.look(emitters, sender.rim_mm, range_mm, world.ignore_occlusions)) {
+    for (EmitterView::Candidate const& seen :
+         view.look(emitters & faces.all, faces, range_mm, world.ignore_occlusions)) {
         if (seen.emitters != 0) {
             receivers.push_back({.robot = seen.robot,
-                                 .from_emitter_mm = rotate(from_nearest_emitter_mm(seen, sender.rim_mm), axis),
+                                 .from_emitter_mm = rotate(from_nearest_emitter_mm(seen, faces), axis),
                                  .emitters = static_cast<std::uint8_t>(seen.emitters)});
         }
     }
@@ -189,21 +213,35 @@ std::uint8_t Visibility::faces_of(World const& world, Receiver const& receiver, 
         return receiver.faces;
     }
     Sender const& disk = senders_[receiver.robot];
-    return faces_that_see(in_frame_of(-receiver.from_emitter_mm, world.bodies.heading_dir[disk.body]), disk.rim_mm,
-                          range_mm);
+    return faces_that_see(faces_[disk.faces],
+                          in_frame_of(-receiver.from_emitter_mm, world.bodies.heading_dir[disk.body]), range_mm,
+                          world.ignore_occlusions);
+}
+
+/// Robots from `first` on that do not hear the transmission, because their faces look elsewhere.
+void Visibility::leave_out_deaf(World const& world, float range_mm, std::size_t first,
+                                std::vector<Receiver>& receivers) const {
+    auto const begin = receivers.begin() + static_cast<std::ptrdiff_t>(first);
+    for (auto receiver = begin; receiver != receivers.end(); ++receiver) {
+        receiver->faces = faces_of(world, *receiver, range_mm);
+    }
+    receivers.erase(
+        std::remove_if(begin, receivers.end(), [](Receiver const& receiver) { return receiver.faces == 0; }),
+        receivers.end());
 }
 
 void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                                    Search& search, std::vector<Receiver>& receivers) const {
-    auto const [body, rim_mm] = senders_[robot];
+    std::uint32_t const body = senders_[robot].body;
+    Faces const& faces = faces_[senders_[robot].faces];
     search.outline_emitters.assign(world.outlines.size(), 0);
-    outlines_.find_near(world, world.bodies.position_mm[body], rim_mm + range_mm, search.pieces);
-    for (unsigned emitter = 0; emitter < kFaceCount; ++emitter) {
+    outlines_.find_near(world, world.bodies.position_mm[body], faces.reach_mm + range_mm, search.pieces);
+    for (unsigned emitter = 0; emitter < kMostFaces; ++emitter) {
         unsigned const bit = 1U << emitter;
-        if ((emitters & bit) == 0) {
+        if ((emitters & faces.all & bit) == 0) {
             continue;
         }
-        Vec2 const place = rotate(rim_mm * kFaceNormals[emitter], world.bodies.heading_dir[body]);
+        Vec2 const place = rotate(faces.place_mm[emitter], world.bodies.heading_dir[body]);
         for (OutlineIndex::Piece const& piece : search.pieces) {
             std::uint8_t& reached = search.outline_emitters[piece.outline];
             if ((reached & bit) == 0 && squared_distance(piece, place) <= range_mm * range_mm) {
@@ -240,18 +278,18 @@ std::optional<Vec2> Visibility::to_outline(World const& world, std::uint32_t rob
 std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm,
                                     std::vector<OutlineIndex::Piece>& pieces) const {
     std::uint32_t const body = world.robots.body[robot];
-    float const rim_mm = emitter_radius_mm(world, robot);
-    unsigned faces = 0;
-    outlines_.find_near(world, world.bodies.position_mm[body], rim_mm + range_mm, pieces);
+    Faces const& faces = faces_[senders_[robot].faces];
+    unsigned hearing = 0;
+    outlines_.find_near(world, world.bodies.position_mm[body], faces.reach_mm + range_mm, pieces);
     for (OutlineIndex::Piece const& piece : pieces) {
-        for (unsigned face = 0; piece.outline == outline && face < kFaceCount; ++face) {
-            Vec2 const place = rotate(rim_mm * kFaceNormals[face], world.bodies.heading_dir[body]);
+        for (unsigned face = 0; piece.outline == outline && (faces.all >> face) != 0; ++face) {
+            Vec2 const place = rotate(faces.place_mm[face], world.bodies.heading_dir[body]);
             if (squared_distance(piece, place) <= range_mm * range_mm) {
-                faces |= 1U << face;
+                hearing |= 1U << face;
             }
         }
     }
-    return static_cast<std::uint8_t>(faces);
+    return static_cast<std::uint8_t>(hearing);
 }
 
 void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm, bool repeats,

@@ -1,7 +1,8 @@
-// Which robots a transmission reaches. Robots see each other with their emitters and faces, see emitter_view.hpp.
+// Which robots a transmission reaches. Robots see each other with their emitters and faces, see emitter_view.hpp and
+// faces.hpp. One that no face of its own hears is not reached, but hides others.
 //
 // Walls and membranes send and receive along their whole outline instead: only the distance from the outline to the
-// robot's emitters counts; there are no half planes and no shadows.
+// robot's faces counts; there are no cones and no shadows.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "comms/emitter_view.hpp"
+#include "comms/faces.hpp"
 #include "comms/neighbour_cells.hpp"
 #include "comms/outline_index.hpp"
 #include "comms/receiver_cache.hpp"
@@ -61,8 +63,8 @@ public:
 private:
     /// Constants of a robot during a run.
     struct Sender {
-        std::uint32_t body;  // kNone: along an outline
-        float rim_mm;        // distance of the emitters from the centre
+        std::uint32_t body;   // kNone: along an outline
+        std::uint32_t faces;  // index into faces_
     };
 
     /// What the constants depend on, to detect another world.
@@ -92,11 +94,23 @@ private:
                             std::vector<OutlineIndex::Piece>& pieces) const;
     /// Radius around a sender's centre that contains the centres of all robots that it may reach.
     float search_radius_mm(Sender const& sender, float range_mm) const {
-        return sender.rim_mm + range_mm + largest_radius_mm_;
+        return faces_[sender.faces].reach_mm + range_mm + largest_radius_mm_;
     }
 
     Structure structure_;
+    /// What robots of one model and radius have in common.
+    struct Make {
+        std::uint32_t category;
+        float radius_mm;
+    };
+
+    std::uint32_t faces_index(World const& world, std::uint32_t robot);
+    void leave_out_deaf(World const& world, float range_mm, std::size_t first, std::vector<Receiver>& receivers) const;
+
     std::vector<Sender> senders_;
+    std::vector<Make> makes_;
+    std::vector<Faces> faces_;  // of each make
+    bool all_hear_around_ = true;
     float largest_radius_mm_ = 0.0F;
     NeighbourCells cells_;
     ReceiverCache cache_;
@@ -106,7 +120,7 @@ private:
     std::vector<Receiver> found_;
 };
 
-/// Distance of a robot's emitters from its centre, mm: 0 at the centre, or for an outline.
-float emitter_radius_mm(World const& world, std::uint32_t robot);
+/// Distance from a robot's centre to its farthest face, mm: 0 at the centre, or for an outline.
+float face_reach_mm(World const& world, std::uint32_t robot);
 
 }  // namespace pogosim

@@ -9,6 +9,7 @@
 
 #include "config/flash_keys.hpp"
 #include "config/lamp_keys.hpp"
+#include "config/model_keys.hpp"
 #include "config/reception_keys.hpp"
 #include "config/shape_keys.hpp"
 
@@ -53,30 +54,31 @@ std::span<Key<IrSpec> const> ir_keys() {
 
 std::span<Key<RobotSpec> const> robot_keys() {
     using K = Key<RobotSpec>;
-    constexpr auto has_wheels = [](RobotSpec const& robot) { return robot.has_wheels; };
+    constexpr auto has_motors = [](RobotSpec const& robot) { return robot.model.has_motors(); };
     static std::array const keys{
         K{"max_linear_speed", &RobotSpec::max_linear_speed_mm_s, between(0, 1e6).usually_from(1), "mm/s",
-          "Speed with both motors at full power."}
-            .only_if(has_wheels),
+          "Speed with all motors at full power."}
+            .only_if(has_motors),
         K{"max_angular_speed", &RobotSpec::max_angular_speed_rad_s, between(0, 1e4).usually_up_to(50), "rad/s",
-          "Turning scale: with one motor at full power and the other stopped, the robot turns at twice this."}
-            .only_if(has_wheels),
+          "Turning scale: with one motor at full power and the other stopped, the robot turns at twice this. With "
+          "`motors`: the fastest turn on the spot."}
+            .only_if(has_motors),
         K{"linear_noise_stddev", &RobotSpec::linear_noise_stddev, between(0, 1e4), "100 mm/s",
           "Standard deviation of Gaussian noise on each velocity component, drawn at every control tick."}
-            .only_if(has_wheels),
+            .only_if(has_motors),
         K{"angular_noise_stddev", &RobotSpec::angular_noise_stddev, between(0, 1e4).usually_up_to(50), "rad/s",
           "Standard deviation of Gaussian noise on the angular velocity, drawn at every control tick."}
-            .only_if(has_wheels),
+            .only_if(has_motors),
         K{"angular_systematic_bias_domain", &RobotSpec::motor_bias, between(-1023, 1023), "motor power units",
           "Each robot draws b from this range once; its left motor runs at power + b, its right motor at power - b."}
-            .only_if(has_wheels),
+            .only_if(has_motors),
         K{"photosensors_systematic_bias_domain", &RobotSpec::photosensor_bias, between(-32767, 32767), "sensor counts",
           "Each light sensor draws a constant offset from this range once."},
         K{"photosensors_noise_stddev", &RobotSpec::photosensor_noise_stddev, between(0, 32767), "sensor counts",
           "Standard deviation of Gaussian noise on each light reading."},
         K{"magnetometer_enabled", &RobotSpec::magnetometer_enabled, any(), "",
           "Whether programs of these objects find a magnetometer."}
-            .only_if([](RobotSpec const& robot) { return robot.has_magnetometer; }),
+            .only_if([](RobotSpec const& robot) { return robot.model.has_magnetometer; }),
         K{"temporal_noise_stddev", &RobotSpec::clock_drift_stddev_us, between(0, 1e6), "us per tick",
           "Standard deviation of the constant clock drift, drawn once per robot."},
         K{"flash", one_of(&RobotSpec::flash, flash_writes()), any(), "",
@@ -223,8 +225,10 @@ void read_body(MapReader& reader, ObjectConfig& object) {
     body.density = std::max(body.density, kLeastDensity);
 }
 
-void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind) {
-    RobotSpec& robot = object.spec.robot.emplace(kind);
+void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model) {
+    RobotSpec& robot = object.spec.robot.emplace();
+    robot.model = model;
+    read_model(reader, robot);
     reader.read(robot_keys(), robot);
     reader.read(sensor_model_keys(), robot.sensors);
     reader.read(sensor_keys(), robot.sensors);

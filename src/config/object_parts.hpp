@@ -15,9 +15,8 @@ void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Sh
 /// `body_*`: makes the object tangible.
 void read_body(MapReader& reader, ObjectConfig& object);
 
-/// Motors, sensors, infrared: the object runs user code. `kind` sets the type's own properties: wheels and
-/// emitters.
-void read_robot(MapReader& reader, ObjectConfig& object, RobotSpec const& kind = {});
+/// Motors, sensors, infrared: the object runs user code. `model`: what objects of this type have.
+void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model = {});
 
 /// The map `battery` of a robot; the caller finishes the reader.
 BatterySpec read_battery_map(MapReader& reader);

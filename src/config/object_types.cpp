@@ -58,6 +58,9 @@ std::span<Key<ObjectConfig> const> object_keys() {
     static std::array const keys{
         Key<ObjectConfig>{"type", Elsewhere{expected}, any(), "", "Type of the objects; case-insensitive.",
                           /*required=*/true},
+        Key<ObjectConfig>{"robot_model", Elsewhere{"the name of a file"}, any(), "",
+                          "File of keys that hold for these objects unless they have their own, searched like "
+                          "arena_file: models/pogobot_wheels.yaml, ..., or a table of your own robot."},
         Key<ObjectConfig>{"nb", &ObjectConfig::nb, between(0, kMaxObjects), "", "Number of objects."},
     };
     return keys;

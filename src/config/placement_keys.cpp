@@ -137,7 +137,7 @@ bool refuse_both(MapReader const& reader, std::string_view one, std::string_view
 }
 
 void refuse_fixed_wheels_and_membranes(MapReader const& reader, ObjectConfig const& object) {
-    bool const has_wheels = object.spec.robot && object.spec.robot->has_wheels;
+    bool const has_wheels = object.spec.robot && object.spec.robot->model.has_motors();
     if (object.spec.body && object.spec.body->fixed && (has_wheels || object.spec.membrane)) {
         reader.refuse("body_fixed",
                       fmt::format("{} cannot be fixed; use a passive_object, an active_object or a pogobject",

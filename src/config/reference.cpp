@@ -1,7 +1,12 @@
 #include "config/reference.hpp"
 
+#include <fmt/format.h>
+
+#include <utility>
+
 #include "config/flash_keys.hpp"
 #include "config/magnetometer_keys.hpp"
+#include "config/model_keys.hpp"
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
 #include "config/placement_keys.hpp"
@@ -40,6 +45,11 @@ std::vector<KeyGroup> configuration_reference() {
     MapReader battery(nothing, "objects.<category>.battery", reading);
     read_battery_map(battery);
     groups.push_back({"objects.<category>.battery", "", "A battery that empties.", battery.known_keys()});
+
+    for (ModelTable& table : model_tables()) {
+        groups.push_back(
+            {fmt::format("objects.<category>.{}", table.name), "", std::string(table.doc), std::move(table.keys)});
+    }
 
     MapReader magnetometer(nothing, "magnetometer", reading);
     read_magnetometer_map(magnetometer);

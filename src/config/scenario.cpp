@@ -11,6 +11,7 @@
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
 #include "config/option_keys.hpp"
+#include "config/robot_models.hpp"
 #include "config/scenario_keys.hpp"
 #include "config/source.hpp"
 
@@ -154,6 +155,7 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
     if (source.tree.kind != Node::Kind::map) {
         fail_expected({source.tree, "the top level"}, "a map of keys");
     }
+    scenario.robot_model_files = include_robot_models(source.tree, path, reading);
     MapReader reader(source.tree, "", reading);
     read_top_level(reader, scenario);
     reader.finish(batch_names(written));

@@ -20,22 +20,14 @@ void read_pogobot(MapReader& reader, ObjectConfig& object) {
 
 void read_pogobject(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
-    RobotSpec kind;
-    kind.emitters = Emitters::centre;
-    kind.has_magnetometer = false;
-    kind.has_wheels = false;
-    read_robot(reader, object, kind);
+    read_robot(reader, object, head_model());
     read_body(reader, object);
     read_placement(reader, object);
 }
 
 void read_pogowall(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, outline_geometry_keys(), object.spec.shape);
-    RobotSpec kind;
-    kind.emitters = Emitters::outline;
-    kind.has_magnetometer = false;
-    kind.has_wheels = false;
-    read_robot(reader, object, kind);
+    read_robot(reader, object, outline_model());
     if (object.spec.shape.kind == ShapeKind::arena) {
         ignore_position(reader);
         return;
@@ -85,11 +77,7 @@ std::span<Key<MembraneSpec> const> thickness_keys() {
 
 void read_membrane_object(MapReader& reader, ObjectConfig& object, bool segments) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
-    RobotSpec kind;
-    kind.emitters = Emitters::outline;
-    kind.has_magnetometer = false;
-    kind.has_wheels = false;
-    read_robot(reader, object, kind);
+    read_robot(reader, object, outline_model());
     read_body(reader, object);
     MembraneSpec& membrane = object.spec.membrane.emplace();
     membrane.segments = segments;
@@ -111,9 +99,7 @@ void read_rectmembrane(MapReader& reader, ObjectConfig& object) {
 
 void read_active_object(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
-    RobotSpec kind;
-    kind.has_wheels = false;
-    read_robot(reader, object, kind);
+    read_robot(reader, object, active_model());
     read_body(reader, object);
     read_placement(reader, object);
     read_colormap(reader, object);

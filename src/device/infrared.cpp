@@ -23,20 +23,25 @@ constexpr std::uint8_t kNoSenderIndex = 0xF;
 static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
 static_assert(kMostIrPower == pogobot_infrared_emitter_power_max);
 
-/// The emitter index that receivers see: 4 for all of them, otherwise the first one.
-std::uint8_t sender_index(std::uint8_t emitters) {
-    return emitters == kAllFaces ? static_cast<std::uint8_t>(ir_all)
-                                 : static_cast<std::uint8_t>(__builtin_ctz(emitters | 1U << kFaceCount));
+/// The emitter index that receivers see: 4 for several that are all the robot has, otherwise the first one.
+std::uint8_t sender_index(std::uint8_t emitters, std::uint8_t all) {
+    bool const is_all = emitters == all && !std::has_single_bit(emitters);
+    return is_all ? static_cast<std::uint8_t>(ir_all)
+                  : static_cast<std::uint8_t>(__builtin_ctz(emitters | 1U << kMostFaces));
 }
 
 }  // namespace
+
+std::uint8_t faces_of_robot(World const& world, std::size_t device) {
+    return device < world.robots.size() ? world.spec_of(device).model.face_bits() : kAllFaces;
+}
 
 Packet long_packet(World const& world, std::uint32_t robot, std::uint8_t emitters, std::uint8_t power_list,
                    std::span<std::byte const> payload, std::uint8_t type) {
     FrameHeader const header{.packet_type = type,
                              .emitting_power_list = power_list,
                              .sender_id = robot == kNone ? std::uint16_t{0} : id_on_air(world.robots.id[robot]),
-                             .sender_ir_index = sender_index(emitters),
+                             .sender_ir_index = sender_index(emitters, faces_of_robot(world, robot)),
                              .receiver_ir_index = 0,
                              .payload_length = static_cast<std::uint16_t>(payload.size())};
     return {.emitters = emitters,
@@ -72,15 +77,16 @@ Packet composed_packet(World const& world, std::size_t device, std::span<std::by
     } else if (bytes.size() >= header_bytes) {
         std::memcpy(&header, bytes.data(), header_bytes);
     }
-    std::uint8_t const list =
-        is_short || header.emitting_power_list == 0 ? power_list(world, device, kAllFaces) : header.emitting_power_list;
+    std::uint8_t const list = is_short || header.emitting_power_list == 0
+                                  ? power_list(world, device, faces_of_robot(world, device))
+                                  : header.emitting_power_list;
     std::size_t const payload_bytes = bytes.size() - std::min(bytes.size(), header_bytes);
     bool const is_whole = bytes.size() >= header_bytes && header.payload_length == payload_bytes &&
                           (declared_length < 0 || declared_length == header.payload_length) &&
                           payload_bytes <= MAX_PAYLOAD_SIZE_BYTES;
     auto const payload = bytes.last(payload_bytes).first(std::min<std::size_t>(payload_bytes, MAX_PAYLOAD_SIZE_BYTES));
     header.payload_length = static_cast<std::uint16_t>(payload.size());
-    return {.emitters = emitters_in(list),
+    return {.emitters = emitters_in(world, device, list),
             .power = highest_power(list),
             .kind = is_whole ? kind_of_packet(header, payload) : PacketKind::malformed,
             .header = header,
@@ -90,7 +96,7 @@ Packet composed_packet(World const& world, std::size_t device, std::span<std::by
 
 std::uint8_t power_list(World const& world, std::size_t device, std::uint8_t emitters) {
     unsigned list = 0;
-    for (unsigned face = 0; face < kFaceCount; ++face) {
+    for (unsigned face = 0; face < kMostFaces; ++face) {
         if ((emitters >> face & 1U) != 0) {
             list |= static_cast<unsigned>(world.devices.ir_power[device])
                     << (face * pogobot_infrared_emitter_width_bits);
@@ -101,20 +107,20 @@ std::uint8_t power_list(World const& world, std::size_t device, std::uint8_t emi
 
 std::uint8_t highest_power(std::uint8_t list) {
     std::uint8_t highest = 0;
-    for (unsigned face = 0; face < kFaceCount; ++face) {
+    for (unsigned face = 0; face < kMostFaces; ++face) {
         highest = std::max<std::uint8_t>(highest, get_infrared_emitter_dir(face, list));
     }
     return highest;
 }
 
-std::uint8_t emitters_in(std::uint8_t list) {
+std::uint8_t emitters_in(World const& world, std::size_t device, std::uint8_t list) {
     std::uint8_t emitters = 0;
-    for (unsigned face = 0; face < kFaceCount; ++face) {
+    for (unsigned face = 0; face < kMostFaces; ++face) {
         if (get_infrared_emitter_dir(face, list) != 0) {
             emitters = static_cast<std::uint8_t>(emitters | 1U << face);
         }
     }
-    return emitters;
+    return static_cast<std::uint8_t>(emitters & faces_of_robot(world, device));
 }
 
 float watched_send_probability(World& world, std::uint32_t robot) {

@@ -24,6 +24,9 @@ struct Packet {
     bool radiates() const { return emitters != 0 && power != 0; }
 };
 
+/// Bit d: the robot has face d. The global step, which is no robot, counts as one that has all.
+std::uint8_t faces_of_robot(World const& world, std::size_t device);
+
 /// A long message of this type, by a list of the emitters' powers, as receivers see it.
 Packet long_packet(World const& world, std::uint32_t robot, std::uint8_t emitters, std::uint8_t power_list,
                    std::span<std::byte const> payload, std::uint8_t type);
@@ -42,8 +45,8 @@ Packet composed_packet(World const& world, std::size_t device, std::span<std::by
 std::uint8_t power_list(World const& world, std::size_t device, std::uint8_t emitters);
 /// The largest power of a list; emitters of different power are not told apart.
 std::uint8_t highest_power(std::uint8_t list);
-/// Emitters with a power that is not 0.
-std::uint8_t emitters_in(std::uint8_t list);
+/// Emitters of the robot with a power that is not 0.
+std::uint8_t emitters_in(World const& world, std::size_t device, std::uint8_t list);
 
 /// Chance that a robot sends in the time of a tick, for the law of reception, where no main loop knows it: what it has
 /// done in the last second or two. Counts this time as one at which it sends.

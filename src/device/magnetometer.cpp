@@ -181,7 +181,7 @@ MagneticCounts measure_field(MagnetometerSpec const& spec, std::uint32_t id, std
 
 bool has_magnetometer(World const& world, std::uint32_t robot) {
     RobotSpec const& spec = world.spec_of(robot);
-    return world.robots.body[robot] != kNone && spec.has_magnetometer && spec.magnetometer_enabled;
+    return world.robots.body[robot] != kNone && spec.model.has_magnetometer && spec.magnetometer_enabled;
 }
 
 Pose magnetometer_pose(World const& world, std::uint32_t robot) {

@@ -29,7 +29,7 @@ std::uint32_t motor_directions(World const& world, std::size_t device) {
 
 void drive(World& world, std::uint32_t robot) {
     Motors const& motors = world.devices.motors[robot];
-    if (motors.driven && world.spec_of(robot).has_wheels) {
+    if (motors.driven && world.spec_of(robot).model.has_motors()) {
         command_velocity(world, robot, motors);
     }
 }

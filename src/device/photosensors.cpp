@@ -9,8 +9,7 @@ namespace pogosim {
 
 std::int16_t read_photosensor(World& world, std::uint32_t robot, std::size_t sensor) {
     RobotSpec const& spec = world.spec_of(robot);
-    int level =
-        light_at_sensor(world, world.robots.body[robot], sensor) + world.devices.photosensor_bias[robot][sensor];
+    int level = light_at_sensor(world, robot, sensor) + world.devices.photosensor_bias[robot][sensor];
     if (float const noise = spec.photosensor_noise_stddev; noise > 0.0F) {
         level += static_cast<int>(noise * world.robots.stream[robot].normal());
     }

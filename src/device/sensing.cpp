@@ -10,30 +10,34 @@ namespace pogosim {
 
 namespace {
 
-/// Unit vectors from the centre to the photosensors, in the robot's frame: 180, 320 and 40 degrees.
-constexpr std::array<Vec2, kPhotosensorCount> kPhotosensors{Vec2{-1.0F, 0.0F}, Vec2{0.76604444F, -0.64278761F},
-                                                            Vec2{0.76604444F, 0.64278761F}};
 constexpr float kMmPerM = 1000.0F;
 
 }  // namespace
 
-int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor) {
+int light_at_sensor(World const& world, std::uint32_t robot, std::size_t sensor) {
     Bodies const& bodies = world.bodies;
-    Vec2 const offset = bodies.radius_mm[body] * rotate(kPhotosensors[sensor], bodies.heading_dir[body]);
+    std::uint32_t const body = world.robots.body[robot];
+    PartPlace const& place = world.spec_of(robot).model.light_sensors[sensor].place;
+    Vec2 const axis = bodies.heading_dir[body];
+    Vec2 const offset = bodies.radius_mm[body] * rotate(place.radii, axis) + rotate(place.offset_mm, axis);
     return world.light.at(wrapped(world, bodies.position_mm[body] + offset));
 }
 
-double mean_light(World const& world, std::uint32_t body) {
-    double sum = 0.0;
-    for (std::size_t sensor = 0; sensor < kPhotosensorCount; ++sensor) {
-        sum += light_at_sensor(world, body, sensor);
+double mean_light(World const& world, std::uint32_t robot) {
+    std::size_t const sensors = world.spec_of(robot).model.light_sensors.size();
+    if (sensors == 0) {
+        return world.light.at(wrapped(world, world.bodies.position_mm[world.robots.body[robot]]));
     }
-    return sum / kPhotosensorCount;
+    double sum = 0.0;
+    for (std::size_t sensor = 0; sensor < sensors; ++sensor) {
+        sum += light_at_sensor(world, robot, sensor);
+    }
+    return sum / static_cast<double>(sensors);
 }
 
 double light_of(World const& world, Object const& object) {
     bool const has_sensors = object.robot != kNone && object.body_count == 1;
-    return has_sensors ? mean_light(world, object.body) : world.light.at(wrapped(world, centre_mm(world, object)));
+    return has_sensors ? mean_light(world, object.robot) : world.light.at(wrapped(world, centre_mm(world, object)));
 }
 
 void measure_velocity(World& world, std::uint32_t robot, std::int64_t now_us) {

@@ -8,11 +8,11 @@
 
 namespace pogosim {
 
-/// Light level at a photosensor (0 back, 1 front left, 2 front right) of a robot with this body, sensor counts.
-int light_at_sensor(World const& world, std::uint32_t body, std::size_t sensor);
+/// Light level at a light sensor of a robot that has a body, sensor counts.
+int light_at_sensor(World const& world, std::uint32_t robot, std::size_t sensor);
 
-/// Mean of the three photosensors, sensor counts.
-double mean_light(World const& world, std::uint32_t body);
+/// Mean of its light sensors, sensor counts; without any, the light at its centre.
+double mean_light(World const& world, std::uint32_t robot);
 
 /// Light at an object, sensor counts, without noise: mean of the sensors of a rigid robot; of others, in the middle.
 double light_of(World const& world, Object const& object);

@@ -57,7 +57,7 @@ void StepChips::drain_battery(World& world, std::uint32_t robot, double duration
     if (charge_left(battery, *spec.battery) <= 0.0) {
         battery = {};
     }
-    double const share = spec.has_wheels ? motor_share(world.devices.motors[robot]) : 0.0;
+    double const share = spec.model.has_motors() ? motor_share(world.devices.motors[robot]) : 0.0;
     drain(battery, *spec.battery, current_ma(*spec.battery, share, world.robots.led[robot]), duration_s);
     if (charge_left(battery, *spec.battery) <= 0.0) {
         empty_.push_back(robot);

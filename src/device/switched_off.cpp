@@ -52,7 +52,7 @@ void rest(World& world, SwitchedOff& self) {
 
 void hold_switched_off(World& world) {
     for (SwitchedOff const& self : world.when_switched_on) {
-        if (world.devices.motors[self.robot].driven && world.spec_of(self.robot).has_wheels) {
+        if (world.devices.motors[self.robot].driven && world.spec_of(self.robot).model.has_motors()) {
             world.robots.command[self.robot] = {.velocity_mm_s = {}, .angular_velocity_rad_s = 0.0F, .pending = true};
         }
     }

@@ -1,6 +1,7 @@
 #include "device/velocity_command.hpp"
 
 #include <cstdint>
+#include <vector>
 
 #include "interface/pogobase_inside.hpp"
 
@@ -11,22 +12,43 @@ namespace {
 constexpr float kFullPower = 1023.0F;
 constexpr float kLinearNoiseUnit = 100.0F;  // mm/s per unit of linear_noise_stddev
 
-/// Forward is direction bit 1 on the left and 0 on the right.
-float signed_power(Motors const& motors, motor_id motor, std::uint8_t forward_bit) {
-    float const power = motors.power[motor];
-    return motors.direction[motor] == forward_bit ? power : -power;
+/// Power with which a motor turns forwards. The bias drives the left motor forwards and the right one backwards.
+float signed_power(Motors const& motors, Drive const& drive) {
+    float const power = motors.power[drive.motor];
+    float const forwards = motors.direction[drive.motor] == drive.forward ? power : -power;
+    switch (drive.motor) {
+        case motorL:
+            return forwards + motors.bias;
+        case motorR:
+            return forwards - motors.bias;
+        default:
+            return forwards;
+    }
+}
+
+/// Sums over the motors of a robot: power, times what each of them gives.
+struct DrivingPower {
+    float linear = 0.0F;
+    float angular = 0.0F;
+};
+DrivingPower driving_power(std::vector<Drive> const& drives, Motors const& motors) {
+    DrivingPower sum;
+    for (Drive const& drive : drives) {
+        float const power = signed_power(motors, drive);
+        sum.linear += drive.linear * power;
+        sum.angular += drive.angular * power;
+    }
+    return sum;
 }
 
 }  // namespace
 
 void command_velocity(World& world, std::size_t robot, Motors const& motors) {
     RobotSpec const& spec = world.spec_of(robot);
-    float const left = signed_power(motors, motorL, 1) + motors.bias;
-    float const right = signed_power(motors, motorR, 0) - motors.bias;
-
-    float const speed = spec.max_linear_speed_mm_s * (left + right) / (2.0F * kFullPower);
+    DrivingPower const power = driving_power(spec.model.drives, motors);
+    float const speed = spec.max_linear_speed_mm_s * power.linear / kFullPower;
     Vec2 velocity = speed * world.bodies.heading_dir[world.robots.body[robot]];
-    float angular_velocity = spec.max_angular_speed_rad_s * (left - right) / (kFullPower / 2.0F);
+    float angular_velocity = spec.max_angular_speed_rad_s * power.angular / kFullPower;
 
     RandomStream& stream = world.robots.stream[robot];
     if (spec.linear_noise_stddev > 0.0F) {

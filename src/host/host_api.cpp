@@ -154,7 +154,7 @@ void pogosim_run_light_levels(pogosim_run const* run, double* levels) {
     World const& world = run->simulation().world();
     for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
         std::uint32_t const body = world.robots.body[robot];
-        levels[robot] = body == kNone ? -1.0 : mean_light(world, body);
+        levels[robot] = body == kNone ? -1.0 : mean_light(world, static_cast<std::uint32_t>(robot));
     }
 }
 

@@ -14,7 +14,7 @@ constexpr float kMostMassRatio = 30.0F;
 void add_mass_to_membranes(World const& world, std::vector<float>& mass) {
     float heaviest = 0.0F;
     for (std::size_t i = 0; i < world.robots.size(); ++i) {
-        if (world.spec_of(i).has_wheels) {
+        if (world.spec_of(i).model.has_motors()) {
             heaviest = std::max(heaviest, mass[world.robots.body[i]]);
         }
     }

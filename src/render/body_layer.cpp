@@ -52,6 +52,7 @@ struct Figure {
     Pixel colour;
     bool glows;
     Leds const* led;  // null: it runs no program
+    std::vector<Part> const* led_parts;
     bool leds_turned;
 };
 
@@ -69,6 +70,7 @@ Figure figure_of(Scene const& scene, Object const& object) {
         .colour = palette::kNoLed,
         .glows = false,
         .led = nullptr,
+        .led_parts = nullptr,
         .leds_turned = false,
     };
     if (object.robot != kNone) {
@@ -76,7 +78,8 @@ Figure figure_of(Scene const& scene, Object const& object) {
         figure.colour = led_colour((*figure.led)[0]);
         figure.glows = is_lit((*figure.led)[0]);
         auto const& spec = scenery.categories[object.category].spec.robot;
-        figure.leds_turned = spec && spec->rotate_leds_45_deg;
+        figure.led_parts = &spec->model.leds;
+        figure.leds_turned = spec->rotate_leds_45_deg;
     }
     return figure;
 }
@@ -105,13 +108,20 @@ void draw_glow(Scene const& scene, Figure const& figure) {
 
 void draw_lateral_leds(Scene const& scene, Figure const& figure, Vec2 at_mm, float edge_px) {
     float const radius_px = kLateralLed * scene.to_pixels(inner_radius(figure.shape));
-    for (std::size_t k = 1; k < kLedCount; ++k) {
+    for (std::size_t k = 1; k < figure.led_parts->size(); ++k) {
         Rgb const led = (*figure.led)[k];
+        Part const& part = (*figure.led_parts)[k];
         if (!is_lit(led)) {
             continue;
         }
-        constexpr float kRightAngle = 0.5F * std::numbers::pi_v<float>;
-        Vec2 const side = direction((static_cast<float>(k - 1) + (figure.leds_turned ? 0.5F : 0.0F)) * kRightAngle);
+        if (!part.is_on_rim()) {
+            Vec2 const centre = scene.to_pixels(at_mm + rotate(part.place.at_mm(figure.radius_mm), figure.axis));
+            scene.canvas.disk(centre, radius_px + edge_px, palette::kEdge);
+            scene.canvas.disk(centre, radius_px, led_colour(led));
+            continue;
+        }
+        static Vec2 const eighth_of_a_turn = direction(0.25F * std::numbers::pi_v<float>);
+        Vec2 const side = figure.leds_turned ? rotate(part.direction, eighth_of_a_turn) : part.direction;
         Vec2 const outwards = rotate(side, figure.axis);
         Vec2 const centre = scene.to_pixels(at_mm + reach_mm(figure.shape, side) * outwards);
         scene.canvas.half_disk(centre, radius_px + edge_px, -outwards, palette::kEdge);

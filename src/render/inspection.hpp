@@ -38,7 +38,7 @@ struct Inspection {
     std::array<int, 3> motor_power{};        // right, left, back; 0 to 1023
     std::array<int, 3> motor_direction{};    // 0 or 1
     Leds led{};                              // as set, 0 to 255
-    std::array<int, 3> light{};              // without noise and bias: back, front left, front right; sensor counts
+    std::vector<int> light;                  // of its light sensors, without noise and bias, sensor counts
     Vec2 acceleration_m_s2;                  // in the robot's frame, without noise
     std::array<int, 3> magnetometer{};       // x, y and z that its program has read last, counts
     std::uint64_t magnetometer_samples = 0;  // how often it has

@@ -20,7 +20,7 @@ constexpr float kHeadHalfWidth = 2.0F;
 Pixel colour_of(std::uint8_t emitters) {
     return emitters == kAllFaces
                ? palette::kLinkByAllEmitters
-               : palette::kLinkByEmitter[static_cast<std::size_t>(std::countr_zero(emitters)) % kFaceCount];
+               : palette::kLinkByEmitter[static_cast<std::size_t>(std::countr_zero(emitters)) % kMostFaces];
 }
 
 void draw_two_way(Canvas& canvas, Vec2 from, Vec2 to, Link const& link, float width) {

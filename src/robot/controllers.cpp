@@ -353,13 +353,14 @@ void Controllers::run_global_setup() {
 void Controllers::start() {
     auto const count = static_cast<std::uint32_t>(controllers_.size());
     main_arguments_.resize(image_.is_for_sdk ? std::max(1U, count) : 1U);
-    warn_of_large_memory("USERDATA has", user_data_bytes());
-    warn_of_large_memory("the program's variables have", own_memory_ ? own_memory_->bytes() : 0);
+    std::size_t const memory_bytes = least_memory_bytes(world_);
+    warn_of_large_memory("USERDATA has", user_data_bytes(), memory_bytes);
+    warn_of_large_memory("the program's variables have", own_memory_ ? own_memory_->bytes() : 0, memory_bytes);
     std::size_t const allocated_before = allocated_bytes();
     start_programs();
     // In a host's process, other threads allocate, too.
     std::size_t const allocated_now = run_stage() == RunStage::hosted ? 0 : allocated_bytes();
-    warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), count);
+    warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), count, memory_bytes);
 }
 
 void Controllers::start_programs() {
@@ -569,7 +570,8 @@ void Controllers::print_unfinished_lines() {
 }
 
 void Controllers::warn_of_stacks() const {
-    warn_of_large_stack(own_memory_ ? own_memory_->bytes() : user_data_bytes(), fibers_.deepest_bytes());
+    warn_of_large_stack(own_memory_ ? own_memory_->bytes() : user_data_bytes(), fibers_.deepest_bytes(),
+                        least_memory_bytes(world_));
 }
 
 void Controllers::tell_at_end(std::uint64_t arrivals) const {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,6 @@ extern "C" [[gnu::weak]] void __asan_init();
 namespace pogosim {
 
 namespace {
-
-constexpr std::size_t kRobotMemoryBytes = std::size_t{128} * 1024;  // SRAM of a real robot
 
 /// For each category, whether it has robots and the condition holds for all of them.
 template <class Test>
@@ -49,31 +48,45 @@ bool receives_never(Controller const& controller) {
            !controller.program.reads_messages;
 }
 
+/// "131072 bytes (128 KiB) of a real robot's memory"
+std::string memory_text(std::size_t bytes) {
+    constexpr double bytes_per_kib = 1024.0;
+    return fmt::format("{} bytes ({:.4g} KiB) of a real robot's memory", bytes,
+                       static_cast<double>(bytes) / bytes_per_kib);
+}
+
 }  // namespace
 
-void warn_of_large_memory(std::string_view what, std::size_t bytes) {
-    if (bytes > kRobotMemoryBytes && __asan_init == nullptr) {
-        log().warn("{} {} bytes, more than the {} bytes (128 KiB) of a real robot's memory", what, bytes,
-                   kRobotMemoryBytes);
+std::size_t least_memory_bytes(World const& world) {
+    std::size_t least = std::numeric_limits<std::size_t>::max();
+    for (Category const& category : world.categories) {
+        least = category.spec.robot ? std::min<std::size_t>(least, category.spec.robot->model.memory_bytes) : least;
+    }
+    return least;
+}
+
+void warn_of_large_memory(std::string_view what, std::size_t bytes, std::size_t memory_bytes) {
+    if (bytes > memory_bytes && __asan_init == nullptr) {
+        log().warn("{} {} bytes, more than the {}", what, bytes, memory_text(memory_bytes));
     }
 }
 
-void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots) {
-    if (robots > 0 && allocated_bytes / robots > kRobotMemoryBytes && __asan_init == nullptr) {
+void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots, std::size_t memory_bytes) {
+    if (robots > 0 && allocated_bytes / robots > memory_bytes && __asan_init == nullptr) {
         log().warn(
-            "each robot has allocated {} bytes in main() and user_init, on average: more than the {} bytes (128 KiB) "
-            "of a real robot's memory, which its variables and its stack need, too",
-            allocated_bytes / robots, kRobotMemoryBytes);
+            "each robot has allocated {} bytes in main() and user_init, on average: more than the {}, which "
+            "its variables and its stack need, too",
+            allocated_bytes / robots, memory_text(memory_bytes));
     }
 }
 
-void warn_of_large_stack(std::size_t variables, std::size_t stack) {
-    bool const is_told_of_variables = variables > kRobotMemoryBytes;
-    if (variables + stack > kRobotMemoryBytes && !is_told_of_variables && __asan_init == nullptr) {
+void warn_of_large_stack(std::size_t variables, std::size_t stack, std::size_t memory_bytes) {
+    bool const is_told_of_variables = variables > memory_bytes;
+    if (variables + stack > memory_bytes && !is_told_of_variables && __asan_init == nullptr) {
         log().warn(
-            "the stack of a robot has grown to {} bytes, and its variables have {}: together more than the {} bytes "
-            "(128 KiB) of a real robot's memory; make arrays in functions smaller, or calls less deep",
-            stack, variables, kRobotMemoryBytes);
+            "the stack of a robot has grown to {} bytes, and its variables have {}: together more than the {}; make "
+            "arrays in functions smaller, or calls less deep",
+            stack, variables, memory_text(memory_bytes));
     }
 }
 
@@ -97,7 +110,7 @@ void warn_of_idle_categories(World const& world, std::span<Controller const> con
             std::string const& name = world.categories[category].name;
             std::string const meant = did_you_mean(name, strange);
             // Walls, membranes and other things without wheels often have no program.
-            if (world.categories[category].spec.robot->has_wheels || !meant.empty()) {
+            if (world.categories[category].spec.robot->model.has_motors() || !meant.empty()) {
                 log().warn("the program has no pogobot_start() for category '{}'{}; its robots will do nothing{}", name,
                            calls, meant);
             }

@@ -18,15 +18,18 @@
 
 namespace pogosim {
 
+/// Memory of the robots that have least, for the following.
+std::size_t least_memory_bytes(World const& world);
+
 /// Variables too large for a real robot. `what`: "USERDATA has"; `bytes`: of one robot.
-void warn_of_large_memory(std::string_view what, std::size_t bytes);
+void warn_of_large_memory(std::string_view what, std::size_t bytes, std::size_t memory_bytes);
 
 /// Allocations of all `robots` together in main() and user_init, on average too large for a real robot.
-void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots);
+void warn_of_large_heap(std::size_t allocated_bytes, std::size_t robots, std::size_t memory_bytes);
 
 /// All the memory that a robot needs, too large for a real one. `variables`: USERDATA, or its own copies of the
 /// program's variables; `stack`: how much of one was used, at most.
-void warn_of_large_stack(std::size_t variables, std::size_t stack);
+void warn_of_large_stack(std::size_t variables, std::size_t stack, std::size_t memory_bytes);
 
 /// A callback_global_setup that has changed USERDATA. `id`: of the one robot that it belongs to.
 void warn_of_user_data_in_setup(std::uint32_t id);

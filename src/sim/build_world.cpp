@@ -17,13 +17,13 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "config/find_file.hpp"
 #include "config/places.hpp"
 #include "config/range.hpp"
 #include "device/set_up.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
 #include "physics/coinciding_centres.hpp"
-#include "sim/find_file.hpp"
 #include "sim/imported_objects.hpp"
 #include "sim/magnetometers.hpp"
 #include "sim/make_membrane.hpp"
@@ -141,7 +141,7 @@ void add_robot(World& world, Object const& object, std::uint32_t seed) {
     robots.stream.emplace_back(seed, index);
 }
 
-/// The outline along which an object with Emitters::outline sends.
+/// The outline along which a wall or a membrane sends.
 Outline outline_of(World const& world, Object const& object, ObjectSpec const& spec, Placement const& placement) {
     Outline line{.robot = object.robot, .polygons = {}, .body = object.body, .body_count = object.body_count};
     if (spec.shape.kind == ShapeKind::arena) {
@@ -172,7 +172,7 @@ public:
         if (spec.robot) {
             object.robot = static_cast<std::uint32_t>(world_.robots.size());
             add_robot(world_, object, seed_);
-            if (spec.robot->emitters == Emitters::outline) {
+            if (spec.robot->model.sends_along_outline) {
                 world_.outlines.push_back(outline_of(world_, object, spec, placement));
             }
         }

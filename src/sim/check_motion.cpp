@@ -50,7 +50,7 @@ void check(Scenario const& scenario, ObjectConfig const& object, Motion const& m
 }
 
 bool drives(ObjectConfig const& object) {
-    return object.nb > 0 && object.spec.body && object.spec.robot && object.spec.robot->has_wheels;
+    return object.nb > 0 && object.spec.body && object.spec.robot && object.spec.robot->model.has_motors();
 }
 
 /// 0 for an object that does not drive.

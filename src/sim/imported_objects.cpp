@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/log.hpp"
+#include "config/find_file.hpp"
 #include "config/places.hpp"
-#include "sim/find_file.hpp"
 #include "sim/standing_objects.hpp"
 
 namespace pogosim {

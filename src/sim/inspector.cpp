@@ -43,8 +43,8 @@ void add_devices(Devices const& devices, std::size_t robot, Inspection& inspecti
 }
 
 void add_sensors(World const& world, std::uint32_t robot, Inspection& inspection) {
-    for (std::size_t sensor = 0; sensor < inspection.light.size(); ++sensor) {
-        inspection.light[sensor] = light_at_sensor(world, world.robots.body[robot], sensor);
+    for (std::size_t sensor = 0; sensor < world.spec_of(robot).model.light_sensors.size(); ++sensor) {
+        inspection.light.push_back(light_at_sensor(world, robot, sensor));
     }
     inspection.acceleration_m_s2 = acceleration_m_s2(world, robot);
 }
@@ -121,14 +121,14 @@ std::vector<std::string> Inspector::names_of_touched(Object const& object) const
 std::vector<Neighbour> Inspector::neighbours_of(std::uint32_t robot) {
     std::vector<Neighbour> neighbours;
     float const range_mm = ir_range_mm(world_, robot);
-    bool const is_outline = world_.spec_of(robot).emitters == Emitters::outline;
+    bool const is_outline = world_.spec_of(robot).model.sends_along_outline;
     visibility_.update(world_);
     for (Receiver const& receiver : visibility_.receivers(world_, robot, kAllFaces, range_mm)) {
         float distance_mm = length(receiver.from_emitter_mm);
-        if (is_outline || world_.spec_of(receiver.robot).emitters == Emitters::outline) {
+        if (is_outline || world_.spec_of(receiver.robot).model.sends_along_outline) {
             // From the outline to the nearest point where the other one has emitters.
             std::uint32_t const disk = is_outline ? receiver.robot : robot;
-            float const rim_mm = emitter_radius_mm(world_, disk);
+            float const rim_mm = face_reach_mm(world_, disk);
             auto const way =
                 visibility_.to_outline(world_, disk, is_outline ? robot : receiver.robot, rim_mm + range_mm);
             distance_mm = std::max(length(way.value_or(Vec2{})) - rim_mm, 0.0F);

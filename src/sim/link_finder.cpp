@@ -7,7 +7,7 @@ namespace pogosim {
 namespace {
 
 bool has_outline(World const& world, std::uint32_t robot) {
-    return world.spec_of(robot).emitters == Emitters::outline;
+    return world.spec_of(robot).model.sends_along_outline;
 }
 
 Vec2 centre_of(World const& world, std::uint32_t robot) {
@@ -49,7 +49,7 @@ void LinkFinder::place(World const& world, float range_mm, Link& link) {
     std::uint32_t const robot = is_from_outline ? link.to : link.from;
     std::uint32_t const outline = is_from_outline ? link.from : link.to;
     Vec2 const to_outline =
-        visibility_.to_outline(world, robot, outline, emitter_radius_mm(world, robot) + range_mm).value_or(Vec2{});
+        visibility_.to_outline(world, robot, outline, face_reach_mm(world, robot) + range_mm).value_or(Vec2{});
     float const share = std::min(radius_of(world, robot) / std::max(length(to_outline), 1e-6F), 1.0F);
     Vec2 const on_rim = share * to_outline;
     Vec2 const centre = centre_of(world, robot);

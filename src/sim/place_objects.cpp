@@ -8,9 +8,9 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "config/find_file.hpp"
 #include "config/places.hpp"
 #include "record/imported_poses.hpp"
-#include "sim/find_file.hpp"
 #include "sim/fixed_objects.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/make_membrane.hpp"

@@ -10,12 +10,12 @@
 
 #include "base/error.hpp"
 #include "base/locked_file.hpp"
+#include "config/find_file.hpp"
 #include "config/places.hpp"
 #include "record/data_file.hpp"
 #include "record/message_log.hpp"
 #include "render/film_file.hpp"
 #include "render/frame_names.hpp"
-#include "sim/find_file.hpp"
 
 namespace pogosim {
 
@@ -25,12 +25,15 @@ struct UsedFile {
     std::optional<Setting> setting;  // empty: the configuration, or the film
     std::filesystem::path path;      // as the run opens it
     bool is_output = false;          // without a setting: the film
-    char const* purpose = "";        // of a file beside the data file, the message log or the film, for messages
+    char const* purpose = "";        // of a file beside an output; of an input without a setting, what it is
 };
 
 /// Files that this run does not use are omitted.
 std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& film) {
-    std::vector<UsedFile> files{{std::nullopt, scenario.file}};
+    std::vector<UsedFile> files{{std::nullopt, scenario.file, /*is_output=*/false, "the configuration file"}};
+    for (std::filesystem::path const& model : scenario.robot_model_files) {
+        files.push_back({std::nullopt, model, /*is_output=*/false, "the robot model"});
+    }
     auto const add_input = [&](Setting setting, std::string const& name, bool is_used) {
         if (is_used && !name.empty()) {
             files.push_back({setting, find_file(scenario, setting, name)});
@@ -105,8 +108,7 @@ std::string described(Scenario const& scenario, UsedFile const& file) {
     if (file.setting) {
         return fmt::format("{} '{}' ({})", key_of(*file.setting), name, line_of(scenario, *file.setting));
     }
-    return file.is_output ? fmt::format("the film '{}' (--video)", name)
-                          : fmt::format("the configuration file '{}'", name);
+    return file.is_output ? fmt::format("the film '{}' (--video)", name) : fmt::format("{} '{}'", file.purpose, name);
 }
 
 char const* fate(UsedFile const& file) {

@@ -106,9 +106,19 @@ void draw_motion(Inspection const& robot) {
     row("motor back", fmt::format("{} (direction {})", robot.motor_power[2], robot.motor_direction[2]));
 }
 
+/// "12 back, 13 left, 14 right", as Pogolib names the sensors.
+std::string light_text(std::vector<int> const& levels) {
+    static constexpr std::array kSides{"back", "left", "right"};
+    std::string text;
+    for (std::size_t sensor = 0; sensor < levels.size(); ++sensor) {
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", levels[sensor], kSides[sensor]);
+    }
+    return text.empty() ? "no sensors" : text;
+}
+
 /// The magnetometer is shown once the program has read it.
 void draw_sensors(Inspection const& robot) {
-    row("light", fmt::format("{} back, {} left, {} right", robot.light[0], robot.light[1], robot.light[2]));
+    row("light", light_text(robot.light));
     if (robot.magnetometer_samples > 0) {
         row("magnetometer",
             fmt::format("{}, {}, {}, read {} time{}", robot.magnetometer[0], robot.magnetometer[1],

@@ -37,8 +37,8 @@ void assert_robots(World const& world) {
         assert(robots.category[i] < world.categories.size());
         assert(world.categories[robots.category[i]].spec.robot);
         assert(robots.body[i] == kNone || robots.body[i] < world.bodies.size());
-        assert(robots.body[i] != kNone || world.spec_of(i).emitters == Emitters::outline);
-        assert(robots.body[i] != kNone || !world.spec_of(i).has_wheels);
+        assert(robots.body[i] != kNone || world.spec_of(i).model.sends_along_outline);
+        assert(robots.body[i] != kNone || !world.spec_of(i).model.has_motors());
     }
 }
 

@@ -9,10 +9,9 @@
 
 #include "base/random.hpp"
 #include "base/vec2.hpp"
+#include "world/robot_model.hpp"
 
 namespace pogosim {
-
-inline constexpr int kMotorCount = 3;  // right, left, back: the order of motor_id
 
 struct Motors {
     std::array<std::uint16_t, kMotorCount> power{};
@@ -25,7 +24,6 @@ struct Motors {
     friend bool operator==(Motors const&, Motors const&) = default;
 };
 
-inline constexpr int kPhotosensorCount = 3;  // back, front left, front right
 using PhotosensorBias = std::array<std::int32_t, kPhotosensorCount>;
 
 /// A step of a body. Accelerometers note one for every robot and tick; its velocity is computed only when it is read.

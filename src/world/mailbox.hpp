@@ -26,7 +26,6 @@ struct FrameHeader {
 /// What a packet means to the receiver's library, apart from its program, which gets all but malformed ones.
 enum class PacketKind : std::uint8_t { message, malformed, mute, unmute, restart };
 
-inline constexpr int kFaceCount = 4;            // front, right, back, left
 inline constexpr std::uint8_t kAllFaces = 0xF;  // bit d: emitter d
 
 /// One transmission of one robot during this step.

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "geometry/shape.hpp"
+#include "world/robot_model.hpp"
 
 namespace pogosim {
 
@@ -142,12 +143,6 @@ struct BatterySpec {
     friend bool operator==(BatterySpec const&, BatterySpec const&) = default;
 };
 
-enum class Emitters {
-    rim,      // four, on the bounding disk at the front, right, back and left
-    centre,   // four, facing the same directions from the centre
-    outline,  // one, all along the object's outline; no half planes, no shadows
-};
-
 /// What a write does to a page of flash memory that has been written before.
 enum class FlashWrites {
     overwrite,  // it replaces the page
@@ -158,11 +153,10 @@ enum class FlashWrites {
 struct RobotSpec {
     friend bool operator==(RobotSpec const&, RobotSpec const&) = default;
 
+    RobotModel model;
     IrSpec ir;
-    Emitters emitters = Emitters::rim;
-    bool has_wheels = true;                 // false: motors are inert
-    float max_linear_speed_mm_s = 100.0F;   // both motors at full power
-    float max_angular_speed_rad_s = 1.0F;   // one motor full turns at twice this
+    float max_linear_speed_mm_s = 100.0F;   // see Drive
+    float max_angular_speed_rad_s = 1.0F;   // see two_wheels()
     float linear_noise_stddev = 0.0F;       // per velocity component and control tick, in units of 100 mm/s
     float angular_noise_stddev = 0.0F;      // rad/s per control tick
     IntRange motor_bias;                    // PWM units, drawn once per robot: left + b, right - b
@@ -171,7 +165,6 @@ struct RobotSpec {
     float clock_drift_stddev_us = 0.0F;     // constant drift of a robot's clock, microseconds per tick
     std::optional<FlashWrites> flash{};     // absent: that of the top level, else overwrite
     bool rotate_leds_45_deg = true;         // drawing only
-    bool has_magnetometer = true;           // on the board of this type of object
     bool magnetometer_enabled = true;       // else programs find none
     SensorSpec sensors;
     std::optional<BatterySpec> battery{};  // absent: always full

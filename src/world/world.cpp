@@ -20,7 +20,7 @@ std::int16_t LightMap::at(Vec2 point_mm) const {
 std::size_t count_of_robots(World const& world) {
     std::size_t count = 0;
     for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
-        count += world.spec_of(robot).emitters == Emitters::outline ? 0 : 1;
+        count += world.spec_of(robot).model.sends_along_outline ? 0 : 1;
     }
     return count;
 }

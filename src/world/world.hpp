@@ -52,7 +52,6 @@ struct Rgb {
     friend bool operator==(Rgb const&, Rgb const&) = default;
 };
 
-inline constexpr int kLedCount = 5;  // 0 head, 1 front, 2 right, 3 back, 4 left
 using Leds = std::array<Rgb, kLedCount>;
 
 /// In place of an index: none.
@@ -169,7 +168,7 @@ struct Object {
     friend bool operator==(Object const&, Object const&) = default;
 };
 
-/// Where an object with Emitters::outline sends and receives.
+/// Where an object whose model sends along its outline sends and receives.
 struct Outline {
     std::uint32_t robot = 0;        // index into World::robots
     std::vector<Polygon> polygons;  // mm, of a fixed object; empty: the outline runs through the bodies of a membrane

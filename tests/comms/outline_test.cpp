@@ -197,7 +197,7 @@ TEST(Outline, HeadOnALargeBodySendsFromItsCentre) {
     World world = square_world(2000.0F);
     ObjectSpec pogobject = testing::pogobot_spec();
     pogobject.shape.radius_mm = 100.0F;
-    pogobject.robot->emitters = Emitters::centre;
+    pogobject.robot->model = head_model();
     add_robot(world, {1000, 1000}, 0.0F, pogobject);
     add_robot(world, {1000.0F + 100.0F + kRange - 0.1F, 1000}, 0.0F, pogobject);
     add_robot(world, {1000, 1000.0F + 100.0F + kRange + 0.1F}, 0.0F, pogobject);
@@ -289,7 +289,7 @@ TEST(Outline, IndexFindsWhatTheDistanceToThePolygonsSays) {
             for (std::uint32_t i = 0; i < robots; ++i) {
                 std::uint8_t faces = 0;
                 bool reached = false;
-                for (unsigned face = 0; face < kFaceCount; ++face) {
+                for (unsigned face = 0; face < kMostFaces; ++face) {
                     float const angle = world.bodies.heading_rad[i] + static_cast<float>(face) * kPi / 2.0F;
                     Vec2 const emitter = world.bodies.position_mm[i] + kRadius * direction(angle);
                     float distance_mm = 1e9F;

@@ -37,6 +37,10 @@ std::vector<std::uint32_t> reached(World const& world, std::uint32_t robot, std:
 
 using Robots = std::vector<std::uint32_t>;
 
+std::uint8_t seeing_faces(Vec2 emitter_mm) {
+    return faces_that_see(make_faces(RobotModel(), kRadius), emitter_mm, 80.0F, /*in_any_direction=*/false);
+}
+
 TEST(Visibility, RobotThatIsSwitchedOffReceivesNothingAndStillCoversOthers) {
     World world = square_world();
     add_robot(world, {500, 500});
@@ -174,7 +178,7 @@ TEST(Visibility, WithoutOcclusionsTheGridFindsWhatAllPairsFind) {
             Robots expected;
             for (std::uint32_t j = 0; j < 150; ++j) {
                 bool in_reach = false;
-                for (int emitter = 0; emitter < kFaceCount; ++emitter) {
+                for (int emitter = 0; emitter < static_cast<int>(kMostFaces); ++emitter) {
                     float const angle = world.bodies.heading_rad[i] + static_cast<float>(emitter) * kPi / 2.0F;
                     Vec2 const point = world.bodies.position_mm[i] + kRadius * direction(angle);
                     Vec2 const d = minimum_image(world, point, world.bodies.position_mm[j]);
@@ -190,19 +194,19 @@ TEST(Visibility, WithoutOcclusionsTheGridFindsWhatAllPairsFind) {
 }
 
 TEST(Faces, EmitterStraightAheadIsSeenByTheFrontFaceOnly) {
-    EXPECT_EQ(faces_that_see({60, 0}, kRadius, 80.0F), kFront);
-    EXPECT_EQ(faces_that_see({0, 60}, kRadius, 80.0F), kRight);
-    EXPECT_EQ(faces_that_see({-60, 0}, kRadius, 80.0F), kBack);
-    EXPECT_EQ(faces_that_see({0, -60}, kRadius, 80.0F), kLeft);
+    EXPECT_EQ(seeing_faces({60, 0}), kFront);
+    EXPECT_EQ(seeing_faces({0, 60}), kRight);
+    EXPECT_EQ(seeing_faces({-60, 0}), kBack);
+    EXPECT_EQ(seeing_faces({0, -60}), kLeft);
 }
 
 TEST(Faces, SeeWhatIsInFrontOfTheTangentAtTheirPlace) {
     for (float const across_mm : {-40.0F, 40.0F}) {
         unsigned const beside = across_mm > 0.0F ? kRight : kLeft;
-        EXPECT_EQ(faces_that_see({kRadius + 0.05F, across_mm}, kRadius, 80.0F), kFront | beside);
-        EXPECT_EQ(faces_that_see({kRadius - 0.05F, across_mm}, kRadius, 80.0F), beside);
-        EXPECT_EQ(faces_that_see({-kRadius - 0.05F, across_mm}, kRadius, 80.0F), kBack | beside);
-        EXPECT_EQ(faces_that_see({-kRadius + 0.05F, across_mm}, kRadius, 80.0F), beside);
+        EXPECT_EQ(seeing_faces({kRadius + 0.05F, across_mm}), kFront | beside);
+        EXPECT_EQ(seeing_faces({kRadius - 0.05F, across_mm}), beside);
+        EXPECT_EQ(seeing_faces({-kRadius - 0.05F, across_mm}), kBack | beside);
+        EXPECT_EQ(seeing_faces({-kRadius + 0.05F, across_mm}), beside);
     }
 }
 
@@ -217,9 +221,9 @@ TEST(Faces, EmitterOnTheDiagonalIsSeenByBothFacesBesideIt) {
 
 TEST(Faces, AtLeastOneFaceReceives) {
     // Close by on the diagonal, behind the plane of every face.
-    EXPECT_EQ(faces_that_see({20, 19}, kRadius, 80.0F), kFront);
+    EXPECT_EQ(seeing_faces({20, 19}), kFront);
     // Seen by the front face, but out of its reach.
-    EXPECT_EQ(faces_that_see({200, 0}, kRadius, 80.0F), kFront);
+    EXPECT_EQ(seeing_faces({200, 0}), kFront);
 }
 
 }  // namespace

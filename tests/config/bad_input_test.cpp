@@ -342,8 +342,9 @@ TEST(BadInput, EveryKeyOfEveryTableRefusesAMapAndNonsense) {
             auto const error_with = [&](std::string const& value) {
                 return load_error(head_for(group) + assignment(key.name, value) + "\n");
             };
-            bool const takes_maps = is_map && (key.name == "objects" || key.name == "magnetometer" ||
-                                               key.name == "flash_state" || key.expected == kMapOfKeysBelow);
+            bool const takes_maps =
+                is_map && (key.name == "objects" || key.name == "magnetometer" || key.name == "flash_state" ||
+                           key.name == "processor" || key.expected == kMapOfKeysBelow);
             if (!takes_maps) {
                 EXPECT_NE(error_with("{zzz: {}}"), "no error") << group.path << ' ' << key.name;
             }

@@ -380,7 +380,7 @@ TEST(MagnetometerKeys, RobotsHaveAMagnetometerUnlessTheirTypeHasNoneOrItIsTakenA
     };
     auto const finds_one = [&](std::string const& entry) {
         RobotSpec const robot = robot_of(entry);
-        return robot.has_magnetometer && robot.magnetometer_enabled;
+        return robot.model.has_magnetometer && robot.magnetometer_enabled;
     };
     Warnings const warnings;
     EXPECT_TRUE(finds_one("type: pogobot"));

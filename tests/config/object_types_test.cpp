@@ -41,16 +41,11 @@ std::vector<Row> rows_of_the_page() {
 }
 
 std::string described(RobotSpec const& robot) {
-    std::string text = robot.has_wheels ? "" : "no wheels";
-    switch (robot.emitters) {
-        case Emitters::rim:
-            break;
-        case Emitters::centre:
-            text += ", emitters in the centre";
-            break;
-        case Emitters::outline:
-            text += ", emitters along the outline";
-            break;
+    std::string text = robot.model.has_motors() ? "" : "no wheels";
+    if (robot.model.sends_along_outline) {
+        text += ", emitters along the outline";
+    } else if (robot.model.faces[0].place == PartPlace()) {
+        text += ", emitters in the centre";
     }
     return text.empty() ? "yes" : text;
 }

@@ -26,7 +26,7 @@ TEST(Infrared, LongMessageSaysWhoSendsAndAtWhatPower) {
     set_ir_power(world, 0, 2);
     std::uint8_t const list = power_list(world, 0, kFront | kLeft);
     EXPECT_EQ(list, 0b10000010);
-    EXPECT_EQ(emitters_in(list), kFront | kLeft);
+    EXPECT_EQ(emitters_in(world, 0, list), kFront | kLeft);
     EXPECT_EQ(highest_power(list), 2);
     Packet const packet = long_packet(world, 0, kLeft, list, bytes_of("abc"), ir_t_user);
     EXPECT_TRUE(packet.radiates());

@@ -41,7 +41,7 @@ TEST(Motors, CommandNothingBeforeTheyAreSetAndInObjectsWithoutWheels) {
     drive(world, 0);
     EXPECT_FALSE(world.robots.command[0].pending);
     ObjectSpec pogobject = testing::pogobot_spec();
-    pogobject.robot->has_wheels = false;
+    pogobject.robot->model = head_model();
     world = testing::world_with_robot(pogobject);
     set_motor_power(world, 0, kLeft, kFullMotorPower);
     drive(world, 0);

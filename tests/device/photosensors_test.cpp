@@ -13,7 +13,7 @@ namespace {
 /// Light that grows to the right, by one count for each mm, from 0.
 World lit(ObjectSpec const& spec) {
     World world = testing::world_with_robot(spec);
-    world.light = {.columns = 1000, .rows = 1, .origin_mm = {0, 0}, .cell_mm = {1, 1000}};
+    world.light = {.columns = 1000, .rows = 1, .origin_mm = {0, 0}, .cell_mm = {1, 1000}, .level = {}};
     for (int column = 0; column < 1000; ++column) {
         world.light.level.push_back(static_cast<std::int16_t>(column));
     }

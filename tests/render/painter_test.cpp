@@ -662,8 +662,8 @@ TEST(Light, HasItsFirstRowAtTheTopAndItsFirstColumnOnTheLeft) {
 TEST(Link, HasTheColourOfTheFirstEmitterOfEachSender) {
     PaintOptions options = kNothingWritten;
     options.links = LinkLayer::above;
-    for (std::size_t face = 0; face < kFaceCount; ++face) {
-        std::size_t const back = (face + 1) % kFaceCount;
+    for (std::size_t face = 0; face < kMostFaces; ++face) {
+        std::size_t const back = (face + 1) % kMostFaces;
         auto const bit = static_cast<std::uint8_t>(1U << face);
         auto const bit_back = static_cast<std::uint8_t>(1U << back);
         Canvas const both = painted(linked_world(bit, bit_back), options, {1600, 1600});

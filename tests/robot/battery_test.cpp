@@ -49,7 +49,7 @@ TEST(Battery, RobotThatStandsLastsLonger) {
 
 TEST(Battery, ObjectWithoutWheelsPaysForNoMotors) {
     ObjectSpec spec = robot_for_two_seconds();
-    spec.robot->has_wheels = false;
+    spec.robot->model.drives.clear();
     EXPECT_TRUE(is_alive(run_alone(
                              spec, full_ahead, [] {}, 9.9)
                              ->world(),

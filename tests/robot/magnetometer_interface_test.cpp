@@ -169,7 +169,7 @@ TEST(MagnetometerInterface, ObjectWithoutMagnetometerFindsNone) {
     ObjectSpec disabled = testing::article_robot();
     disabled.robot->magnetometer_enabled = false;
     ObjectSpec without = testing::article_robot();
-    without.robot->has_magnetometer = false;
+    without.robot->model.has_magnetometer = false;
     for (ObjectSpec const& spec : {disabled, without}) {
         Found const none = found_by(spec);
         EXPECT_EQ(none.init, 0);

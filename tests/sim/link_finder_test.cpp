@@ -206,7 +206,7 @@ TEST(Links, ChannelDeliversAlongThemAndNowhereElse) {
         }
         IrChannel channel;
         for (std::uint32_t from = 0; from < count; ++from) {
-            for (unsigned emitter = 0; emitter < kFaceCount; ++emitter) {
+            for (unsigned emitter = 0; emitter < kMostFaces; ++emitter) {
                 Transmission transmission;
                 transmission.robot = from;
                 transmission.emitters = static_cast<std::uint8_t>(1U << emitter);
@@ -232,7 +232,7 @@ TEST(Links, ArePlacedFromRimToRim) {
         World const world = random_world(random, range_mm);
         for (Link const& link : links_of(world, range_mm)) {
             for (auto const& [robot, point] : {std::pair{link.from, link.from_mm}, std::pair{link.to, link.to_mm}}) {
-                if (world.spec_of(robot).emitters == Emitters::outline) {
+                if (world.spec_of(robot).model.sends_along_outline) {
                     continue;
                 }
                 float const radius_mm = world.bodies.radius_mm[robot];

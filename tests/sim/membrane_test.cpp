@@ -126,7 +126,7 @@ private:
         for (Membrane const& membrane : world().membranes) {
             Polygon const line = line_of(world(), membrane);
             for (std::size_t i = 0; i < world().robots.size(); ++i) {
-                if (world().spec_of(i).has_wheels) {
+                if (world().spec_of(i).model.has_motors()) {
                     inside.push_back(contains(line, world().bodies.position_mm[world().robots.body[i]]));
                 }
             }

@@ -25,8 +25,7 @@ inline ObjectConfig arena_wall(std::string const& category = "walls") {
     ObjectSpec spec = article_robot();
     spec.shape = {.kind = ShapeKind::arena};
     spec.body.reset();
-    spec.robot->has_wheels = false;
-    spec.robot->emitters = Emitters::outline;
+    spec.robot->model = outline_model();
     return object_of_type("pogowall", category, spec);
 }
 
@@ -34,8 +33,7 @@ inline ObjectConfig arena_wall(std::string const& category = "walls") {
 inline ObjectConfig membrane(bool segments = false, std::string const& category = "membranes") {
     ObjectSpec spec = article_robot();
     spec.shape = {.kind = ShapeKind::disk, .radius_mm = 200.0F};
-    spec.robot->has_wheels = false;
-    spec.robot->emitters = Emitters::outline;
+    spec.robot->model = outline_model();
     spec.membrane.emplace().segments = segments;
     return object_of_type(segments ? "rectmembrane" : "membrane", category, spec);
 }
@@ -44,15 +42,14 @@ inline ObjectConfig membrane(bool segments = false, std::string const& category 
 inline ObjectConfig pogobject(std::string const& category = "pogobjects") {
     ObjectSpec spec = article_robot();
     spec.shape.radius_mm = 80.0F;
-    spec.robot->has_wheels = false;
-    spec.robot->emitters = Emitters::centre;
+    spec.robot->model = head_model();
     return object_of_type("pogobject", category, spec);
 }
 
 inline ObjectConfig active_object(Shape const& shape, std::string const& category = "active") {
     ObjectSpec spec = article_robot();
     spec.shape = shape;
-    spec.robot->has_wheels = false;
+    spec.robot->model = active_model();
     return object_of_type("active_object", category, spec);
 }
 

@@ -67,7 +67,7 @@ inline std::uint32_t add_robot(World& world, Vec2 position_mm, float heading_rad
 inline std::uint32_t add_outline(World& world, Outline outline, float range_mm) {
     ObjectSpec spec;
     spec.robot.emplace();
-    spec.robot->emitters = Emitters::outline;
+    spec.robot->model = outline_model();
     spec.robot->ir.range_mm = range_mm;
     auto const robot = static_cast<std::uint32_t>(world.robots.size());
     world.robots.id.push_back(65535);

@@ -1,10 +1,12 @@
-#include "sim/find_file.hpp"
+#include "config/find_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
+#include <sstream>
 #include <vector>
 
 #include "base/error.hpp"
@@ -26,12 +28,26 @@ std::vector<std::filesystem::path> data_folders() {
     return folders;
 }
 
-/// The folders in which relative names are searched, in this order; the working folder first.
-std::vector<std::filesystem::path> search_folders(Scenario const& scenario) {
-    std::vector<std::filesystem::path> folders{""};
-    if (!scenario.file.empty()) {
-        folders.push_back(scenario.file.parent_path());
+/// The folders of POGOSIM_PATH, in which other packages have robot models and arenas.
+std::vector<std::filesystem::path> folders_of_user() {
+    std::vector<std::filesystem::path> folders;
+    char const* const list = std::getenv("POGOSIM_PATH");
+    std::istringstream names(list == nullptr ? "" : list);
+    for (std::string name; std::getline(names, name, ':');) {
+        if (!name.empty()) {
+            folders.emplace_back(name);
+        }
     }
+    return folders;
+}
+
+/// The folders in which relative names are searched, in this order; the working folder first.
+std::vector<std::filesystem::path> search_folders(std::filesystem::path const& configuration) {
+    std::vector<std::filesystem::path> folders{""};
+    if (!configuration.empty()) {
+        folders.push_back(configuration.parent_path());
+    }
+    std::ranges::move(folders_of_user(), std::back_inserter(folders));
     std::ranges::move(data_folders(), std::back_inserter(folders));
     return folders;
 }
@@ -69,28 +85,36 @@ std::filesystem::path bundled_periodic_square() {
     return square;
 }
 
-std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name) {
+FoundFile search_file(std::filesystem::path const& configuration, std::string const& name) {
     std::filesystem::path const path(name);
     std::error_code ignored;
-    if (path.empty() || (path.is_absolute() && std::filesystem::exists(path, ignored))) {
-        return path;
+    if (path.is_absolute()) {
+        return {std::filesystem::exists(path, ignored) ? path : "", ""};
     }
-    std::string looked_for;
-    if (path.is_relative()) {
-        std::vector<std::filesystem::path> const folders = search_folders(scenario);
-        for (std::filesystem::path const& folder : folders) {
-            if (std::filesystem::exists(folder / path, ignored)) {
-                return folder / path;
-            }
+    std::vector<std::filesystem::path> const folders = search_folders(configuration);
+    for (std::filesystem::path const& folder : folders) {
+        if (std::filesystem::exists(folder / path, ignored)) {
+            return {folder / path, ""};
         }
-        if (setting == Setting::arena_file && is_periodic_square(path)) {
-            return bundled_periodic_square();
-        }
-        looked_for = fmt::format("; searched {}", fmt::join(folder_names(folders), ", then in "));
     }
-    throw ConfigError(
-        fmt::format("{}: there is no file '{}'{}{}", place_of(scenario, setting), name, looked_for,
-                    setting == Setting::arena_file ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
+    return {"", fmt::format("; searched {}", fmt::join(folder_names(folders), ", then in "))};
+}
+
+std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name) {
+    if (name.empty()) {
+        return {};
+    }
+    FoundFile found = search_file(scenario.file, name);
+    bool const is_arena = setting == Setting::arena_file;
+    if (found.path.empty() && is_arena && !found.searched.empty() && is_periodic_square(name)) {
+        return bundled_periodic_square();
+    }
+    if (found.path.empty()) {
+        throw ConfigError(fmt::format("{}: there is no file '{}'{}{}", place_of(scenario, setting), name,
+                                      found.searched,
+                                      is_arena ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
+    }
+    return found.path;
 }
 
 }  // namespace pogosim

@@ -1,0 +1,300 @@
+#include "config/model_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/nearest_name.hpp"
+#include "config/shape_keys.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::string_view kFaces = "a list of maps, such as [{angle_deg: 0}, {angle_deg: 180}]";
+constexpr std::string_view kLeds = "a list of maps, such as [{place: centre}, {angle_deg: 0}]";
+constexpr std::string_view kSensors = "a list of maps, such as [{angle_deg: 180}]";
+constexpr std::string_view kMotors = "a map of motors, such as {left: {linear_mm_s: 50, angular_rad_s: 2}}, or {}";
+constexpr std::string_view kProcessor = "a map of keys, such as {clock_hz: 21000000, memory_bytes: 131072}";
+constexpr std::string_view kPlace = "rim, centre, or [x, y] from the centre (mm)";
+
+constexpr Range kDegrees = between(-360, 360);
+constexpr Range kAperture = above(0).up_to(180);
+
+std::span<Key<RobotSpec> const> part_keys() {
+    using K = Key<RobotSpec>;
+    static std::array const keys{
+        K{"faces", Elsewhere{kFaces}, any(), "",
+          "Infrared faces, one to four, from number 0; see their table. Default: those of the type."},
+        K{"leds", Elsewhere{kLeds}, any(), "",
+          "LEDs, up to five, the head first; see their table. Default: head, front, right, back, left."},
+        K{"light_sensors", Elsewhere{kSensors}, any(), "",
+          "Light sensors, up to three; see their table. Default: on the rim at 180, 320 and 40 degrees."},
+        K{"motors", Elsewhere{kMotors}, any(), "",
+          "Motors that move the robot; see their table. Default: those of the type."},
+        K{"processor", Elsewhere{kProcessor}, any(), "", "Processor of the robot; see its table."},
+    };
+    return keys;
+}
+
+struct WrittenFlash {
+    std::optional<std::uint32_t> pages;
+};
+
+std::span<Key<WrittenFlash> const> flash_keys() {
+    static std::array const keys{
+        Key<WrittenFlash>{"flash_pages", &WrittenFlash::pages, between(0, 5888), "pages of 256 bytes",
+                          "Pages of flash memory for programs. Default: 5888."},
+    };
+    return keys;
+}
+
+/// A part as it is written.
+struct WrittenPart {
+    double angle_deg = 0.0;
+    float emission_deg = 180.0F;
+    float reception_deg = 180.0F;
+};
+
+std::span<Key<WrittenPart> const> place_keys() {
+    using K = Key<WrittenPart>;
+    static std::array const keys{
+        K{"angle_deg", &WrittenPart::angle_deg, kDegrees, "degrees",
+          "Direction of the part from the robot's heading, clockwise on the screen: 90 is to the right."},
+        K{"place", Elsewhere{kPlace}, any(), "",
+          "rim: where the bounding circle has that direction. Default: rim; [x, y]: x along the heading, y to the "
+          "right."},
+    };
+    return keys;
+}
+
+std::span<Key<WrittenPart> const> aperture_keys() {
+    using K = Key<WrittenPart>;
+    static std::array const keys{
+        K{"emission_deg", &WrittenPart::emission_deg, kAperture, "degrees",
+          "Aperture of what it sends: the whole angle of the cone around its direction; 180: the half plane in front."},
+        K{"reception_deg", &WrittenPart::reception_deg, kAperture, "degrees", "Aperture of what it hears."},
+    };
+    return keys;
+}
+
+/// A motor as it is written: what it gives at full power forwards.
+struct WrittenMotor {
+    float linear_mm_s = 0.0F;
+    float angular_rad_s = 0.0F;
+    int forward = 0;
+};
+
+std::span<Key<WrittenMotor> const> motor_keys() {
+    using K = Key<WrittenMotor>;
+    static std::array const keys{
+        K{"linear_mm_s", &WrittenMotor::linear_mm_s, between(-1e6, 1e6), "mm/s",
+          "What the motor adds to the robot's speed along its heading, at full power forwards."},
+        K{"angular_rad_s", &WrittenMotor::angular_rad_s, between(-1e4, 1e4).usually_up_to(50), "rad/s",
+          "What it adds to the angular velocity, clockwise on the screen."},
+        K{"forward", &WrittenMotor::forward, between(0, 1), "",
+          "Direction bit with which it turns forwards (pogobot_motor_dir_set). Default: 0 on the right and the back, 1 "
+          "on the left."},
+    };
+    return keys;
+}
+
+struct WrittenProcessor {
+    std::int64_t clock_hz = RobotModel().clock_hz;
+    std::int64_t memory_bytes = RobotModel().memory_bytes;
+};
+
+std::span<Key<WrittenProcessor> const> processor_keys() {
+    using K = Key<WrittenProcessor>;
+    static std::array const keys{
+        K{"clock_hz", &WrittenProcessor::clock_hz, between(1, 4e9), "Hz",
+          "Clock rate. Native programs take no time, so it has no effect on them."},
+        K{"memory_bytes", &WrittenProcessor::memory_bytes, between(1024, 4e9), "bytes",
+          "Memory for variables, stack and what a program allocates; warnings say when it would not be enough."},
+    };
+    return keys;
+}
+
+PartPlace place_of_part(MapReader& reader, Vec2 direction) {
+    Node const* const node = reader.find("place");
+    PartPlace const on_rim{.radii = direction};
+    if (node == nullptr || node->scalar == "rim") {
+        return on_rim;
+    }
+    if (node->scalar == "centre" || node->scalar == "center") {
+        return {};
+    }
+    if (node->kind != Node::Kind::sequence) {
+        fail_expected({*node, reader.path_of("place")}, kPlace);
+    }
+    PartPlace place;
+    read_value({*node, reader.path_of("place")}, Limits{kCoordinate, "mm"}, place.offset_mm);
+    return place;
+}
+
+/// Reads the list under a key; `read` makes a part of each map. Nothing without the key.
+template <class T, class Read>
+void read_list(MapReader& reader, std::string_view key, std::string_view expected, std::size_t least, std::size_t most,
+               std::vector<T>& parts, Read const& read) {
+    Node const* const list = reader.find(key);
+    if (list == nullptr) {
+        return;
+    }
+    Place const place{*list, reader.path_of(key)};
+    if (list->kind != Node::Kind::sequence) {
+        fail_expected(place, expected);
+    }
+    if (list->items.size() < least || list->items.size() > most) {
+        fail_at(place, fmt::format("expected {} to {} entries, found {}", least, most, list->items.size()));
+    }
+    std::vector<T> read_parts;
+    Node values;
+    values.kind = Node::Kind::sequence;
+    for (std::size_t i = 0; i < list->items.size(); ++i) {
+        MapReader inner(list->items[i], fmt::format("{}.{}", place.path, i), reader.reading());
+        read_parts.push_back(read(inner));
+        inner.finish();
+        values.items.push_back(inner.values());
+    }
+    parts = std::move(read_parts);
+    reader.set_value(key, std::move(values));
+}
+
+Part read_part(MapReader& reader) {
+    WrittenPart written;
+    reader.read(place_keys(), written);
+    Node const* const place = reader.find("place");
+    bool const is_central = place != nullptr && (place->scalar == "centre" || place->scalar == "center");
+    Vec2 const direction = is_central ? Vec2{} : direction_of_deg(written.angle_deg);
+    return {.direction = direction, .place = place_of_part(reader, direction)};
+}
+
+Face read_face(MapReader& reader) {
+    WrittenPart written;
+    reader.read(place_keys(), written);
+    reader.read(aperture_keys(), written);
+    Vec2 const normal = direction_of_deg(written.angle_deg);
+    return {.normal = normal,
+            .place = place_of_part(reader, normal),
+            .emission_deg = written.emission_deg,
+            .reception_deg = written.reception_deg};
+}
+
+/// A motor of Pogolib, with the direction bit that is forwards on a Pogobot.
+struct NamedMotor {
+    std::string_view name;
+    std::uint8_t id;
+    int forward;
+};
+constexpr std::array kNamedMotors{NamedMotor{"right", 0, 0}, NamedMotor{"left", 1, 1}, NamedMotor{"back", 2, 0}};
+
+/// The motors as shares of what all of them give together.
+void set_drives(std::vector<std::pair<std::uint8_t, WrittenMotor>> const& motors, RobotSpec& robot) {
+    float linear_mm_s = 0.0F;
+    float angular_rad_s = 0.0F;
+    for (auto const& [id, motor] : motors) {
+        linear_mm_s += std::abs(motor.linear_mm_s);
+        angular_rad_s += std::abs(motor.angular_rad_s);
+    }
+    robot.model.drives.clear();
+    for (auto const& [id, motor] : motors) {
+        robot.model.drives.push_back({.motor = id,
+                                      .forward = static_cast<std::uint8_t>(motor.forward),
+                                      .linear = linear_mm_s > 0.0F ? motor.linear_mm_s / linear_mm_s : 0.0F,
+                                      .angular = angular_rad_s > 0.0F ? motor.angular_rad_s / angular_rad_s : 0.0F});
+    }
+    robot.max_linear_speed_mm_s = linear_mm_s;
+    robot.max_angular_speed_rad_s = angular_rad_s;
+}
+
+/// A motor that is not there would leave the robot without its push.
+void refuse_unknown_motors(MapReader const& map) {
+    std::vector<std::string> names;
+    std::ranges::transform(kNamedMotors, std::back_inserter(names),
+                           [](NamedMotor const& motor) { return std::string(motor.name); });
+    for (auto const& [name, value] : map.place().node.entries) {
+        if (std::ranges::find(names, name) == names.end()) {
+            fail_at({value, map.path_of(name)},
+                    fmt::format("expected {}{}", names_text(names), did_you_mean(shown(name), names)));
+        }
+    }
+}
+
+void read_motors(MapReader& reader, RobotSpec& robot) {
+    if (reader.find("motors") == nullptr) {
+        return;
+    }
+    std::vector<std::pair<std::uint8_t, WrittenMotor>> motors;
+    reader.read_map("motors", kMotors, [&](MapReader& map) {
+        refuse_unknown_motors(map);
+        for (NamedMotor const& known : kNamedMotors) {
+            bool const is_given = map.find(known.name) != nullptr;
+            map.read_map(known.name, [&](MapReader& inner) {
+                WrittenMotor motor{.forward = known.forward};
+                inner.read(motor_keys(), motor);
+                if (is_given) {
+                    motors.emplace_back(known.id, motor);
+                }
+            });
+        }
+    });
+    set_drives(motors, robot);
+}
+
+/// Walls and membranes send along their outlines.
+void refuse_faces_of_outline(MapReader const& reader, RobotModel const& model) {
+    if (model.sends_along_outline && reader.find("faces") != nullptr) {
+        fail_at({*reader.find("faces"), reader.path_of("faces")},
+                "walls and membranes send and receive along their whole outline, and have no faces; remove it");
+    }
+}
+
+template <class T>
+std::vector<KeyDescription> described(std::span<Key<T> const> keys, T const& defaults) {
+    std::vector<KeyDescription> descriptions;
+    std::ranges::transform(keys, std::back_inserter(descriptions),
+                           [&](Key<T> const& key) { return describe(key, defaults); });
+    return descriptions;
+}
+
+}  // namespace
+
+void read_model(MapReader& reader, RobotSpec& robot) {
+    RobotModel& model = robot.model;
+    reader.read(part_keys(), robot);
+    reader.collect([&] { refuse_faces_of_outline(reader, model); });
+    reader.collect([&] { read_list(reader, "faces", kFaces, 1, kMostFaces, model.faces, read_face); });
+    reader.collect([&] { read_list(reader, "leds", kLeds, 0, kLedCount, model.leds, read_part); });
+    reader.collect(
+        [&] { read_list(reader, "light_sensors", kSensors, 0, kPhotosensorCount, model.light_sensors, read_part); });
+    reader.collect([&] { read_motors(reader, robot); });
+    WrittenFlash flash{};
+    reader.read(flash_keys(), flash);
+    model.flash_pages = flash.pages.value_or(model.flash_pages);
+    reader.collect([&] {
+        WrittenProcessor processor;
+        reader.read_map("processor", kProcessor, [&](MapReader& map) { map.read(processor_keys(), processor); });
+        model.clock_hz = static_cast<std::uint32_t>(processor.clock_hz);
+        model.memory_bytes = static_cast<std::uint32_t>(processor.memory_bytes);
+    });
+}
+
+std::vector<ModelTable> model_tables() {
+    std::vector<KeyDescription> face = described(place_keys(), WrittenPart());
+    std::ranges::copy(described(aperture_keys(), WrittenPart()), std::back_inserter(face));
+    return {
+        {"faces.<number>", "An infrared face.", std::move(face)},
+        {"leds.<number>, light_sensors.<number>", "An LED or a light sensor.", described(place_keys(), WrittenPart())},
+        {"motors.<right, left or back>", "A motor.", described(motor_keys(), WrittenMotor())},
+        {"processor", "The processor of a robot.", described(processor_keys(), WrittenProcessor())}};
+}
+
+}  // namespace pogosim

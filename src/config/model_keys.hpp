@@ -1,0 +1,25 @@
+// The parts of a robot as a configuration or a file of `robot_model` says them: faces, LEDs, light sensors, motors,
+// flash memory and processor, see docs/robot_models.md.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "config/map_reader.hpp"
+#include "world/specs.hpp"
+
+namespace pogosim {
+
+/// Fills the robot's model from the keys that are there, and the speeds that its motors give. Robots keep their
+/// defaults in all others.
+void read_model(MapReader& reader, RobotSpec& robot);
+
+/// The tables of the maps in a model, for the configuration reference.
+struct ModelTable {
+    std::string_view name;
+    std::string_view doc;
+    std::vector<KeyDescription> keys;
+};
+std::vector<ModelTable> model_tables();
+
+}  // namespace pogosim

@@ -1,0 +1,95 @@
+#include "config/robot_models.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/error.hpp"
+#include "config/find_file.hpp"
+#include "config/values.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::string_view kKey = "robot_model";
+
+/// Keys that say which objects there are and where, not what they have.
+constexpr std::array<std::string_view, 12> kNotOfModels{
+    "type", "nb",      "x",         "y", "angle", "poses", "area", "initial_formation", "initial_formation_filename",
+    kKey,   "objects", "parameters"};
+
+std::filesystem::path path_of_model(Place const& place, std::filesystem::path const& configuration) {
+    if (place.node.kind != Node::Kind::scalar || place.node.scalar.empty()) {
+        fail_expected(place, "the name of a file, such as models/pogobot_wheels.yaml");
+    }
+    FoundFile const found = search_file(configuration, place.node.scalar);
+    if (found.path.empty()) {
+        fail_at(place, fmt::format("there is no file '{}'{}. Bundled models: models/pogobot_wheels.yaml, "
+                                   "models/pogobot_brushes.yaml, ...",
+                                   shown(place.node.scalar), found.searched));
+    }
+    return found.path;
+}
+
+Node read_model_file(std::string const& path) {
+    Node model = read_yaml_file(path);
+    for (auto const& [key, value] : model.entries) {
+        if (std::ranges::find(kNotOfModels, key) != kNotOfModels.end()) {
+            fail_at({value, key},
+                    "a robot model says what robots have, not which there are or where; move this key into the "
+                    "category that names the model");
+        }
+    }
+    return model;
+}
+
+/// The entry with the model's keys first.
+Node merged(Node const& entry, Node const& model) {
+    Node all = entry;
+    all.entries.clear();
+    for (auto const& [key, value] : model.entries) {
+        if (entry.find(key) == nullptr) {
+            all.entries.emplace_back(key, value);
+        }
+    }
+    std::ranges::copy_if(entry.entries, std::back_inserter(all.entries),
+                         [](Node::Entry const& own) { return own.key != kKey; });
+    return all;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> include_robot_models(Node& root, std::filesystem::path const& configuration,
+                                                        Reading& reading) {
+    std::vector<std::filesystem::path> files;
+    auto const include = [&](Node& entry, std::string const& path) {
+        Node const* const name = entry.find(kKey);
+        if (name == nullptr || name->kind == Node::Kind::null) {
+            return;
+        }
+        reading.problems.collect([&] {
+            std::filesystem::path const file = path_of_model({*name, fmt::format("{}.{}", path, kKey)}, configuration);
+            entry = merged(entry, read_model_file(file.string()));
+            if (std::ranges::find(files, file) == files.end()) {
+                files.push_back(file);
+            }
+        });
+    };
+    Node* const objects = root.find("objects");
+    for (std::size_t i = 0; objects != nullptr && i < objects->entries.size(); ++i) {
+        auto& [category, entry] = objects->entries[i];
+        std::string const path = "objects." + category;
+        include(entry, path);
+        for (std::size_t k = 0; k < entry.items.size(); ++k) {
+            include(entry.items[k], fmt::format("{}.{}", path, k));
+        }
+    }
+    return files;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,219 @@
+// Robot models: the keys of a category, and files of `robot_model`.
+#include "world/robot_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/source.hpp"
+#include "config_file.hpp"
+
+using namespace pogosim;
+using namespace pogosim::config_file;
+
+namespace {
+
+RobotSpec robot(std::string const& lines) {
+    return *load(kRobots + lines).objects.at(0).spec.robot;
+}
+
+/// The message behind the line number of a wrong key, which stands on line 6.
+std::string error_in(std::string const& lines) {
+    return load_error(kRobots + lines);
+}
+
+/// What each motor gives at full power forwards.
+struct Twist {
+    int motor;
+    int forward;
+    float linear_mm_s;
+    float angular_rad_s;
+
+    friend bool operator==(Twist const&, Twist const&) = default;
+};
+std::vector<Twist> twists(RobotSpec const& robot) {
+    std::vector<Twist> all;
+    for (Drive const& drive : robot.model.drives) {
+        all.push_back({drive.motor, drive.forward, drive.linear * robot.max_linear_speed_mm_s,
+                       drive.angular * robot.max_angular_speed_rad_s});
+    }
+    return all;
+}
+
+std::string bundled(std::string const& name) {
+    return std::string(POGOSIM_SOURCE_DIR) + "/models/" + name + ".yaml";
+}
+
+TEST(RobotModel, BundledFilesSayWhatTheTypesHaveWithoutThem) {
+    std::vector<std::pair<std::string, std::string>> const files{
+        {"pogobot", "pogobot_wheels"}, {"pogobot", "pogobot_brushes"}, {"pogobject", "pogobject"},
+        {"pogowall", "pogowall"},      {"membrane", "membrane"},       {"rectmembrane", "membrane"}};
+    for (auto const& [type, file] : files) {
+        std::string const text =
+            "objects:\n  o: {type: " + type + ", geometry: disk, radius: 26.5, x: 100, y: 100, robot_model: ";
+        Warnings const warnings;
+        RobotSpec const without = *load(text + "~}\n").objects.at(0).spec.robot;
+        RobotSpec const with = *load(text + bundled(file) + "}\n").objects.at(0).spec.robot;
+        EXPECT_EQ(warnings.text(), "") << file;
+        RobotModel same_motors = with.model;
+        same_motors.drives = without.model.drives;
+        EXPECT_EQ(same_motors, without.model) << file;
+        EXPECT_EQ(twists(with), twists(without)) << file;
+    }
+    std::size_t bundled_files = 0;
+    for (auto const& entry : std::filesystem::directory_iterator(std::string(POGOSIM_SOURCE_DIR) + "/models")) {
+        bundled_files += entry.path().extension() == ".yaml" ? 1 : 0;
+    }
+    EXPECT_EQ(bundled_files, 5U);
+}
+
+TEST(RobotModel, PartsAreRead) {
+    RobotModel const model = robot(
+                                 "    faces: [{angle_deg: 90, place: centre, emission_deg: 30, reception_deg: 40}]\n"
+                                 "    leds: [{place: [1, 2]}]\n"
+                                 "    light_sensors: []\n"
+                                 "    flash_pages: 16\n"
+                                 "    processor: {clock_hz: 1000000, memory_bytes: 65536}\n")
+                                 .model;
+    ASSERT_EQ(model.faces.size(), 1U);
+    EXPECT_EQ(model.faces[0].normal, (Vec2{0.0F, 1.0F}));
+    EXPECT_EQ(model.faces[0].place, PartPlace());
+    EXPECT_EQ(model.faces[0].emission_deg, 30.0F);
+    EXPECT_EQ(model.faces[0].reception_deg, 40.0F);
+    EXPECT_EQ(model.leds, (std::vector<Part>{{.direction = {1, 0}, .place = {.radii = {}, .offset_mm = {1, 2}}}}));
+    EXPECT_TRUE(model.light_sensors.empty());
+    EXPECT_EQ(model.flash_pages, 16U);
+    EXPECT_EQ(model.clock_hz, 1'000'000U);
+    EXPECT_EQ(model.memory_bytes, 65'536U);
+    EXPECT_EQ(model.drives, two_wheels());  // as before
+}
+
+TEST(RobotModel, SpeedsAreThoseOfAllMotorsTogetherAndKeysScaleThem) {
+    std::string const motors =
+        "    motors:\n"
+        "      right: {linear_mm_s: 30, angular_rad_s: -1}\n"
+        "      left: {linear_mm_s: 30, angular_rad_s: 1}\n"
+        "      back: {linear_mm_s: 20, forward: 1}\n";
+    RobotSpec const own = robot(motors);
+    EXPECT_FLOAT_EQ(own.max_linear_speed_mm_s, 80.0F);
+    EXPECT_FLOAT_EQ(own.max_angular_speed_rad_s, 2.0F);
+    EXPECT_EQ(twists(own), (std::vector<Twist>{{0, 0, 30, -1}, {1, 1, 30, 1}, {2, 1, 20, 0}}));
+    // With motors, the keys are what their names say: the highest speed, and the fastest turn.
+    EXPECT_EQ(twists(robot(motors + "    max_linear_speed: 160\n    max_angular_speed: 1\n")),
+              (std::vector<Twist>{{0, 0, 60, -0.5F}, {1, 1, 60, 0.5F}, {2, 1, 40, 0}}));
+    // Without, max_angular_speed has its old meaning: one motor alone turns the robot at twice this.
+    EXPECT_EQ(twists(robot("    max_angular_speed: 1\n")), (std::vector<Twist>{{0, 0, 50, -2}, {1, 1, 50, 2}}));
+    EXPECT_TRUE(robot("    motors: {}\n").model.drives.empty());
+}
+
+TEST(RobotModel, FileGivesKeysThatTheCategoryDoesNotHave) {
+    Folder const folder;
+    Folder::write("narrow.yaml", "radius: 30\ncommunication_radius: 55\nfaces: [{angle_deg: 0, emission_deg: 60}]\n");
+    Folder::write("x.yaml",
+                  "arena_file: arenas/disk.csv\nobjects:\n  robots: {type: pogobot, robot_model: narrow.yaml, "
+                  "communication_radius: 70}\n");
+    Scenario const scenario = load_scenario("x.yaml", {});
+    ObjectSpec const& spec = scenario.objects.at(0).spec;
+    EXPECT_EQ(spec.shape.radius_mm, 30.0F);
+    EXPECT_EQ(spec.robot->ir.range_mm, 70.0F);
+    ASSERT_EQ(spec.robot->model.faces.size(), 1U);
+    EXPECT_EQ(spec.robot->model.faces[0].emission_deg, 60.0F);
+    ASSERT_EQ(scenario.robot_model_files.size(), 1U);
+    EXPECT_EQ(scenario.robot_model_files[0], "narrow.yaml");
+    // What the run keeps in its data file is complete without the model's file.
+    Folder::write("resolved.yaml", to_yaml(scenario.source->values));
+    std::filesystem::remove("narrow.yaml");
+    ObjectSpec const again = load_scenario("resolved.yaml", {}).objects.at(0).spec;
+    EXPECT_EQ(again.robot->model, spec.robot->model);
+    EXPECT_EQ(again.shape.radius_mm, 30.0F);
+}
+
+TEST(RobotModel, FileIsSearchedBesideTheConfigurationAndInThePathOfTheUser) {
+    Folder const folder;
+    std::filesystem::create_directories("conf");
+    std::filesystem::create_directories("models_of_the_lab");
+    Folder::write("conf/beside.yaml", "radius: 31\n");
+    Folder::write("models_of_the_lab/far.yaml", "radius: 32\n");
+    setenv("POGOSIM_PATH", "nowhere:models_of_the_lab", 1);
+    Folder::write("conf/x.yaml",
+                  "objects:\n"
+                  "  a: {type: pogobot, robot_model: beside.yaml}\n"
+                  "  b: {type: pogobot, robot_model: far.yaml}\n"
+                  "  c: {type: pogobot, robot_model: models/pogobot_wheels.yaml}\n");
+    Scenario const scenario = load_scenario("conf/x.yaml", {});
+    unsetenv("POGOSIM_PATH");
+    EXPECT_EQ(scenario.objects.at(0).spec.shape.radius_mm, 31.0F);
+    EXPECT_EQ(scenario.objects.at(1).spec.shape.radius_mm, 32.0F);
+    EXPECT_EQ(scenario.objects.at(2).spec.shape.radius_mm, 26.5F);
+}
+
+TEST(RobotModel, MistakesNameTheFileAndTheLineOfTheModel) {
+    Folder const folder;
+    Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml}\n");
+    auto const error = [](std::string const& model) {
+        Folder::write("m.yaml", model);
+        return error_of([] { load_scenario("x.yaml", {}); });
+    };
+    EXPECT_EQ(error("radius: 30\nfaces: []\n"), "m.yaml:2: objects.robots.faces: expected 1 to 4 entries, found 0");
+    EXPECT_EQ(error("faces:\n  - {angle_deg: 0}\n  - {angle_deg: 10, emission_deg: 200}\n"),
+              "m.yaml:3: objects.robots.faces.1.emission_deg: expected a number above 0, at most 180 (degrees), found "
+              "200");
+    EXPECT_EQ(error("type: pogobot\n"),
+              "m.yaml:1: type: a robot model says what robots have, not which there are or where; move this key into "
+              "the category that names the model");
+    EXPECT_NE(error("faces: [").find("m.yaml"), std::string::npos);
+    std::filesystem::remove("m.yaml");
+    EXPECT_EQ(error_of([] { load_scenario("x.yaml", {}); })
+                  .find("x.yaml:2: objects.robots.robot_model: there is no file "
+                        "'m.yaml'; searched "),
+              0U);
+    Warnings const warnings;
+    Folder::write("m.yaml", "radius: 30\nfacess: [{angle_deg: 0}]\n");
+    load_scenario("x.yaml", {});
+    EXPECT_NE(warnings.text().find("m.yaml:2: "), std::string::npos);
+    EXPECT_NE(warnings.text().find("'faces'"), std::string::npos);
+}
+
+TEST(RobotModel, WrongPartsAreRefused) {
+    EXPECT_EQ(error_in("    faces: [1]\n"), "x.yaml:6: objects.robots.faces.0: expected a map of keys, found 1");
+    EXPECT_NE(error_in("    faces: {angle_deg: 0}\n").find("expected a list of maps"), std::string::npos);
+    EXPECT_NE(error_in("    faces: [{}, {}, {}, {}, {}]\n").find("expected 1 to 4 entries, found 5"),
+              std::string::npos);
+    EXPECT_NE(error_in("    leds: [{}, {}, {}, {}, {}, {}]\n").find("expected 0 to 5 entries, found 6"),
+              std::string::npos);
+    EXPECT_NE(error_in("    light_sensors: [{}, {}, {}, {}]\n").find("expected 0 to 3 entries, found 4"),
+              std::string::npos);
+    EXPECT_NE(error_in("    leds: [{place: edge}]\n").find("expected rim, centre, or [x, y]"), std::string::npos);
+    EXPECT_NE(error_in("    leds: [{place: [1, 2, 3]}]\n").find("place"), std::string::npos);
+    EXPECT_NE(error_in("    motors: {left: {forward: 2}}\n").find("motors.left.forward"), std::string::npos);
+    EXPECT_EQ(error_in("    motors: {rigt: {linear_mm_s: 50}}\n"),
+              "x.yaml:6: objects.robots.motors.rigt: expected one of right, left, back; did you mean 'right'?");
+    EXPECT_NE(error_in("    motors: 3\n").find("expected a map of motors"), std::string::npos);
+    EXPECT_NE(error_in("    flash_pages: 5889\n").find("flash_pages: expected an integer from 0 to 5888"),
+              std::string::npos);
+    EXPECT_NE(error_in("    processor: {memory_bytes: 1}\n").find("processor.memory_bytes"), std::string::npos);
+    EXPECT_NE(load_error("objects:\n  w: {type: pogowall, geometry: arena, faces: [{}]}\n").find("have no faces"),
+              std::string::npos);
+}
+
+TEST(RobotModel, WithoutItsKeysNothingIsAddedToTheRunsConfiguration) {
+    Node const& values = load(kRobots).source->values;
+    for (char const* const key :
+         {"faces", "leds", "light_sensors", "motors", "flash_pages", "processor", "robot_model"}) {
+        EXPECT_EQ(find_path(values, std::string("objects.robots.") + key), nullptr) << key;
+    }
+}
+
+TEST(RobotModel, RightAnglesAreExact) {
+    EXPECT_EQ(direction_of_deg(0.0), (Vec2{1, 0}));
+    EXPECT_EQ(direction_of_deg(-270.0), (Vec2{0, 1}));
+    EXPECT_EQ(direction_of_deg(540.0), (Vec2{-1, 0}));
+    EXPECT_EQ(direction_of_deg(-90.0), (Vec2{0, -1}));
+    EXPECT_FLOAT_EQ(direction_of_deg(30.0).y, 0.5F);
+}
+
+}  // namespace
