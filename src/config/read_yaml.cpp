@@ -125,13 +125,15 @@ Node parse_yaml(std::string const& text, std::string const& source) {
         std::istringstream stream(text + (text.ends_with('\n') ? "" : "\n") + std::string(kEndMark));
         YAML::Parser parser(stream);
         TreeBuilder first(text, source);
-        parser.HandleNextDocument(first);
+        bool const has_value = parser.HandleNextDocument(first);
         TreeBuilder second(text, source);
         if (parser.HandleNextDocument(second)) {
             refuse_remains(text, second.first_line(), source);
             log().warn("{}:{}: a second document starts here; only the first one is used", source, second.first_line());
         }
-        return first.root();
+        Node root = first.root();
+        root.blank = root.blank || !has_value;
+        return root;
     } catch (YAML::Exception const& error) {
         fail_syntax(error, text, source);
     }

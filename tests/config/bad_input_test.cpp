@@ -130,6 +130,17 @@ TEST(BadInput, ObjectsAreAMap) {
     EXPECT_EQ(load_error("objects: [robots]\n"), "x.yaml:1: objects: expected a map of categories, found a list");
 }
 
+TEST(BadInput, SetNeedsAValue) {
+    for (std::string const value : {"", " ", " # nothing"}) {
+        EXPECT_EQ(load_error(kRobots, {.overrides = {"objects.robots.nb=" + value}}),
+                  "--set 'objects.robots.nb=" + value +
+                      "': nothing stands behind '='; for the default, write objects.robots.nb=null");
+    }
+    for (std::string const value : {"null", "~", "''"}) {
+        EXPECT_EQ(load_error(kRobots, {.overrides = {"console_filename=" + value}}), "no error");
+    }
+}
+
 TEST(BadInput, UnknownFormationNamesTheNearest) {
     std::string const message = load_error(kRobots + "initial_formation: lloid\n");
     EXPECT_NE(message.find("x.yaml:6: initial_formation: expected one of "), std::string::npos) << message;

@@ -74,7 +74,7 @@ TEST(Tree, SetReplacesValuesAndMakesMapsOnTheWay) {
     EXPECT_EQ(set("a: 1\n", R"(b\.c=2)"), "a: 1\nb.c: 2\n");
     EXPECT_EQ(set("a.b: 1\n", "a.b=2"), "a.b: 2\n");
     EXPECT_EQ(set("a: 1\n", "a={x: [1, 2]}"), "a:\n  x:\n    - 1\n    - 2\n");
-    EXPECT_EQ(set("a: 1\n", "a="), "a: null\n");
+    EXPECT_EQ(set("a: 1\n", "a=null"), "a: null\n");
     EXPECT_EQ(set("a: 1\n", "a=b=c"), "a: \"b=c\"\n");
 }
 
@@ -87,6 +87,7 @@ TEST(Tree, WhatWasSetSaysSo) {
 
 TEST(Tree, SetThatMakesNoSenseIsRefused) {
     EXPECT_EQ(set_error("a: 1\n", "a"), "--set 'a': expected key.path=value");
+    EXPECT_EQ(set_error("a: 1\n", "a="), "--set 'a=': nothing stands behind '='; for the default, write a=null");
     EXPECT_EQ(set_error("a: 1\n", "=1"), "--set '=1': a name in the key path is empty");
     EXPECT_EQ(set_error("a: 1\n", "b..c=1"), "--set 'b..c=1': a name in the key path is empty");
     EXPECT_EQ(set_error("a: 1\n", "b.=1"), "--set 'b.=1': a name in the key path is empty");
