@@ -23,7 +23,7 @@ std::string path_inside(Node const& value) {
     return is_chain ? "." + value.entries.front().key + path_inside(value.entries.front().value) : "";
 }
 
-/// A hint for a key at the top level that belongs one level further in.
+/// A hint for a key at the top level that is one level further in as well.
 std::string inner_place(Node const& root, std::string const& key, Node const& value) {
     for (char const* const outer : {"objects", "parameters"}) {
         Node const* const map = root.find(outer);
@@ -31,6 +31,11 @@ std::string inner_place(Node const& root, std::string const& key, Node const& va
             return fmt::format("; did you mean '{}.{}'?", outer, shown(key + path_inside(value)));
         }
     }
+    return "";
+}
+
+/// A hint for a category at the top level.
+std::string place_of_category(std::string const& key, Node const& value) {
     bool const is_category = value.kind == Node::Kind::map && value.find("type") != nullptr;
     return is_category ? fmt::format("; did you mean 'objects.{}'?", shown(key)) : "";
 }
@@ -176,6 +181,12 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     }
     if (hint.empty()) {
         hint = other_level(path_, key, map_);
+    }
+    if (hint.empty()) {
+        hint = inner_level(path_, key, names);
+    }
+    if (hint.empty() && path_.empty()) {
+        hint = place_of_category(key, value);
     }
     if (hint.empty()) {
         hint = did_you_mean(shown(key), names);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/object_types.hpp"
+#include "config/reference.hpp"
 #include "config/scenario_keys.hpp"
 #include "config/values.hpp"
 
@@ -68,7 +69,50 @@ std::string category_with(std::string_view key, Node const& root) {
     return "<category>";
 }
 
+constexpr std::string_view kOfCategory = "objects.<category>";
+
+/// The category's part of a path in it: "objects.robots". Empty for any other path.
+std::string_view category_part(std::string_view path) {
+    constexpr std::string_view kObjects = "objects.";
+    return path.starts_with(kObjects) ? path.substr(0, path.find('.', kObjects.size())) : "";
+}
+
+std::string_view parent_of(std::string_view path) {
+    return path.substr(0, path.find('.') == std::string_view::npos ? 0 : path.rfind('.'));
+}
+
+bool is_in(std::string_view path, std::string_view map) {
+    return path == map || (path.starts_with(map) && path.substr(map.size()).starts_with('.'));
+}
+
 }  // namespace
+
+std::string inner_level(std::string_view path, std::string_view key, std::span<std::string const> names) {
+    static std::vector<KeyGroup> const groups = configuration_reference();
+    std::string_view const category = category_part(path);
+    std::string const map =
+        category.empty() ? std::string(path) : fmt::format("{}{}", kOfCategory, path.substr(category.size()));
+    std::vector<std::string> places;
+    for (KeyGroup const& group : groups) {
+        if (group.path.empty() || !group.type.empty()) {
+            continue;
+        }
+        std::string_view const parent = parent_of(group.path);
+        std::string_view const name = std::string_view(group.path).substr(parent.empty() ? 0 : parent.size() + 1);
+        bool const is_child = parent == map && std::ranges::find(names, name) != names.end();
+        for (KeyDescription const& known : group.keys) {
+            std::string const place = fmt::format("{}.{}", group.path, known.name);
+            bool const is_of_this_map = is_in(map, group.path);
+            bool const is_one_further_in = is_child && known.name == key;
+            if ((is_of_this_map || is_one_further_in) && place.ends_with(fmt::format(".{}", key))) {
+                places.push_back(place.starts_with(kOfCategory)
+                                     ? fmt::format("{}{}", category, place.substr(kOfCategory.size()))
+                                     : place);
+            }
+        }
+    }
+    return places.size() == 1 ? fmt::format("; did you mean '{}'?", shown(places.front())) : "";
+}
 
 std::string other_level(std::string_view path, std::string_view key, Node const& map) {
     if (!path.empty()) {

@@ -1,6 +1,7 @@
 // Keys that stand in the wrong map of a configuration: those of objects at the top level, and the other way round.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,5 +12,10 @@ namespace pogosim {
 /// "; it belongs at the top level" or "; it belongs in a category, as objects.robots.battery", for a key that is
 /// unknown in the map at `path`; empty if no other level has it. At the top level, `map` is the whole configuration.
 std::string other_level(std::string_view path, std::string_view key, Node const& map);
+
+/// "; did you mean 'magnetometer.csv.file'?", for a key that is unknown in the map at `path`, and stands in one other
+/// place only of a map such as `magnetometer` or `battery`; empty otherwise. At the top level and in a category, for
+/// keys that belong one level further in. `names`: those that the map at `path` may have.
+std::string inner_level(std::string_view path, std::string_view key, std::span<std::string const> names);
 
 }  // namespace pogosim

@@ -11,6 +11,7 @@
 #include "config/check_scenario.hpp"
 #include "config/object_types.hpp"
 #include "config/option_keys.hpp"
+#include "config/other_level.hpp"
 #include "config/robot_models.hpp"
 #include "config/scenario_keys.hpp"
 #include "config/source.hpp"
@@ -58,8 +59,12 @@ Node without_maps_of_tools(Node root) {
     return root;
 }
 
-/// A `--set` with a slip in the category's name makes an entry that has no type.
+/// Neither a key of the top level, nor an entry without a type, which a `--set` with a slip in its name makes.
 void require_category(Node const& objects, std::string const& category, Node const& node) {
+    bool const has_no_type = node.kind != Node::Kind::sequence && node.find("type") == nullptr;
+    if (std::string const place = has_no_type ? other_level("objects", category, objects) : ""; !place.empty()) {
+        fail_at({node, "objects." + category}, fmt::format("this is no category of objects{}", place));
+    }
     bool const is_new = node.source == kSetSource && node.kind == Node::Kind::map && node.find("type") == nullptr;
     if (!is_new) {
         return;

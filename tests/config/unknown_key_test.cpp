@@ -105,6 +105,43 @@ TEST(UnknownKey, LevelThatHasItIsNamed) {
               "x.yaml:6: unknown key 'battery'; it belongs in a category, as objects.robots.battery (--strict)");
 }
 
+TEST(UnknownKey, MapOfACategoryAtTheTopLevelIsNoCategory) {
+    EXPECT_EQ(warnings_of(kRobots + "msg_success_rate: {type: static, rate: 1}\n"),
+              Lines{"x.yaml:6: unknown key 'msg_success_rate' is ignored; it belongs in a category, as "
+                    "objects.robots.msg_success_rate"});
+}
+
+TEST(UnknownKey, PlaceInTheMapOfASensorIsNamed) {
+    auto const expect = [](std::string const& text, std::string const& key, std::string const& place) {
+        EXPECT_EQ(warnings_of(kRobots + text),
+                  Lines{"x.yaml:" + std::string(text.find('\n') + 1 < text.size() ? "7" : "6") + ": unknown key '" +
+                        key + "' is ignored; did you mean '" + place + "'?"});
+    };
+    expect("magnetometer:\n  noise_stddev: {x: [3]}\n", "magnetometer.noise_stddev",
+           "magnetometer.robot_variation.noise_stddev");
+    expect("magnetometer:\n  procedural: {minor_radius: [3]}\n", "magnetometer.procedural.minor_radius",
+           "magnetometer.procedural.ellipse.minor_radius");
+    expect("magnetometer:\n  procedural: {timing: robot}\n", "magnetometer.procedural.timing", "magnetometer.timing");
+    expect("timing: robot\n", "timing", "magnetometer.timing");
+    expect("input_file: a.flash\n", "input_file", "flash_state.input_file");
+    expect("    capacity_mah: 20\n", "objects.robots.capacity_mah", "objects.robots.battery.capacity_mah");
+    // It may be in several places, stand deeper, or in a map that these objects have not.
+    EXPECT_EQ(warnings_of(kLamp + "    capacity_mah: 20\n"),
+              Lines{"x.yaml:6: unknown key 'objects.lamp.capacity_mah' is ignored"});
+    EXPECT_EQ(warnings_of(kRobots + "magnetometer: {z: 1}\n"),
+              Lines{"x.yaml:6: unknown key 'magnetometer.z' is ignored"});
+    EXPECT_EQ(warnings_of(kRobots + "noise_stddev: 1\n"), Lines{"x.yaml:6: unknown key 'noise_stddev' is ignored"});
+}
+
+TEST(UnknownKey, KeyOfTheTopLevelIsNoCategory) {
+    std::string const what = ": this is no category of objects; it belongs at the top level";
+    EXPECT_EQ(load_error(kRobots + "  magnetometer: {source: csv}\n"), "x.yaml:6: objects.magnetometer" + what);
+    EXPECT_EQ(load_error(kRobots + "  simulation_time: 3\n"), "x.yaml:6: objects.simulation_time" + what);
+    EXPECT_EQ(load_error(kRobots, {.overrides = {"objects.flash_state.input_file=a"}}),
+              "--set: objects.flash_state" + what);
+    EXPECT_EQ(warnings_of(kRobots + "  flash: {type: static_light, geometry: global}\n"), Lines{});
+}
+
 TEST(UnknownKey, BracesAndPercentSignsInItAreShownAsTheyAre) {
     EXPECT_EQ(warnings_of(kRobots + "'{}%s': 3\n"), Lines{"x.yaml:6: unknown key '{}%s' is ignored"});
 }
