@@ -218,13 +218,13 @@ void check_light_levels(Scenario const& scenario) {
     ObjectConfig const* brightest = nullptr;
     int level = 0;
     for (ObjectConfig const& object : scenario.objects) {
-        if (object.spec.lamp && (brightest == nullptr || brightest_level(*object.spec.lamp) > level)) {
+        if (object.spec.lamp && object.nb > 0 && (brightest == nullptr || brightest_level(*object.spec.lamp) > level)) {
             brightest = &object;
             level = brightest_level(*object.spec.lamp);
         }
     }
     for (ObjectConfig const& object : scenario.objects) {
-        int const bits = object.spec.robot ? object.spec.robot->sensors.photosensor_bits : kLightBits;
+        int const bits = object.spec.robot && object.nb > 0 ? object.spec.robot->sensors.photosensor_bits : kLightBits;
         if (brightest != nullptr && level > 0 && bits <= kMuchFewerBits && level < 1 << bits) {
             log().warn(
                 "{}: objects.{}: no lamp is brighter than {}, which light sensors of {} bits, such as those of "

@@ -825,6 +825,8 @@ TEST(Scenario, LampsWithLevelsOfTheSensorsConverterAreAWarning) {
         "be 32 times higher\n");
     EXPECT_NE(warnings_of("sensor_model: robot", spot + "value: 1023"), "");
     EXPECT_EQ(warnings_of(ten, spot + "value: 1024"), "");
+    EXPECT_EQ(warnings_of(ten, spot + "value: 800, nb: 0"), "");
+    EXPECT_EQ(warnings_of(ten + ", nb: 0", spot + "value: 800").find("no lamp"), std::string::npos);
     EXPECT_EQ(warnings_of(ten, spot + "value: 0"), "");
     EXPECT_EQ(warnings_of(ten, spot + "value: 0, light_mode: gradient, edge_value: 2000"), "");
     EXPECT_EQ(warnings_of(ten, spot + "value: 800, photo_start_at: 1"), "");
