@@ -32,6 +32,10 @@ FlashPage& made_page(Flash& flash, std::uint16_t page) {
 
 }  // namespace
 
+std::size_t allocated_bytes(Flash const& flash) {
+    return flash.slot.capacity() * sizeof(flash.slot[0]) + flash.pages.capacity() * sizeof(FlashPage);
+}
+
 bool is_blank(std::span<std::byte const> page) {
     return std::ranges::all_of(page, [](std::byte byte) { return byte == kErased; });
 }

@@ -26,6 +26,9 @@ bool program_page(Flash& flash, std::uint16_t page, std::byte const* data);
 /// Erases everything. What was counted stays.
 void erase(Flash& flash);
 
+/// What it takes of the computer's memory.
+std::size_t allocated_bytes(Flash const& flash);
+
 /// Whether all bytes of a page are erased.
 bool is_blank(std::span<std::byte const> page);
 

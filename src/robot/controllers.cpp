@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "device/clock.hpp"
+#include "device/flash.hpp"
 #include "device/motors.hpp"
 #include "device/sensing.hpp"
 #include "device/switched_off.hpp"
@@ -356,10 +357,18 @@ void Controllers::start() {
     std::size_t const memory_bytes = least_memory_bytes(world_);
     warn_of_large_memory("USERDATA has", user_data_bytes(), memory_bytes);
     warn_of_large_memory("the program's variables have", own_memory_ ? own_memory_->bytes() : 0, memory_bytes);
-    std::size_t const allocated_before = allocated_bytes();
+    // Pages of flash memory are on the computer's heap, but not in the robot's memory.
+    auto const allocated_by_robots = [this] {
+        std::size_t bytes = allocated_bytes();
+        for (Flash const& flash : world_.devices.flash) {
+            bytes -= std::min(bytes, allocated_bytes(flash));
+        }
+        return bytes;
+    };
+    std::size_t const allocated_before = allocated_by_robots();
     start_programs();
     // In a host's process, other threads allocate, too.
-    std::size_t const allocated_now = run_stage() == RunStage::hosted ? 0 : allocated_bytes();
+    std::size_t const allocated_now = run_stage() == RunStage::hosted ? 0 : allocated_by_robots();
     warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), count, memory_bytes);
 }
 

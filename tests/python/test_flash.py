@@ -49,6 +49,24 @@ def test_macros_are_constants_of_the_preprocessor_and_of_the_language(tmp_path: 
         compile_text(tmp_path, text, flags=flags)
 
 
+def test_pages_are_not_in_the_memory_of_the_robot(tmp_path: Path) -> None:
+    text = """
+    #include "pogobase.h"
+    typedef struct { int unused; } USERDATA;
+    REGISTER_USERDATA(USERDATA)
+    static void user_init(void) {
+        uint8_t page[POGOBOT_USER_FLASH_PAGE_SIZE] = {0};
+        for (uint16_t i = 0; i < POGOBOT_USER_FLASH_PAGE_COUNT; ++i) {
+            write_page_flash(i, page);
+        }
+    }
+    static void user_step(void) {}
+    int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+    """
+    result = run(compile_text(tmp_path, text), tmp_path)
+    assert (result.code, result.errors) == (0, "")
+
+
 # ---- flash: nor ----
 
 
