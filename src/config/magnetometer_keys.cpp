@@ -481,13 +481,22 @@ void read_table(MapReader& reader, AngleUnit unit, MagnetometerTable& table, boo
     }
 }
 
+bool is_given(Node const* source) {
+    return source != nullptr && source->kind != Node::Kind::null;
+}
+
+/// Whether the source is not one that is an error: the other map may be that of the one that was meant.
+bool is_procedural(Node const* source) {
+    return !is_given(source) || source->scalar == "procedural";
+}
+
 /// A map that has keys, but not the source that it is for.
 void warn_of_unused_map(MapReader const& reader, std::string_view key, std::string_view source,
                         std::string_view advice) {
     Node const* const map = reader.find(key);
     if (map != nullptr && !map->entries.empty()) {
         log().warn("{}: {}: has no effect with source: {}{}; {}", map->where(), reader.path_of(key), source,
-                   reader.find("source") == nullptr ? ", the default" : "", advice);
+                   is_given(reader.find("source")) ? "" : ", the default", advice);
     }
 }
 
@@ -508,7 +517,7 @@ MagnetometerConfig read_magnetometer_map(MapReader& reader) {
     reader.read_map("csv", [&](MapReader& inner) { read_table(inner, unit, config.table, has_table); });
     if (has_table) {
         warn_of_unused_map(reader, "procedural", "csv", "remove it, or set source: procedural");
-    } else {
+    } else if (is_procedural(reader.find("source"))) {
         warn_of_unused_map(reader, "csv", "procedural", "set source: csv, or remove it");
     }
     if (has_table && config.table.file.empty()) {

@@ -91,6 +91,26 @@ std::optional<std::vector<double>> relative_distances(std::span<MagneticRow cons
     return relative;
 }
 
+/// What there is of an ellipse: semi-axes of x and y, counts, and what those of readings without one may be by chance.
+struct EllipseSize {
+    double major;
+    double minor;
+    double chance;
+};
+
+EllipseSize ellipse_size(MagneticFit const& fit, std::size_t rows) {
+    constexpr double kSignificant = 4.0;  // times the error of all four coefficients
+    Axes const& cosine = fit.curve.cosine[0];
+    Axes const& sine = fit.curve.sine[0];
+    double const sum = std::hypot(cosine[0] + sine[1], cosine[1] - sine[0]);
+    double const difference = std::hypot(cosine[0] - sine[1], cosine[1] + sine[0]);
+    double const noise = std::hypot(fit.rms_error[0], fit.rms_error[1]);
+    double const least = 1e-9 * (1.0 + std::max(std::abs(fit.curve.constant[0]), std::abs(fit.curve.constant[1])));
+    return {.major = (sum + difference) / 2.0,
+            .minor = std::abs(sum - difference) / 2.0,
+            .chance = std::max(least, kSignificant * noise * std::sqrt(4.0 / static_cast<double>(rows)))};
+}
+
 bool runs_backwards(MagneticFit const& fit) {
     constexpr double kSignificant = 4.0;  // times the residuals
     Axes const& cosine = fit.curve.cosine[0];
@@ -117,11 +137,16 @@ double largest_gap_rad(std::span<MagneticRow const> rows) {
 
 std::string note_on_unit(std::span<MagneticRow const> rows, MagnetometerTable const& table, double field_angle_rad) {
     constexpr double kMost = 1.02 * kTurn;  // of angles around a turn in radians
-    bool const may_be_radians =
-        table.angle_unit == AngleUnit::degrees && rows.size() > 1 && std::ranges::all_of(rows, [&](auto const& row) {
-            return std::abs(field_angle_rad - row.angle_rad) <= kMost * kDegree;
-        });
-    return may_be_radians ? " If the table has radians, set magnetometer.csv.input_angle_unit to radians." : "";
+    auto const are_within = [&](double largest_rad) {
+        return std::ranges::all_of(
+            rows, [&](auto const& row) { return std::abs(field_angle_rad - row.angle_rad) <= largest_rad; });
+    };
+    if (table.angle_unit == AngleUnit::degrees && rows.size() > 1 && are_within(kMost * kDegree)) {
+        return " If the table has radians, set magnetometer.csv.input_angle_unit to radians.";
+    }
+    return table.angle_unit == AngleUnit::radians && !are_within(kMost)
+               ? " If the table has degrees, set magnetometer.csv.input_angle_unit to degrees."
+               : "";
 }
 
 std::vector<MagneticRow> outliers_of(std::span<MagneticRow const> rows, int order, double ridge) {
@@ -178,7 +203,18 @@ void warn_of_doubts(std::string const& place, std::string const& file, std::span
             table.residual_is_noise ? ", and makes the noise of all robots larger" : "");
     }
     auto const fit = fit_magnetic_curve(rows, table.harmonic_order, table.ridge);
-    if (fit && runs_backwards(*fit)) {
+    if (!fit) {
+        return;
+    }
+    EllipseSize const size = ellipse_size(*fit, rows.size());
+    if (size.minor <= size.chance && outliers.empty()) {  // which may hide an ellipse
+        log().warn(
+            "{}: x and y of '{}' {}, so robots cannot tell headings by them; check that the headings and the columns "
+            "belong to the readings.{}",
+            place, file,
+            size.major <= size.chance ? "hardly depend on the heading" : "move along a line, not around an ellipse",
+            note_on_unit(rows, table, field_angle_rad));
+    } else if (runs_backwards(*fit)) {
         log().warn(
             "{}: as the headings of '{}' grow, x and y run around their ellipse the other way than with source: "
             "procedural; that is right if the headings count clockwise seen from above, else change their signs",

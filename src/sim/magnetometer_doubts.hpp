@@ -19,9 +19,8 @@ std::string note_on_unit(std::span<MagneticRow const> rows, MagnetometerTable co
 /// The rows whose readings are far from the curve of the others; none if too many are, so that the curve is wrong.
 std::vector<MagneticRow> outliers_of(std::span<MagneticRow const> rows, int order, double ridge);
 
-/// Warns of headings on one side only, of readings that run around the ellipse the other way than those of the model
-/// with formulas, and of outliers.
-/// `place`: of the key that names the file.
+/// Warns of headings on one side only, of readings that do not go around an ellipse or do so the other way than those
+/// of the model with formulas, and of outliers. `place`: of the key that names the file.
 void warn_of_doubts(std::string const& place, std::string const& file, std::span<MagneticRow const> rows,
                     MagnetometerTable const& table, double field_angle_rad);
 

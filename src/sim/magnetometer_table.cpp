@@ -98,6 +98,23 @@ Places places_in_header(std::string const& file, CsvLine const& line, Magnetomet
     return places;
 }
 
+/// Warns of columns that cannot be told apart, or that are one.
+void look_for_doubtful_columns(std::string const& file, std::vector<std::string> const& names, Places const& places) {
+    constexpr std::array kMeanings{"angle", "x", "y", "z"};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (places[i] < names.size() && std::ranges::count(names, names[places[i]]) > 1) {
+            log().warn("{}: the column {} stands there several times; the first one is read", file,
+                       in_quotes(names[places[i]]));
+        }
+        for (std::size_t j = 0; j < i; ++j) {
+            if (places[i] == places[j]) {
+                log().warn("{}: {} and {} are read from the same column, number {} from 0 on (magnetometer.csv)", file,
+                           kMeanings[j], kMeanings[i], places[i]);
+            }
+        }
+    }
+}
+
 Places places_by_index(MagnetometerColumns<int> const& columns) {
     auto const place = [](int index) { return static_cast<std::size_t>(index); };
     return {place(columns.angle), place(columns.x), place(columns.y), place(columns.z)};
@@ -164,6 +181,7 @@ std::vector<MagneticRow> read_magnetometer_table(std::filesystem::path const& pa
     std::optional<Places> places;
     if (!table.has_header) {
         places = places_by_index(table.column_indices);
+        look_for_doubtful_columns(file, {}, *places);
     }
     std::vector<MagneticRow> rows;
     InvalidRows invalid;
@@ -173,6 +191,7 @@ std::vector<MagneticRow> read_magnetometer_table(std::filesystem::path const& pa
         }
         if (!places) {
             places = places_in_header(file, line, table);
+            look_for_doubtful_columns(file, split_fields(line.text, delimiter), *places);
         } else if (auto const numbers = numbers_of(line, *places, delimiter); !numbers) {
             invalid.note(line, "numbers for angle, x, y and z");
         } else if (!is_possible(*numbers)) {

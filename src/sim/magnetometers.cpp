@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -48,7 +49,7 @@ MagneticFit fit_to_table(Scenario const& scenario) {
             "{}: '{}' has {} at {}; these cover {:.0f} of 360 degrees, and a curve of harmonic_order {} needs at least "
             "{}, all around the turn.{} Take readings at more headings, or lower magnetometer.csv.harmonic_order",
             place, file.string(), counted(rows.size(), "valid row"), counted(count_headings(rows), "different heading"),
-            360.0 - largest_gap_rad(rows) * 180.0 / std::numbers::pi, table.harmonic_order,
+            std::max(0.0, 360.0 - largest_gap_rad(rows) * 180.0 / std::numbers::pi), table.harmonic_order,
             coefficient_count(table.harmonic_order), note_on_unit(rows, table, field_angle_rad)));
     }
     warn_of_doubts(place, file.string(), rows, table, field_angle_rad);

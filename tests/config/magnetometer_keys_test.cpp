@@ -355,6 +355,14 @@ TEST(MagnetometerKeys, MapOfTheOtherSourceIsAWarning) {
     EXPECT_EQ(warnings_of("  csv: {}\n"), "");
 }
 
+TEST(MagnetometerKeys, SourceThatIsNoneIsAnErrorAlone) {
+    Warnings const warnings;
+    EXPECT_EQ(load_error(kRobots + "magnetometer: {source: CSV, csv: {file: a.csv}}\n"),
+              "x.yaml:6: magnetometer.source: expected one of procedural, csv, csv_fit, found 'CSV'; did you mean "
+              "'csv'?");
+    EXPECT_EQ(warnings.text(), "");
+}
+
 TEST(MagnetometerKeys, OptionsOfABatchStandAnywhere) {
     Scenario const scenario = load(kRobots +
                                    "magnetometer:\n"

@@ -406,6 +406,38 @@ def test_table_of_headings_that_count_the_other_way_is_a_warning(reader: Path, t
     assert "as the headings of 'table.csv' grow, x and y run around their ellipse the other way" in warning
 
 
+@pytest.mark.parametrize(
+    ("columns", "keys", "what"),
+    [
+        ("{0},400,400,400", {}, "hardly depend on the heading"),
+        ("{0},{1},400,400", {}, "move along a line, not around an ellipse"),
+        ("{0},{1},{2},400", {"input_angle_unit": "radians"}, "hardly depend on the heading"),
+    ],
+    ids=["constant", "a line", "degrees for radians"],
+)
+def test_table_whose_readings_do_not_tell_headings_is_a_warning(
+    reader: Path, tmp_path: Path, columns: str, keys: dict[str, object], what: str
+) -> None:
+    rows = [columns.format(*row.split(",")) for row in rows_of_table()]
+    result = table_run(reader, tmp_path, "\n".join(["angle,mag_x,mag_y,mag_z", *rows]), keys)
+    assert result.code == 0
+    (warning,) = result.errors.splitlines()
+    assert f"x and y of 'table.csv' {what}, so robots cannot tell headings by them" in warning
+    assert ("If the table has degrees, set magnetometer.csv.input_angle_unit to degrees." in warning) == bool(keys)
+
+
+def test_columns_that_are_read_twice_are_a_warning(reader: Path, tmp_path: Path) -> None:
+    rows = [f"{row},7" for row in rows_of_table()]
+    text = "\n".join(["angle,mag_x,mag_y,mag_z,mag_x", *rows])
+    result = table_run(reader, tmp_path, text, {})
+    (warning,) = result.errors.splitlines()
+    assert warning.endswith("table.csv: the column 'mag_x' stands there several times; the first one is read")
+    text = text.replace(",mag_x\n", "\n")
+    result = table_run(reader, tmp_path, text, {"columns": {"z": "mag_y"}})
+    (warning,) = result.errors.splitlines()
+    assert "table.csv: y and z are read from the same column, number 2 from 0 on" in warning
+
+
 @pytest.mark.parametrize("count", [1, 3])
 def test_outliers_of_a_table_are_named(reader: Path, tmp_path: Path, count: int) -> None:
     rows = rows_of_table()

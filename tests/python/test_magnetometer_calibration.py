@@ -216,6 +216,11 @@ WRONG: dict[str, tuple[list[str], str, str]] = {
     ),
     "narrow": ([f"{i / 10},{i % 7},{i % 5},3" for i in range(90)], "angle,mag_x,mag_y,mag_z", "cover 9 of 360"),
     "no signal": (lines_of(FLAT), "angle,mag_x,mag_y,mag_z", "hardly depend on the heading"),
+    "a line": (
+        [f"{row.rpartition(',')[0].rpartition(',')[0]},400,400" for row in OWN],
+        "angle,mag_x,mag_y,mag_z",
+        "x and y move along a line as the robot turns",
+    ),
     "constant": ([f"{5 * i},400,400,400" for i in range(72)], "angle,mag_x,mag_y,mag_z", "hardly depend"),
     "half a turn": (OWN[:37], "angle,mag_x,mag_y,mag_z", "no readings in 180 of 360 degrees"),
     "a sector": ([*OWN[:9], *OWN[44:]], "angle,mag_x,mag_y,mag_z", "no readings in 180 of 360 degrees"),

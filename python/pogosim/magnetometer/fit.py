@@ -150,6 +150,13 @@ def check_ellipse(fitted: CurveFit, source: str, doubt: str = "") -> None:
             "check that the angles belong to the readings"
         )
         raise CalibrationError(doubt or unclear)
+    minor = float(np.linalg.svd(fitted.coefficients[1:3, :2], compute_uv=False)[1])
+    if minor <= SIGNIFICANT * error or minor < 1e-9 * size:
+        raise CalibrationError(
+            doubt
+            or f"{source}: x and y move along a line as the robot turns, not around an ellipse: the short axis has "
+            f"{minor:.3g} +- {error:.2g} counts; check the columns"
+        )
 
 
 def about_phase(fitted: CurveFit, phase: float) -> Floats:
