@@ -61,6 +61,9 @@ int pogosim_run_step(pogosim_run* run, int64_t steps, double budget_s, int64_t* 
 /// Ends the run: last callbacks, complete files. Does nothing the second time.
 int pogosim_run_end(pogosim_run* run);
 
+/// Its end will leave the archive of flash memory as it is.
+void pogosim_run_leave_archive(pogosim_run* run);
+
 /// Ends the run, if it has not ended, and frees it. NULL does nothing.
 void pogosim_run_close(pogosim_run* run);
 

@@ -83,6 +83,11 @@ int pogosim_run_end(pogosim_run* run) {
     });
 }
 
+void pogosim_run_leave_archive(pogosim_run* run) {
+    std::lock_guard const lock(run->in_use);
+    run->simulation().leave_archive();
+}
+
 void pogosim_run_close(pogosim_run* run) {
     delete run;
 }

@@ -327,10 +327,11 @@ bool starts_blank(Scenario const& scenario) {
     if (!fs::is_regular_file(files.input_file, error)) {
         return false;  // opening a pipe would wait
     }
-    std::string const head = flash_archive_head(0);
+    std::string const empty = flash_archive_head(0);
     std::ifstream file(files.input_file, std::ios::binary);
-    std::string start(head.size(), '\0');
-    return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == head;
+    std::string start(empty.size(), '\0');
+    bool const begins_so = file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == empty;
+    return begins_so && file.peek() == std::ifstream::traits_type::eof();  // else it is damaged
 }
 
 void warn_of_blank_start(Scenario const& scenario) {

@@ -221,7 +221,7 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
         return ExitCode::usage;
     }
     is_complete_ = !interrupted();
-    if (is_complete_) {
+    if (is_complete_ && !leaves_archive_) {
         flash_state_.save(world_);
     }
     return is_complete_ ? ExitCode::done : ExitCode::interrupted;

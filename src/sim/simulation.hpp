@@ -90,6 +90,9 @@ public:
     /// Completes the files, then logs what failed, if anything did, or what may be wrong with the program.
     ExitCode conclude(Outcome const& outcome);
 
+    /// For a run that was made in vain: its end does not write the archive of flash memory.
+    void leave_archive() { leaves_archive_ = true; }
+
     /// After conclude(): other runs may write the files of this one.
     void release_files() {
         recorder_.release();
@@ -228,6 +231,7 @@ private:
     Touches touches_;
     mutable std::optional<ObservedMotions> observed_motions_;  // from the first look at them on
     std::unique_ptr<WindowDriver> window_;                     // null without a window
+    bool leaves_archive_ = false;                              // of flash memory as it is
     bool is_complete_ = false;                                 // it came to its end, and all is written
 };
 

@@ -157,6 +157,14 @@ def test_input_without_records_is_a_warning_in_each_run_that_nothing_is_restored
     assert (tmp_path / "z").read_bytes() == EMPTY
 
 
+def test_empty_archive_with_more_bytes_is_refused_by_a_check_too(program: Compile, tmp_path: Path) -> None:
+    (tmp_path / "x").write_bytes(EMPTY + b"x")
+    for arguments in ([], ["--check-config"]):
+        result = flash(program, tmp_path, "read", {"input_file": "x"}, None, *arguments)
+        assert result.code == 2
+        assert "bytes follow its last record, which ends after 18 bytes" in result.errors
+
+
 def test_first_run_of_an_archive_that_goes_from_run_to_run_has_no_warning(program: Compile, tmp_path: Path) -> None:
     for _ in range(2):
         result = flash(program, tmp_path, "write", {"input_file": "x", "output_file": "./x"})
@@ -429,6 +437,19 @@ def test_simulation_refuses_an_unfit_archive(library: Path, tmp_path: Path) -> N
     scene = write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv")})
     with pytest.raises(pogosim.ConfigurationError, match="is not an archive of flash memory"):
         pogosim.Simulation(library, scene, set={"flash_state.input_file": str(tmp_path / "x")})
+
+
+def test_runs_that_cannot_write_one_archive_leave_it(library: Path, tmp_path: Path) -> None:
+    blank = archive([Record(robot) for robot in range(3)])
+    (tmp_path / "x").write_bytes(blank)
+    scene = write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv"), "parameters.kind": "count"})
+    state = {f"flash_state.{key}": str(tmp_path / "x") for key in ("input_file", "output_file")}
+    with pytest.raises(pogosim.ConfigurationError, match="in use by another run"):
+        pogosim.VectorSimulation(library, scene, seeds=range(3), set=state)
+    assert (tmp_path / "x").read_bytes() == blank
+    with pogosim.VectorSimulation(library, scene, seeds=range(1), set=state) as runs:
+        runs.step(1)
+    assert (tmp_path / "x").read_bytes() != blank
 
 
 def test_failed_simulation_does_not_save(library: Path, tmp_path: Path) -> None:

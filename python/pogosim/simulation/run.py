@@ -284,6 +284,12 @@ class Simulation:
                 self._current.clean_up()
                 self._finish.cancel()
 
+    def discard(self) -> None:
+        """Close a run that was made in vain: the archive of flash memory stays as it is."""
+        if self._current.run is not None:
+            library().pogosim_run_leave_archive(self._current.run.pointer)
+        self.close()
+
     def __enter__(self) -> Simulation:
         return self
 

@@ -98,12 +98,18 @@ class VectorSimulation:
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="pogosim")
         self._process = os.getpid()
         self._is_closed = False
+        self.simulations: list[Simulation] = []
+        begun = [
+            self._threads.submit(Simulation, program, configuration, seed=seed, **options) for seed in chosen_seeds
+        ]
         try:
-            self.simulations = list(
-                self._threads.map(lambda seed: Simulation(program, configuration, seed=seed, **options), chosen_seeds)
-            )
+            wait(begun)
+            self.simulations = [run.result() for run in begun]
         except BaseException:
-            self._threads.shutdown()
+            self._threads.shutdown(cancel_futures=True)
+            for run in begun:
+                if not run.cancelled() and run.exception() is None:
+                    run.result().discard()
             raise
 
     def each(self, function: Callable[[Simulation], T]) -> list[T]:
