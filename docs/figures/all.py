@@ -32,7 +32,6 @@ try:
     import magnetometer
     import messages
     import mistakes
-    import models
     import moving_partition
     import original
     import parameter_study
@@ -45,6 +44,8 @@ try:
     from quotes import Quote, keep_quote, quote_difference
     from studies import STUDIES
     from times import TIMES
+
+    import models
 except ImportError as missing:
     if __name__ != "__main__":
         raise

@@ -69,7 +69,9 @@ def test_fastest_turn_is_max_angular_speed_of_a_model(parts: Path, tmp_path: Pat
 def test_bundled_model_changes_no_byte_of_what_robots_do(tmp_path: Path) -> None:
     settings = {"simulation_time": 10, "seed": 3}
     model = {"objects.robots.robot_model": "models/pogobot_wheels.yaml", "objects.robots.max_angular_speed": 4.0}
-    plain = run_shipped("active_brownian_particles", tmp_path / "plain", {**settings, "objects.robots.max_angular_speed": 1.0})
+    plain = run_shipped(
+        "active_brownian_particles", tmp_path / "plain", {**settings, "objects.robots.max_angular_speed": 1.0}
+    )
     same = run_shipped("active_brownian_particles", tmp_path / "model", {**settings, **model})
     assert plain.table().equals(same.table())
 
