@@ -286,8 +286,9 @@ class Simulation:
 
     def discard(self) -> None:
         """Close a run that was made in vain: the archive of flash memory stays as it is."""
-        if self._current.run is not None:
-            library().pogosim_run_leave_archive(self._current.run.pointer)
+        run = self._current.run  # stays until the call is over, whatever another thread does
+        if run is not None:
+            library().pogosim_run_leave_archive(run.pointer)
         self.close()
 
     def __enter__(self) -> Simulation:
