@@ -50,7 +50,7 @@ void tick(World& world, std::uint32_t robot) {
     set_motor_power(world, robot, 0, static_cast<std::uint16_t>(random.below(1024)));
     set_motor_power(world, robot, 1, static_cast<std::uint16_t>(random.below(1024)));
     ImuReading const reading = read_imu(world, robot);
-    set_led(world, robot, 0, {static_cast<std::uint8_t>(10.0F * reading.acceleration[0]), 0, 0});
+    set_led(world, robot, 0, {static_cast<std::uint8_t>(static_cast<int>(10.0F * reading.acceleration[0])), 0, 0});
     std::array<std::byte, 200> payload{};
     payload[0] = static_cast<std::byte>(random.bits());
     transmit(world, robot, world.air, short_packet(world, robot, kAllFaces, payload),
