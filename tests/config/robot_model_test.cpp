@@ -201,7 +201,8 @@ TEST(RobotModel, WrongPartsAreRefused) {
 }
 
 TEST(RobotModel, WithoutItsKeysNothingIsAddedToTheRunsConfiguration) {
-    Node const& values = load(kRobots).source->values;
+    Scenario const scenario = load(kRobots);
+    Node const& values = scenario.source->values;
     for (char const* const key :
          {"faces", "leds", "light_sensors", "motors", "flash_pages", "processor", "robot_model"}) {
         EXPECT_EQ(find_path(values, std::string("objects.robots.") + key), nullptr) << key;
