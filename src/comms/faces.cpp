@@ -1,9 +1,10 @@
 #include "comms/faces.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "base/exact_math.hpp"
 
 namespace pogosim {
 
@@ -15,7 +16,8 @@ float squared_cosine_of_half(float aperture_deg) {
     if (aperture_deg >= kHalfPlaneDeg) {
         return 0.0F;
     }
-    double const cosine = std::cos(static_cast<double>(aperture_deg) * std::numbers::pi / (2.0 * kHalfPlaneDeg));
+    double const half_rad = static_cast<double>(aperture_deg) * std::numbers::pi / (2.0 * kHalfPlaneDeg);
+    double const cosine = exact::sine_cosine(half_rad).cosine;
     return static_cast<float>(cosine * cosine);
 }
 
@@ -29,7 +31,7 @@ bool look_around(std::vector<Face> const& faces) {
     constexpr double rounding = 1e-6;
     std::vector<Cone> cones;
     for (Face const& face : faces) {
-        double const middle = std::atan2(face.normal.y, face.normal.x);
+        double const middle = exact::atan2(face.normal.y, face.normal.x);
         double const half = static_cast<double>(face.reception_deg) * std::numbers::pi / (2.0 * kHalfPlaneDeg);
         for (double const shift : {0.0, turn}) {
             cones.push_back({middle - half + shift, middle + half + shift});

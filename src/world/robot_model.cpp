@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/exact_math.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -30,7 +32,8 @@ Vec2 direction_of_deg(double angle_deg) {
                 return {0.0F, -1.0F};
         }
     }
-    return {static_cast<float>(std::cos(angle_deg * radians)), static_cast<float>(std::sin(angle_deg * radians))};
+    auto const [sine, cosine] = exact::sine_cosine(angle_deg * radians);
+    return {static_cast<float>(cosine), static_cast<float>(sine)};
 }
 
 std::vector<Face> four_faces(bool at_centre) {
