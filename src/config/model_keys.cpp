@@ -123,13 +123,17 @@ std::span<Key<WrittenProcessor> const> processor_keys() {
     return keys;
 }
 
-PartPlace place_of_part(MapReader& reader, Vec2 direction) {
+bool is_central(MapReader const& reader) {
     Node const* const node = reader.find("place");
-    PartPlace const on_rim{.radii = direction};
+    return node != nullptr && (node->scalar == "centre" || node->scalar == "center");
+}
+
+PartPlace place_of_part(MapReader const& reader, Vec2 direction) {
+    Node const* const node = reader.find("place");
     if (node == nullptr || node->scalar == "rim") {
-        return on_rim;
+        return {.radii = direction};
     }
-    if (node->scalar == "centre" || node->scalar == "center") {
+    if (is_central(reader)) {
         return {};
     }
     if (node->kind != Node::Kind::sequence) {
@@ -171,9 +175,7 @@ void read_list(MapReader& reader, std::string_view key, std::string_view expecte
 Part read_part(MapReader& reader) {
     WrittenPart written;
     reader.read(place_keys(), written);
-    Node const* const place = reader.find("place");
-    bool const is_central = place != nullptr && (place->scalar == "centre" || place->scalar == "center");
-    Vec2 const direction = is_central ? Vec2{} : direction_of_deg(written.angle_deg);
+    Vec2 const direction = is_central(reader) ? Vec2{} : direction_of_deg(written.angle_deg);
     return {.direction = direction, .place = place_of_part(reader, direction)};
 }
 
