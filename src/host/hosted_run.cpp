@@ -40,12 +40,12 @@ char letter_of(LogLine const& line) {
 }  // namespace
 
 pogosim::HostedProgram::HostedProgram(std::filesystem::path const& file) {
-    WithoutRobot const nobody;
+    WithoutRobot const no_robot;
     image_ = load_program(file);
 }
 
 pogosim::HostedProgram::~HostedProgram() {
-    WithoutRobot const nobody;
+    WithoutRobot const no_robot;
     image_.reset();
 }
 
