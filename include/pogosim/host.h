@@ -29,7 +29,7 @@ enum pogosim_status {
 };
 
 struct pogosim_run_options {
-    char const* program;          ///< shared object, as `make sim` makes beside the executable
+    char const* program;          ///< shared object, as `make sim` makes beside the executable; NULL: none is needed
     char const* configuration;    ///< YAML file
     char const* const* settings;  ///< "key.path=value", as of --set
     size_t setting_count;
@@ -84,6 +84,24 @@ int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 /// false. A column of strings has the type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only
 /// until this thread asks for the next one.
 int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_array* array);
+
+/// An array of the robots of one category whose configuration says `brain: host`: the run's robots are driven by what
+/// is in it. Rows: the robots of the category (n), in the order of pogosim_run_array(). Addresses stay the same as long
+/// as the run. Robots take and give values at their own ticks, every 16 ms; no thread may write while another steps.
+///
+/// To be written between steps: "motors" (n, 3) <i4, powers of the right, the left and the back motor, -1023 to 1023,
+/// positive is forward; "leds" (n, 5, 3) |u1; "send_bytes" (n, 382) |u1, "send_length" (n) <i4, negative for no
+/// message, set back to -1 once it is sent, and "send_face" (n) |i1, 0 front, 1 right, 2 back, 3 left, -1 all.
+///
+/// To be read: "photosensors" (n, 3) <i2, back, front left, front right, -1 without a body; "acceleration" (n, 3) <f4
+/// and "angular_velocity" (n, 3) <f4, as of pogobot_imu_read(); "battery_mv" (n) <i2; "received_count" (n) <u4.
+/// "received" (m, 5) <i4 has one row per message received so far: robot (row), sender, face that received it, length
+/// of its payload in bytes, and offset of that in "received_bytes" (k) |u1.
+int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* name, struct pogosim_array* array);
+
+/// Forgets the received messages of such a category: "received" is empty, and "received_count" 0. Without it, messages
+/// wait in the robots' mailboxes once there are as many as these hold, and are lost when these are full.
+int pogosim_brain_clear_received(pogosim_run* run, char const* category);
 
 /// Names of the categories, a line each. Valid as long as the run.
 char const* pogosim_run_categories(pogosim_run const* run);

@@ -48,8 +48,8 @@ class Table(NamedTuple):
         expected: What an entry point must name.
         fits: Tells whether something is that.
         own: Entries of this package, by name.
-        is_shared: Also for a name of this package, look whether others have it, which takes a while. Otherwise, the own
-            entry is taken, and that others have its name is said when all are listed.
+        is_shared: True: a name of this package is looked up in others, too, which takes a while, and one that they have
+            is an error. False: this package's entry is taken, and listing all names warns of others.
     """
 
     group: str

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "app/command_line.hpp"
@@ -133,6 +134,18 @@ ExitCode report(char const* error, ExitCode code) {
     return code == ExitCode::done ? ExitCode::usage : code;
 }
 
+/// The command line has no way to write the arrays: the robots would stand still.
+void check_needs_no_host(Scenario const& scenario) {
+    for (ObjectConfig const& object : scenario.objects) {
+        if (object.spec.robot && object.nb > 0 && std::holds_alternative<HostSpec>(object.spec.robot->brain)) {
+            throw ConfigError(
+                fmt::format("{}: objects.{}.brain: host: there is no host on the command line; run it from Python with "
+                            "pogosim.Simulation, or set brain: program",
+                            object.line, object.category));
+        }
+    }
+}
+
 /// --check-config.
 Ended check(pogosim_program const& program, CommandLine const& options) {
     start_logging(logging_of(options));
@@ -146,6 +159,7 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
     if (options.seed) {
         scenario.seed = options.seed;
     }
+    problems.collect([&] { check_needs_no_host(scenario); });
     CheckResult const result = check_run(linked_program(program, process_name()), scenario, check_options, problems);
     flush_logs();
     if (result.interrupted) {
@@ -172,6 +186,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     if (restarted) {
         scenario.seed = restarted->seed;
     }
+    check_needs_no_host(scenario);
     check_used_files(scenario, options.video);
     logging.minimal = scenario.output.log_format == LogFormat::minimal;
     if (scenario.output.enable_console_logging) {

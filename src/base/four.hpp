@@ -71,4 +71,10 @@ inline FourRows transposed(FourRows const& rows) {
             __builtin_shufflevector(high_xy, high_zw, 2, 3, 6, 7)};
 }
 
+/// How many of four bits are set. (std::popcount() calls a function where the processor may be an old one.)
+constexpr unsigned count_of_four(unsigned bits) {
+    constexpr std::uint64_t counts = 0x4332'3221'3221'2110;
+    return static_cast<unsigned>(counts >> (4U * bits) & 7U);
+}
+
 }  // namespace pogosim

@@ -8,6 +8,9 @@
 
 namespace pogosim {
 
+/// Behind the name of a file, that of one which will replace it once it is complete.
+inline constexpr auto kUnfinishedSuffix = ".pogosim-new";
+
 /// Removed with this object, and by remove_scratch_files(), if this process made it.
 class ScratchFile {
 public:

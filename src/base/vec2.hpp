@@ -37,6 +37,10 @@ inline float length(Vec2 a) {
     return std::sqrt(squared_length(a));
 }
 
+inline bool is_finite(Vec2 a) {
+    return std::isfinite(a.x) && std::isfinite(a.y);
+}
+
 /// Unit vector at `angle_rad` from +x, clockwise on the screen.
 constexpr Vec2 direction(float angle_rad) {
     exact::SineCosine const exact = exact::sine_cosine(static_cast<double>(angle_rad));

@@ -12,6 +12,7 @@
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/slip.hpp"
+#include "world/column_types.hpp"
 
 using pogosim::CellValue;
 using pogosim::ColumnType;
@@ -23,31 +24,6 @@ using pogosim::require_robot;
 using pogosim::without_exceptions;
 
 namespace {
-
-/// The types as the names of the functions spell them.
-constexpr std::string_view name_of(ColumnType type) {
-    switch (type) {
-        case ColumnType::int8:
-            return "int8";
-        case ColumnType::int16:
-            return "int16";
-        case ColumnType::int32:
-            return "int32";
-        case ColumnType::int64:
-            return "int64";
-        case ColumnType::float64:
-            return "double";
-        case ColumnType::text:
-            return "string";
-        case ColumnType::boolean:
-            return "bool";
-        case ColumnType::float16:
-            return "float16";
-        case ColumnType::float32:
-            return "float";
-    }
-    return "";  // not reached: compilers warn of a type that has no name
-}
 
 void check_call(char const* function, char const* name) {
     require_robot(function);
@@ -106,7 +82,7 @@ void set_value(char const* function, char const* name, ColumnType type, CellValu
         std::size_t const column = find_column(data, name);
         if (data.columns[column].type != type) {
             throw ConfigError(fmt::format("{}(\"{}\"): the column was declared as {}", function, name,
-                                          name_of(data.columns[column].type)));
+                                          pogosim::row_of(data.columns[column].type).name));
         }
         data.row.values[column] = std::move(value);
         data.was_set[column] = true;

@@ -230,7 +230,7 @@ void pogobot_infrared_update() {
     context.controller->program.decodes_messages = true;
     if (context.has_robot() && context.world->mailboxes.has_commands(context.robot)) [[unlikely]] {
         if (pogosim::obey_commands(*context.world, context.robot)) {
-            context.services->access.controllers->ask_for_restart();
+            context.services->controllers->ask_for_restart();
         }
     }
     pogosim::note_call();

@@ -23,14 +23,15 @@ using pogosim::ConfigError;
 using pogosim::context;
 using pogosim::DataExport;
 using pogosim::kNone;
+using pogosim::LampSetting;
 using pogosim::Object;
 using pogosim::PlacedLamp;
 using pogosim::require_argument;
 using pogosim::require_robot;
+using pogosim::RunServices;
 using pogosim::Vec2;
 using pogosim::without_exceptions;
 using pogosim::World;
-using pogosim::WorldAccess;
 
 namespace {
 
@@ -77,7 +78,7 @@ Object const& robot_at(char const* function, uint32_t object) {
     return found;
 }
 
-PlacedLamp& lamp_at(char const* function, uint32_t lamp) {
+PlacedLamp const& lamp_at(char const* function, uint32_t lamp) {
     require_world(function);
     check_index(function, "lamp", lamp, context.world->lamps.size());
     return context.world->lamps[lamp];
@@ -133,12 +134,16 @@ std::string names_of_categories(World const& world) {
 
 /// The light as it is with the present settings of the lamps.
 pogosim::LightMap const& settled_light() {
-    without_exceptions([] { context.services->access.settle_light(); });
+    without_exceptions([] { context.services->edit.settle_light(); });
     return context.world->light;
 }
 
-void set_lamp_changed() {
-    context.services->access.light_is_stale = true;
+/// Changes a part of the setting of a lamp that there is.
+template <class Change>
+void edit_lamp(uint32_t lamp, Change const& change) {
+    LampSetting setting = context.world->lamps[lamp].setting;
+    change(setting);
+    context.services->edit.set_lamp(*context.world, lamp, setting);
 }
 
 void set_column(char const* function, std::optional<uint32_t> object, char const* name, double value) {
@@ -233,12 +238,7 @@ bool pogosim_world_set_pose(uint32_t object, double x_mm, double y_mm, double he
     Vec2 const place{number(__func__, "x_mm", x_mm), number(__func__, "y_mm", y_mm)};
     float const heading = number(__func__, "heading_rad", heading_rad);
     bool is_moved = false;
-    without_exceptions([&] {
-        if (found.body != kNone && context.services->access.is_free(found, place)) {
-            pogosim::set_pose(*context.world, found, place, heading);
-            is_moved = true;
-        }
-    });
+    without_exceptions([&] { is_moved = context.services->edit.set_pose(*context.world, found, place, heading); });
     return is_moved;
 }
 
@@ -258,9 +258,9 @@ void pogosim_world_led(uint32_t object, uint8_t led, uint8_t* r, uint8_t* g, uin
 
 void* pogosim_world_user_data(uint32_t object) {
     Object const& found = object_at(__func__, object);
-    WorldAccess& access = context.services->access;
-    access.gave_user_data = true;
-    return found.robot == kNone ? nullptr : access.controllers->controller_of(found.robot).user_data;
+    RunServices& services = *context.services;
+    services.gave_user_data = true;
+    return found.robot == kNone ? nullptr : services.controllers->controller_of(found.robot).user_data;
 }
 
 bool pogosim_world_is_alive(uint32_t object) {
@@ -299,8 +299,8 @@ bool pogosim_world_lamp_is_on(uint32_t lamp) {
 }
 
 void pogosim_world_set_lamp_on(uint32_t lamp, bool on) {
-    lamp_at(__func__, lamp).setting.is_on = on;
-    set_lamp_changed();
+    lamp_at(__func__, lamp);
+    edit_lamp(lamp, [on](LampSetting& setting) { setting.is_on = on; });
 }
 
 double pogosim_world_lamp_intensity(uint32_t lamp) {
@@ -308,13 +308,12 @@ double pogosim_world_lamp_intensity(uint32_t lamp) {
 }
 
 void pogosim_world_set_lamp_intensity(uint32_t lamp, double intensity) {
-    PlacedLamp& found = lamp_at(__func__, lamp);
+    lamp_at(__func__, lamp);
     float const factor = number(__func__, "intensity", intensity);
     if (factor < 0.0F) {
         pogosim::refuse_user_code("pogosim_world_set_lamp_intensity(): intensity: expected a number of at least 0");
     }
-    found.setting.intensity = factor;
-    set_lamp_changed();
+    edit_lamp(lamp, [factor](LampSetting& setting) { setting.intensity = factor; });
 }
 
 void pogosim_world_lamp_position(uint32_t lamp, double* x_mm, double* y_mm) {
@@ -328,12 +327,9 @@ void pogosim_world_lamp_position(uint32_t lamp, double* x_mm, double* y_mm) {
 }
 
 void pogosim_world_set_lamp_position(uint32_t lamp, double x_mm, double y_mm) {
-    PlacedLamp& found = lamp_at(__func__, lamp);
+    PlacedLamp const& found = lamp_at(__func__, lamp);
     Vec2 const place{number(__func__, "x_mm", x_mm), number(__func__, "y_mm", y_mm)};
-    if (place != found.place_mm()) {
-        found.setting.moved_mm = place - found.start_mm;
-    }
-    set_lamp_changed();
+    edit_lamp(lamp, [&](LampSetting& setting) { setting = moved_to(found, place); });
 }
 
 void pogosim_world_set_column(char const* name, double value) {

@@ -152,7 +152,7 @@ void IrChannel::deliver_shared(World& world, WorkerPool& workers) {
     }
     part_transmissions(world, workers);
     workers.run(static_cast<std::uint32_t>(parts_.size()),
-                [&](std::uint32_t part, std::uint32_t worker) { send(world, parts_[part], desks_[worker]); });
+                [&](std::uint32_t part, std::uint32_t worker) { find_arrivals(world, parts_[part], desks_[worker]); });
     for (Part const& part : parts_) {
         attempts_ += part.attempts;
         receptions_ += part.receptions;
@@ -170,7 +170,7 @@ void IrChannel::deliver_shared(World& world, WorkerPool& workers) {
                 Arrival const& arrival = arrivals[k];
                 world.mailboxes.expect_push(arrivals[std::min(k + kAhead, arrivals.size() - 1)].receiver);
                 Transmission const& transmission = world.air.transmissions[arrival.transmission];
-                world.mailboxes.receive(arrival.receiver, transmission.header, world.air.payload_of(transmission),
+                world.mailboxes.deliver(arrival.receiver, transmission.header, world.air.payload_of(transmission),
                                         transmission.kind, arrival.faces);
             }
         }
@@ -192,7 +192,7 @@ void IrChannel::part_transmissions(World const& world, WorkerPool const& workers
     }
 }
 
-void IrChannel::send(World& world, Part& part, Desk& desk) const {
+void IrChannel::find_arrivals(World& world, Part& part, Desk& desk) const {
     part.attempts = part.receptions = 0;
     part.kept.clear();
     part.kept_receivers.clear();
@@ -200,12 +200,12 @@ void IrChannel::send(World& world, Part& part, Desk& desk) const {
         arrivals.clear();
     }
     for (std::uint32_t i = part.first; i < part.last; ++i) {
-        send_one(world, i, part, desk);
+        find_arrivals_of(world, i, part, desk);
     }
 }
 
 /// Appends the receivers of the transmission to the part: see deliver_one().
-void IrChannel::send_one(World& world, std::uint32_t index, Part& part, Desk& desk) const {
+void IrChannel::find_arrivals_of(World& world, std::uint32_t index, Part& part, Desk& desk) const {
     Transmission const& transmission = world.air.transmissions[index];
     std::vector<Receiver>& found = desk.found;
     found.clear();
@@ -255,7 +255,7 @@ void IrChannel::deliver_one(World& world, std::uint32_t index, std::span<Receive
         ++receptions_;
         std::uint8_t const faces = visibility_.faces_of(world, receiver, transmission.range_mm);
         unsigned const queued =
-            world.mailboxes.receive(receiver.robot, transmission.header, payload, transmission.kind, faces);
+            world.mailboxes.deliver(receiver.robot, transmission.header, payload, transmission.kind, faces);
         observer.received(world, receiver, faces, static_cast<std::uint8_t>(queued));
     }
 }

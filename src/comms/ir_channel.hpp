@@ -72,8 +72,8 @@ private:
 
     void deliver_shared(World& world, WorkerPool& workers);
     void part_transmissions(World const& world, WorkerPool const& workers);
-    void send(World& world, Part& part, Desk& desk) const;
-    void send_one(World& world, std::uint32_t transmission, Part& part, Desk& desk) const;
+    void find_arrivals(World& world, Part& part, Desk& desk) const;
+    void find_arrivals_of(World& world, std::uint32_t transmission, Part& part, Desk& desk) const;
 
     std::vector<Part> parts_;
     std::vector<std::uint32_t> ends_;  // of the parts, see split_by_sender()

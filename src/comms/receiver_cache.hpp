@@ -60,7 +60,8 @@ private:
     /// Each robot has a list for each single emitter, and one for all other combinations.
     static constexpr std::size_t kKinds = 1 + kMostFaces;
     static std::size_t kind_of(std::uint8_t emitters) {
-        return std::has_single_bit(emitters) ? static_cast<std::size_t>(1 + std::countr_zero(emitters)) : 0;
+        bool const is_one = emitters != 0 && (emitters & (emitters - 1U)) == 0;
+        return is_one ? static_cast<std::size_t>(1 + std::countr_zero(emitters)) : 0;
     }
 
     bool make_room(List& list, std::size_t count);

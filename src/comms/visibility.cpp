@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -307,7 +306,7 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
             continue;
         }
         if (std::uint8_t const faces = faces_near(world, robot, outline, both_range_mm, pieces); faces != 0) {
-            int const times = repeats ? std::popcount(faces) : 1;
+            int const times = repeats ? static_cast<int>(count_of_four(faces)) : 1;
             receivers.insert(receivers.end(), static_cast<std::size_t>(times),
                              {.robot = robot, .faces = faces, .emitters = 1, .is_along_outline = true});
         }

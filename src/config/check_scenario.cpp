@@ -201,15 +201,7 @@ void check_walls(Scenario const& scenario) {
 
 /// The highest level that a lamp can have by itself, sensor counts.
 int brightest_level(LampSpec const& lamp) {
-    struct Brightest {
-        int operator()(SpotSpec const& spot) const {
-            return std::max({spot.value, spot.mode == LightMode::uniform ? 0 : spot.edge_value,
-                             spot.photo_start_at_s < 0.0F ? 0 : spot.photo_start_value});
-        }
-        int operator()(RotatingRaySpec const& ray) const { return std::max(ray.value, ray.white_frame_value); }
-        int operator()(AlternatingRaysSpec const& rays) const { return std::max(rays.value, rays.white_frame_value); }
-    };
-    return std::visit(Brightest(), lamp);
+    return std::visit([](auto const& spec) { return spec.brightest(); }, lamp);
 }
 
 /// Levels of lamps have 15 bits, however many those of the sensors' converter are.

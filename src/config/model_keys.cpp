@@ -251,11 +251,15 @@ void read_motors(MapReader& reader, RobotSpec& robot) {
     set_drives(motors, robot);
 }
 
-/// Walls and membranes send along their outlines.
-void refuse_faces_of_outline(MapReader const& reader, RobotModel const& model) {
+/// Walls and membranes send along their outlines, and do not drive.
+void refuse_parts_of_outline(MapReader const& reader, RobotModel const& model) {
     if (model.sends_along_outline && reader.find("faces") != nullptr) {
         fail_at({*reader.find("faces"), reader.path_of("faces")},
                 "walls and membranes send and receive along their whole outline, and have no faces; remove it");
+    }
+    Node const* const motors = reader.find("motors");
+    if (model.sends_along_outline && motors != nullptr && !motors->entries.empty()) {
+        fail_at({*motors, reader.path_of("motors")}, "walls and membranes have no motors; remove it");
     }
 }
 
@@ -272,7 +276,7 @@ std::vector<KeyDescription> described(std::span<Key<T> const> keys, T const& def
 void read_model(MapReader& reader, RobotSpec& robot) {
     RobotModel& model = robot.model;
     reader.read(part_keys(), robot);
-    reader.collect([&] { refuse_faces_of_outline(reader, model); });
+    reader.collect([&] { refuse_parts_of_outline(reader, model); });
     reader.collect([&] { read_list(reader, "faces", kFaces, 1, kMostFaces, model.faces, read_face); });
     reader.collect([&] { read_list(reader, "leds", kLeds, 0, kLedCount, model.leds, read_part); });
     reader.collect(

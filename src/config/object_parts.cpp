@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "config/brain_keys.hpp"
 #include "config/flash_keys.hpp"
 #include "config/lamp_keys.hpp"
 #include "config/model_keys.hpp"
@@ -232,6 +233,8 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model
     reader.read(robot_keys(), robot);
     reader.read(sensor_model_keys(), robot.sensors);
     reader.read(sensor_keys(), robot.sensors);
+    reader.read(brain_keys(), robot);
+    reader.collect([&] { robot.brain = read_brain(reader, robot.model); });
     reader.read(battery_map_keys(), robot);
     reader.collect([&] { robot.battery = read_battery(reader); });
     reader.read(ir_keys(), robot.ir);

@@ -1,15 +1,26 @@
 // How strictly a configuration is read, and the mistakes in it.
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "base/problems.hpp"
 
 namespace pogosim {
+
+/// A file that a category names.
+struct ObjectFile {
+    std::filesystem::path path;  // as it was opened
+    char const* what = "";       // "the robot model", "the script"
+};
 
 struct Reading {
     bool strict_keys = false;    // an unknown key is a mistake
     bool strict_values = false;  // so is a value that a run would cut, or replace by the default
     bool thorough = false;  // values without effect are checked, and slips in words of options do not end the reading
     Problems problems{};
+    std::filesystem::path configuration{};   // the file; others that it names are searched beside it, too
+    std::vector<ObjectFile> object_files{};  // that have been read
 };
 
 }  // namespace pogosim

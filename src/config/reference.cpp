@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "config/brain_keys.hpp"
 #include "config/flash_keys.hpp"
 #include "config/magnetometer_keys.hpp"
 #include "config/model_keys.hpp"
@@ -45,6 +46,9 @@ std::vector<KeyGroup> configuration_reference() {
     MapReader battery(nothing, "objects.<category>.battery", reading);
     read_battery_map(battery);
     groups.push_back({"objects.<category>.battery", "", "A battery that empties.", battery.known_keys()});
+
+    groups.push_back(
+        {"objects.<category>.brain.script.<number>", "", "What a script does at a time.", script_entry_keys()});
 
     for (ModelTable& table : model_tables()) {
         groups.push_back(

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -64,20 +65,21 @@ Node merged(Node const& entry, Node const& model) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> include_robot_models(Node& root, std::filesystem::path const& configuration,
-                                                        Reading& reading) {
-    std::vector<std::filesystem::path> files;
+void include_robot_models(Node& root, Reading& reading) {
+    std::map<std::filesystem::path, Node> models;
     auto const include = [&](Node& entry, std::string const& path) {
         Node const* const name = entry.find(kKey);
         if (name == nullptr || name->kind == Node::Kind::null) {
             return;
         }
         reading.problems.collect([&] {
-            std::filesystem::path const file = path_of_model({*name, fmt::format("{}.{}", path, kKey)}, configuration);
-            entry = merged(entry, read_model_file(file.string()));
-            if (std::ranges::find(files, file) == files.end()) {
-                files.push_back(file);
+            std::filesystem::path const file =
+                path_of_model({*name, fmt::format("{}.{}", path, kKey)}, reading.configuration);
+            if (!models.contains(file)) {
+                models.emplace(file, read_model_file(file.string()));
+                reading.object_files.push_back({file, "the robot model"});
             }
+            entry = merged(entry, models.at(file));
         });
     };
     Node* const objects = root.find("objects");
@@ -89,7 +91,6 @@ std::vector<std::filesystem::path> include_robot_models(Node& root, std::filesys
             include(entry.items[k], fmt::format("{}.{}", path, k));
         }
     }
-    return files;
 }
 
 }  // namespace pogosim

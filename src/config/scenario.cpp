@@ -154,13 +154,14 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
     Node const written = read_yaml_file(path);
     Reading reading{
         .strict_keys = options.strict, .strict_values = options.strict_values, .thorough = options.thorough};
+    reading.configuration = path;
     check_maps_of_tools(written, reading.problems);
     ConfigSource source{.tree = resolved_tree(without_maps_of_tools(written), options.overrides, reading),
                         .values = {}};
     if (source.tree.kind != Node::Kind::map) {
         fail_expected({source.tree, "the top level"}, "a map of keys");
     }
-    scenario.robot_model_files = include_robot_models(source.tree, path, reading);
+    include_robot_models(source.tree, reading);
     MapReader reader(source.tree, "", reading);
     read_top_level(reader, scenario);
     reader.finish(batch_names(written));
@@ -177,6 +178,7 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
     require_map(reader, "parameters");
     source.values = reader.values();
     scenario.source = std::make_shared<ConfigSource const>(std::move(source));
+    scenario.object_files = reading.object_files;
     reading.problems.leave_out_known_keys();
     check_scenario(scenario, objects_are_right, reading);
     problems = std::move(reading.problems);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/magnetometer_config.hpp"
+#include "config/reading.hpp"
 #include "geometry/formation.hpp"
 #include "world/specs.hpp"
 
@@ -136,9 +137,9 @@ struct Scenario {
     MagnetometerConfig magnetometer;
     ViewConfig view;
     OutputConfig output;
-    std::vector<ObjectConfig> objects;                     // in the order of the file
-    std::vector<std::filesystem::path> robot_model_files;  // from which categories have keys
-    std::shared_ptr<ConfigSource const> source;            // what was written; null for one put together in code
+    std::vector<ObjectConfig> objects;           // in the order of the file
+    std::vector<ObjectFile> object_files;        // robot models and scripts of these
+    std::shared_ptr<ConfigSource const> source;  // what was written; null for one put together in code
 };
 
 struct LoadOptions {

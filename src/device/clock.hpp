@@ -9,6 +9,9 @@
 
 namespace pogosim {
 
+/// From tick to tick at 60 Hz, in whole milliseconds, as the main loop of programs makes it without another request.
+inline constexpr std::int64_t kUsualTickUs = 16000;
+
 /// Time of the step.
 inline std::int64_t time_us(World const& world) {
     constexpr double us_per_s = 1e6;

@@ -1,10 +1,10 @@
 #include "device/infrared.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <utility>
 
+#include "device/clock.hpp"
 #include "device/remote_control.hpp"
 #include "interface/pogobase_inside.hpp"
 
@@ -21,11 +21,13 @@ constexpr std::uint16_t kNoSender = 0xFF;
 constexpr std::uint8_t kNoSenderIndex = 0xF;
 
 static_assert(sizeof(FrameHeader) == sizeof(message_header_t));
+static_assert(kMostPayloadBytes == MAX_PAYLOAD_SIZE_BYTES);
 static_assert(kMostIrPower == pogobot_infrared_emitter_power_max);
 
 /// The emitter index that receivers see: 4 for several that are all the robot has, otherwise the first one.
 std::uint8_t sender_index(std::uint8_t emitters, std::uint8_t all) {
-    bool const is_all = emitters == all && !std::has_single_bit(emitters);
+    bool const is_several = (emitters & (emitters - 1U)) != 0;
+    bool const is_all = emitters == all && is_several;
     return is_all ? static_cast<std::uint8_t>(ir_all)
                   : static_cast<std::uint8_t>(__builtin_ctz(emitters | 1U << kMostFaces));
 }
@@ -125,15 +127,14 @@ std::uint8_t emitters_in(World const& world, std::size_t device, std::uint8_t li
 
 float watched_send_probability(World& world, std::uint32_t robot) {
     constexpr std::int64_t window_us = 1000000;
-    constexpr std::int64_t tick_us = 16000;  // of the main loop at 60 Hz
     std::int64_t const now_us = world.devices.clock_us[robot];
     SentRate& rate = world.devices.sent_rate[robot];
     if (now_us - rate.began_us >= window_us) {
         rate = {.before_us = rate.began_us, .began_us = now_us, .before = rate.present};
     }
     rate.present += now_us != std::exchange(rate.last_us, now_us) ? 1 : 0;
-    std::int64_t const watched_us = now_us - rate.before_us + tick_us;
-    return std::min(1.0F, static_cast<float>(rate.before + rate.present) * static_cast<float>(tick_us) /
+    std::int64_t const watched_us = now_us - rate.before_us + kUsualTickUs;
+    return std::min(1.0F, static_cast<float>(rate.before + rate.present) * static_cast<float>(kUsualTickUs) /
                               static_cast<float>(watched_us));
 }
 
@@ -151,29 +152,12 @@ void transmit(World& world, std::uint32_t robot, TransmissionQueue& air, Packet 
     air.payloads.insert(air.payloads.end(), packet.payload.begin(), packet.payload.end());
 }
 
-bool is_muted_for_message(World& world, std::size_t device) {
-    InfraredState& infrared = world.devices.infrared[device];
-    if (infrared.is_muted == 0) [[likely]] {
-        return false;
-    }
-    ++infrared.muted_messages;
-    return true;
-}
-
 void set_ir_power(World& world, std::size_t device, std::uint8_t power) {
     world.devices.ir_power[device] = std::min(power, kMostIrPower);
 }
 
 float ir_range_mm(World const& world, std::uint32_t robot) {
     return is_alive(world, robot) ? world.spec_of(robot).ir.range_at_mm(world.devices.ir_power[robot]) : 0.0F;
-}
-
-bool receive(World& world, std::uint32_t robot, FrameHeader& header, std::span<std::byte> payload) {
-    if (!world.mailboxes.pop(robot, header, payload)) {
-        return false;
-    }
-    ++world.devices.messages_received[robot];
-    return true;
 }
 
 }  // namespace pogosim

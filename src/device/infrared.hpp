@@ -57,7 +57,14 @@ float watched_send_probability(World& world, std::uint32_t robot);
 void transmit(World& world, std::uint32_t robot, TransmissionQueue& air, Packet const& packet, float send_probability);
 
 /// Whether a robot is muted; counts a message that is not sent because of that.
-bool is_muted_for_message(World& world, std::size_t device);
+inline bool is_muted_for_message(World& world, std::size_t device) {
+    InfraredState& infrared = world.devices.infrared[device];
+    if (infrared.is_muted == 0) [[likely]] {
+        return false;
+    }
+    ++infrared.muted_messages;
+    return true;
+}
 
 /// Powers above kMostIrPower count as that.
 void set_ir_power(World& world, std::size_t device, std::uint8_t power);
@@ -67,6 +74,12 @@ float ir_range_mm(World const& world, std::uint32_t robot);
 
 /// Takes the oldest message out of the robot's mailbox; `payload` gets as many of its bytes as fit. False if there is
 /// none.
-bool receive(World& world, std::uint32_t robot, FrameHeader& header, std::span<std::byte> payload);
+inline bool receive(World& world, std::uint32_t robot, FrameHeader& header, std::span<std::byte> payload) {
+    if (!world.mailboxes.pop(robot, header, payload)) {
+        return false;
+    }
+    ++world.devices.messages_received[robot];
+    return true;
+}
 
 }  // namespace pogosim

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "device/velocity_command.hpp"
-
 namespace pogosim {
 
 void set_motor_power(World& world, std::size_t device, int motor, std::uint16_t power) {
@@ -25,13 +23,6 @@ std::uint32_t motor_directions(World const& world, std::size_t device) {
         bits |= static_cast<std::uint32_t>(direction[motor]) << motor;
     }
     return bits;
-}
-
-void drive(World& world, std::uint32_t robot) {
-    Motors const& motors = world.devices.motors[robot];
-    if (motors.driven && world.spec_of(robot).model.has_motors()) {
-        command_velocity(world, robot, motors);
-    }
 }
 
 }  // namespace pogosim

@@ -2,9 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <utility>
-
-#include "world/observed_motion.hpp"
 
 namespace pogosim {
 
@@ -38,20 +35,6 @@ double mean_light(World const& world, std::uint32_t robot) {
 double light_of(World const& world, Object const& object) {
     bool const has_sensors = object.robot != kNone && object.body_count == 1;
     return has_sensors ? mean_light(world, object.robot) : world.light.at(wrapped(world, centre_mm(world, object)));
-}
-
-void measure_velocity(World& world, std::uint32_t robot, std::int64_t now_us) {
-    constexpr float seconds_per_us = 1e-6F;
-    std::uint32_t const body = world.robots.body[robot];
-    if (body == kNone) {
-        return;
-    }
-    Accelerometer& meter = world.devices.accelerometer[robot];
-    meter.previous = meter.current;
-    meter.current = last_step(world, body);
-    bool const first = !std::exchange(meter.has_measured, true);
-    meter.interval_s = first ? 0.0F : static_cast<float>(now_us - meter.current_us) * seconds_per_us;
-    meter.current_us = now_us;
 }
 
 Vec2 acceleration_m_s2(World const& world, std::uint32_t robot) {

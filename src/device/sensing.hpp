@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
+#include "world/observed_motion.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -18,7 +20,19 @@ double mean_light(World const& world, std::uint32_t robot);
 double light_of(World const& world, Object const& object);
 
 /// An accelerometer notes the velocity of its robot at this time.
-void measure_velocity(World& world, std::uint32_t robot, std::int64_t now_us);
+inline void measure_velocity(World& world, std::uint32_t robot, std::int64_t now_us) {
+    constexpr float seconds_per_us = 1e-6F;
+    std::uint32_t const body = world.robots.body[robot];
+    if (body == kNone) {
+        return;
+    }
+    Accelerometer& meter = world.devices.accelerometer[robot];
+    meter.previous = meter.current;
+    meter.current = last_step(world, body);
+    bool const first = !std::exchange(meter.has_measured, true);
+    meter.interval_s = first ? 0.0F : static_cast<float>(now_us - meter.current_us) * seconds_per_us;
+    meter.current_us = now_us;
+}
 
 /// The same at a tick, by the robot's own clock: its ticks are evenly spaced there, and do not coincide with steps.
 inline void measure_at_tick(World& world, std::uint32_t robot) {

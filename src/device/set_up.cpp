@@ -30,6 +30,7 @@ Devices blank_devices(std::size_t count) {
     devices.ir_power.resize(count, kUsualIrPower);
     devices.infrared.resize(count);
     devices.sent_rate.resize(count);
+    devices.ticks.resize(count);
     devices.messages_sent.resize(count);
     devices.messages_received.resize(count);
     return devices;
@@ -66,6 +67,7 @@ void reset_devices(World& world, std::uint32_t robot, std::int64_t now_us) {
     ++devices.infrared[robot].restarts;
     initialise_infrared(world, robot);
     devices.clock_us[robot] = now_us;
+    devices.ticks[robot] = 0;
     world.robots.led[robot] = {};
 }
 

@@ -10,8 +10,8 @@ namespace pogosim {
 /// Fills World::devices for the robots of the world: biases and clock drift are drawn from each robot's own stream.
 void set_up_devices(World& world, std::uint64_t seed);
 
-/// Clears what a reset of the processor clears, which begins anew at this time: powers, counters of the infrared port,
-/// messages that wait, LEDs. What the hardware keeps stays: calibration, flash memory, stored settings of the motors.
+/// Resets the robot's processor at this time. Cleared: powers, counters of the infrared port, messages that wait, LEDs.
+/// Kept, as by the hardware: calibration, flash memory, stored settings of the motors.
 void reset_devices(World& world, std::uint32_t robot, std::int64_t now_us);
 
 }  // namespace pogosim

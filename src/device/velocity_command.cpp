@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "device/motors.hpp"
 #include "interface/pogobase_inside.hpp"
 
 namespace pogosim {
 
 namespace {
 
-constexpr float kFullPower = 1023.0F;
+constexpr auto kFullPower = static_cast<float>(kFullMotorPower);
 constexpr float kLinearNoiseUnit = 100.0F;  // mm/s per unit of linear_noise_stddev
 
 /// Power with which a motor turns forwards. The bias drives the left motor forwards and the right one backwards.
@@ -43,9 +44,9 @@ DrivingPower driving_power(std::vector<Drive> const& drives, Motors const& motor
 
 }  // namespace
 
-void command_velocity(World& world, std::size_t robot, Motors const& motors) {
+void command_velocity(World& world, std::uint32_t robot) {
     RobotSpec const& spec = world.spec_of(robot);
-    DrivingPower const power = driving_power(spec.model.drives, motors);
+    DrivingPower const power = driving_power(spec.model.drives, world.devices.motors[robot]);
     float const speed = spec.max_linear_speed_mm_s * power.linear / kFullPower;
     Vec2 velocity = speed * world.bodies.heading_dir[world.robots.body[robot]];
     float angular_velocity = spec.max_angular_speed_rad_s * power.angular / kFullPower;

@@ -2,43 +2,15 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <bit>
-#include <cstring>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
+#include "host/array_places.hpp"
 #include "host/hosted_run.hpp"
 
 namespace pogosim {
 
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "array types are named for little-endian machines");
-
-template <class T>
-std::string type_of() {
-    char const kind = std::is_floating_point_v<T> ? 'f' : std::is_signed_v<T> ? 'i' : 'u';
-    return fmt::format("{}{}{}", sizeof(T) == 1 ? '|' : '<', kind, sizeof(T));
-}
-
-pogosim_array described(void const* data, std::string const& type, std::vector<std::int64_t> const& shape,
-                        std::vector<std::int64_t> const& strides) {
-    pogosim_array array = {};
-    array.data = data;
-    std::strncpy(array.type, type.c_str(), sizeof(array.type) - 1);
-    array.dimensions = static_cast<int>(shape.size());
-    for (std::size_t i = 0; i < shape.size(); ++i) {
-        array.shape[i] = shape[i];
-        array.stride_bytes[i] = strides[i];
-    }
-    return array;
-}
-
-template <class T>
-pogosim_array numbers(std::vector<T> const& values) {
-    return described(values.data(), type_of<T>(), {static_cast<std::int64_t>(values.size())}, {sizeof(T)});
-}
 
 pogosim_array vectors(std::vector<Vec2> const& values) {
     static_assert(sizeof(Vec2) == 2 * sizeof(float));
@@ -66,13 +38,6 @@ pogosim_array of_magnetometers(std::vector<Magnetometer> const& all, T const& of
     return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(all.size()) - 1}, {sizeof(Magnetometer)});
 }
 
-/// A member of each robot's controller.
-template <class T>
-pogosim_array members(Simulation const& simulation, T const& of_first) {
-    auto const all = simulation.controllers().all();
-    return described(&of_first, type_of<T>(), {static_cast<std::int64_t>(all.size())}, {sizeof(Controller)});
-}
-
 pogosim_array magnetometers(std::vector<Magnetometer> const& all) {
     auto const& of_first = all.front();
     pogosim_array array = of_magnetometers(all, of_first.last.front());
@@ -95,13 +60,6 @@ pogosim_array light(LightMap const& map) {
                      {static_cast<std::int64_t>(sizeof(std::int16_t)) * map.columns, sizeof(std::int16_t)});
 }
 
-/// The address to return when there are no robots.
-Controller const& first_controller(Simulation const& simulation) {
-    static Controller const none;
-    auto const all = simulation.controllers().all();
-    return all.empty() ? none : all.front();
-}
-
 struct NamedArray {
     std::string_view name;
     pogosim_array (*describe)(Simulation const& simulation);
@@ -117,7 +75,7 @@ constexpr std::array kArrays{
     NamedArray{"robots.category", [](Simulation const& s) { return numbers(s.world().robots.category); }},
     NamedArray{"robots.body", [](Simulation const& s) { return numbers(s.world().robots.body); }},
     NamedArray{"robots.led", [](Simulation const& s) { return leds(s.world().robots.led); }},
-    NamedArray{"robots.ticks", [](Simulation const& s) { return members(s, first_controller(s).loop.ticks); }},
+    NamedArray{"robots.ticks", [](Simulation const& s) { return of_robots(s.world().devices.ticks); }},
     NamedArray{"robots.clock", [](Simulation const& s) { return of_robots(s.world().devices.clock_us); }},
     NamedArray{"robots.messages_sent", [](Simulation const& s) { return of_robots(s.world().devices.messages_sent); }},
     NamedArray{"robots.messages_received",

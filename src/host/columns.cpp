@@ -1,10 +1,11 @@
 // The columns of the data file as arrays, where they are.
 #include <algorithm>
-#include <cstring>
 #include <string>
 
+#include "host/array_places.hpp"
 #include "host/hosted_run.hpp"
 #include "sim/saved_columns.hpp"
+#include "world/column_types.hpp"
 
 namespace pogosim {
 
@@ -13,52 +14,24 @@ namespace {
 constexpr std::string_view kValues = "columns.";
 constexpr std::string_view kAbsent = "columns_absent.";
 
-/// As of NumPy's array interface.
-char const* type_name(ColumnType type) {
-    switch (type) {
-        case ColumnType::int8:
-            return "|i1";
-        case ColumnType::int16:
-            return "<i2";
-        case ColumnType::int32:
-            return "<i4";
-        case ColumnType::int64:
-            return "<i8";
-        case ColumnType::float16:
-            return "<f2";
-        case ColumnType::float32:
-            return "<f4";
-        case ColumnType::float64:
-            return "<f8";
-        case ColumnType::boolean:
-            return "|b1";
-        case ColumnType::text:
-            break;
-    }
-    return "text";
-}
-
-pogosim_array array_of(void const* data, char const* type, std::size_t size, std::size_t bytes_each) {
-    pogosim_array array = {};
-    array.data = data;
-    std::strncpy(array.type, type, sizeof(array.type) - 1);
-    array.dimensions = 1;
-    array.shape[0] = static_cast<std::int64_t>(size);
-    array.stride_bytes[0] = static_cast<std::int64_t>(bytes_each);
-    return array;
+pogosim_array array_of(void const* data, ColumnType type, std::size_t size) {
+    ColumnTypeRow const& row = row_of(type);
+    std::size_t const bytes_each = std::max<std::size_t>(row.bytes, 1);
+    return described(data, row.name_in_array, {static_cast<std::int64_t>(size)},
+                     {static_cast<std::int64_t>(bytes_each)});
 }
 
 pogosim_array values_of(SavedColumn const& column) {
     if (column.type == ColumnType::text) {
         static thread_local std::string texts;  // those of the run are replaced at the next save
         texts = column.texts;
-        return array_of(texts.data(), type_name(column.type), texts.size(), 1);
+        return array_of(texts.data(), column.type, texts.size());
     }
-    return array_of(column.values.data(), type_name(column.type), column.is_absent.size(), bytes_of(column.type));
+    return array_of(column.values.data(), column.type, column.is_absent.size());
 }
 
 pogosim_array absent_in(SavedColumn const& column) {
-    return array_of(column.is_absent.data(), type_name(ColumnType::boolean), column.is_absent.size(), 1);
+    return array_of(column.is_absent.data(), ColumnType::boolean, column.is_absent.size());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "device/sensing.hpp"
+#include "device/world_edit.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
 #include "pogosim/host.h"
@@ -103,10 +104,10 @@ int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, pogosim_lamp const* sett
         constexpr double lowest = std::numeric_limits<float>::lowest();
         PlacedLamp const& of = lamp_at(run->simulation().world(), lamp);
         Vec2 const place_mm{number("x", setting->x_mm, lowest), number("y", setting->y_mm, lowest)};
-        bool const stays = place_mm == of.place_mm();
-        run->simulation().set_lamp(lamp, {.is_on = setting->is_on != 0,
-                                          .intensity = number("intensity", setting->intensity, 0.0),
-                                          .moved_mm = stays ? of.setting.moved_mm : place_mm - of.start_mm});
+        LampSetting changed = moved_to(of, place_mm);
+        changed.is_on = setting->is_on != 0;
+        changed.intensity = number("intensity", setting->intensity, 0.0);
+        run->simulation().set_lamp(lamp, changed);
         return POGOSIM_OK;
     });
 }

@@ -28,7 +28,9 @@ Scenario scenario_of(pogosim_run_options const& options) {
     if (options.seed >= 0) {
         scenario.seed = static_cast<std::uint32_t>(options.seed);
     }
-    check_program_file(scenario, options.program);
+    if (options.program != nullptr) {
+        check_program_file(scenario, options.program);
+    }
     return scenario;
 }
 
@@ -54,11 +56,14 @@ pogosim_run::pogosim_run(pogosim_run_options const& options) {
     logging.on_line = [this](LogLine const& line) { lines_.push_back(line); };
     log_ = std::make_shared<Log>(logging);
     LogScope const scope(log_.get());
-    program_.emplace(options.program);
+    if (options.program != nullptr) {
+        program_.emplace(options.program);
+    }
     RunOptions run_options;
     run_options.log = log_;
     run_options.conversions = options.strict != 0 ? Conversions::typed : Conversions::lenient;
-    simulation_ = std::make_unique<Simulation>(program_->image(), scenario_of(options), run_options);
+    simulation_ =
+        std::make_unique<Simulation>(program_ ? program_->image() : ProgramImage{}, scenario_of(options), run_options);
     for (Category const& category : simulation_->world().categories) {
         categories_ += (categories_.empty() ? "" : "\n") + category.name;
     }

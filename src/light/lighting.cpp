@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -21,29 +19,12 @@ std::string cells_text(LightMap const& map) {
     return fmt::format("{} x {} cells", map.columns, map.rows);
 }
 
-int scaled(int level, float intensity) {
-    constexpr auto brightest = static_cast<float>(std::numeric_limits<std::int16_t>::max());
-    return static_cast<int>(std::lround(std::clamp(static_cast<float>(level) * intensity, 0.0F, brightest)));
-}
-
-void scale_levels(SpotSpec& spec, float intensity) {
-    for (int* const level : {&spec.value, &spec.edge_value, &spec.photo_start_value}) {
-        *level = scaled(*level, intensity);
-    }
-}
-
-/// Both kinds of rays.
-void scale_levels(auto& spec, float intensity) {
-    spec.value = scaled(spec.value, intensity);
-    spec.white_frame_value = scaled(spec.white_frame_value, intensity);
-}
-
 std::unique_ptr<Lamp> make_lamp(LampSpec const& spec, LampSetting const& setting, World const& world) {
     return std::visit(
         [&](auto changed) {
             changed.centre_mm = changed.centre_mm + setting.moved_mm;
             if (setting.intensity != 1.0F) {
-                scale_levels(changed, setting.intensity);
+                changed.scale_levels(setting.intensity);
             }
             return make_lamp(changed, world.arena, world.light);
         },

@@ -1,9 +1,8 @@
 #include "physics/assert_motion.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <cstdint>
-
-#include "physics/known_motion.hpp"
 
 #ifndef NDEBUG
 namespace pogosim {
@@ -16,7 +15,8 @@ constexpr float kTolerance = 1e-3F;  // of the length of a unit vector
 
 void assert_motion(Bodies const& bodies) {
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-        assert(is_finite(bodies, i));
+        assert(is_finite(bodies.position_mm[i]) && std::isfinite(bodies.heading_rad[i]));
+        assert(is_finite(bodies.velocity_mm_s[i]) && std::isfinite(bodies.angular_velocity_rad_s[i]));
         assert(length(bodies.heading_dir[i] - direction(bodies.heading_rad[i])) < kTolerance);
         assert(!bodies.spec[i].fixed || bodies.velocity_mm_s[i] == Vec2{});
         assert(!bodies.spec[i].fixed || bodies.angular_velocity_rad_s[i] == 0.0F);

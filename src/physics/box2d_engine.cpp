@@ -14,7 +14,6 @@
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
 #include "physics/coinciding_centres.hpp"
-#include "physics/known_motion.hpp"
 #include "physics/membrane_area.hpp"
 #include "physics/membrane_filter.hpp"
 #include "physics/membrane_mass.hpp"
@@ -22,7 +21,8 @@
 #include "physics/membrane_steps.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/position_correction.hpp"
-#include "physics/wrap_objects.hpp"
+#include "physics/seam.hpp"
+#include "physics/step_start.hpp"
 
 namespace pogosim {
 
@@ -162,16 +162,16 @@ public:
         if (!world.membranes.empty()) {
             sides_.emplace(world);
         }
-        known_.copy(world.bodies);
     }
 
     void advance(World& world) override {
         take_over(world);
         impose_commands(world);
         if (!any_awake_) {
-            known_.end_still_step(world.bodies);  // as in a swarm that only communicates
+            start_.note_still(world.bodies);  // as in a swarm that only communicates
             return;
         }
+        start_.note(world.bodies);
         int const substeps =
             substeps_for(fastest_of(world, others_set_velocities_), most_motion_mm_, world.time_step_s);
         Iterations const iterations = world.joints.empty() ? kContactIterations : kJointIterations;
@@ -193,12 +193,11 @@ public:
             hold_on_their_sides(world);
         }
         if (world.periodic) {
-            set_poses(world.bodies, wrap_objects(world));
+            set_poses(world.bodies, seam_.wrap_objects(world));
             if (sides_) {
                 sides_->look_again(world);
             }
         }
-        known_.end_step(world.bodies);
         assert_motion(world.bodies);
     }
 
@@ -215,23 +214,16 @@ public:
     }
 
 private:
-    /// Finds the poses and velocities that something other than this engine has written, by comparison with what the
-    /// engine read or wrote last.
     void take_over(World& world) {
         Bodies& bodies = world.bodies;
-        if (known_.is_of(bodies)) {
-            return;
+        for (WrittenBody const& written : bodies.written) {
+            take_over_velocity(world, written.body);
         }
-        std::vector<std::uint32_t> const moved = known_.find_moved(bodies);
-        for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-            if (known_.has_other_velocity(bodies, i)) {
-                take_over_velocity(world, i);
-            }
-        }
+        std::vector<std::uint32_t> const moved = moved_bodies(bodies);
+        bodies.written.clear();
         if (!moved.empty()) {
             take_over_poses(world, moved);
         }
-        known_.copy(bodies);
     }
 
     void step(float dt_s, Iterations iterations) {
@@ -298,12 +290,7 @@ private:
     }
 
     void take_over_velocity(World& world, std::uint32_t i) {
-        Bodies& bodies = world.bodies;
-        if (bodies.spec[i].fixed) {
-            bodies.velocity_mm_s[i] = {};
-            bodies.angular_velocity_rad_s[i] = 0.0F;
-            return;
-        }
+        Bodies const& bodies = world.bodies;
         b2Body& body = *bodies_[i];
         body.SetLinearVelocity(to_box2d(bodies.velocity_mm_s[i]));
         body.SetAngularVelocity(bodies.angular_velocity_rad_s[i]);
@@ -406,19 +393,13 @@ private:
     }
 
     void impose_commands(World& world) {
-        Robots& robots = world.robots;
-        for (std::size_t i = 0; i < robots.size(); ++i) {
-            VelocityCommand& command = robots.command[i];
-            if (!command.pending) {
-                continue;
-            }
-            command.pending = false;
-            b2Body& body = *bodies_[robots.body[i]];
+        take_commands(world, [&](std::uint32_t i, VelocityCommand const& command) {
+            b2Body& body = *bodies_[i];
             body.SetLinearVelocity(to_box2d(command.velocity_mm_s));
             body.SetAngularVelocity(command.angular_velocity_rad_s);
             any_awake_ = any_awake_ || body.IsAwake();
-            sweep_if_fast(body, command.velocity_mm_s, world.bodies.radius_mm[robots.body[i]], world.time_step_s);
-        }
+            sweep_if_fast(body, command.velocity_mm_s, world.bodies.radius_mm[i], world.time_step_s);
+        });
     }
 
     /// Continuous collision detection is expensive, so only the bodies that need it use it.
@@ -478,7 +459,8 @@ private:
     float most_motion_mm_;                                   // in a sub-step
     std::optional<PositionCorrection> position_correction_;  // none in a periodic world, which has no walls
     std::optional<MembraneSides> sides_;                     // when there are membranes
-    KnownMotion known_;
+    StepStart start_;
+    Seam seam_;
     bool any_awake_ = true;
     bool walls_add_energy_ = false;
     bool others_set_velocities_ = false;  // up to now, something other than the motors has set some

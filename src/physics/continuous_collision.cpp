@@ -39,10 +39,9 @@ ContinuousCollision::ContinuousCollision(World const& world) : is_of_membrane_(w
 }
 
 std::vector<std::uint32_t> const& ContinuousCollision::stop_at_impacts(World& world, FixedPolygons const& polygons,
-                                                                       std::span<std::uint32_t const> fast,
-                                                                       KnownMotion const& before) {
+                                                                       std::span<std::uint32_t const> fast) {
     Bodies& bodies = world.bodies;
-    find_ways(world, fast, before);
+    find_ways(world, fast);
     stopped_.clear();
     waiting_.assign(fast.begin(), fast.end());
     is_waiting_.assign(bodies.size(), 0);
@@ -65,14 +64,13 @@ std::vector<std::uint32_t> const& ContinuousCollision::stop_at_impacts(World& wo
     return stopped_;
 }
 
-void ContinuousCollision::find_ways(World const& world, std::span<std::uint32_t const> fast,
-                                    KnownMotion const& before) {
+void ContinuousCollision::find_ways(World const& world, std::span<std::uint32_t const> fast) {
     Bodies const& bodies = world.bodies;
     starts_mm_.resize(bodies.size());
     motions_mm_.resize(bodies.size());
     fractions_.assign(bodies.size(), 1.0F);
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-        starts_mm_[i] = before.position_mm(i);
+        starts_mm_[i] = bodies.start_mm[i];
         motions_mm_[i] = minimum_image(world, starts_mm_[i], bodies.position_mm[i]);
     }
     for (std::uint32_t const i : fast) {

@@ -7,7 +7,6 @@
 
 #include "base/grid.hpp"
 #include "physics/fixed_polygons.hpp"
-#include "physics/known_motion.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -16,15 +15,15 @@ class ContinuousCollision {
 public:
     explicit ContinuousCollision(World const& world);
 
-    /// Stops disks where they first touch others on their straight paths from `before` to the end of the step; the
+    /// Stops disks where they first touch others on their straight paths from the start to the end of the step; the
     /// impact itself happens in the next step. Tests the paths of the `fast` bodies, and of all bodies that meet one
     /// that has been stopped. Returns the bodies whose motion was shortened; some may be listed twice. Two bodies that
     /// overlap at the start do not approach further. Bodies of membranes do not stop each other.
     std::vector<std::uint32_t> const& stop_at_impacts(World& world, FixedPolygons const& polygons,
-                                                      std::span<std::uint32_t const> fast, KnownMotion const& before);
+                                                      std::span<std::uint32_t const> fast);
 
 private:
-    void find_ways(World const& world, std::span<std::uint32_t const> fast, KnownMotion const& before);
+    void find_ways(World const& world, std::span<std::uint32_t const> fast);
     float reach_mm(Bodies const& bodies, std::uint32_t i) const;
     float free_fraction(World const& world, FixedPolygons const& polygons, std::uint32_t i) const;
     float fraction_before(World const& world, std::uint32_t i, std::uint32_t k) const;

@@ -22,14 +22,14 @@
 #include "physics/disk_contacts.hpp"
 #include "physics/island_solver.hpp"
 #include "physics/islands.hpp"
-#include "physics/known_motion.hpp"
 #include "physics/membrane_sides.hpp"
 #include "physics/membrane_steps.hpp"
 #include "physics/neighbour_list.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/position_correction.hpp"
+#include "physics/seam.hpp"
+#include "physics/step_start.hpp"
 #include "physics/wall_neighbour_list.hpp"
-#include "physics/wrap_objects.hpp"
 
 namespace pogosim {
 
@@ -87,7 +87,6 @@ public:
             calm_s_.resize(world.membranes.size());
             most_motion_mm_ = kMostSubsteps * most_motion_mm(world, most_motion_mm_);
         }
-        known_.copy(bodies);
     }
 
     void advance(World& world) override {
@@ -98,9 +97,10 @@ public:
         damping_.begin_step(bodies, dt_s);
         float const fastest_mm_s = fastest(bodies);
         if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_) {
-            known_.end_still_step(bodies);  // as in a swarm that only communicates
+            start_.note_still(bodies);  // as in a swarm that only communicates
             return;
         }
+        start_.note(bodies);
         float const reach_mm = 2.0F * std::min(std::max(kReserve * fastest_mm_s * dt_s, kLeastReachMm), ordinary_mm_);
         if (moved_ || !neighbour_list_.covers(world, reach_mm, workers_)) {
             neighbour_list_.build(world, reach_mm, workers_);
@@ -119,7 +119,6 @@ public:
             hold_by_membranes(world);
         }
         damping_.end_step(bodies);
-        known_.end_step(bodies);
         assert_motion(bodies);
     }
 
@@ -178,10 +177,10 @@ private:
             bodies.heading_rad[i] += dt_s * spin_rad_s;
         }
         bodies.heading_rad[i] = wrap_angle(bodies.heading_rad[i]);
-        if (bodies.heading_rad[i] != known_.heading_rad(i)) {
+        if (bodies.heading_rad[i] != bodies.start_rad[i]) {
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
         }
-        float const moved2 = squared_length(place_mm - known_.position_mm(i));
+        float const moved2 = squared_length(place_mm - bodies.start_mm[i]);
         bool const is_fast = moved2 > ordinary_mm_ * ordinary_mm_ || (has_contact && some_are_fast_);
         if (is_fast) {
             fast.push_back(i);
@@ -195,8 +194,7 @@ private:
     }
 
     void hold_fast(World& world) {
-        for (std::uint32_t const i :
-             continuous_collision_.stop_at_impacts(world, contacts_.polygons(), fast_, known_)) {
+        for (std::uint32_t const i : continuous_collision_.stop_at_impacts(world, contacts_.polygons(), fast_)) {
             Vec2& place_mm = world.bodies.position_mm[i];
             place_mm = world.periodic ? wrapped_alone(world, place_mm) : position_correction_.hold_fast(i, place_mm);
         }
@@ -207,7 +205,7 @@ private:
         }
     }
 
-    /// With membranes in the world, a body inside one is wrapped together with it: see wrap_objects().
+    /// With membranes in the world, a body inside one is wrapped together with it: see Seam.
     Vec2 wrapped_alone(World const& world, Vec2 place_mm) const { return sides_ ? place_mm : wrapped(world, place_mm); }
 
     void hold_by_membranes(World& world) {
@@ -215,7 +213,7 @@ private:
             position_correction_.start_from(i, world.bodies.position_mm[i]);
         }
         if (world.periodic) {
-            wrap_objects(world);
+            seam_.wrap_objects(world);
             sides_->look_again(world);
         }
         for (std::size_t i = 0; i < calm_s_.size(); ++i) {
@@ -236,52 +234,31 @@ private:
         }
     }
 
-    /// Finds the poses and velocities that something other than this engine has written, by comparison with what the
-    /// engine wrote last.
+    /// Velocities that were written need nothing.
     void take_over(World& world) {
         Bodies& bodies = world.bodies;
-        if (known_.is_of(bodies)) {
+        std::vector<std::uint32_t> const moved = moved_bodies(bodies);
+        bodies.written.clear();
+        if (moved.empty()) {
             return;
         }
-        std::vector<std::uint32_t> const moved = known_.find_moved(bodies);
-        for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-            if (bodies.spec[i].fixed) {
-                bodies.velocity_mm_s[i] = {};
-                bodies.angular_velocity_rad_s[i] = 0.0F;
-            }
-        }
-        if (!moved.empty()) {
-            part_coinciding_centres(bodies.position_mm, moved);
-            moved_ = true;
-        }
+        moved_ = true;
+        part_coinciding_centres(bodies.position_mm, moved);
         for (std::uint32_t const i : moved) {
             bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
             position_correction_.start_from(i, bodies.position_mm[i]);
         }
-        if (sides_ && !moved.empty()) {
+        if (sides_) {
             sides_->look_again(world);
         }
-        known_.copy(bodies);
     }
 
     /// Returns whether any command was pending.
     static bool impose_commands(World& world) {
-        Robots& robots = world.robots;
-        bool is_driven = false;
-        for (std::size_t i = 0; i < robots.size(); ++i) {
-            VelocityCommand& command = robots.command[i];
-            if (!command.pending) {
-                continue;
-            }
-            command.pending = false;
-            is_driven = true;
-            std::uint32_t const body = robots.body[i];
-            if (!world.bodies.spec[body].fixed) {
-                world.bodies.velocity_mm_s[body] = command.velocity_mm_s;
-                world.bodies.angular_velocity_rad_s[body] = command.angular_velocity_rad_s;
-            }
-        }
-        return is_driven;
+        return take_commands(world, [&world](std::uint32_t body, VelocityCommand const& command) {
+            world.bodies.velocity_mm_s[body] = command.velocity_mm_s;
+            world.bodies.angular_velocity_rad_s[body] = command.angular_velocity_rad_s;
+        });
     }
 
     static float fastest(Bodies const& bodies) {
@@ -305,7 +282,8 @@ private:
     Islands islands_;
     std::vector<IslandSolver> solvers_;  // one for each worker
     ContinuousCollision continuous_collision_;
-    KnownMotion known_;
+    StepStart start_;
+    Seam seam_;
     std::optional<MembraneSides> sides_;  // when there are membranes
     std::vector<double> calm_s_;          // of each membrane: how long it has been slow
     std::vector<std::uint32_t> movable_;  // bodies that are not fixed

@@ -39,7 +39,7 @@ std::vector<std::uint32_t> const& MembraneSides::hold(World& world) {
     put_back_.clear();
     is_back_.clear();
     // Each iteration puts back at least one more body, so the loop ends: when all are back, none has crossed.
-    while (somebody_crossed(world)) {
+    while (any_body_crossed(world)) {
         is_back_.resize(world.bodies.size());
         for (Side const& side : sides_) {
             put_back_crossed(world.bodies, side);
@@ -75,7 +75,7 @@ void MembraneSides::look_again(World const& world) {
     remember_poses(world.bodies);
 }
 
-bool MembraneSides::somebody_crossed(World const& world) {
+bool MembraneSides::any_body_crossed(World const& world) {
     find_sides(world);
     return std::ranges::any_of(sides_, [](Side const& side) { return side.is_inside != side.was_inside; });
 }

@@ -41,7 +41,7 @@ private:
         std::vector<std::uint32_t> is_inside{};   // and now
     };
 
-    bool somebody_crossed(World const& world);
+    bool any_body_crossed(World const& world);
     void find_lines(World const& world);
     void find_sides(World const& world);
     void put_back_crossed(Bodies& bodies, Side const& side);

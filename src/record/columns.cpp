@@ -13,11 +13,11 @@
 #include <variant>
 
 #include "base/error.hpp"
+#include "base/half.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "base/rounded_time.hpp"
 #include "base/utf8.hpp"
-#include "record/half.hpp"
 #include "record/table_memory.hpp"
 
 namespace pogosim {

@@ -25,7 +25,6 @@ using arrow::Status;
 
 namespace {
 
-constexpr auto kSuffix = ".pogosim-new";
 constexpr auto kKeptSuffix = ".pogosim-kept";
 constexpr int kMostKept = 1000;
 constexpr std::size_t kCopiedAtOnce = 1U << 20U;
@@ -78,7 +77,7 @@ CompleteFile::~CompleteFile() {
 }
 
 std::filesystem::path CompleteFile::path_beside(std::filesystem::path const& unfinished) {
-    return real_path(unfinished).native() + kSuffix;
+    return real_path(unfinished).native() + kUnfinishedSuffix;
 }
 
 arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::make(LockedFile const& unfinished) {

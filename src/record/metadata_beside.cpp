@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/locked_file.hpp"
+#include "base/scratch_file.hpp"
 #include "record/descriptor_stream.hpp"
 
 namespace pogosim {
@@ -25,7 +26,6 @@ namespace {
 
 constexpr std::string_view kBegin = "# Pogosim: metadata of the table beside this file";
 constexpr auto kSuffix = ".yaml";
-constexpr auto kUnfinishedSuffix = ".pogosim-new";
 constexpr mode_t kNewFile = 0666;  // less the umask
 
 /// A text as a literal block of YAML, indented by two blanks.

@@ -478,7 +478,7 @@ void TableFile::close() {
         return;
     }
     save_progress().bytes = impl_->byte_count();
-    bool const is_ours = !impl_->unfinished->somebody_changed_it();
+    bool const is_ours = !impl_->unfinished->was_changed_by_others();
     if (is_ours) {
         impl_->check([&] { return impl_->save(); });
     }

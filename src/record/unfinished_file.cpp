@@ -66,7 +66,7 @@ arrow::Status UnfinishedFile::append(arrow::RecordBatch const& batch) {
     return arrow::Status::OK();
 }
 
-bool UnfinishedFile::somebody_changed_it() const {
+bool UnfinishedFile::was_changed_by_others() const {
     struct stat now = {};
     return !torn_ && fstat(descriptor_, &now) == 0 && now.st_size != size_bytes_;
 }

@@ -36,7 +36,7 @@ public:
     void sync() const;
 
     /// True if the size of the file is not what was written.
-    bool somebody_changed_it() const;
+    bool was_changed_by_others() const;
 
 private:
     explicit UnfinishedFile(int descriptor)

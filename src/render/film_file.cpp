@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/scratch_file.hpp"
 #include "render/film_format.hpp"
 #include "render/png_file.hpp"
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/scratch_file.hpp"
 #include "render/png_file.hpp"
 
 namespace pogosim {

@@ -13,6 +13,7 @@
 
 #include "base/locked_file.hpp"
 #include "base/save_progress.hpp"
+#include "base/scratch_file.hpp"
 
 namespace pogosim {
 

@@ -7,9 +7,6 @@
 
 namespace pogosim {
 
-/// Put behind the name of a file while it is being written.
-inline constexpr auto kUnfinishedSuffix = ".pogosim-new";
-
 /// Where a picture is written until it is complete: beside its place, under a name of this process alone.
 std::filesystem::path unfinished_png(std::filesystem::path const& path);
 

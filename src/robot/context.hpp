@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/world_edit.hpp"
 #include "robot/controller.hpp"
 #include "robot/data_export.hpp"
 #include "robot/outbox.hpp"
@@ -35,22 +35,6 @@ struct BoundVariable {
 
 class Controllers;
 
-/// The parts of other rooms through which callbacks of the whole run see and change the world.
-struct WorldAccess {
-    Controllers* controllers = nullptr;
-    std::function<bool(Object const& object, Vec2 centre_mm)> is_free{};  // of walls
-    std::function<void()> update_light{};                                 // takes the settings of lamps over
-    bool light_is_stale = false;                                          // a setting has changed since
-    bool gave_user_data = false;                                          // of any robot, to callbacks of the run
-
-    void settle_light() {
-        if (light_is_stale) {
-            light_is_stale = false;
-            update_light();
-        }
-    }
-};
-
 /// What user code can access besides its own robot.
 struct RunServices {
     ParameterSource* parameters = nullptr;
@@ -63,7 +47,9 @@ struct RunServices {
     bool stop_requested = false;
     std::vector<std::string> started_categories{};  // that pogobot_start() calls name, each once
     std::vector<WarningKind> warned;                // of warn_once
-    WorldAccess access{};
+    WorldEdit edit{};
+    Controllers* controllers = nullptr;
+    bool gave_user_data = false;            // of any robot, to callbacks of the run
     PrintedLines* printed_lines = nullptr;  // gets the lines of robots; null: they are not kept
 
     /// Logs a warning that names the running robot, its tick and the time, the first time in the run that this format

@@ -16,7 +16,6 @@ namespace pogosim {
 
 /// Values of the main loop's globals while another robot is running.
 struct LoopGlobals {
-    std::uint32_t ticks = 0;
     std::uint8_t loop_hz = 60;
     std::uint8_t max_messages_per_tick = 3;
     std::uint8_t send_percent = 20;

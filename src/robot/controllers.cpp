@@ -58,7 +58,6 @@ std::size_t stride_of(std::size_t user_data_bytes) {
 }
 
 void load_globals(LoopGlobals const& loop) {
-    pogobot_ticks = loop.ticks;
     main_loop_hz = loop.loop_hz;
     max_nb_processed_msg_per_tick = loop.max_messages_per_tick;
     percent_msgs_sent_per_ticks = loop.send_percent;
@@ -74,8 +73,7 @@ void load_globals(LoopGlobals const& loop) {
 }
 
 LoopGlobals stored_globals() {
-    return {.ticks = pogobot_ticks,
-            .loop_hz = main_loop_hz,
+    return {.loop_hz = main_loop_hz,
             .max_messages_per_tick = max_nb_processed_msg_per_tick,
             .send_percent = percent_msgs_sent_per_ticks,
             .error_led = error_codes_led_idx,
@@ -111,14 +109,34 @@ void call_main(int (*function)(), char** arguments) {
 Controllers::Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed,
                          std::size_t stack_bytes)
     : image_(std::move(image)), world_(world), services_(services), chips_(world), fibers_(stack_bytes) {
-    services_.access.controllers = this;
+    services_.controllers = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
         return fmt::format("the controllers of {}, {} bytes each", counted(count, "robot"), sizeof(Controller));
     };
     allocate_for(purpose, static_cast<double>(count * sizeof(Controller)), [&] { controllers_.resize(count); });
+    for (std::uint32_t category = 0; category < world.categories.size(); ++category) {
+        auto const& robot = world.categories[category].spec.robot;
+        RobotRange const range = robots_of(world, category);
+        if (!robot || !needs_program(robot->brain) || range.size() == 0) {
+            continue;
+        }
+        if (!ranges_.empty() && ranges_.back().last == range.first) {
+            ranges_.back().last = range.last;
+        } else {
+            ranges_.push_back(range);
+        }
+    }
     allocate_user_data();
     draw_seeds(seed);
+}
+
+std::size_t Controllers::driven_count() const {
+    std::size_t count = 0;
+    for (RobotRange const range : ranges_) {
+        count += range.size();
+    }
+    return count;
 }
 
 Controllers::~Controllers() {
@@ -226,6 +244,7 @@ void Controllers::enter(std::uint32_t robot, Phase phase) {
     }
     self.calls = 0;
     load_globals(self.loop);
+    pogobot_ticks = context.devices().ticks[context.device];
     restart_watch();
 }
 
@@ -250,6 +269,7 @@ void Controllers::enter_as_system(std::uint32_t robot, Phase phase) {
 
 void Controllers::leave() {
     context.controller->loop = stored_globals();
+    context.devices().ticks[context.device] = pogobot_ticks;
     take_back_floating_point();
 }
 
@@ -288,10 +308,12 @@ void Controllers::call_as_system(std::uint32_t robot, Phase phase, void (*functi
 /// In C++, constructs the globals of all robots before the first main(). Objects that they share (POGO_SHARED) are
 /// constructed by each robot.
 void Controllers::construct_static_objects() {
-    for (std::uint32_t i = 0; i < controllers_.size() && own_memory_ && image_.constructors; ++i) {
-        enter(i, Phase::construct_static_objects);
-        construct_again(*image_.constructors, own_variables_);
-        leave();
+    if (own_memory_ && image_.constructors) {
+        for_each_robot([this](std::uint32_t robot) {
+            enter(robot, Phase::construct_static_objects);
+            construct_again(*image_.constructors, own_variables_);
+            leave();
+        });
     }
 }
 
@@ -327,8 +349,7 @@ void Controllers::run_init(std::uint32_t robot) {
 
 /// mydata is that of the last robot here, because existing programs read it in callback_global_setup.
 void Controllers::run_global_setup() {
-    auto const count = static_cast<std::uint32_t>(controllers_.size());
-    std::uint32_t const robot = count == 0 ? kNone : count - 1;
+    std::uint32_t const robot = ranges_.empty() ? kNone : ranges_.back().last - 1;
     auto const digest = [this, robot] {
         return std::hash<std::string_view>()(
             {reinterpret_cast<char const*>(controller(robot).user_data), user_data_bytes()});
@@ -345,8 +366,8 @@ void Controllers::run_global_setup() {
         }
         own_memory_->end_common_change();
     }
-    without_exceptions([this] { services_.access.settle_light(); });
-    if (count > 1 && digest() != before && !services_.access.gave_user_data) {
+    without_exceptions([this] { services_.edit.settle_light(); });
+    if (robot != kNone && controllers_.size() > 1 && digest() != before && !services_.gave_user_data) {
         warn_of_user_data_in_setup(world_.robots.id[robot]);
     }
 }
@@ -369,51 +390,46 @@ void Controllers::start() {
     start_programs();
     // In a host's process, other threads allocate, too.
     std::size_t const allocated_now = run_stage() == RunStage::hosted ? 0 : allocated_by_robots();
-    warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), count, memory_bytes);
+    warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), driven_count(), memory_bytes);
 }
 
 void Controllers::start_programs() {
-    auto const count = static_cast<std::uint32_t>(controllers_.size());
     construct_static_objects();
     if (image_.is_for_sdk) {
         start_sdk_program();
         return;
     }
     construct_user_data(kNone);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        construct_user_data(i);
-    }
-    if (count == 0) {
+    for_each_robot([this](std::uint32_t robot) { construct_user_data(robot); });
+    if (ranges_.empty() && image_.main != nullptr) {
         // No robot runs main(): only what the global callbacks need.
         run_main(kNone);
     }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        run_main(i);
-    }
+    for_each_robot([this](std::uint32_t robot) { run_main(robot); });
     warn_of_idle_categories(world_, controllers_, services_.started_categories);
     run_global_setup();
-    for (std::uint32_t i = 0; i < count; ++i) {
-        if (is_alive(world_, i)) {
-            run_on_fiber(i, &Controllers::run_init);
+    for_each_robot([this](std::uint32_t robot) {
+        if (is_alive(world_, robot)) {
+            run_on_fiber(robot, &Controllers::run_init);
         } else {
-            call(i, Phase::user_init, controllers_[i].program.init);
+            call(robot, Phase::user_init, controllers_[robot].program.init);
         }
-    }
+    });
     warn_of_missing_init(controllers_);
     warn_of_equal_seeds(controllers_);
 }
 
 /// Runs main() until it waits for the first time. Walls and membranes have no such program.
 void Controllers::start_sdk_program() {
-    for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
+    for_each_robot([this](std::uint32_t robot) {
         bool const is_robot =
-            world_.robots.body[i] != kNone && !world_.categories[world_.robots.category[i]].spec.membrane;
-        world_.devices.clock_us[i] = is_robot ? 0 : kIdle;
+            world_.robots.body[robot] != kNone && !world_.categories[world_.robots.category[robot]].spec.membrane;
+        world_.devices.clock_us[robot] = is_robot ? 0 : kIdle;
         if (is_robot) {
-            run_on_fiber(i, &Controllers::run_sdk_main);
-            controllers_[i].program.registered = true;
+            run_on_fiber(robot, &Controllers::run_sdk_main);
+            controllers_[robot].program.registered = true;
         }
-    }
+    });
     begun_with_ = callbacks_of_thread();
     run_global_setup();
     warn_of_missing_init(controllers_);
@@ -478,7 +494,7 @@ void Controllers::begin_step() {
         context.sees_world = true;
         pogo_main_loop_step(callback_global_step);
         leave();
-        without_exceptions([this] { services_.access.settle_light(); });
+        without_exceptions([this] { services_.edit.settle_light(); });
     }
     hold_switched_off(world_);
 }
@@ -556,7 +572,7 @@ bool Controllers::export_row(std::size_t robot, std::uint32_t object, std::span<
 bool Controllers::click(std::uint32_t robot) {
     void (*const callback)() = controllers_[robot].program.click;
     call(robot, Phase::robot_click, callback, /*sees_world=*/true);
-    without_exceptions([this] { services_.access.settle_light(); });
+    without_exceptions([this] { services_.edit.settle_light(); });
     return callback != nullptr;
 }
 

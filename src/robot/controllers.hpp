@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "brain/brain.hpp"
 #include "device/step_chips.hpp"
 #include "process/fibers.hpp"
 #include "process/guarded_memory.hpp"
@@ -76,6 +77,9 @@ public:
     /// One step: begin_step(), run_robots() of all, end_step().
     void run_step();
 
+    /// How many robots this program drives: not a host, nor a script.
+    std::size_t driven_count() const;
+
     /// The part of a step before the robots: restarts, chips that work at each step, and the global step. While a robot
     /// is switched off, only callback_export_data, callback_robot_end and callback_robot_click run.
     void begin_step();
@@ -97,7 +101,7 @@ public:
     std::string why_one_after_the_other() const;
     ConfiguredVariables configured_variables() const;
     /// A callback of the whole run has had access to robots' user data: from then on, these may share memory.
-    bool gave_user_data() const { return services_.access.gave_user_data; }
+    bool gave_user_data() const { return services_.gave_user_data; }
 
     /// callback_export_data of one robot, index `object` in World::objects, fills `cells`: one for each of the user's
     /// columns, empty before. False: the program wants no row.
@@ -126,7 +130,7 @@ public:
     void print_unfinished_lines();
 
     /// Ticks this robot has executed.
-    std::uint32_t ticks(std::size_t robot) const { return controllers_[robot].loop.ticks; }
+    std::uint32_t ticks(std::size_t robot) const { return world_.devices.ticks[robot]; }
 
     /// The state of this robot's controller between two of its ticks.
     Controller const& controller_of(std::size_t robot) const { return controllers_[robot]; }
@@ -178,6 +182,7 @@ private:
     bool is_due(std::uint32_t robot) const;
     bool is_waiting(std::uint32_t robot) const;
     struct Turns;
+    void run_range(RobotRange range);
     void take_turns(Turns& turns);
     void restart_robots();
     void restart(std::uint32_t robot);
@@ -186,6 +191,14 @@ private:
     void call(std::uint32_t robot, Phase phase, void (*function)(), bool sees_world = false);
     void call_as_system(std::uint32_t robot, Phase phase, void (*function)());
     void tick(std::uint32_t robot);
+    template <class Call>
+    void for_each_robot(Call const& call) {
+        for (RobotRange const range : ranges_) {
+            for (std::uint32_t robot = range.first; robot < range.last; ++robot) {
+                call(robot);
+            }
+        }
+    }
     static void note_callbacks(Program& program);
     static void set_callbacks(Program const& program);
     Controller& controller(std::uint32_t robot);
@@ -195,8 +208,9 @@ private:
     std::optional<Callbacks> begun_with_;  // of a program for the SDK: those that its main() has set before it waited
     World& world_;
     RunServices& services_;
-    std::vector<Controller> controllers_;
-    Controller system_;  // of the global step
+    std::vector<Controller> controllers_;  // one for each robot of the world
+    std::vector<RobotRange> ranges_;       // of those that the program drives, ascending
+    Controller system_;                    // of the global step
     StepChips chips_;
     GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run

@@ -60,7 +60,8 @@ std::string memory_text(std::size_t bytes) {
 std::size_t least_memory_bytes(World const& world) {
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (Category const& category : world.categories) {
-        least = category.spec.robot ? std::min<std::size_t>(least, category.spec.robot->model.memory_bytes) : least;
+        bool const has_program = category.spec.robot && needs_program(category.spec.robot->brain);
+        least = has_program ? std::min<std::size_t>(least, category.spec.robot->model.memory_bytes) : least;
     }
     return least;
 }
@@ -105,7 +106,7 @@ void warn_of_idle_categories(World const& world, std::span<Controller const> con
     std::vector<bool> warned(world.categories.size());
     for (std::size_t i = 0; i < controllers.size(); ++i) {
         std::uint32_t const category = world.robots.category[i];
-        if (!controllers[i].program.registered && !warned[category]) {
+        if (needs_program(world.spec_of(i).brain) && !controllers[i].program.registered && !warned[category]) {
             warned[category] = true;
             std::string const& name = world.categories[category].name;
             std::string const meant = did_you_mean(name, strange);
@@ -161,15 +162,20 @@ void tell_of_unset_columns(DataExport const& data, std::optional<std::vector<std
 void warn_of_lost_messages(World const& world, std::span<Controller const> controllers) {
     std::vector<std::uint64_t> lost(world.categories.size());
     for (std::size_t i = 0; i < controllers.size(); ++i) {
-        if (controllers[i].program.reads_messages) {
+        if (controllers[i].program.reads_messages || std::holds_alternative<HostSpec>(world.spec_of(i).brain)) {
             lost[world.robots.category[i]] += world.mailboxes.dropped(i);
         }
     }
     for (std::size_t category = 0; category < lost.size(); ++category) {
         if (lost[category] > 0) {
-            log().warn("{} to robots of category '{}' {} lost because their queues were full (message_queue_size: {})",
-                       counted(lost[category], "message"), world.categories[category].name,
-                       lost[category] == 1 ? "was" : "were", world.categories[category].spec.robot->ir.queue_size);
+            RobotSpec const& robot = *world.categories[category].spec.robot;
+            log().warn(
+                "{} to robots of category '{}' {} lost because their queues were full (message_queue_size: {}){}",
+                counted(lost[category], "message"), world.categories[category].name,
+                lost[category] == 1 ? "was" : "were", robot.ir.queue_size,
+                std::holds_alternative<HostSpec>(robot.brain)
+                    ? "; the host makes room by clear_received(), once it has read what came"
+                    : "");
         }
     }
 }
@@ -217,6 +223,12 @@ void warn_of_unused_messages(World const& world, std::span<Controller const> con
     auto const reads = [](Controller const& controller) {
         return controller.program.reads_messages || controller.loop.receive != nullptr;  // at its next tick
     };
+    auto const listens = [](Category const& category) {
+        return category.spec.robot && !needs_program(category.spec.robot->brain);
+    };
+    if (std::ranges::any_of(world.categories, listens)) {
+        return;  // a host may read what has arrived
+    }
     if (arrivals > 0 && std::ranges::none_of(controllers, reads) && std::ranges::none_of(deaf, std::identity())) {
         log().warn(
             "{} arrived, but no robot reads {}: set msg_rx_fn in user_init, or look for messages with "

@@ -73,7 +73,7 @@ public:
         }
         RunningRobot const own = running_robot();
         set_running_robot(robot);
-        std::string const source = place_in_source(context.services->access.controllers->image(), code);
+        std::string const source = place_in_source(context.services->controllers->image(), code);
         std::string const text = place().c_str() + (source.empty() ? "" : ", " + source);
         set_running_robot(own);
         return text;

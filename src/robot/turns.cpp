@@ -119,8 +119,14 @@ struct Controllers::Turns {
 };
 
 void Controllers::run_robots(std::uint32_t first, std::uint32_t last) {
-    Turns turns{*this, first, last};
-    while (turns.next < last) {
+    for (RobotRange const range : ranges_) {
+        run_range({.first = std::max(first, range.first), .last = std::min(last, range.last)});
+    }
+}
+
+void Controllers::run_range(RobotRange range) {
+    Turns turns{*this, range.first, range.last};
+    while (turns.next < turns.last) {
         if (is_waiting(turns.next)) {
             go_on(turns.next);
             turns.next += is_due(turns.next) ? 0 : 1;

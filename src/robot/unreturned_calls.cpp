@@ -63,12 +63,12 @@ void look_at_stack(void* of_wait) {
 }
 
 /// What does not happen while the function does not return.
-std::string consequences(Controller const& robot, std::string_view function) {
+std::string consequences(Controller const& robot, std::uint32_t ticks, std::string_view function) {
     std::vector<std::string> parts;
     if (function == "user_init") {
         return "user_step is not called";
     }
-    parts.emplace_back(robot.loop.ticks == 0 ? "pogobot_ticks stays 0" : "pogobot_ticks stays as it is");
+    parts.emplace_back(ticks == 0 ? "pogobot_ticks stays 0" : "pogobot_ticks stays as it is");
     if (function != "user_step") {
         parts.emplace_back("user_step is not called again");
     }
@@ -153,7 +153,7 @@ void Controllers::warn_of_unreturned_call(std::uint32_t robot, std::uint32_t cou
         "with pogobot.h (docs/porting.md)",
         world_.categories[world_.robots.category[robot]].name, wait.function, robots,
         static_cast<double>(self.call_began_us) / static_cast<double>(kUsPerS), world_.robots.id[robot],
-        place.empty() ? "" : " ", place, consequences(self, wait.function));
+        place.empty() ? "" : " ", place, consequences(self, ticks(robot), wait.function));
 }
 
 }  // namespace pogosim

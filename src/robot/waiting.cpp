@@ -11,7 +11,7 @@ namespace {
 /// After it, nothing that belongs to this thread may be used: the robot may go on in another one.
 void wait_for_step(Waiting least) {
     if (context.waiting >= least && context.clock_us() > context.step_us) {
-        context.services->access.controllers->wait();
+        context.services->controllers->wait();
     }
 }
 

@@ -114,10 +114,13 @@ void check_motion(Scenario const& scenario, MotionLimits const& limits, double t
               {ObjectSetting::linear_speed, "move", robot.max_linear_speed_mm_s, 1.0, limits.motion_mm, "mm", can_move,
                "mm/s"},
               time_step_s);
-        // Motors at full power against each other turn at four times max_angular_speed.
+        double fastest_turn = 0.0;  // 4 with two wheels at full power against each other
+        for (Drive const& drive : robot.model.drives) {
+            fastest_turn += std::abs(static_cast<double>(drive.angular));
+        }
         check(scenario, object,
-              {ObjectSetting::angular_speed, "turn", robot.max_angular_speed_rad_s, 4.0, limits.turn_rad, "rad",
-               can_simulate, "rad/s"},
+              {ObjectSetting::angular_speed, "turn", robot.max_angular_speed_rad_s, fastest_turn, limits.turn_rad,
+               "rad", can_simulate, "rad/s"},
               time_step_s);
     }
 }

@@ -116,7 +116,7 @@ Scenario stand_in(Scenario const& scenario) {
             ObjectConfig& robot = other.objects.emplace_back();
             robot.category = object.category;
             robot.spec.shape = {.kind = ShapeKind::disk};
-            robot.spec.robot.emplace();
+            robot.spec.robot.emplace().brain = object.spec.robot ? object.spec.robot->brain : BrainSpec();
             robot.spec.body.emplace();
         }
     }

@@ -96,9 +96,9 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
 /// Lamps may overlap.
 void warn_of_copies(Scenario const& scenario, ObjectConfig const& object) {
     if (object.nb > 1) {
-        bool const is_spot = std::holds_alternative<SpotSpec>(*object.spec.lamp);
+        bool const adds_up = std::visit([](auto const& spec) { return spec.kAddsUp; }, *object.spec.lamp);
         log().warn("{}: {} lamps at the same place{}", place_of(scenario, object, ObjectSetting::count), object.nb,
-                   is_spot ? "; their levels add up" : ", which look like one");
+                   adds_up ? "; their levels add up" : ", which look like one");
     }
 }
 
@@ -160,9 +160,8 @@ std::vector<PlacedLamp> placed_lamps(Scenario const& scenario, Arena const& aren
     std::vector<PlacedLamp> lamps;
     for (ObjectConfig const& object : scenario.objects) {
         if (object.spec.lamp) {
-            bool const is_spot = std::holds_alternative<SpotSpec>(*object.spec.lamp);
             auto const place = [&](auto const& spec) {
-                return is_spot ? spec.centre_mm : lit_box(spec.shape, spec.centre_mm, arena).centre();
+                return spec.kAddsUp ? spec.centre_mm : lit_box(spec.shape, spec.centre_mm, arena).centre();
             };
             PlacedLamp const lamp{
                 .category = object.category, .start_mm = std::visit(place, *object.spec.lamp), .setting = {}};
@@ -173,11 +172,7 @@ std::vector<PlacedLamp> placed_lamps(Scenario const& scenario, Arena const& aren
 }
 
 LampArea area_at_start(LampSpec const& lamp) {
-    LampArea area = std::visit([](auto const& spec) { return LampArea{spec.shape, spec.centre_mm}; }, lamp);
-    if (auto const* const spot = std::get_if<SpotSpec>(&lamp)) {
-        area.centre_mm = area.centre_mm + spot->orbit.radius_mm * direction(static_cast<float>(spot->orbit.phase_rad));
-    }
-    return area;
+    return std::visit([](auto const& spec) { return LampArea{spec.shape, spec.start_mm()}; }, lamp);
 }
 
 }  // namespace pogosim

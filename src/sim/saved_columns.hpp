@@ -43,7 +43,4 @@ private:
     std::vector<std::size_t> row_of_robot_;
 };
 
-/// Bytes of one value; 0 of text.
-std::size_t bytes_of(ColumnType type);
-
 }  // namespace pogosim

@@ -16,6 +16,7 @@
 #include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "brain/script_brain.hpp"
 #include "config/places.hpp"
 #include "device/switched_off.hpp"
 #include "process/source_place.hpp"
@@ -78,6 +79,59 @@ Lighting make_lighting(Scenario const& scenario, World& world) {
     return {lamps, world};
 }
 
+bool is_driven_by_host(Category const& category) {
+    return category.spec.robot && std::holds_alternative<HostSpec>(category.spec.robot->brain);
+}
+
+/// Several entries of a configuration may have the name of one category.
+std::unique_ptr<Brain> host_brain_of_entries(World& world, std::uint32_t first, std::uint32_t last) {
+    std::string const& name = world.categories[first].name;
+    bool const has_others = std::ranges::any_of(std::span(world.categories).subspan(last), [&](Category const& other) {
+        return other.name == name && is_driven_by_host(other);
+    });
+    if (has_others) {
+        throw ConfigError(
+            fmt::format("category '{}': its entries with brain: host have others between them; put them one behind "
+                        "the other",
+                        name));
+    }
+    RobotRange const robots{.first = robots_of(world, first).first, .last = robots_of(world, last - 1).last};
+    return std::make_unique<HostBrain>(world, name, robots);
+}
+
+std::vector<std::unique_ptr<Brain>> make_brains(World& world) {
+    std::vector<std::unique_ptr<Brain>> brains;
+    auto const count = static_cast<std::uint32_t>(world.categories.size());
+    for (std::uint32_t next = 0; next < count;) {
+        std::uint32_t const first = next++;
+        Category const& category = world.categories[first];
+        if (is_driven_by_host(category)) {
+            while (next < count && world.categories[next].name == category.name &&
+                   is_driven_by_host(world.categories[next])) {
+                ++next;
+            }
+            brains.push_back(host_brain_of_entries(world, first, next));
+        } else if (category.spec.robot && std::holds_alternative<ScriptSpec>(category.spec.robot->brain)) {
+            brains.push_back(std::make_unique<ScriptBrain>(world, first));
+        }
+    }
+    return brains;
+}
+
+/// Throws ConfigError if a category needs a program.
+void check_needs_no_program(World const& world) {
+    for (std::uint32_t i = 0; i < world.categories.size(); ++i) {
+        Category const& category = world.categories[i];
+        bool const has_robots = robots_of(world, i).size() > 0;
+        if (has_robots && category.spec.robot && needs_program(category.spec.robot->brain)) {
+            throw ConfigError(
+                fmt::format("category '{}' needs a program, and none is given: name one, or say what drives its robots "
+                            "(brain: host, or a script)",
+                            category.name));
+        }
+    }
+}
+
 }  // namespace
 
 Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions options)
@@ -92,15 +146,20 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
                    static_cast<std::size_t>(scenario_.robot_stack_kib) * 1024),
       flash_state_(scenario_, world_),
       lighting_(make_lighting(scenario_, world_)),
+      program_(controllers_, crash_handler_, workers_),
+      brains_(make_brains(world_)),
       workers_(thread_count(scenario_, world_)),
       physics_(make_physics(scenario_, world_, workers_)),
       recorder_(scenario_, world_, controllers_, services_.data, seed_),
       pictures_(Pictures::make(scenario_, world_, lighting_, options_.film)),
       stages_(options_.measure_stages) {
-    services_.access.is_free = [this](Object const& object, Vec2 place_mm) {
+    if (controllers_.image().main == nullptr) {
+        check_needs_no_program(world_);
+    }
+    services_.edit.is_free = [this](Object const& object, Vec2 place_mm) {
         return free_places().is_free(object, place_mm);
     };
-    services_.access.update_light = [this] { lighting_.update(world_); };
+    services_.edit.update_light = [this] { lighting_.update(world_); };
 }
 
 Simulation::~Simulation() = default;
@@ -276,10 +335,7 @@ std::optional<UserFailure> Simulation::run_steps() {
 
 std::optional<UserFailure> Simulation::end_programs() {
     Thread const thread(*this);
-    return call_user_code([this] {
-        controllers_.end();
-        controllers_.print_unfinished_lines();
-    });
+    return call_brains(&Brain::stop);
 }
 
 void Simulation::open_window() {
@@ -334,14 +390,16 @@ std::optional<UserFailure> Simulation::start() {
     bool const is_own = scenario_.robot_memory == RobotMemoryKind::automatic
                             ? controllers_.image().is_for_sdk
                             : scenario_.robot_memory == RobotMemoryKind::own;
-    if (is_own) {
+    if (is_own && controllers_.image().main != nullptr) {
         controllers_.give_robots_own_memory();
     }
-    if (auto failure = call_user_code([this] { controllers_.start(); })) {
+    if (auto failure = call_brains(&Brain::start)) {
         return failure;
     }
-    controllers_.warn_of_shared_variables();
-    share_steps();
+    if (controllers_.image().main != nullptr) {
+        controllers_.warn_of_shared_variables();
+        program_.share_steps(options_.shares_nothing);
+    }
     fit_time_step();
     check_motion(scenario_, physics_->motion_limits(), world_.time_step_s);
     warn_of_ambiguous_rows(scenario_, world_);
@@ -356,21 +414,20 @@ std::optional<UserFailure> Simulation::start() {
     return failure;
 }
 
-void Simulation::share_steps() {
-    if (workers_.size() == 1) {
-        return;
-    }
-    std::string const reason = options_.shares_nothing ? "" : controllers_.why_one_after_the_other();
-    if (!reason.empty()) {
-        log().info("threads: {}; robots take their steps one after the other: {}", workers_.size(), reason);
-        return;
-    }
-    log().info("threads: {}; robots take their steps on all of them", workers_.size());
-    shared_steps_.emplace(controllers_, crash_handler_, workers_.size());
+/// The program comes first.
+std::optional<UserFailure> Simulation::call_brains(bool (Brain::*part)()) {
+    bool const all_go_on =
+        (program_.*part)() && std::ranges::all_of(brains_, [part](auto const& brain) { return (*brain.*part)(); });
+    return all_go_on ? std::nullopt : program_.failure();
 }
 
-std::optional<UserFailure> Simulation::run_robots() {
-    return shared_steps_ ? shared_steps_->run_step(workers_) : call_user_code([this] { controllers_.run_step(); });
+HostBrain* Simulation::host_brain(std::string_view category) {
+    auto const named = [&](std::unique_ptr<Brain> const& brain) {
+        auto const* const host = dynamic_cast<HostBrain const*>(brain.get());
+        return host != nullptr && host->category() == category;
+    };
+    auto const found = std::ranges::find_if(brains_, named);
+    return found == brains_.end() ? nullptr : static_cast<HostBrain*>(found->get());
 }
 
 std::optional<UserFailure> Simulation::step() {
@@ -378,7 +435,7 @@ std::optional<UserFailure> Simulation::step() {
     stages_.begin_step();
     lighting_.update(world_);
     stages_.end(Stage::light);
-    if (auto failure = run_robots()) {
+    if (auto failure = call_brains(&Brain::run_step)) {
         return failure;
     }
     stages_.end(Stage::robots);
@@ -417,9 +474,8 @@ ObservedMotions const& Simulation::observed_motions() const {
     return *observed_motions_;
 }
 
-void Simulation::put(std::uint32_t object, Vec2 centre_mm, float heading_rad) {
+void Simulation::note_move(std::uint32_t object) {
     Object const& moved = world_.objects[object];
-    pogosim::set_pose(world_, moved, centre_mm, heading_rad);
     if (observed_motions_) {
         observed_motions_->update(world_, moved);
     }
@@ -439,7 +495,8 @@ bool Simulation::move_object(std::uint32_t object, Vec2 centre_mm) {
     if (place_mm == pogosim::centre_mm(world_, moved)) {
         return false;
     }
-    put(object, place_mm, world_.bodies.heading_rad[moved.body]);
+    pogosim::set_pose(world_, moved, place_mm, world_.bodies.heading_rad[moved.body]);
+    note_move(object);
     return true;
 }
 
@@ -453,12 +510,12 @@ bool Simulation::set_pose(std::uint32_t object, Vec2 centre_mm, float heading_ra
         throw ConfigError(fmt::format("expected finite numbers (mm, rad) up to {:g}, found ({:g}, {:g}), heading {:g}",
                                       kMaxLength, centre_mm.x, centre_mm.y, heading_rad));
     }
-    if (!free_places().is_free(moved, centre_mm)) {
+    if (!services_.edit.set_pose(world_, moved, centre_mm, heading_rad)) {
         throw ConfigError(
             fmt::format("({:g}, {:g}) mm is inside a wall or outside the arena; an object cannot be placed there",
                         centre_mm.x, centre_mm.y));
     }
-    put(object, centre_mm, heading_rad);
+    note_move(object);
     return true;
 }
 
@@ -469,8 +526,8 @@ void Simulation::set_alive(std::uint32_t robot, bool alive) {
 }
 
 void Simulation::set_lamp(std::size_t lamp, LampSetting const& setting) {
-    world_.lamps[lamp].setting = setting;
-    lighting_.update(world_);
+    services_.edit.set_lamp(world_, lamp, setting);
+    services_.edit.settle_light();
     touches_.add(Touch::lamp, world_.time_s());
 }
 

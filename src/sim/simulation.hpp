@@ -6,10 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/log.hpp"
 #include "base/worker_pool.hpp"
+#include "brain/host_brain.hpp"
 #include "comms/ir_channel.hpp"
 #include "config/scenario.hpp"
 #include "config/user_parameters.hpp"
@@ -19,7 +21,7 @@
 #include "process/crash_handler.hpp"
 #include "process/program_image.hpp"
 #include "robot/controllers.hpp"
-#include "robot/shared_steps.hpp"
+#include "robot/native_program.hpp"
 #include "sim/flash_state.hpp"
 #include "sim/inspector.hpp"
 #include "sim/observed_motions.hpp"
@@ -63,7 +65,7 @@ struct Outcome {
 
 class Simulation {
 public:
-    /// Builds the world. Throws ConfigError.
+    /// Builds the world. Throws ConfigError. A `program` without main() is none: then no category may need one.
     Simulation(ProgramImage program, Scenario scenario, RunOptions options);
     ~Simulation();
 
@@ -109,7 +111,10 @@ public:
     UserParameters const& parameters() const { return parameters_; }
 
     /// See state_hash.hpp.
-    std::uint64_t hash() const { return state_hash(world_, controllers_); }
+    std::uint64_t hash() const { return state_hash(world_, controllers_, brains_); }
+
+    /// The arrays that drive the robots of a category, `brain: host`. Null for any other category.
+    HostBrain* host_brain(std::string_view category);
 
     /// Puts an object (index into World::objects) elsewhere, at rest. False for one without a body. The data file says
     /// that the run was touched. Throws ConfigError for a place in a wall or outside of the arena.
@@ -195,14 +200,13 @@ private:
     };
 
     std::optional<UserFailure> run_steps();
-    void share_steps();
-    std::optional<UserFailure> run_robots();
+    std::optional<UserFailure> call_brains(bool (Brain::*part)());
     void fit_time_step();
     void open_window();
     void stay_open();
     FreePlaces const& free_places();
-    /// Puts an object at a place that has been checked, at rest.
-    void put(std::uint32_t object, Vec2 centre_mm, float heading_rad);
+    /// An object was moved from outside.
+    void note_move(std::uint32_t object);
     void report(UserFailure const& failure) const;
     void report_unread_parameters() const;
     std::string note_of_files() const;
@@ -218,7 +222,8 @@ private:
     FlashState flash_state_;
     Lighting lighting_;
     IrChannel channel_;
-    std::optional<SharedSteps> shared_steps_;  // when robots may run on several threads
+    NativeProgram program_;
+    std::vector<std::unique_ptr<Brain>> brains_;  // of the categories that need no program, in their order
     WorkerPool workers_;
     std::unique_ptr<PhysicsEngine> physics_;
     SavedColumns saved_columns_;

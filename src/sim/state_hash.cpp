@@ -80,7 +80,7 @@ void add_robot(Hash& hash, Controller const& controller, World const& world, std
     Mailboxes const& mailboxes = world.mailboxes;
     hash.add(devices.clock_us[robot]);
     LoopGlobals const& loop = controller.loop;
-    hash.add(loop.ticks);
+    hash.add(devices.ticks[robot]);
     hash.add(loop.loop_hz);
     hash.add(loop.max_messages_per_tick);
     hash.add(loop.send_percent);
@@ -156,7 +156,8 @@ void add_chips(Hash& hash, World const& world, std::size_t robot) {
 
 }  // namespace
 
-std::uint64_t state_hash(World const& world, Controllers const& controllers) {
+std::uint64_t state_hash(World const& world, Controllers const& controllers,
+                         std::span<std::unique_ptr<Brain> const> brains) {
     Hash hash;
     add_world(hash, world);
     auto const all = controllers.all();
@@ -194,6 +195,11 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers) {
     if (controllers.own_memory() != nullptr) {
         add_own_memory(hash, controllers);
     }
+    std::vector<std::byte> bytes;
+    for (auto const& brain : brains) {
+        brain->save(bytes);
+    }
+    hash.add_bytes(bytes);
     return mix64(hash.value());
 }
 

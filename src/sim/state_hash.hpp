@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 
+#include "brain/brain.hpp"
 #include "robot/controllers.hpp"
 #include "world/world.hpp"
 
@@ -12,6 +15,7 @@ namespace pogosim {
 /// light, messages on their way and in queues, clocks, motors, main loops and random streams of all robots. The user
 /// data are not in it, as they may contain pointers; what differs in them shows in what robots do. FNV-1a, in words of
 /// 64 bits, see G. Fowler, L. C. Noll and K.-P. Vo, "The FNV Non-Cryptographic Hash Algorithm", RFC 9923.
-std::uint64_t state_hash(World const& world, Controllers const& controllers);
+std::uint64_t state_hash(World const& world, Controllers const& controllers,
+                         std::span<std::unique_ptr<Brain> const> brains);
 
 }  // namespace pogosim

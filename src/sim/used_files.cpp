@@ -31,8 +31,8 @@ struct UsedFile {
 /// Files that this run does not use are omitted.
 std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& film) {
     std::vector<UsedFile> files{{std::nullopt, scenario.file, /*is_output=*/false, "the configuration file"}};
-    for (std::filesystem::path const& model : scenario.robot_model_files) {
-        files.push_back({std::nullopt, model, /*is_output=*/false, "the robot model"});
+    for (auto const& [path, what] : scenario.object_files) {
+        files.push_back({std::nullopt, path, /*is_output=*/false, what});
     }
     auto const add_input = [&](Setting setting, std::string const& name, bool is_used) {
         if (is_used && !name.empty()) {

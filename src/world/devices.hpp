@@ -122,7 +122,8 @@ struct Devices {
     std::vector<std::uint8_t> ir_power;
     std::vector<InfraredState> infrared;
     std::vector<SentRate> sent_rate;
-    std::vector<std::uint64_t> messages_sent;      // by whatever function
+    std::vector<std::uint32_t> ticks;          // how often it has ticked; of a program, what pogobot_ticks said last
+    std::vector<std::uint64_t> messages_sent;  // by whatever function
     std::vector<std::uint64_t> messages_received;  // taken out of its queue
     std::int64_t drained_us = 0;                   // time up to which batteries have given what was used
 

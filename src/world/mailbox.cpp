@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/four.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -131,7 +133,7 @@ unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader header, std::span
     unsigned const before = queue.waiting;
     for (; faces != 0; faces &= faces - 1) {
         if (queue.waiting == queue.max_count) {
-            dropped_[robot] += static_cast<unsigned>(std::popcount(faces));
+            dropped_[robot] += count_of_four(faces);
             break;
         }
         header.receiver_ir_index = static_cast<std::uint8_t>(std::countr_zero(faces));
@@ -140,10 +142,10 @@ unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader header, std::span
     return queue.waiting - before;
 }
 
-unsigned Mailboxes::receive_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
+unsigned Mailboxes::deliver_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
                                     PacketKind kind, unsigned faces) {
     if (kind == PacketKind::malformed) {
-        malformed_[robot] += static_cast<unsigned>(std::popcount(faces));
+        malformed_[robot] += count_of_four(faces);
         return 0;
     }
     Commands& commands = commands_[robot];

@@ -11,6 +11,8 @@
 
 namespace pogosim {
 
+inline constexpr std::size_t kMostPayloadBytes = 382;
+
 /// The eight bytes a receiver sees in front of a payload. Same fields as message_header_t of the C interface.
 struct FrameHeader {
     std::uint8_t packet_type = 0;
@@ -89,10 +91,10 @@ public:
 
     /// Copies of a packet that arrive, one for each of the faces, as push_copies(): malformed ones are counted and not
     /// appended; of a command, the robot's library gets to know, too, even if the queue is full.
-    unsigned receive(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload, PacketKind kind,
+    unsigned deliver(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload, PacketKind kind,
                      unsigned faces) {
         if (kind != PacketKind::message) [[unlikely]] {
-            return receive_special(robot, header, payload, kind, faces);
+            return deliver_special(robot, header, payload, kind, faces);
         }
         return push_copies(robot, header, payload, faces);
     }
@@ -160,7 +162,7 @@ private:
         std::size_t capacity = 0;  // bytes
     };
 
-    unsigned receive_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
+    unsigned deliver_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
                              PacketKind kind, unsigned faces);
     std::size_t far_bytes() const { return far_.empty() ? 0 : far_.back().block + far_.back().capacity; }
     void append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);

@@ -26,13 +26,29 @@ std::size_t count_of_robots(World const& world) {
 }
 
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad) {
+    if (!is_finite(position_mm) || !std::isfinite(heading_rad)) {
+        return;
+    }
+    float const wrapped_rad = wrap_angle(heading_rad);
+    bool const is_moved = bodies.position_mm[body] != position_mm || bodies.heading_rad[body] != wrapped_rad;
+    bodies.written.push_back({body, is_moved});
     bodies.position_mm[body] = position_mm;
-    bodies.heading_rad[body] = wrap_angle(heading_rad);
+    bodies.heading_rad[body] = wrapped_rad;
     bodies.heading_dir[body] = direction(heading_rad);
     bodies.velocity_mm_s[body] = {};
     bodies.angular_velocity_rad_s[body] = 0.0F;
     bodies.start_mm[body] = position_mm;
-    bodies.start_rad[body] = bodies.heading_rad[body];
+    bodies.start_rad[body] = wrapped_rad;
+}
+
+void set_velocity(Bodies& bodies, std::uint32_t body, Vec2 velocity_mm_s, float angular_velocity_rad_s) {
+    bool const is_possible = is_finite(velocity_mm_s) && std::isfinite(angular_velocity_rad_s);
+    if (!is_possible || bodies.spec[body].fixed) {
+        return;
+    }
+    bodies.written.push_back({body, /*is_moved=*/false});
+    bodies.velocity_mm_s[body] = velocity_mm_s;
+    bodies.angular_velocity_rad_s[body] = angular_velocity_rad_s;
 }
 
 void set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) {

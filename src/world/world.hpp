@@ -16,8 +16,8 @@
 //
 // No stage keeps a version of its own. What is written between two steps takes effect:
 //
-//   a pose                   bodies, also fixed ones, continue from there; to be written with set_pose(), outside walls
-//   a velocity               bodies continue with it, unless their motors command another one; fixed ones keep 0
+//   a pose, by set_pose()    bodies, also fixed ones, continue from there; outside walls
+//   set_velocity()           bodies continue with it, unless their motors command another one
 //   robots.led               is shown and recorded until the program sets it again
 //   robots.command[i]        is the velocity of this body in the next step if it is pending, unless its motors
 //                            command another one
@@ -25,7 +25,7 @@
 //   a message in a mailbox   is received
 //   lamps[i].setting         determines the light of the next step
 //
-// A pose or velocity that is not finite is reverted. Everything else is constant during a run.
+// Everything else is constant during a run.
 #pragma once
 
 #include <array>
@@ -40,22 +40,23 @@
 #include "world/devices.hpp"
 #include "world/magnetometer_spec.hpp"
 #include "world/mailbox.hpp"
+#include "world/rgb.hpp"
 #include "world/specs.hpp"
 
 namespace pogosim {
-
-struct Rgb {
-    std::uint8_t r = 0;
-    std::uint8_t g = 0;
-    std::uint8_t b = 0;
-
-    friend bool operator==(Rgb const&, Rgb const&) = default;
-};
 
 using Leds = std::array<Rgb, kLedCount>;
 
 /// In place of an index: none.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// A body whose pose or velocity was written between two steps.
+struct WrittenBody {
+    std::uint32_t body = 0;
+    bool is_moved = false;  // to another pose
+
+    friend bool operator==(WrittenBody const&, WrittenBody const&) = default;
+};
 
 /// Rigid bodies. Shape: one entry per body.
 struct Bodies {
@@ -69,6 +70,7 @@ struct Bodies {
     std::vector<float> radius_mm;  // bounding disk
     std::vector<Shape> shape;
     std::vector<BodySpec> spec;
+    std::vector<WrittenBody> written;  // since the last step, in this order: the engine takes it over
 
     std::size_t size() const { return position_mm.size(); }
 
@@ -247,8 +249,11 @@ constexpr std::uint16_t id_on_air(std::uint32_t id) {
 /// How many robots there are for people: not the walls and membranes that run programs.
 std::size_t count_of_robots(World const& world);
 
-/// Moves a body to another pose, at rest.
+/// Moves a body to another pose, at rest. One that is not finite is not written.
 void set_pose(Bodies& bodies, std::uint32_t body, Vec2 position_mm, float heading_rad);
+
+/// Gives a body another velocity. One that is not finite is not written; fixed bodies keep 0.
+void set_velocity(Bodies& bodies, std::uint32_t body, Vec2 velocity_mm_s, float angular_velocity_rad_s);
 
 /// Moves an object that has a body to another pose, at rest, even if it is fixed: a rigid body to this centre and
 /// heading, a membrane without a change of shape to this middle.

@@ -122,8 +122,8 @@ TEST(RobotModel, FileGivesKeysThatTheCategoryDoesNotHave) {
     EXPECT_EQ(spec.robot->ir.range_mm, 70.0F);
     ASSERT_EQ(spec.robot->model.faces.size(), 1U);
     EXPECT_EQ(spec.robot->model.faces[0].emission_deg, 60.0F);
-    ASSERT_EQ(scenario.robot_model_files.size(), 1U);
-    EXPECT_EQ(scenario.robot_model_files[0], "narrow.yaml");
+    ASSERT_EQ(scenario.object_files.size(), 1U);
+    EXPECT_EQ(scenario.object_files[0].path, "narrow.yaml");
     // What the run keeps in its data file is complete without the model's file.
     Folder::write("resolved.yaml", to_yaml(scenario.source->values));
     std::filesystem::remove("narrow.yaml");
@@ -197,6 +197,9 @@ TEST(RobotModel, WrongPartsAreRefused) {
               std::string::npos);
     EXPECT_NE(error_in("    processor: {memory_bytes: 1}\n").find("processor.memory_bytes"), std::string::npos);
     EXPECT_NE(load_error("objects:\n  w: {type: pogowall, geometry: arena, faces: [{}]}\n").find("have no faces"),
+              std::string::npos);
+    EXPECT_NE(load_error("objects:\n  w: {type: pogowall, geometry: arena, motors: {left: {linear_mm_s: 50}}}\n")
+                  .find("have no motors"),
               std::string::npos);
 }
 

@@ -31,7 +31,7 @@ struct Robot {
 
     void hears(std::string_view text, PacketKind kind, unsigned faces = kOneFace) {
         FrameHeader const header{.packet_type = ir_t_cmd, .payload_length = static_cast<std::uint16_t>(text.size())};
-        mailboxes.receive(0, header, bytes_of(text), kind, faces);
+        mailboxes.deliver(0, header, bytes_of(text), kind, faces);
     }
     bool obeys() { return mailboxes.has_commands(0) && obey_commands(world, 0); }
 };

@@ -103,7 +103,9 @@ TEST_P(Crowds, BodyThatFollowsAStoppedOneStopsBehindIt) {
             add_robot(world, {3000 - 53 - gap_mm, 2000}, 0.0F, disk(26.5F, 0.0F));
             add_robot(world, {3000 - 106 - 2 * gap_mm, 2000}, 0.0F, disk(26.5F, 0.0F));
             auto const engine = make_engine(world, {});
-            world.bodies.velocity_mm_s[1] = world.bodies.velocity_mm_s[2] = {speed_mm_s, 0};
+            for (std::uint32_t const body : {1U, 2U}) {
+                set_velocity(world.bodies, body, {speed_mm_s, 0}, 0.0F);
+            }
             for (int step = 0; step < 30; ++step) {
                 engine->advance(world);
                 EXPECT_LT(deepest_overlap_mm(world), is_disk_engine() ? 0.5F : 7.0F)

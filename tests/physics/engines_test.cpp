@@ -96,7 +96,7 @@ TEST_P(Motion, BodyThatHasTurnedForHoursTurnsAsFastAsBefore) {
         turned_rad += static_cast<double>(wrap_angle(world.bodies.heading_rad[0] - before_rad));
     }
     EXPECT_NEAR(turned_rad / (20.0 * kHours * kHour), 1.0, 1e-4);
-    world.bodies.angular_velocity_rad_s[0] = 0.05F;  // slower ones fall asleep in Box2D
+    set_velocity(world.bodies, 0, {}, 0.05F);  // slower ones fall asleep in Box2D
     float const before_rad = world.bodies.heading_rad[0];
     for (int i = 0; i < 1000; ++i) {
         engine->advance(world);

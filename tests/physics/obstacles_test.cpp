@@ -116,7 +116,7 @@ TEST_P(Obstacles, StopDisksThatWouldJumpOverThemInAStep) {
                 add_obstacle(world, {501.0F + 173.2051F, 500}, 1.5707964F, triangle(600));
             }
             auto const engine = make_engine(world, {});
-            world.bodies.velocity_mm_s[robot] = {speed_mm_s, 0};
+            set_velocity(world.bodies, robot, {speed_mm_s, 0}, 0.0F);
             for (int step = 0; step < 20; ++step) {
                 engine->advance(world);
                 ASSERT_LT(world.bodies.position_mm[robot].x, 501.0F) << speed_mm_s << " mm/s, step " << step;

@@ -100,14 +100,16 @@ TEST_P(Written, FixedBodyIsMovedAndPushesOthersAway) {
     EXPECT_GT(world.bodies.position_mm[1].x, 480.0F + 2.0F * kRadius - 1.0F);
 }
 
-TEST_P(Written, PoseAloneTakesEffectAndKeepsTheVelocity) {
+TEST_P(Written, PoseAndVelocityOfOneStepTakeEffect) {
     World world = square_world();
     add_robot(world, {200, 200});
     world.bodies.velocity_mm_s[0] = {50, 0};
     auto const engine = make_engine(world, {});
     run(*engine, world, 10);
-    world.bodies.position_mm[0] = {500, 700};
-    world.bodies.heading_rad[0] = 1.5F;
+    set_pose(world.bodies, 0, {400, 700}, 0.5F);
+    set_velocity(world.bodies, 0, {10, 0}, 0.0F);
+    set_pose(world.bodies, 0, {500, 700}, 1.5F);
+    set_velocity(world.bodies, 0, {50, 0}, 0.0F);
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {550, 700}, 0.1F);
     EXPECT_NEAR(world.bodies.heading_dir[0].y, std::sin(1.5F), 1e-5F);
@@ -119,13 +121,12 @@ TEST_P(Written, VelocityTakesEffectAlsoOnABodyAsleep) {
     add_robot(world, {600, 600});
     auto const engine = make_engine(world, {});
     run(*engine, world, 200);
-    world.bodies.velocity_mm_s[0] = {100, 50};
-    world.bodies.angular_velocity_rad_s[0] = 0.5F;
+    set_velocity(world.bodies, 0, {100, 50}, 0.5F);
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {300, 250}, 0.1F);
     EXPECT_NEAR(world.bodies.heading_rad[0], 0.5F, 1e-3F);
     expect_at(world.bodies.position_mm[1], {600, 600});
-    world.bodies.velocity_mm_s[0] = {};
+    set_velocity(world.bodies, 0, {}, 0.5F);
     run(*engine, world, 100);
     expect_at(world.bodies.position_mm[0], {300, 250}, 0.1F);
 }
@@ -136,7 +137,7 @@ TEST_P(Written, FastBodyIsStoppedByWallsAndBodiesAlike) {
     add_robot(world, {300, 500});
     auto const engine = make_engine(world, {});
     run(*engine, world, 5);
-    world.bodies.velocity_mm_s[0] = {15000, 0};
+    set_velocity(world.bodies, 0, {15000, 0}, 0.0F);
     for (int i = 0; i < 100; ++i) {
         engine->advance(world);
         ASSERT_LT(world.bodies.position_mm[0].x, world.bodies.position_mm[1].x);
@@ -150,13 +151,14 @@ TEST_P(Written, FixedBodyKeepsItsVelocityOfZero) {
     spec.body->fixed = true;
     add_robot(world, {200, 200}, 0.0F, spec);
     auto const engine = make_engine(world, {});
-    world.bodies.velocity_mm_s[0] = {100, 0};
+    set_velocity(world.bodies, 0, {100, 0}, 1.0F);
+    EXPECT_TRUE(world.bodies.written.empty());
     run(*engine, world, 10);
     EXPECT_EQ(world.bodies.velocity_mm_s[0], Vec2{});
     expect_at(world.bodies.position_mm[0], {200, 200});
 }
 
-TEST_P(Written, WhatIsNotFiniteIsTakenBack) {
+TEST_P(Written, WhatIsNotFiniteIsNotWritten) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     constexpr float infinity = std::numeric_limits<float>::infinity();
     World world = square_world();
@@ -170,13 +172,13 @@ TEST_P(Written, WhatIsNotFiniteIsTakenBack) {
         EXPECT_NEAR(length(world.bodies.heading_dir[0]), 1.0F, 1e-5F);
         EXPECT_EQ(world.bodies.velocity_mm_s[0], Vec2{});
     };
-    world.bodies.position_mm[0] = {nan, 300};
+    set_pose(world.bodies, 0, {nan, 300}, 0.0F);
     expect_unmoved();
-    world.bodies.heading_rad[0] = infinity;
+    set_pose(world.bodies, 0, {300, 300}, infinity);
     expect_unmoved();
-    world.bodies.velocity_mm_s[0] = {0, -infinity};
+    set_velocity(world.bodies, 0, {0, -infinity}, 0.0F);
     expect_unmoved();
-    world.bodies.angular_velocity_rad_s[0] = nan;
+    set_velocity(world.bodies, 0, {}, nan);
     expect_unmoved();
 }
 
@@ -197,8 +199,8 @@ TEST_P(Written, CrowdOnOneSpotSeparates) {
     }
     auto const engine = make_engine(world, {});
     run(*engine, world, 5);
-    for (Vec2& place : world.bodies.position_mm) {
-        place = {500, 500};
+    for (Object const& object : world.objects) {
+        set_pose(world, object, {500, 500}, 0.0F);
     }
     run(*engine, world, 1000);
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {

@@ -76,6 +76,8 @@ def test_runs_differ_with_the_program_and_the_seed(tasks: Tasks) -> None:
         {"arena_file": "mine.csv"},
         {"formation_filename": "mine.csv"},
         {"objects": {"a": [{"image": "mine.csv"}]}},
+        {"objects": {"a": {"robot_model": "mine.csv"}}},
+        {"objects": {"a": [{"brain": {"script": "mine.csv"}}]}},
     ],
 )
 def test_runs_differ_when_a_file_does_that_their_configuration_names(
@@ -104,6 +106,18 @@ def test_files_beside_the_configuration_are_found_and_those_of_the_working_folde
     assert set(named().values()) == {"mine.csv"}
     for value in ("", None, 3):
         assert found_beside(value, beside) == value
+
+
+def test_files_of_categories_are_found_beside_the_configuration(tasks: Tasks, beside: Path) -> None:
+    (beside / "mine.csv").touch()
+    found = str(beside / "mine.csv")
+
+    def objects(name: str) -> dict[str, Any]:
+        script = {"nb": 2, "brain": {"script": name}}
+        return {"a": script, "b": [{"robot_model": name}, {"brain": "host", "script": "mine.csv"}]}
+
+    (task, _) = tasks({"objects": objects("mine.csv")})
+    assert yaml.safe_load(task.text)["objects"] == objects(found)
 
 
 def test_names_of_outputs_make_no_other_run(tasks: Tasks) -> None:

@@ -18,7 +18,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "record/half.hpp"
+#include "base/half.hpp"
 #include "scratch.hpp"
 
 namespace pogosim {

@@ -148,7 +148,7 @@ TEST_F(UnfinishedDataFile, IsAsBeforeAfterRowsThatDidNotFitAndGoesOnFromThere) {
         EXPECT_FALSE(file->append(*rows(100000)).ok());
     }
     EXPECT_EQ(bytes_of(path("a.feather")), before);
-    EXPECT_FALSE(file->somebody_changed_it());
+    EXPECT_FALSE(file->was_changed_by_others());
     ASSERT_TRUE(file->append(*rows(5)).ok());
     EXPECT_EQ(read_unfinished(path("a.feather"))->num_rows(), 15);
 }

@@ -26,7 +26,7 @@ void step() {
     pogobot_motor_dir_mem_set(stored.data());
     pogobot_motor_dir_set(motorL, 0);
     pogobot_motor_dir_set(motorR, 1);
-    context.services->access.controllers->ask_for_restart();
+    context.services->controllers->ask_for_restart();
 }
 
 class Restarts : public ::testing::Test {

@@ -34,7 +34,7 @@ int main() {
     world.mailboxes.push(2, {}, {});
 
     pogosim::Controller controller;
-    controller.loop.ticks = 156;
+    controller.calls = 156;
     world.devices.clock_us = {0, 2'500'000};
     pogosim::Leds const leds{{{255, 128, 0}, {}, {}, {}, {0, 0, 25}}};
     stop_here(world, controller, leds);

@@ -104,17 +104,18 @@ class MembersPrinter:
 
 
 class ControllerPrinter(MembersPrinter):
-    """How often the robot ticked; then all members."""
+    """All members; the robot's devices are elsewhere, see $device()."""
 
     def to_string(self) -> str:
-        return f"controller after {int(self.value['loop']['ticks'])} ticks"
+        return "controller"
 
 
 class ArraysPrinter(MembersPrinter):
     """A structure of arrays: their common length, then the arrays. `set print elements` limits what is shown."""
 
     def to_string(self) -> str:
-        sizes = sorted({size_of(member) for _, member in members(self.value) if is_vector(member.type)})
+        columns = [member for name, member in members(self.value) if is_vector(member.type) and name != "written"]
+        sizes = sorted({size_of(member) for member in columns})  # Bodies::written is a list of its own
         what = name_of(self.value.type).rsplit("::", 1)[-1].lower()
         return f"{sizes[0]} {what}" if len(sizes) == 1 else f"{what} in arrays of different length: {sizes}"
 

@@ -13,7 +13,7 @@ OUTPUTS_ASKED_FOR = {"message_log": "messages.feather", "flash_state.output_file
 ALL_OUTPUTS = (*OUTPUTS, *OUTPUTS_ASKED_FOR)
 
 FILES_BESIDE = ("arena_file", "formation_filename", "magnetometer.csv.file")
-MODEL = "robot_model"  # of a category, a file beside it, too
+FILES_OF_OBJECTS = ("robot_model", "brain.script")  # of a category
 
 
 def is_nested(setting: str) -> bool:
@@ -73,18 +73,20 @@ def with_files_beside(entries: dict[str, Any], folder: Path) -> dict[str, Any]:
         if (name := value_at(entries, setting)) is not None:
             entries = changed(entries, setting, found_beside(name, folder))
     objects = entries.get("objects")
-    return {**entries, "objects": with_models_beside(objects, folder)} if isinstance(objects, dict) else entries
+    return {**entries, "objects": with_object_files(objects, folder)} if isinstance(objects, dict) else entries
 
 
-def with_models_beside(node: Any, folder: Path) -> Any:
-    """Return categories, or entries of one, with the paths of robot models that a single run finds in a folder."""
+def with_object_files(node: Any, folder: Path) -> Any:
+    """Return categories, or entries of one, with the paths of their files that a single run finds in a folder."""
     if isinstance(node, list):
-        return [with_models_beside(own, folder) for own in node]
+        return [with_object_files(own, folder) for own in node]
     if not isinstance(node, dict):
         return node
-    if MODEL in node:
-        return {**node, MODEL: found_beside(node[MODEL], folder)}
-    return {name: with_models_beside(own, folder) for name, own in node.items()}
+    node = {name: with_object_files(own, folder) for name, own in node.items()}
+    for setting in FILES_OF_OBJECTS:
+        if (name := value_at(node, setting)) is not None:
+            node = changed(node, setting, found_beside(name, folder))
+    return node
 
 
 def found_beside(name: Any, folder: Path) -> Any:

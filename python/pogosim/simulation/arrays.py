@@ -33,6 +33,15 @@ class Memory:
         }
 
 
+def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Return a view of the same memory that can be written."""
+    interface = dict(array.__array_interface__)
+    address, _ = interface["data"]
+    interface["data"] = (address, False)
+    holder = type("UserData", (), {"__array_interface__": interface, "owner": array})()
+    return np.asarray(holder)
+
+
 def check_process(process: int) -> None:
     """Raise SimulationError in a child of the process that has made a run: both would write the same files."""
     if os.getpid() != process:
@@ -82,6 +91,21 @@ class RunState:
                 np.asarray(Memory(place, self._run)) if has_memory else np.zeros(shape, dtype=place.type.decode())
             )
         return self._arrays[name]
+
+    def brain_array(self, category: str, name: str, *, stays: bool = True) -> npt.NDArray[Any]:
+        """Return an array of pogosim_run_brain_array() as a view, which keeps the run. `stays`: its shape is fixed."""
+        pointer = self.pointer
+        key = f"{category}\0{name}"
+        if key not in self._arrays:
+            place = ArrayPlace()
+            check(library().pogosim_run_brain_array(pointer, category.encode(), name.encode(), byref(place)))
+            shape = tuple(place.shape[: place.dimensions])
+            has_memory = bool(place.data) and 0 not in shape
+            found = np.asarray(Memory(place, self._run)) if has_memory else np.zeros(shape, dtype=place.type.decode())
+            if not stays:
+                return found
+            self._arrays[key] = found
+        return self._arrays[key]
 
     def texts(self, name: str) -> list[str] | None:
         """Return a column of strings; None if it is one of numbers."""

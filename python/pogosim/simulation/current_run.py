@@ -66,7 +66,9 @@ class CurrentRun:
             ) from None
         return folder
 
-    def open(self, program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool) -> RunState:
+    def open(
+        self, program: Path | None, configuration: Path, settings: list[str], seed: int | None, strict: bool
+    ) -> RunState:
         """Build a run and start its program."""
         self.opened = OpenRun()
         open_run(self.opened, program, configuration, settings, seed, strict)

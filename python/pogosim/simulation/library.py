@@ -117,6 +117,8 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_close": (None, (c_void_p,)),
     "pogosim_run_number": (c_int, (c_void_p, c_char_p, POINTER(c_double))),
     "pogosim_run_array": (c_int, (c_void_p, c_char_p, POINTER(ArrayPlace))),
+    "pogosim_run_brain_array": (c_int, (c_void_p, c_char_p, c_char_p, POINTER(ArrayPlace))),
+    "pogosim_brain_clear_received": (c_int, (c_void_p, c_char_p)),
     "pogosim_run_categories": (c_char_p, (c_void_p,)),
     "pogosim_run_messages": (c_char_p, (c_void_p,)),
     "pogosim_run_set_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),
@@ -201,11 +203,16 @@ class OpenRun:
 
 
 def open_run(
-    run: OpenRun, program: Path, configuration: Path, settings: list[str], seed: int | None, strict: bool
+    run: OpenRun, program: Path | None, configuration: Path, settings: list[str], seed: int | None, strict: bool
 ) -> None:
     """Build a run and start its program. The caller keeps `run`: Ctrl-C may come as soon as it is open."""
     texts = (c_char_p * len(settings))(*(text.encode() for text in settings))
     options = RunOptions(
-        os.fsencode(program), os.fsencode(configuration), texts, len(settings), -1 if seed is None else seed, strict
+        None if program is None else os.fsencode(program),
+        os.fsencode(configuration),
+        texts,
+        len(settings),
+        -1 if seed is None else seed,
+        strict,
     )
     check(library().pogosim_run_open(byref(options), byref(run.pointer)))

@@ -19,7 +19,8 @@ import numpy.typing as npt
 from pogosim.arguments import shown
 from pogosim.lines import printable
 from pogosim.outputs import PathLike
-from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process
+from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process, writable
+from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
 from pogosim.simulation.library import OVER, check, library
@@ -120,7 +121,7 @@ class Simulation:
     comes again after a reset is not repeated.
 
     Attributes:
-        program: The shared object.
+        program: The shared object; None: there is none.
         configuration: The YAML file.
         data_file: Where the rows go. None of the three can be set.
     """
@@ -134,7 +135,7 @@ class Simulation:
 
     def __init__(
         self,
-        program: PathLike,
+        program: PathLike | None,
         configuration: PathLike,
         *,
         seed: int | None = None,
@@ -147,7 +148,8 @@ class Simulation:
 
         Args:
             program: Shared object, as `make sim` makes beside the executable (`hanabi.so` for `hanabi`); for an
-                executable, the shared object beside it is taken.
+                executable, the shared object beside it is taken. None: no category of the configuration needs one
+                (`brain: host`, or a script).
             configuration: YAML file. Nothing is drawn, and no console file written, unless `set` says so.
             seed: 0 to 2^32 - 1; None: that of the configuration, or a random one.
             set: Values for keys of the configuration, such as {"objects.robots.nb": 50}.
@@ -161,7 +163,7 @@ class Simulation:
             ProgramFailedError: The program crashed at its start.
             SimulationError: There is no simulator, or one of another version.
         """
-        self.program = shared_object(given.path("program", program))
+        self.program = None if program is None else shared_object(given.path("program", program))
         self.configuration = given.path("configuration", configuration)
         self._strict = given.boolean("strict", strict)
         settings = checked_settings(set)
@@ -308,7 +310,8 @@ class Simulation:
             state = "closed"
         else:
             state = f"t = {run.number('time'):g} s of {run.number('step_count') * run.number('time_step'):g} s"
-        return f"<pogosim.Simulation of {self.program.name}, {self.configuration.name}: {state}>"
+        of = self.configuration.name if self.program is None else f"{self.program.name}, {self.configuration.name}"
+        return f"<pogosim.Simulation of {of}: {state}>"
 
     # ---- What it is like now
 
@@ -455,9 +458,19 @@ class Simulation:
         """
         run, known = self._run, self._user_data
         if known is None or known[0] is not run:
+            if self.program is None:
+                raise SimulationError("the simulation has no program, and so no user data")
             kind = user_data_type(self.program, int(run.number("user_data_bytes")))
             self._user_data = known = (run, writable(run.array("robots.user_data")).view(kind))
         return known[1]
+
+    def brain(self, category: str) -> Brain:
+        """Return the arrays that drive the robots of a category whose configuration says `brain: host`, see `Brain`.
+
+        Raises:
+            ConfigurationError: There is no such category, or something else drives its robots.
+        """
+        return Brain(lambda: self._run, category)
 
     # ---- What can be changed
 
@@ -613,15 +626,6 @@ class Simulation:
                 robot_logger.info("%s", line[1:])
             elif line[:1] != "W" or self._current.is_new(line):
                 logger.log(LEVELS.get(line[:1], logging.INFO), "%s", line[1:])
-
-
-def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return a view of the same memory that can be written."""
-    interface = dict(array.__array_interface__)
-    address, _ = interface["data"]
-    interface["data"] = (address, False)
-    holder = type("UserData", (), {"__array_interface__": interface, "owner": array})()
-    return np.asarray(holder)
 
 
 def checked_seed(seed: Any) -> int | None:

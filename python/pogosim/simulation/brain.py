@@ -1,0 +1,132 @@
+"""Robots that this process drives: arrays of a whole category, where the simulator has them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pogosim.simulation.arrays import RunState, writable
+from pogosim.simulation.errors import given
+from pogosim.simulation.library import check, library
+
+RECEIVED = np.dtype([(name, "<i4") for name in ("robot", "sender", "face", "length", "offset")])
+MOST_BYTES = 382
+
+
+class Brain:
+    """The robots of a category whose configuration says `brain: host`: `sim.brain("robots")`.
+
+    Rows are the robots of the category, in the order of the arrays of the simulation. Between two steps, write
+    `motors`, `leds` and messages, and read the rest: nothing is copied. Each robot takes what is written at its next
+    tick, 60 times per second of its own clock, and its sensors are those of its last tick.
+
+        brain = sim.brain("robots")
+        while sim.step():
+            brain.motors[:, :2] = policy(brain.photosensors)
+    """
+
+    def __init__(self, run: Callable[[], RunState], category: str) -> None:
+        self._run = run
+        self._category = given.text("category", category)
+        self._array("motors")  # raises if there is none
+
+    def _array(self, name: str) -> npt.NDArray[Any]:
+        return self._run().brain_array(self._category, name)
+
+    def __len__(self) -> int:
+        return len(self._array("motors"))
+
+    def __repr__(self) -> str:
+        return f"<pogosim.Brain of category {self._category!r}>"
+
+    @property
+    def motors(self) -> npt.NDArray[np.int32]:
+        """Powers, -1023 to 1023, positive is forward. Shape (robots, 3): right, left, back; to be written."""
+        return writable(self._array("motors"))
+
+    @property
+    def leds(self) -> npt.NDArray[np.uint8]:
+        """Colours of the LEDs, to be written. Shape (robots, 5, 3): head, front, right, back, left; channels."""
+        return writable(self._array("leds"))
+
+    @property
+    def send_bytes(self) -> npt.NDArray[np.uint8]:
+        """Messages to send, in the first `send_length` bytes. Shape (robots, 382); to be written."""
+        return writable(self._array("send_bytes"))
+
+    @property
+    def send_length(self) -> npt.NDArray[np.int32]:
+        """Bytes to send, 0 to 382, -1: none; set back to -1 when they are sent. Shape (robots,); to be written."""
+        return writable(self._array("send_length"))
+
+    @property
+    def send_face(self) -> npt.NDArray[np.int8]:
+        """Where to: 0 front, 1 right, 2 back, 3 left, -1 in all directions. Shape (robots,); to be written."""
+        return writable(self._array("send_face"))
+
+    @property
+    def photosensors(self) -> npt.NDArray[np.int16]:
+        """Sensor counts. Shape (robots, 3): back, front left, front right; -1 without a body; read-only."""
+        return self._array("photosensors")
+
+    @property
+    def acceleration(self) -> npt.NDArray[np.float32]:
+        """What `pogobot_imu_read` gives, m/s2. Shape (robots, 3): to the right, forward, up; read-only."""
+        return self._array("acceleration")
+
+    @property
+    def angular_velocity(self) -> npt.NDArray[np.float32]:
+        """What `pogobot_imu_read` gives, rad/s. Shape (robots, 3); [:, 2] counter-clockwise from above; read-only."""
+        return self._array("angular_velocity")
+
+    @property
+    def battery_mv(self) -> npt.NDArray[np.int16]:
+        """Voltages of the batteries, mV. Shape (robots,); read-only."""
+        return self._array("battery_mv")
+
+    @property
+    def received_count(self) -> npt.NDArray[np.uint32]:
+        """Messages received since `clear_received`. Shape (robots,); read-only."""
+        return self._array("received_count")
+
+    @property
+    def received(self) -> npt.NDArray[Any]:
+        """Those messages, as a structured array: robot (row), sender (id), face, length and offset in `received_bytes`.
+
+        Shape (messages,); read-only, and as long as it is now: ask again after a step.
+        """
+        table = self._run().brain_array(self._category, "received", stays=False)
+        return np.ascontiguousarray(table).view(RECEIVED)[:, 0] if len(table) else np.zeros(0, RECEIVED)
+
+    @property
+    def received_bytes(self) -> npt.NDArray[np.uint8]:
+        """The payloads of all received messages, one after the other. Read-only, as long as it is now."""
+        return self._run().brain_array(self._category, "received_bytes", stays=False)
+
+    def payload(self, message: Any) -> bytes:
+        """Return the payload of one entry of `received`."""
+        begin = int(message["offset"])
+        return self.received_bytes[begin : begin + int(message["length"])].tobytes()
+
+    def send(self, robot: int, message: bytes, face: int = -1) -> None:
+        """Let a robot (row) send a message of up to 382 bytes at its next tick.
+
+        Raises:
+            ConfigurationError: It is too long, or there is no such robot or face.
+        """
+        if not 0 <= robot < len(self):
+            raise given.refused("robot", f"a row from 0 to {len(self) - 1}", robot)
+        if face not in range(-1, 4):
+            raise given.refused("face", "0 to 3, or -1 for all", face)
+        if len(message) > MOST_BYTES:
+            raise given.refused("message", f"up to {MOST_BYTES} bytes", f"{len(message)} bytes")
+        self.send_bytes[robot, : len(message)] = np.frombuffer(message, dtype=np.uint8)
+        self.send_face[robot] = face
+        self.send_length[robot] = len(message)
+
+    def clear_received(self) -> None:
+        """Forget the received messages. Without it, further ones are lost once there is no more room for them."""
+        check(library().pogosim_brain_clear_received(self._run().pointer, self._category.encode()))

@@ -1,0 +1,52 @@
+// What drives robots: a C program, arrays of a host, or a script. A brain drives the robots of some categories; it sees
+// the world through the functions of `device`, so that time, messages, rows and pictures are the same whatever drives a
+// robot. There is one virtual call for each brain and step, not for each robot.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Robots with consecutive indices in World::robots: those of one category.
+struct RobotRange {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;  // exclusive
+
+    std::uint32_t size() const { return last - first; }
+    bool contains(std::uint32_t robot) const { return robot >= first && robot < last; }
+};
+
+/// The robots of a category.
+RobotRange robots_of(World const& world, std::uint32_t category);
+
+class Brain {
+public:
+    Brain() = default;
+    virtual ~Brain() = default;
+    Brain(Brain const&) = delete;
+    Brain& operator=(Brain const&) = delete;
+
+    // These functions return false if user code has failed, which ends the run.
+
+    /// Before the first step.
+    virtual bool start() { return true; }
+
+    /// All its robots whose clocks are due take a tick, in their order: they read sensors, take messages out of their
+    /// mailboxes, set motors and LEDs, and put messages on the air. Their clocks then show when the next tick is due.
+    virtual bool run_step() = 0;
+
+    /// After the last step.
+    virtual bool stop() { return true; }
+
+    /// Appends the brain's own state, which is not in the world: for hashes, and for restore(), which takes these bytes
+    /// from the front of `bytes`. The variables of a program are not saved.
+    virtual void save(std::vector<std::byte>& /*bytes*/) const {}
+    virtual void restore(std::span<std::byte const>& /*bytes*/) {}
+};
+
+}  // namespace pogosim

@@ -1,0 +1,180 @@
+#include "config/brain_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/counted.hpp"
+#include "base/nearest_name.hpp"
+#include "config/find_file.hpp"
+#include "config/shape_keys.hpp"
+#include "world/mailbox.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::string_view kBrain = "program, host, or {script: FILE}";
+constexpr std::string_view kScript = "the name of a file with a list `script`, or that list";
+constexpr std::string_view kMotors = "a list of three powers, right, left and back, from -1023 to 1023";
+constexpr std::string_view kLed = "a list of red, green and blue, from 0 to 255";
+
+using Entry = ScriptSpec::Entry;
+
+std::span<Key<Entry> const> entry_keys() {
+    using K = Key<Entry>;
+    static std::array const keys{
+        K{"time_s", &Entry::time_s, between(0, 1e9), "s",
+          "When: at the robot's first tick at or after this time of its own clock.", /*required=*/true},
+        K{"motors", Elsewhere{kMotors}, any(), "", "Powers from then on; above 0: forwards."},
+        K{"led", Elsewhere{kLed}, any(), "", "Colour of an LED from then on."},
+        K{"led_id", &Entry::led_id, between(0, static_cast<int>(kLedCount) - 1), "", "Which LED; 0 is the head."},
+        K{"message", &Entry::message, any(), "", "Text to send once, in all directions, up to 382 bytes."},
+    };
+    return keys;
+}
+
+/// The list of three whole numbers under a key.
+std::array<int, 3> read_three(MapReader& reader, std::string_view key, Range const& range, std::string_view expected) {
+    Place const place{*reader.find(key), reader.path_of(key)};
+    if (place.node.kind != Node::Kind::sequence || place.node.items.size() != 3) {
+        fail_expected(place, expected);
+    }
+    std::array<int, 3> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        Place const item{place.node.items[i], fmt::format("{}.{}", place.path, i)};
+        require_integers(item);
+        read_value(item, Limits{range}, values[i]);
+    }
+    return values;
+}
+
+Entry read_entry(MapReader& reader) {
+    Entry entry;
+    reader.read(entry_keys(), entry);
+    if (reader.find("motors") != nullptr) {
+        std::ranges::copy(read_three(reader, "motors", between(-1023, 1023), kMotors), entry.motors.begin());
+    }
+    if (reader.find("led") != nullptr) {
+        auto const [red, green, blue] = read_three(reader, "led", between(0, 255), kLed);
+        entry.led =
+            Rgb{static_cast<std::uint8_t>(red), static_cast<std::uint8_t>(green), static_cast<std::uint8_t>(blue)};
+    }
+    if (entry.message.size() > kMostPayloadBytes) {
+        fail_at({*reader.find("message"), reader.path_of("message")},
+                fmt::format("expected up to {} bytes, found {}", kMostPayloadBytes, entry.message.size()));
+    }
+    return entry;
+}
+
+/// Reads the list of a script. `values`: the same list as it counts.
+ScriptSpec read_entries(Place const& place, Reading& reading, Node& values) {
+    if (place.node.kind != Node::Kind::sequence) {
+        fail_expected(place, "a list of maps, such as [{time_s: 0, motors: [500, 500, 0]}]");
+    }
+    ScriptSpec script;
+    values.kind = Node::Kind::sequence;
+    for (std::size_t i = 0; i < place.node.items.size(); ++i) {
+        Node const& item = place.node.items[i];
+        MapReader reader(item, fmt::format("{}.{}", place.path, i), reading);
+        script.entries.push_back(read_entry(reader));
+        reader.finish();
+        values.items.push_back(reader.values());
+        if (i > 0 && script.entries[i].time_s < script.entries[i - 1].time_s) {
+            fail_at(reader.place(),
+                    "the entries of a script are in the order of their times; this one is earlier than "
+                    "the one before");
+        }
+    }
+    return script;
+}
+
+ScriptSpec read_script_file(Place const& place, Reading& reading, Node& values) {
+    FoundFile const found = search_file(reading.configuration, place.node.scalar);
+    if (found.path.empty()) {
+        fail_at(place, fmt::format("there is no file '{}'{}", shown(place.node.scalar), found.searched));
+    }
+    Node const file = read_yaml_file(found.path.string());
+    reading.object_files.push_back({found.path, "the script"});
+    Node const* const list = file.find("script");
+    if (list == nullptr || file.entries.size() != 1) {
+        fail_at({file, "script"},
+                "a script has a list `script`, such as script: [{time_s: 0, motors: [500, 500, 0]}], and nothing else");
+    }
+    return read_entries({*list, "script"}, reading, values);
+}
+
+ScriptSpec read_script(MapReader& robot, Node const& brain) {
+    std::string const path = robot.path_of("brain");
+    Node const* const script = brain.find("script");
+    if (brain.entries.size() != 1 || script == nullptr) {
+        fail_expected({brain, path}, kBrain);
+    }
+    Place const place{*script, path + ".script"};
+    Node entries;
+    bool const is_file = script->kind == Node::Kind::scalar && !script->scalar.empty();
+    if (!is_file && script->kind != Node::Kind::sequence) {
+        fail_expected(place, kScript);
+    }
+    ScriptSpec spec =
+        is_file ? read_script_file(place, robot.reading(), entries) : read_entries(place, robot.reading(), entries);
+    Node value;
+    value.kind = Node::Kind::map;
+    value.entries.emplace_back("script", std::move(entries));
+    robot.set_value("brain", std::move(value));
+    return spec;
+}
+
+/// LEDs that the robots do not have.
+void check_leds(ScriptSpec const& script, RobotModel const& model, Place const& place) {
+    for (ScriptSpec::Entry const& entry : script.entries) {
+        if (entry.led && static_cast<std::size_t>(entry.led_id) >= model.leds.size()) {
+            fail_at(place, fmt::format("the script sets LED {}, but these robots have {}", entry.led_id,
+                                       counted(model.leds.size(), "LED")));
+        }
+    }
+}
+
+}  // namespace
+
+std::span<Key<RobotSpec> const> brain_keys() {
+    static std::array const keys{
+        Key<RobotSpec>{"brain", Elsewhere{kBrain}, any(), "",
+                       "What drives the robots. program: the program in C. host: the process that steps the run, such "
+                       "as Python, by arrays. script: a list of what they do at which times; see its own table. "
+                       "Default: program."},
+    };
+    return keys;
+}
+
+BrainSpec read_brain(MapReader& robot, RobotModel const& model) {
+    Node const* const node = robot.find("brain");
+    if (node == nullptr || node->scalar == "program") {
+        return ProgramSpec();
+    }
+    if (node->scalar == "host") {
+        return HostSpec();
+    }
+    if (node->kind != Node::Kind::map) {
+        fail_at({*node, robot.path_of("brain")},
+                fmt::format("expected {}, found {}{}", kBrain, found_text(*node),
+                            did_you_mean(shown(node->scalar), std::vector<std::string>{"program", "host", "script"})));
+    }
+    ScriptSpec script = read_script(robot, *node);
+    check_leds(script, model, {*node, robot.path_of("brain")});
+    return script;
+}
+
+std::vector<KeyDescription> script_entry_keys() {
+    std::vector<KeyDescription> keys;
+    std::ranges::transform(entry_keys(), std::back_inserter(keys),
+                           [](Key<Entry> const& key) { return describe(key, Entry()); });
+    return keys;
+}
+
+}  // namespace pogosim

@@ -1,0 +1,84 @@
+// The arrays that drive the robots of a category, where they are.
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "brain/host_brain.hpp"
+#include "host/array_places.hpp"
+#include "host/hosted_run.hpp"
+#include "host/status.hpp"
+
+using namespace pogosim;
+
+namespace {
+
+using Received = HostBrain::Received;
+
+pogosim_array leds(std::vector<Leds> const& values) {
+    return described(values.data(), "|u1", {static_cast<std::int64_t>(values.size()), kLedCount, 3},
+                     {sizeof(Leds), sizeof(Rgb), 1});
+}
+
+pogosim_array received(std::span<Received const> messages) {
+    return described(messages.data(), "<i4", {static_cast<std::int64_t>(messages.size()), 5},
+                     {sizeof(Received), sizeof(std::int32_t)});
+}
+
+pogosim_array bytes(std::span<std::byte const> values) {
+    return described(values.data(), "|u1", {static_cast<std::int64_t>(values.size())}, {1});
+}
+
+struct NamedArray {
+    std::string_view name;
+    pogosim_array (*describe)(HostBrain& brain);
+};
+constexpr std::array kArrays{
+    NamedArray{"motors", [](HostBrain& b) { return table<std::int32_t>(b.inputs().motors); }},
+    NamedArray{"leds", [](HostBrain& b) { return leds(b.inputs().leds); }},
+    NamedArray{"send_bytes", [](HostBrain& b) { return table<std::uint8_t>(b.inputs().send_bytes); }},
+    NamedArray{"send_length", [](HostBrain& b) { return numbers(b.inputs().send_length); }},
+    NamedArray{"send_face", [](HostBrain& b) { return numbers(b.inputs().send_face); }},
+    NamedArray{"photosensors", [](HostBrain& b) { return table<std::int16_t>(b.outputs().photosensors); }},
+    NamedArray{"acceleration", [](HostBrain& b) { return table<float>(b.outputs().acceleration); }},
+    NamedArray{"angular_velocity", [](HostBrain& b) { return table<float>(b.outputs().angular_velocity); }},
+    NamedArray{"battery_mv", [](HostBrain& b) { return numbers(b.outputs().battery_mv); }},
+    NamedArray{"received_count", [](HostBrain& b) { return numbers(b.outputs().received_count); }},
+    NamedArray{"received", [](HostBrain& b) { return received(b.received()); }},
+    NamedArray{"received_bytes", [](HostBrain& b) { return bytes(b.received_bytes()); }},
+};
+
+/// Throws ConfigError.
+HostBrain& brain_of(pogosim_run& run, std::string_view category) {
+    if (HostBrain* const found = run.simulation().host_brain(category)) {
+        return *found;
+    }
+    bool const is_known = std::ranges::find(run.simulation().world().categories, category, &Category::name) !=
+                          run.simulation().world().categories.end();
+    throw ConfigError(is_known ? fmt::format("category '{}' is not driven by the host: its configuration needs "
+                                             "'brain: host'",
+                                             category)
+                               : fmt::format("there is no category '{}'", category));
+}
+
+}  // namespace
+
+int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* name, pogosim_array* array) {
+    return with_status_of(*run, [&] {
+        HostBrain& brain = brain_of(*run, category);
+        auto const* const found = std::ranges::find(kArrays, std::string_view(name), &NamedArray::name);
+        if (found == kArrays.end()) {
+            throw ConfigError(fmt::format("a brain has no array '{}'", name));
+        }
+        *array = found->describe(brain);
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_brain_clear_received(pogosim_run* run, char const* category) {
+    return with_status_of(*run, [&] {
+        brain_of(*run, category).clear_received();
+        return POGOSIM_OK;
+    });
+}

@@ -1,0 +1,47 @@
+#include "robot/native_program.hpp"
+
+#include <string>
+#include <utility>
+
+#include "base/log.hpp"
+
+namespace pogosim {
+
+bool NativeProgram::succeeds(std::optional<UserFailure> failure) {
+    if (!failure) [[likely]] {
+        return true;
+    }
+    failure_ = std::move(failure);
+    return false;
+}
+
+bool NativeProgram::start() {
+    return succeeds(call_user_code([this] { controllers_.start(); }));
+}
+
+bool NativeProgram::run_step() {
+    return succeeds(shared_steps_ ? shared_steps_->run_step(workers_)
+                                  : call_user_code([this] { controllers_.run_step(); }));
+}
+
+bool NativeProgram::stop() {
+    return succeeds(call_user_code([this] {
+        controllers_.end();
+        controllers_.print_unfinished_lines();
+    }));
+}
+
+void NativeProgram::share_steps(bool shares_nothing) {
+    if (workers_.size() == 1) {
+        return;
+    }
+    std::string const reason = shares_nothing ? "" : controllers_.why_one_after_the_other();
+    if (!reason.empty()) {
+        log().info("threads: {}; robots take their steps one after the other: {}", workers_.size(), reason);
+        return;
+    }
+    log().info("threads: {}; robots take their steps on all of them", workers_.size());
+    shared_steps_.emplace(controllers_, handler_, workers_.size());
+}
+
+}  // namespace pogosim

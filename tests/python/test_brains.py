@@ -1,0 +1,264 @@
+"""What drives robots besides a program in C: arrays of this process, and scripts; from the configuration on."""
+
+from __future__ import annotations
+
+import gc
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pogosim
+import pytest
+import yaml
+from conftest import Compile
+from running import SHARED, compile_program, run, write_scene
+
+ALONE: dict[str, Any] = {
+    "arena_file": "arenas/square.csv",
+    "arena_surface": 4e6,
+    "simulation_time": 10,
+    "objects.robots.nb": 2,
+    "objects.robots.poses": [[500, 500, 0], [500, 1500, 0]],
+    "objects.robots.msg_success_rate": {"type": "static", "rate": 1.0},
+}
+HOST = {**ALONE, "objects.robots.brain": "host"}
+
+
+def hosted(folder: Path, settings: dict[str, Any]) -> Any:
+    return pogosim.Simulation(None, write_scene(folder, settings), seed=1)
+
+
+def test_robots_move_by_the_powers_of_the_array(tmp_path: Path) -> None:
+    with hosted(tmp_path, HOST) as sim:
+        brain = sim.brain("robots")
+        assert (len(brain), brain.motors.shape, brain.motors.dtype) == (2, (2, 3), np.int32)
+        brain.motors[0, :2] = 1023
+        brain.motors[1, :2] = (-1023, 1023)  # the right wheel backwards, the left one forwards: clockwise
+        sim.run(2.0)
+        assert sim.positions[0] == pytest.approx([500 + 200, 500], abs=3)
+        assert sim.positions[1] == pytest.approx([500, 1500], abs=0.01)
+        turned = math.remainder(float(sim.headings[1]) - 8.0, 2 * math.pi)
+        assert abs(turned) < 0.1
+        brain.motors[:] = 0
+        sim.step(5)
+        before = sim.positions.copy()
+        sim.step(100)
+        assert np.array_equal(sim.positions, before)
+
+
+def test_policy_of_arrays_drives_a_thousand_robots(tmp_path: Path) -> None:
+    many = {**HOST, "objects.robots.nb": 1000, "arena_surface": 4e7, "simulation_time": 2}
+    del many["objects.robots.poses"]
+    with hosted(tmp_path, many) as sim:
+        brain = sim.brain("robots")
+        while sim.step(2):
+            brain.motors[:, :2] = np.where(np.arange(1000)[:, None] % 2 == 0, [1023, 511], [511, 1023])
+        assert sim.ticks.min() > 100
+        turned = brain.angular_velocity[:, 2]
+        assert np.median(turned[::2]) == pytest.approx(1.0, rel=0.05)  # counter-clockwise from above: to the left
+        assert np.median(turned[1::2]) == pytest.approx(-1.0, rel=0.05)
+
+
+def test_messages_go_out_once_and_are_received_with_sender_and_face(tmp_path: Path) -> None:
+    near = {**HOST, "objects.robots.poses": [[500, 500, 0], [600, 500, math.pi]]}
+    with hosted(tmp_path, near) as sim:
+        brain = sim.brain("robots")
+        brain.send(0, b"hello")
+        brain.send(1, b"", face=2)  # away from the other one
+        sim.step(10)
+        assert list(brain.send_length) == [-1, -1]
+        (message,) = brain.received
+        assert (message["robot"], message["sender"], message["face"]) == (1, 0, 0)
+        assert brain.payload(message) == b"hello"
+        assert list(brain.received_count) == [0, 1]
+        brain.clear_received()
+        sim.step(10)
+        assert len(brain.received) == 0
+        with pytest.raises(pogosim.ConfigurationError, match="up to 382 bytes"):
+            brain.send(0, b"x" * 383)
+        with pytest.raises(pogosim.ConfigurationError, match="a row from 0 to 1"):
+            brain.send(2, b"x")
+        with pytest.raises(pogosim.ConfigurationError, match="0 to 3, or -1 for all"):
+            brain.send(0, b"x", face=4)
+        brain.send(0, b"ab")
+        sim.step(5)
+        brain.send(0, b"c")
+        sim.step(5)
+        assert [brain.payload(message) for message in brain.received] == [b"ab", b"c"]
+
+
+def test_messages_that_no_room_was_made_for_are_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    poses = [[500, 500, 0], [600, 500, math.pi]]
+    near = {**HOST, "objects.robots.poses": poses, "objects.robots.message_queue_size": 2}
+    with hosted(tmp_path, near) as sim:
+        brain = sim.brain("robots")
+        for _ in range(20):
+            brain.send(0, b"a")
+            sim.step(4)
+        assert len(brain.received) == 4
+        sim.end()
+    assert "the host makes room by clear_received()" in caplog.text
+
+
+def test_sensors_are_those_of_the_robots(tmp_path: Path) -> None:
+    lamp = {"type": "static_light", "geometry": "global", "value": 1234}
+    with hosted(tmp_path, {**HOST, "objects.lamp": lamp}) as sim:
+        brain = sim.brain("robots")
+        brain.motors[0, :2] = (-1023, 1023)
+        brain.leds[1, 0] = (1, 2, 3)
+        sim.step(100)
+        assert np.array_equal(brain.photosensors, np.full((2, 3), 1234))
+        assert brain.angular_velocity[0, 2] == pytest.approx(-4.0, rel=0.02)
+        assert brain.angular_velocity[1, 2] == 0
+        assert brain.battery_mv[0] == 4200
+        assert tuple(sim.leds[1, 0]) == (1, 2, 3)
+
+
+def test_arrays_are_views_that_outlive_the_brain(tmp_path: Path) -> None:
+    sim = hosted(tmp_path, HOST)
+    motors = sim.brain("robots").motors
+    motors[:] = 7
+    assert np.array_equal(sim.brain("robots").motors, motors)
+    sim.close()
+    del sim
+    gc.collect()
+    assert motors.sum() == 6 * 7  # the memory is still there
+
+
+def test_categories_of_one_run_may_have_different_brains(tmp_path: Path) -> None:
+    text = """
+    #include "pogobase.h"
+    typedef struct { int heard; } USERDATA;
+    REGISTER_USERDATA(USERDATA)
+    static void user_init(void) {}
+    static void user_step(void) {
+        pogobot_infrared_update();
+        while (pogobot_infrared_message_available()) {
+            message_t message;
+            pogobot_infrared_recover_next_message(&message);
+            mydata->heard += message.header.payload_length;
+        }
+        pogobot_led_setColor((uint8_t)mydata->heard, 0, 0);
+    }
+    int main(void) { pogobot_init(); pogobot_start(user_init, user_step, "listeners"); return 0; }
+    """
+    (tmp_path / "listen.c").write_text(text)
+    program = compile_program(tmp_path / "listen.so", tmp_path / "listen.c", flags=SHARED)
+    script = [{"time_s": 1, "message": "abc", "led": [9, 8, 7]}]
+    rate = {"type": "static", "rate": 1.0}
+    near = {"type": "pogobot", "msg_success_rate": rate}
+    settings = {
+        **HOST,
+        "objects.robots.nb": 1,
+        "objects.robots.poses": [[500, 500, 0]],
+        "objects.actors": {**near, "poses": [[600, 500, 0]], "brain": {"script": script}},
+    }
+    listener = {**near, "poses": [[550, 590, -1.57]]}
+    with pogosim.Simulation(program, write_scene(tmp_path, {**settings, "objects.listeners": listener})) as sim:
+        sim.run(0.9)
+        assert len(sim.brain("robots").received) == 0
+        sim.run(1.2)
+        (message,) = sim.brain("robots").received
+        assert sim.brain("robots").payload(message) == b"abc"
+        assert tuple(sim.leds[1, 0]) == (9, 8, 7)
+        assert sim.leds[2, 0, 0] in (3, 6)  # the program has heard it, too, through one face or two
+
+
+ENTRY = {"type": "pogobot", "geometry": "disk", "radius": 26.5}
+
+
+def test_entries_of_one_category_are_one_table(tmp_path: Path) -> None:
+    entries = [
+        {**ENTRY, "nb": 2, "brain": "host"},
+        {**ENTRY, "nb": 0, "brain": "host"},
+        {**ENTRY, "nb": 3, "brain": "host"},
+    ]
+    with hosted(tmp_path, {"arena_surface": 4e6, "objects": {"robots": entries}}) as sim:
+        brain = sim.brain("robots")
+        assert len(brain) == 5
+        brain.motors[:] = [1000, 1000, 0]
+        before = sim.positions.copy()
+        sim.run(1.0)
+        assert (np.linalg.norm(sim.positions - before, axis=1) > 10).all()
+    apart = [entries[0], {**ENTRY, "nb": 1, "brain": {"script": []}}, entries[2]]
+    message = error_of(tmp_path, {"arena_surface": 4e6, "objects": {"robots": apart}})
+    assert "category 'robots': its entries with brain: host have others between them" in message
+
+
+def test_category_without_robots_has_empty_arrays(tmp_path: Path) -> None:
+    settings = {"objects": {"robots": {**ENTRY, "nb": 0, "brain": "host"}}}
+    with hosted(tmp_path, settings) as sim:
+        brain = sim.brain("robots")
+        assert brain.motors.shape == (0, 3)
+        assert brain.leds.shape == (0, 5, 3)
+        assert sim.step(3)
+        assert len(brain.received) == 0
+
+
+def test_script_of_a_file_moves_robots_at_its_times(tmp_path: Path) -> None:
+    (tmp_path / "dance.yaml").write_text(
+        "script:\n  - {time_s: 0, motors: [1023, 1023, 0]}\n  - {time_s: 2, motors: [0, 0, 0]}\n"
+    )
+    with hosted(tmp_path, {**ALONE, "objects.robots.brain": {"script": "dance.yaml"}}) as sim:
+        sim.run(5.0)
+        assert sim.positions[0] == pytest.approx([700, 500], abs=4)
+        sim.end()
+        kept = sim.data_file
+        assert kept.exists()
+
+
+def test_run_does_not_overwrite_its_script(program: Compile, tmp_path: Path) -> None:
+    script = "script: [{time_s: 0}]\n"
+    (tmp_path / "s.yaml").write_text(script)
+    settings = {**ALONE, "objects.robots.brain": {"script": "s.yaml"}, "data_filename": "s.yaml"}
+    result = run(program("sample.c"), tmp_path, settings)
+    assert result.code == 2
+    assert "is the same file as the script 's.yaml', which the run would overwrite" in result.errors
+    assert (tmp_path / "s.yaml").read_text() == script
+
+
+def error_of(folder: Path, settings: dict[str, Any]) -> str:
+    with pytest.raises(pogosim.ConfigurationError) as error:
+        hosted(folder, settings)
+    return str(error.value)
+
+
+def test_mistakes_are_told(tmp_path: Path) -> None:
+    assert "category 'robots' needs a program, and none is given" in error_of(tmp_path, ALONE)
+    brain = "objects.robots.brain"
+    assert "did you mean 'host'?" in error_of(tmp_path, {**ALONE, brain: "hosts"})
+    assert "there is no file 'none.yaml'" in error_of(tmp_path, {**ALONE, brain: {"script": "none.yaml"}})
+    assert "time_s" in error_of(tmp_path, {**ALONE, brain: {"script": [{"motors": [1, 2, 3]}]}})
+    late = {"script": [{"time_s": 2}, {"time_s": 1}]}
+    assert "in the order of their times" in error_of(tmp_path, {**ALONE, brain: late})
+    absent = {"script": [{"time_s": 0, "led": [1, 2, 3], "led_id": 1}]}
+    message = error_of(tmp_path, {**ALONE, brain: absent, "objects.robots.leds": [{"place": "centre"}]})
+    assert "the script sets LED 1, but these robots have 1 LED" in message
+    (tmp_path / "more.yaml").write_text("script: []\nscripts: []\n")
+    assert "and nothing else" in error_of(tmp_path, {**ALONE, brain: {"script": "more.yaml"}})
+    long = {"script": [{"time_s": 0, "message": "x" * 383}]}
+    assert "expected up to 382 bytes, found 383" in error_of(tmp_path, {**ALONE, brain: long})
+    strong = {"script": [{"time_s": 0, "motors": [5000, 0, 0]}]}
+    assert "from -1023 to 1023" in error_of(tmp_path, {**ALONE, brain: strong})
+    for settings, category, message in (
+        (HOST, "robot", "there is no category 'robot'"),
+        ({**ALONE, brain: {"script": []}}, "robots", "is not driven by the host"),
+    ):
+        with hosted(tmp_path, settings) as sim, pytest.raises(pogosim.ConfigurationError, match=message):
+            sim.brain(category)
+
+
+def test_command_line_has_no_host(program: Compile, tmp_path: Path) -> None:
+    result = run(program("sample.c"), tmp_path, HOST)
+    assert result.code == 2
+    assert "there is no host on the command line; run it from Python" in result.errors
+
+
+def test_data_file_keeps_a_script_whole(program: Compile, tmp_path: Path) -> None:
+    (tmp_path / "s.yaml").write_text("script: [{time_s: 1, motors: [1, 2, 3], led: [4, 5, 6]}]\n")
+    result = run(program("sample.c"), tmp_path, {**ALONE, "objects.robots.brain": {"script": "s.yaml"}})
+    assert result.code == 0, result.text
+    kept = yaml.safe_load(result.table().schema.metadata[b"resolved_configuration"])
+    (entry,) = kept["objects"]["robots"]["brain"]["script"]
+    assert (entry["motors"], entry["led"]) == ([1, 2, 3], [4, 5, 6])
