@@ -21,7 +21,39 @@ LONG_HEADER_BYTES = 8
 
 
 @dataclass(frozen=True)
-class DynamicLaw:
+class ReceptionLaw:
+    """What both laws have in common; their fields are the parameters, in the order of the formula."""
+
+    NAME: ClassVar[str]
+
+    def probability(
+        self, message_bytes: npt.ArrayLike, send_probability: npt.ArrayLike, cluster_size: npt.ArrayLike
+    ) -> Floats:
+        """Return the probability of reception, in [0, 1]; the shapes are broadcast.
+
+        Args:
+            message_bytes: Header (3 in a short message, 8 in a long one) and payload, bytes, at least 0.
+            send_probability: Chance to send in a tick, 0 to 1.
+            cluster_size: The sender and the robots that its message reaches, at least 1.
+        """
+        return self.equation(message_bytes, send_probability, cluster_size, **dataclasses.asdict(self))
+
+    @classmethod
+    def equation(
+        cls,
+        message_bytes: npt.ArrayLike,
+        send_probability: npt.ArrayLike,
+        cluster_size: npt.ArrayLike,
+        **parameters: npt.ArrayLike,
+    ) -> Floats:
+        """Return the probability for many sets of parameters at once; all shapes are broadcast."""
+        from pogosim.communication.equations import probability  # numpy takes a while
+
+        return probability(cls.NAME, message_bytes, send_probability, cluster_size, **parameters)
+
+
+@dataclass(frozen=True)
+class DynamicLaw(ReceptionLaw):
     """The article's equation, with the parameters that it has fitted to measurements on real robots.
 
         P = 1 / (alpha + beta p^gamma c^delta exp(zeta m) + theta p c)
@@ -46,38 +78,9 @@ class DynamicLaw:
     zeta: float = 0.05720136
     theta: float = 0.001
 
-    def probability(
-        self, message_bytes: npt.ArrayLike, send_probability: npt.ArrayLike, cluster_size: npt.ArrayLike
-    ) -> Floats:
-        """Return the probability of reception, in [0, 1]; the shapes are broadcast.
-
-        Args:
-            message_bytes: Header (3 in a short message, 8 in a long one) and payload, bytes, at least 0.
-            send_probability: Chance to send in a tick, 0 to 1.
-            cluster_size: The sender and the robots that its message reaches, at least 1.
-        """
-        return self.equation(message_bytes, send_probability, cluster_size, **dataclasses.asdict(self))
-
-    @staticmethod
-    def equation(
-        message_bytes: npt.ArrayLike,
-        send_probability: npt.ArrayLike,
-        cluster_size: npt.ArrayLike,
-        alpha: npt.ArrayLike,
-        beta: npt.ArrayLike,
-        gamma: npt.ArrayLike,
-        delta: npt.ArrayLike,
-        zeta: npt.ArrayLike,
-        theta: npt.ArrayLike,
-    ) -> Floats:
-        """Return the probability for many sets of parameters at once; all shapes are broadcast."""
-        from pogosim.communication import equations  # numpy takes a while
-
-        return equations.dynamic(message_bytes, send_probability, cluster_size, alpha, beta, gamma, delta, zeta, theta)
-
 
 @dataclass(frozen=True)
-class PowerLaw:
+class PowerLaw(ReceptionLaw):
     """The older four-parameter law, with the parameters of `msg_success_rate: {type: realistic}`.
 
         P = 1 / (1 + alpha m^beta p^gamma c^delta)
@@ -95,27 +98,6 @@ class PowerLaw:
     beta: float = 2.8096
     gamma: float = 2.3807
     delta: float = 1.2457
-
-    def probability(
-        self, message_bytes: npt.ArrayLike, send_probability: npt.ArrayLike, cluster_size: npt.ArrayLike
-    ) -> Floats:
-        """Return the probability of reception, in [0, 1]. Arguments as in DynamicLaw.probability()."""
-        return self.equation(message_bytes, send_probability, cluster_size, **dataclasses.asdict(self))
-
-    @staticmethod
-    def equation(
-        message_bytes: npt.ArrayLike,
-        send_probability: npt.ArrayLike,
-        cluster_size: npt.ArrayLike,
-        alpha: npt.ArrayLike,
-        beta: npt.ArrayLike,
-        gamma: npt.ArrayLike,
-        delta: npt.ArrayLike,
-    ) -> Floats:
-        """Return the probability for many sets of parameters at once; all shapes are broadcast."""
-        from pogosim.communication import equations
-
-        return equations.power(message_bytes, send_probability, cluster_size, alpha, beta, gamma, delta)
 
 
 Law = DynamicLaw | PowerLaw
