@@ -3,25 +3,10 @@
 `python -m pogosim.locomotion` is `pogosim analyze locomotion`.
 """
 
-from __future__ import annotations
+from pogosim.compat import attributes, command
 
-import sys
-from collections.abc import Sequence
-from typing import Any
-
-from pogosim.compat import attribute
-from pogosim.reports.command import analyze
-
-
-def __getattr__(name: str) -> Any:
-    """Find a function of the analysis, or of `pogosim.compat.locomotion`."""
-    return attribute("locomotion", name)
-
-
-def main(arguments: Sequence[str] | None = None, prog: str = "locomotion") -> int:
-    """Run the command line, which is that of `pogosim analyze locomotion`. Returns the exit code."""
-    return analyze("locomotion", arguments, prog)
-
+__getattr__ = attributes("locomotion")
+main = command("locomotion", "locomotion")
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(main())

@@ -1,6 +1,6 @@
-"""Functions for scripts that were written for other Pogosim packages: tables of dataframes, by the names of the tables.
+"""What scripts that were written for other Pogosim packages find here: functions and commands by other names.
 
-from pogosim.am import compute_polar_order  # or from pogosim.compat.am
+from pogosim.am import compute_polar_order
 rows, metadata = load_dataframe("result.feather")
 print(compute_polar_order(rows))
 
@@ -13,7 +13,9 @@ psi_k=4)`. These modules have the functions of `pogosim.analysis` that belong to
 
 from __future__ import annotations
 
+import functools
 import importlib
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from pogosim.nearest_name import nearest_name
@@ -30,15 +32,42 @@ MODULES = {
     "network": ("laplacian", "network"),
 }
 
+# Analyses by the modules that are not named after them.
+ANALYSES = {"am": "collective"}
+
+
+def command(module: str, usual: str = "") -> Callable[..., int]:
+    """Return the `main(arguments, prog)` of `python -m pogosim.MODULE`, which is `pogosim analyze ANALYSIS`.
+
+    Args:
+        module: Its name.
+        usual: What messages call the command; empty: `python -m pogosim.MODULE`.
+    """
+
+    def main(arguments: Sequence[str] | None = None, prog: str = usual or f"python -m pogosim.{module}") -> int:
+        """Run the command line. Returns the exit code."""
+        from pogosim.reports.command import analyze
+
+        return analyze(ANALYSES.get(module, module), arguments, prog)
+
+    return main
+
 
 def functions_of(module: str) -> dict[str, Any]:
-    """Return the functions of a module of this package by name."""
-    found: dict[str, Any] = importlib.import_module(f"pogosim.compat.{module}").FUNCTIONS
+    """Return the functions of the tables of a module by name."""
+    from pogosim.compat.tables import FUNCTIONS  # takes a while
+
+    found: dict[str, Any] = FUNCTIONS[module]
     return found
 
 
+def attributes(module: str) -> Callable[[str], Any]:
+    """Return what finds the functions of `pogosim.MODULE`: its `__getattr__`."""
+    return functools.partial(attribute, module)
+
+
 def attribute(module: str, name: str) -> Any:
-    """Return a function of `pogosim.analysis` or of this package for `pogosim.MODULE.name`.
+    """Return a function of `pogosim.analysis` or of a table for `pogosim.MODULE.name`.
 
     Raises:
         AttributeError: There is none; the message names those that there are.
@@ -56,5 +85,5 @@ def attribute(module: str, name: str) -> Any:
     question = f" (did you mean {near}?)" if near else ""
     raise AttributeError(
         f"module 'pogosim.{module}' has no function '{name}'{question}; beside its own functions, it has those of "
-        f"pogosim.compat.{module}: {', '.join(own)}; see docs/porting.md"
+        f"pogosim.compat: {', '.join(own)}; see docs/porting.md"
     )
