@@ -6,21 +6,16 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from pogosim.batch.option_words import OptionsError
-from pogosim.batch.options import single_value
 from pogosim.command.main import ended
 from pogosim.command.parser import Parser, positive
 from pogosim.geometry.actions import PICTURES, checked_output, guarded, show_arena
-from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
-from pogosim.geometry.command import DEFAULT_AREA_MM2, DEFAULT_RADIUS_MM
-from pogosim.installation import InstallationError, find_installation
-from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml, problem_of
+from pogosim.geometry.arena_file import ArenaError, Outline
+from pogosim.geometry.command import DEFAULT_RADIUS_MM
+from pogosim.geometry.configured import arena_of, read_entries
 
 
 def parser(prog: str) -> Parser:
@@ -36,50 +31,6 @@ def parser(prog: str) -> Parser:
     return made
 
 
-def read_configuration(path: Path) -> dict[str, Any]:
-    """Return the entries of a configuration file.
-
-    Raises:
-        ArenaError: It is none.
-        OSError: It cannot be read.
-    """
-    if path.exists() and not path.is_file():
-        raise ArenaError(f"{path} is not a file; expected a configuration")
-    try:
-        entries = parse_yaml(path.read_bytes().decode("utf-8"))
-    except WRONG_VALUES as error:
-        raise ArenaError(f"{path} is not a configuration: {problem_of(error)}") from None
-    if not isinstance(entries, dict):
-        raise ArenaError(f"{path} is not a configuration; expected keys such as arena_file")
-    return entries
-
-
-def find_arena(name: str, configuration: Path) -> Path:
-    """Return an arena file, looked for as the simulator does: here, next to the configuration, in Pogosim's own folder.
-
-    Raises:
-        ArenaError: There is none.
-    """
-    places = [Path(), configuration.parent]
-    with contextlib.suppress(InstallationError):
-        places.append(find_installation().template.parent)
-    found = next((place / name for place in places if (place / name).is_file()), None)
-    if found is None:
-        raise ArenaError(f"there is no arena file {name} here, in {configuration.parent} or with Pogosim")
-    return found
-
-
-def area_of(value: Any, path: Path) -> float | None:
-    """Return the area that a configuration asks for in mm2; None if the arena file is in mm."""
-    if value == "file":
-        return None
-    if value is None:
-        return DEFAULT_AREA_MM2
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
-        raise ArenaError(f"{path}: arena_surface is {value}; expected a number above 0 (mm2), or 'file'")
-    return float(value)
-
-
 def selected(options: argparse.Namespace) -> tuple[Outline, Outline]:
     """Return the arena as in its file, and in mm.
 
@@ -87,22 +38,13 @@ def selected(options: argparse.Namespace) -> tuple[Outline, Outline]:
         ArenaError, OSError: Says what is wrong.
     """
     path = Path(options.config)
-
-    def entry(name: str) -> Any:
-        try:
-            return single_value(entries.get(name))
-        except OptionsError as error:
-            raise ArenaError(f"{path}: {name}: {error}") from None
-
     # With all that is needed on the command line, no configuration is.
     is_needed = options.arena_file is None or path.is_file()
-    entries = read_configuration(path) if is_needed else {}
-    name = options.arena_file or entry("arena_file")
-    if not isinstance(name, str) or not name:
+    given = {"arena_file": options.arena_file, "arena_surface": options.arena_surface}
+    entries = (read_entries(path) if is_needed else {}) | {key: value for key, value in given.items() if value}
+    if not isinstance(entries.get("arena_file"), str) or not entries["arena_file"]:
         raise ArenaError(f"{path} has no arena_file; give one with --arena-file")
-    outline = read_arena(find_arena(name, path))
-    area_mm2 = options.arena_surface or area_of(entry("arena_surface"), path)
-    return outline, scaled(outline, area_mm2, stretch=entry("arena_stretch") is True)
+    return arena_of(entries, path)
 
 
 def run(prog: str, options: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""All combinations of the options in a configuration.
+"""All combinations of the options in a configuration, and the one that a single run takes.
 
 The product is taken in the order of appearance: the option that comes last in the file varies fastest. Maps are merged
 as the simulator does for a single run.
@@ -8,22 +8,25 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
 
 from pogosim.batch.option_words import (
     CHOICES,
+    DEFAULT,
     DEFAULT_ALTERNATIVE,
     HIERARCHICAL_OPTIONS,
+    LIST,
     NAME,
     NOT_EXPANDED,
+    RANGE,
     CombinationsError,
     OptionsError,
     check_options,
     offers_options,
     shown,
 )
-from pogosim.batch.options import expand_batch_options
+from pogosim.batch.options import expand_batch_options, single_value
 
 MAX_COMBINATIONS = 1_000_000
 MAX_DEPTH = 200
@@ -31,6 +34,8 @@ MAX_DEPTH = 200
 Choices = dict[str, str]
 # The value of a node in one combination, the alternatives chosen in it, and the keys that name them.
 Variant = tuple[Any, Choices, Choices]
+# An alternative of a map: its name, the key that the name is given in, and the merged map.
+Alternative = tuple[str, str | None, dict[str, Any]]
 
 
 def overlay(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
@@ -45,8 +50,8 @@ def overlay(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     return merged
 
 
-def alternatives_of(node: dict[str, Any], path: tuple[str, ...]) -> Iterator[tuple[str, str | None, dict[str, Any]]]:
-    """Yield the alternatives of a map: name, key that the name is given in, and the merged map."""
+def alternatives_of(node: dict[str, Any], path: tuple[str, ...]) -> Iterator[Alternative]:
+    """Yield the alternatives of a map; `default` only if there is no other."""
     options = node[HIERARCHICAL_OPTIONS]
     path = (*path, HIERARCHICAL_OPTIONS)
     if not isinstance(options, dict):
@@ -65,36 +70,82 @@ def alternatives_of(node: dict[str, Any], path: tuple[str, ...]) -> Iterator[tup
         yield str(name), key, overlay(siblings, chosen)
 
 
-def variants_of(node: Any, path: tuple[str, ...]) -> list[Variant]:
-    """Return all variants of a node, in order."""
+def known_alternative(node: dict[str, Any], path: tuple[str, ...]) -> list[Alternative]:  # noqa: ARG001
+    """Return the alternative `default`, or the map alone if there is none."""
+    options = node[HIERARCHICAL_OPTIONS] if isinstance(node[HIERARCHICAL_OPTIONS], dict) else {}
+    siblings = {name: value for name, value in node.items() if name != HIERARCHICAL_OPTIONS}
+    chosen = options.get(DEFAULT_ALTERNATIVE)
+    merged = overlay(siblings, chosen) if isinstance(chosen, dict) else siblings
+    return [(DEFAULT_ALTERNATIVE, options.get(NAME), merged)]
+
+
+def default_alternative(node: dict[str, Any], path: tuple[str, ...]) -> list[Alternative]:
+    """Return the alternative that a single run takes."""
+    list(alternatives_of(node, path))  # which checks them
+    if not isinstance(node[HIERARCHICAL_OPTIONS].get(DEFAULT_ALTERNATIVE), dict):
+        message = f"has no alternative '{DEFAULT_ALTERNATIVE}', which a single run takes; add one"
+        raise CombinationsError((*path, HIERARCHICAL_OPTIONS), message)
+    return known_alternative(node, path)
+
+
+def default_value(node: dict[str, Any]) -> list[Any]:
+    """Return the value that a single run takes."""
+    value = single_value(node)
+    if value is None and DEFAULT not in node:
+        word = LIST if LIST in node else RANGE
+        raise OptionsError(f"has {word} and no {DEFAULT}, which a single run takes; add it, or use pogobatch run")
+    return [value]
+
+
+class Choice(NamedTuple):
+    """What is taken where a configuration offers something."""
+
+    alternatives: Callable[[dict[str, Any], tuple[str, ...]], Iterable[Alternative]]
+    values: Callable[[dict[str, Any]], list[Any]]
+
+
+EVERYTHING = Choice(alternatives_of, expand_batch_options)
+DEFAULTS = Choice(default_alternative, default_value)  # as in a single run
+KNOWN = Choice(known_alternative, lambda node: [single_value(node)])  # the same; None where there is no default
+
+
+def variants_of(node: Any, path: tuple[str, ...], choice: Choice = EVERYTHING) -> list[Variant]:
+    """Return all variants of a node, in order; of DEFAULTS, there is one."""
     if len(path) > MAX_DEPTH:
         raise CombinationsError(path[:3], f"nested deeper than {MAX_DEPTH} levels")
     if isinstance(node, dict) and HIERARCHICAL_OPTIONS in node:
         found = []
-        for name, key, merged in alternatives_of(node, path):
+        for name, key, merged in choice.alternatives(node, path):
             chosen = {".".join(path): name} if path else {}
             named = {key: name} if key else {}
             found += [
                 (value, {**chosen, **choices}, {**named, **names})
-                for value, choices, names in variants_of(merged, path)
+                for value, choices, names in variants_of(merged, path, choice)
             ]
         return found
     if offers_options(node):
         try:
-            values = expand_batch_options(node)
+            values = choice.values(node)
         except OptionsError as error:
             raise CombinationsError(path, str(error)) from None
         return [
-            variant for value in values for variant in ([(node, {}, {})] if value is node else variants_of(value, path))
+            variant
+            for value in values
+            for variant in ([(node, {}, {})] if value is node else variants_of(value, path, choice))
         ]
     if isinstance(node, dict):
         children = [
-            (key, [(value, {}, {})] if not path and key in NOT_EXPANDED else variants_of(value, (*path, str(key))))
+            (
+                key,
+                [(value, {}, {})]
+                if not path and key in NOT_EXPANDED
+                else variants_of(value, (*path, str(key)), choice),
+            )
             for key, value in node.items()
         ]
         return product(children, path, dict)
     if isinstance(node, list):
-        items = [(number, variants_of(value, (*path, str(number)))) for number, value in enumerate(node)]
+        items = [(number, variants_of(value, (*path, str(number)), choice)) for number, value in enumerate(node)]
         return product(items, path, lambda pairs: [value for _, value in pairs])
     return [(node, {}, {})]
 
@@ -123,11 +174,12 @@ def product(
     return [(build(pairs), choices, names) for pairs, choices, names in rows]
 
 
-def combinations_of(configuration: dict[str, Any]) -> list[dict[str, Any]]:
+def combinations_of(configuration: dict[str, Any], choice: Choice = EVERYTHING) -> list[dict[str, Any]]:
     """Return the configuration of every combination of options, in order of appearance.
 
     Args:
         configuration: Configuration with options; it is not changed.
+        choice: What is taken of them.
 
     Returns:
         At least one configuration. Where alternatives were chosen (`batch_hierarchical_options`), the key
@@ -138,7 +190,7 @@ def combinations_of(configuration: dict[str, Any]) -> list[dict[str, Any]]:
     """
     check_options(configuration)
     combinations = []
-    for value, choices, names in variants_of(configuration, ()):
+    for value, choices, names in variants_of(configuration, (), choice):
         combination = copy.deepcopy(value)
         for key, name in names.items():
             combination[key] = name
@@ -146,3 +198,12 @@ def combinations_of(configuration: dict[str, Any]) -> list[dict[str, Any]]:
             combination[CHOICES] = choices
         combinations.append(combination)
     return combinations
+
+
+def resolved(configuration: dict[str, Any]) -> dict[str, Any]:
+    """Return the configuration of a single run: the `default_option` of all options, the alternative `default`.
+
+    Raises:
+        CombinationsError: Options have no default, or are wrong.
+    """
+    return combinations_of(configuration, DEFAULTS)[0]

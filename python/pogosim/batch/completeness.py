@@ -12,14 +12,13 @@ from functools import cached_property
 from pathlib import PurePath
 from typing import Any
 
-from pogosim.batch.combinations import combinations_of
+from pogosim.batch.combinations import combinations_of, resolved
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.manifests import config_hash, for_json
 from pogosim.batch.option_words import CHOICES, CombinationsError, chosen_in, shown
 from pogosim.batch.result_metadata import Earlier, configuration_in
 from pogosim.batch.run_files import ALL_OUTPUTS, FILES_BESIDE
 from pogosim.batch.single_task import TaskArtifact
-from pogosim.batch.sweeps import resolved
 from pogosim.lines import counted
 from pogosim.varied import NO_PARAMETERS, differ, leaves, varied_parameters
 

@@ -10,8 +10,9 @@ from typing import Any
 
 import yaml
 
+from pogosim.batch.combinations import KNOWN, resolved, variants_of
 from pogosim.batch.errors import BatchError, cannot, one_line
-from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError, check_options
+from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError
 from pogosim.batch.tool_maps import without_tool_maps
 from pogosim.yaml_1_2 import (
     BOOLEAN,
@@ -158,12 +159,28 @@ class Configuration:
         for name, (_, value) in entries.items():
             self.take_repeated_keys(value, (*path, name))
 
-    def check_options(self) -> None:
-        """Raise BatchError for slips in the keys of options."""
+    def resolved(self) -> dict[str, Any]:
+        """Return the configuration of a single run.
+
+        Raises:
+            BatchError: Options have no default, or are wrong.
+        """
         try:
-            check_options(self.entries)
+            return resolved(self.entries)
         except CombinationsError as error:
             raise self.error(error) from None
+
+    def of_one_run(self) -> dict[str, Any]:
+        """Return what a single run takes of each option; None where an option has no default.
+
+        Raises:
+            BatchError: Options have other keys.
+        """
+        try:
+            ((entries, _, _),) = variants_of(self.entries, (), KNOWN)
+        except CombinationsError as error:
+            raise self.error(error) from None
+        return dict(entries)
 
     def error(self, wrong: CombinationsError) -> BatchError:
         """Return the error of options, with the place of what is wrong."""

@@ -15,14 +15,13 @@ from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program
 from pogosim.batch.manifests import TASK, read_manifest, task_entries, write_json
 from pogosim.batch.names import NamesError, file_name, new_columns
-from pogosim.batch.option_words import CHOICES, CombinationsError, shown
+from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.result_metadata import columns_as_text
 from pogosim.batch.results import check_columns, schema_of
 from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, Task, attempt_in, simulators, with_last_line
 from pogosim.batch.seeds import listed_seeds
-from pogosim.batch.sweeps import resolved
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
@@ -142,10 +141,8 @@ def execute_task(
     program = str(given.path("simulator_binary", simulator_binary))
     configuration = Configuration(given.path("config_path", config_path))
     try:
-        entries = resolved(configuration.entries)
+        entries = configuration.resolved()
         name, columns = file_name(entries), new_columns(entries)
-    except CombinationsError as error:
-        raise configuration.error(error) from None
     except NamesError as error:
         raise BatchError(f"{configuration.where((error.key,))}{str(error).removeprefix(error.key)}") from None
     check_logs_data(entries, configuration)

@@ -8,25 +8,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.combinations import alternatives_of, combinations_of, overlay
+from pogosim.batch.combinations import alternatives_of, combinations_of, resolved
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, given
 from pogosim.batch.names import NamesError, file_name, new_columns
 from pogosim.batch.option_words import (
-    CHOICES,
-    DEFAULT,
-    DEFAULT_ALTERNATIVE,
     HIERARCHICAL_OPTIONS,
-    LIST,
-    NAME,
     NOT_EXPANDED,
-    RANGE,
     CombinationsError,
     OptionsError,
     check_options,
     offers_options,
 )
-from pogosim.batch.options import expand_batch_options, single_value
+from pogosim.batch.options import expand_batch_options
 from pogosim.batch.seeds import seeds_between, seeds_up_to
 from pogosim.batch.tool_maps import POGOBATCH, RESULT_KEYS, RUNDR, VERSION, without_tool_maps
 
@@ -104,54 +98,6 @@ def resolve_batch_defaults(config: Mapping[str, Any]) -> Entries:
         return resolved(plain_entries(config))
     except CombinationsError as error:
         raise BatchError(str(error)) from None
-
-
-def resolved(entries: Entries) -> Entries:
-    """Return a configuration with the defaults of all options.
-
-    Raises:
-        CombinationsError: Options have no default, or are wrong.
-    """
-    check_options(entries)
-    chosen: dict[str, str] = {}
-    named: dict[str, str] = {}
-    found: Entries = default_of(entries, (), chosen, named)
-    return {**found, **named, **({CHOICES: chosen} if chosen else {})}
-
-
-def default_of(node: Any, path: tuple[str, ...], chosen: dict[str, str], named: dict[str, str]) -> Any:
-    """Return what a single run takes for a node; notes the alternatives, and the keys that name them."""
-    if isinstance(node, dict) and HIERARCHICAL_OPTIONS in node:
-        options = node[HIERARCHICAL_OPTIONS]
-        list(alternatives_of(node, path))  # which checks them
-        if not isinstance(options.get(DEFAULT_ALTERNATIVE), dict):
-            message = f"has no alternative '{DEFAULT_ALTERNATIVE}', which a single run takes; add one"
-            raise CombinationsError((*path, HIERARCHICAL_OPTIONS), message)
-        if path:
-            chosen[".".join(path)] = DEFAULT_ALTERNATIVE
-        if options.get(NAME):
-            named[options[NAME]] = DEFAULT_ALTERNATIVE
-        siblings = {key: value for key, value in node.items() if key != HIERARCHICAL_OPTIONS}
-        return default_of(overlay(siblings, options[DEFAULT_ALTERNATIVE]), path, chosen, named)
-    if offers_options(node):
-        try:
-            value = single_value(node)
-        except OptionsError as error:
-            raise CombinationsError(path, str(error)) from None
-        if value is None and DEFAULT not in node:
-            word = LIST if LIST in node else RANGE
-            raise CombinationsError(
-                path, f"has {word} and no {DEFAULT}, which a single run takes; add it, or use pogobatch run"
-            )
-        return default_of(value, path, chosen, named)
-    if isinstance(node, dict):
-        return {
-            key: value if not path and key in NOT_EXPANDED else default_of(value, (*path, str(key)), chosen, named)
-            for key, value in node.items()
-        }
-    if isinstance(node, list):
-        return [default_of(value, (*path, str(number)), chosen, named) for number, value in enumerate(node)]
-    return node
 
 
 def make_rundra_sweep_config(config: Mapping[str, Any], seeds: int | str | None = None) -> Entries:

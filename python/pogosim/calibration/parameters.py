@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from pogosim.arguments import number
-from pogosim.batch.options import single_value
 from pogosim.errors import CalibrationError
 
 BIAS = "angular_systematic_bias_domain"
@@ -89,12 +88,12 @@ def chosen(text: str | None) -> list[str]:
 
 def start_values(settings: dict[str, Any]) -> dict[str, float]:
     """Return the values of a category's entry, or the defaults of the simulator."""
-    return {key: number(single_value(settings.get(key)), parameter.default) for key, parameter in PARAMETERS.items()}
+    return {key: number(settings.get(key), parameter.default) for key, parameter in PARAMETERS.items()}
 
 
 def start_bias(settings: dict[str, Any]) -> tuple[int, int]:
     """Return the range of the bias of a category's entry."""
-    domain = single_value(settings.get(BIAS))
+    domain = settings.get(BIAS)
     if not isinstance(domain, list) or len(domain) != 2:
         return 0, 0
     return round(number(domain[0], 0.0)), round(number(domain[1], 0.0))

@@ -10,17 +10,15 @@ import numpy as np
 import shapely
 import shapely.ops
 
-from pogosim.arenas import area_of, find_arena
 from pogosim.arguments import number
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
-from pogosim.batch.options import single_value
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks
 from pogosim.errors import CalibrationError
-from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
+from pogosim.geometry.arena_file import ArenaError, Outline
+from pogosim.geometry.configured import arena_of
 from pogosim.scene import POGOBOT_RADIUS_MM, read_periodic, type_of
-from pogosim.yaml_1_2 import plain
 
 CLOSE_MM = 10.0  # a start so far beyond where a robot can be is an error of the tracker
 LEAST_CORRELATION, CLEARLY = 0.5, 1.25  # of turn rates over time
@@ -33,18 +31,15 @@ class Scene:
 
     Attributes:
         configuration: The user's.
+        entries: What a single run takes of it.
         category: Name of the robots' entry in `objects`.
         arena: Its walls, in mm.
     """
 
     configuration: Configuration
+    entries: dict[str, Any]
     category: str
     arena: Outline
-
-    @property
-    def entries(self) -> dict[str, Any]:
-        """The whole configuration."""
-        return self.configuration.entries
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -72,10 +67,9 @@ def read_scene(path: Path, category: str | None) -> Scene:
     """
     try:
         configuration = Configuration(path)
-        configuration.check_options()
+        entries = configuration.resolved()
     except BatchError as error:
         raise CalibrationError(str(error)) from None
-    entries = configuration.entries
     objects = entries.get("objects")
     found = objects if isinstance(objects, dict) else {}
     robots = [str(name) for name, own in found.items() if isinstance(own, dict) and type_of(own) == "pogobot"]
@@ -86,24 +80,22 @@ def read_scene(path: Path, category: str | None) -> Scene:
         raise CalibrationError(
             f"{path} has no robots '{category}' of type pogobot in `objects`; found {', '.join(robots) or 'none'}"
         )
-    arena = arena_of(entries, path)
+    arena = walls_of(entries, path)
     if arena.periodic or read_periodic(entries):
         raise CalibrationError(f"{path} has a periodic arena; real robots are tracked in one with walls")
-    return Scene(configuration, category or robots[0], arena)
+    return Scene(configuration, entries, category or robots[0], arena)
 
 
-def arena_of(entries: dict[str, Any], path: Path) -> Outline:
+def walls_of(entries: dict[str, Any], path: Path) -> Outline:
     """Return the walls in mm, found as the simulator finds them.
 
     Raises:
         CalibrationError: They cannot be read.
     """
-    name = single_value(entries.get("arena_file"))
-    if not isinstance(name, str):
+    if not isinstance(entries.get("arena_file"), str):
         raise CalibrationError(f"{path} has no arena_file; expected the arena in which the robots were tracked")
-    area_mm2, stretch = (single_value(entries.get(key)) for key in ("arena_surface", "arena_stretch"))
     try:
-        outline = scaled(read_arena(find_arena(name, path)), area_of(area_mm2, path), stretch=plain(stretch) is True)
+        _, outline = arena_of(entries, path)
     except ArenaError as error:
         raise CalibrationError(str(error)) from None
     low, _ = outline.bounds

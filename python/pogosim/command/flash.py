@@ -211,26 +211,17 @@ def robots_of(configuration: str) -> list[tuple[str, int]]:
     """Return category and id of all robots and other objects with a program, as the simulator numbers them."""
     from pogosim.batch.configuration import Configuration
     from pogosim.batch.errors import BatchError
-    from pogosim.batch.option_words import OptionsError
-    from pogosim.batch.options import single_value
     from pogosim.object_categories import UnknownCategoriesError, ids_of
-    from pogosim.scene import RAYS, SPOTS, entries, type_of
+    from pogosim.scene import RAYS, SPOTS, entries, read_periodic, type_of
 
     try:
-        tree = Configuration(configuration).entries
-        categories = single_value(tree.get("objects"))
-        objects = {name: single_value(own) for name, own in categories.items()} if isinstance(categories, dict) else {}
-        bodies = [
-            (name, {key: single_value(own.get(key)) for key in ("type", "nb", "poses") if own.get(key) is not None})
-            for name, own in entries({"objects": objects})
-        ]
-        is_periodic = single_value(tree.get("boundary_condition")) == "periodic"
-    except (BatchError, OptionsError) as error:
-        raise FlashError(f"{configuration}: {error}" if isinstance(error, OptionsError) else str(error)) from None
+        tree = Configuration(configuration).of_one_run()
+    except BatchError as error:
+        raise FlashError(str(error)) from None
+    bodies = [(name, own) for name, own in entries(tree) if type_of(own) not in SPOTS + RAYS]
     bodies = [(name, {**own, "nb": own.get("nb", len(own.get("poses") or [0]))}) for name, own in bodies]
-    bodies = [(name, own) for name, own in bodies if type_of(own) not in SPOTS + RAYS]
     try:
-        ids = ids_of(bodies, is_periodic)
+        ids = ids_of(bodies, read_periodic(tree))
     except UnknownCategoriesError:
         raise FlashError(
             f"{configuration} does not say how many objects of each category there are; run the program with "

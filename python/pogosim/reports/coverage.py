@@ -15,17 +15,16 @@ from pogosim.analysis.arena import Arena
 from pogosim.analysis.coverage import coverage_over_time
 from pogosim.analysis.robot_sizes import sizes_of
 from pogosim.analysis.trajectories import Trajectories, setting_of, with_arenas_told_apart
-from pogosim.batch.option_words import OptionsError
-from pogosim.batch.options import single_value
 from pogosim.confidence import mean_over_runs
 from pogosim.errors import AnalysisError
 from pogosim.fonts import literal
-from pogosim.geometry.arena_file import ArenaError, read_arena, scaled
+from pogosim.geometry.arena_file import ArenaError
+from pogosim.geometry.configured import arena_of, read_entries
 from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
 from pogosim.reports.groups import by_arena, by_combination, draw_over_time, save_over_time
 from pogosim.reports.options import output_folder, read_runs, write_table
 from pogosim.reports.voronoi_diagram import draw_diagrams
-from pogosim.utils import parse_configuration
+from pogosim.scene import read_periodic
 
 
 def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[Trajectories]:
@@ -37,45 +36,32 @@ def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[T
     """
     if options.config is None:
         return runs
-    configuration = parse_configuration(Path(options.config).read_text(encoding="utf-8", errors="replace"))
-    if not configuration:
-        raise AnalysisError(f"{options.config} is not a configuration in YAML")
-    return with_arenas_told_apart(
-        [run if run.arena.polygons else with_arena(run, configuration, options) for run in runs]
-    )
+    try:
+        entries = read_entries(Path(options.config))
+        return with_arenas_told_apart(
+            [run if run.arena.polygons else with_arena(run, entries, options) for run in runs]
+        )
+    except ArenaError as error:
+        raise AnalysisError(str(error)) from error
 
 
 def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: argparse.Namespace) -> Trajectories:
-    """Return a run with the arena that a configuration says, and its robots' sizes."""
+    """Return a run with the arena that a configuration says, and its robots' sizes.
 
-    def value(name: str) -> Any:
-        try:
-            return single_value(run.labels.get(name, configuration.get(name)))  # of a batch
-        except OptionsError as error:
-            raise AnalysisError(f"{options.config}: {name}: {error}") from None
-
-    metadata = {"configuration": configuration}
-    if value("arena_file") is None:
-        raise AnalysisError(f"{options.config} has no arena_file")
-    surface = value("arena_surface")
-    if surface != "file":
-        try:
-            surface = float(surface)
-        except (TypeError, ValueError):
-            surface = 0.0
-        if not 0.0 < surface < float("inf"):
-            found = value("arena_surface")
-            raise AnalysisError(f"{options.config}: expected arena_surface in mm2, or 'file', found {found}")
-    path = Path(options.arenas_dir) / Path(str(value("arena_file"))).with_suffix(".csv").name
-    try:
-        outline = scaled(read_arena(path), None if surface == "file" else surface, stretch=bool(value("arena_stretch")))
-    except ArenaError as error:
-        raise AnalysisError(str(error)) from error
-    is_periodic = outline.periodic or str(value("boundary_condition")).lower() == "periodic"
-    sizes = sizes_of(run.category, lambda path: setting_of(path, run.labels, metadata))
+    Raises:
+        ArenaError: It says none.
+        OSError: A file cannot be read.
+    """
+    entries = {**configuration, **run.labels}  # of a batch
+    for name, expected in (("arena_file", "a file"), ("arena_surface", "an area in mm2, or 'file'")):
+        if entries.get(name) is None:
+            raise ArenaError(f"{options.config} has no {name}; expected {expected}")
+    path = Path(options.arenas_dir) / Path(str(entries["arena_file"])).with_suffix(".csv").name
+    _, outline = arena_of(entries, Path(options.config), path)
+    sizes = sizes_of(run.category, lambda path: setting_of(path, run.labels, {"configuration": configuration}))
     return replace(
         run,
-        arena=Arena(path.stem, list(outline.polygons), is_periodic),
+        arena=Arena(path.stem, list(outline.polygons), outline.periodic or read_periodic(entries)),
         sizes=sizes if options.rc is None else sizes.with_reach(options.rc),
     )
 
