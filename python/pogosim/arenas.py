@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.command.main import ended
-from pogosim.command.parser import Parser, positive
-from pogosim.geometry.actions import PICTURES, checked_output, guarded, show_arena
+from pogosim.command.parser import Parser, guarded, positive
+from pogosim.geometry.actions import PICTURES, checked_output, show_arena
 from pogosim.geometry.arena_file import ArenaError, Outline
 from pogosim.geometry.command import DEFAULT_RADIUS_MM
 from pogosim.geometry.configured import arena_of, read_entries

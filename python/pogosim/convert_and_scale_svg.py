@@ -10,8 +10,8 @@ import sys
 from collections.abc import Sequence
 
 from pogosim.command.main import ended
-from pogosim.command.parser import Parser, positive, warn
-from pogosim.geometry.actions import check_valid, checked_output, describe, guarded, write_outline
+from pogosim.command.parser import Parser, guarded, positive, warn
+from pogosim.geometry.actions import check_valid, checked_output, describe, write_outline
 from pogosim.geometry.arena_file import scaled
 from pogosim.geometry.svg_file import read_svg
 from pogosim.lines import say

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 
-class AnalysisError(ValueError):
+class ToolError(Exception):
+    """A tool cannot do what it is asked for. The message is one line: where, what, what was expected, what to do."""
+
+
+class AnalysisError(ToolError, ValueError):
     """Data do not have what an analysis needs; says what, and what to do."""
 
 
@@ -11,13 +15,13 @@ class AmbiguousStepsWarning(RuntimeWarning):
     """Rows are so far apart in time that robots may have gone another way than the shortest."""
 
 
-class CalibrationError(Exception):
+class CalibrationError(ToolError):
     """Robots cannot be calibrated so; says what, where, and what to do."""
 
 
-class OptimizeError(Exception):
+class OptimizeError(ToolError):
     """The search cannot be done. The message is one line: where, what, what was expected, what to do."""
 
 
-class PictureError(Exception):
+class PictureError(ToolError):
     """The file holds nothing that can be drawn, or the picture cannot be made; says why."""

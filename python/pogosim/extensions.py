@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pogosim.errors import ToolError
+
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
     from pathlib import Path  # takes a while, and few commands need it here
@@ -23,7 +25,7 @@ MODELS = ("*.yaml", "*.yml")
 Warn = Callable[[str], None]
 
 
-class ExtensionError(Exception):
+class ExtensionError(ToolError):
     """What was asked for cannot be had; says of which package it is, and what to do."""
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pogosim
+from pogosim.errors import ToolError
 
 PACKAGE = Path(pogosim.__file__).resolve().parent
 # Where pogosim.mk is: in a source tree, a build, a package or an installation. As in the Makefile of projects.
@@ -22,7 +23,7 @@ SETTINGS = (
 )
 
 
-class InstallationError(Exception):
+class InstallationError(ToolError):
     """There is no simulator; says what to do."""
 
 

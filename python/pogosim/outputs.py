@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Union
 
+from pogosim.errors import ToolError
+
 PARTIAL = ".pogosim-new"  # behind the name of a file that is not complete
 
 PathLike = Union[str, "Path"]
@@ -23,7 +25,7 @@ KINDS = (
 )
 
 
-class OutputError(Exception):
+class OutputError(ToolError):
     """A file cannot be written there; says why."""
 
 

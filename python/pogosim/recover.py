@@ -24,6 +24,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import ipc
 
+from pogosim.errors import ToolError
 from pogosim.outputs import PathLike, leads_to, real_output
 from pogosim.table_formats import CSV, EXPECTED, FEATHER, PARQUET, format_in, format_of, is_our_metadata, metadata_path
 from pogosim.tables import table_writer, write_metadata_beside
@@ -41,7 +42,7 @@ RECOVERED = b"recovered"
 DAMAGED = (pa.ArrowException, OSError, MemoryError, ValueError, OverflowError)
 
 
-class RecoverError(Exception):
+class RecoverError(ToolError):
     """The file cannot be recovered; says why."""
 
 

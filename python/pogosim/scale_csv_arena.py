@@ -9,8 +9,8 @@ import sys
 from collections.abc import Sequence
 
 from pogosim.command.main import ended
-from pogosim.command.parser import Parser, positive
-from pogosim.geometry.actions import checked_output, convert, guarded
+from pogosim.command.parser import Parser, guarded, positive
+from pogosim.geometry.actions import checked_output, convert
 from pogosim.geometry.arena_file import read_arena
 
 AREA_MM2 = 150_000.0

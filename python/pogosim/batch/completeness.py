@@ -12,10 +12,10 @@ from functools import cached_property
 from pathlib import PurePath
 from typing import Any
 
-from pogosim.batch.combinations import combinations_of, resolved
 from pogosim.batch.configuration import Configuration
+from pogosim.batch.errors import BatchError
 from pogosim.batch.manifests import config_hash, for_json
-from pogosim.batch.option_words import CHOICES, CombinationsError, chosen_in, shown
+from pogosim.batch.option_words import CHOICES, chosen_in, shown
 from pogosim.batch.result_metadata import Earlier, configuration_in
 from pogosim.batch.run_files import ALL_OUTPUTS, FILES_BESIDE
 from pogosim.batch.single_task import TaskArtifact
@@ -46,18 +46,15 @@ class Expected:
 
     def __init__(self, configuration: Configuration) -> None:
         self.configuration = configuration
-        try:
-            self.combinations = combinations_of(configuration.entries)
-        except CombinationsError as error:
-            raise configuration.error(error) from None
+        self.combinations = configuration.combinations()
         self.numbers = {config_hash(entries): number for number, entries in enumerate(self.combinations)}
 
     @cached_property
     def single(self) -> dict[str, Any] | None:
         """The configuration of a run that takes all defaults, as `pogobatch task` does; None: there is none."""
         try:
-            return resolved(self.configuration.entries)
-        except CombinationsError:
+            return self.configuration.resolved()
+        except BatchError:
             return None
 
     @cached_property

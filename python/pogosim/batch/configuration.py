@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from pogosim.batch.combinations import KNOWN, resolved, variants_of
+from pogosim.batch.combinations import KNOWN, combinations_of, resolved, variants_of
 from pogosim.batch.errors import BatchError, cannot, one_line
+from pogosim.batch.names import NamesError
 from pogosim.batch.option_words import HIERARCHICAL_OPTIONS, CombinationsError
 from pogosim.batch.tool_maps import without_tool_maps
 from pogosim.yaml_1_2 import (
@@ -119,10 +121,8 @@ class Configuration:
         Raises:
             BatchError: It is wrong.
         """
-        try:
+        with self.placing_errors():
             maps = without_tool_maps(self.entries, lambda at, text: log.warning("%s: %s", self.where(at), text))
-        except CombinationsError as error:
-            raise self.error(error) from None
         self.entries, self.moved, self.seeds = maps.entries, maps.moved, maps.seeds
 
     def warn_of_another_document(self, loader: BatchLoader) -> None:
@@ -165,10 +165,8 @@ class Configuration:
         Raises:
             BatchError: Options have no default, or are wrong.
         """
-        try:
+        with self.placing_errors():
             return resolved(self.entries)
-        except CombinationsError as error:
-            raise self.error(error) from None
 
     def of_one_run(self) -> dict[str, Any]:
         """Return what a single run takes of each option; None where an option has no default.
@@ -176,15 +174,28 @@ class Configuration:
         Raises:
             BatchError: Options have other keys.
         """
-        try:
+        with self.placing_errors():
             ((entries, _, _),) = variants_of(self.entries, (), KNOWN)
-        except CombinationsError as error:
-            raise self.error(error) from None
-        return dict(entries)
+            return dict(entries)
 
-    def error(self, wrong: CombinationsError) -> BatchError:
-        """Return the error of options, with the place of what is wrong."""
-        return BatchError(f"{self.where(wrong.path, wrong.key)}: {wrong.args[0]}")
+    def combinations(self) -> list[dict[str, Any]]:
+        """Return the configuration of every combination of options, see `combinations_of`.
+
+        Raises:
+            BatchError: Options are wrong, or too many.
+        """
+        with self.placing_errors():
+            return combinations_of(self.entries)
+
+    @contextlib.contextmanager
+    def placing_errors(self) -> Iterator[None]:
+        """Raise BatchError, with the place in the file, for what a block finds wrong with options or names."""
+        try:
+            yield
+        except CombinationsError as error:
+            raise BatchError(f"{self.where(error.path, error.key)}: {error.args[0]}") from None
+        except NamesError as error:
+            raise BatchError(f"{self.where((error.key,))}{str(error).removeprefix(error.key)}") from None
 
     def where(self, path: Sequence[str], key: str = "") -> str:
         """Return where an entry stands: "conf/a.yaml:12: objects.robots.nb"; of all, the name of the file.

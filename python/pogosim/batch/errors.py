@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.arguments import Arguments, shown
+from pogosim.errors import ToolError
 from pogosim.lines import printable, say
 
 
-class BatchError(Exception):
+class BatchError(ToolError):
     """The batch cannot be done. The message is one line: where, what, what was expected, what to do."""
 
     def __init__(self, message: object = "") -> None:

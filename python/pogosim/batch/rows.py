@@ -19,7 +19,6 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import find_program, program_digest, world_digest
 from pogosim.batch.joining import file_of
 from pogosim.batch.names import ambiguous, new_columns, value_at
-from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.parts import WITH_SEEDS, Part
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import report_warnings
@@ -183,10 +182,8 @@ class Runs:
 
     def wanted(self, number: int, entries: dict[str, Any], seeds: Sequence[int]) -> Wanted:
         """Return the runs of a configuration."""
-        try:
+        with self.configuration.placing_errors():
             combined = combinations_of(entries)
-        except CombinationsError as error:
-            raise self.configuration.error(error) from None
         combinations, whole = [], ambiguous(combined)
         for combination in combined:
             check_logs_data(combination, self.configuration)

@@ -17,8 +17,7 @@ from pogosim.batch.errors import BatchError, at_least, cannot, given, one_line, 
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
 from pogosim.batch.joining import join, remove_stale, removing_stale
-from pogosim.batch.names import COLUMNS, NamesError, ambiguous, file_name, is_linked_out, new_columns
-from pogosim.batch.option_words import CombinationsError
+from pogosim.batch.names import COLUMNS, ambiguous, file_name, is_linked_out, new_columns
 from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
@@ -161,17 +160,13 @@ class PogobotBatchRunner:
 
     def get_combinations(self, config: dict[str, Any]) -> list[dict[str, Any]]:
         """Return the configuration of each combination of options, in order of appearance; the last varies fastest."""
-        try:
+        with self.configuration.placing_errors():
             return combinations_of(config)
-        except CombinationsError as error:
-            raise self.configuration.error(error) from None
 
     def compute_output_filename(self, comb_config: dict[str, Any]) -> str:
         """Return the path of the file with the results of a combination. Several combinations may share a file."""
-        try:
+        with self.configuration.placing_errors():
             output = str(Path(self.output_dir) / file_name(comb_config))
-        except NamesError as error:
-            raise self.names_error(error) from None
         try:
             is_out = is_linked_out(output, self.output_dir)
         except (OSError, RuntimeError) as error:  # links in a circle
@@ -185,10 +180,8 @@ class PogobotBatchRunner:
 
     def compute_new_columns(self, comb_config: dict[str, Any]) -> dict[str, Any]:
         """Return names and values of the constant columns of a combination."""
-        try:
+        with self.configuration.placing_errors():
             return new_columns(comb_config, self.whole)
-        except NamesError as error:
-            raise self.names_error(error) from None
 
     def compute_seed(self, comb_config: dict[str, Any], run: int) -> int:
         """Return the seed of a run, 0 to 2^32-1. Runs are numbered 0, 1, ..."""
@@ -347,10 +340,8 @@ class PogobotBatchRunner:
         if len(selected) * self.runs > MAX_RUNS:
             wanted = f"{self.runs} runs of {len(selected)} combination(s)"
             raise BatchError(f"--runs: {wanted} are more than {MAX_RUNS}; make several batches")
-        try:
+        with self.configuration.placing_errors():
             check_columns_exist([config for config, _ in selected])
-        except NamesError as error:
-            raise self.names_error(error) from None
         columns = [(config, output, self.compute_new_columns(config)) for config, output in selected]
         for name in self.layout.run_columns:
             if any(name in own for _, _, own in columns):
@@ -367,10 +358,8 @@ class PogobotBatchRunner:
             NothingSelectedError: None has the output that was asked for.
         """
         combinations = self.get_combinations(self.configuration.entries)
-        try:
+        with self.configuration.placing_errors():
             self.whole = ambiguous(combinations)
-        except NamesError as error:
-            raise self.names_error(error) from None
         return with_output(
             [(config, self.compute_output_filename(config)) for config in combinations], self.only_output
         )
@@ -390,7 +379,3 @@ class PogobotBatchRunner:
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
         name = os.path.relpath(output, self.output_dir)
         return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings), name)
-
-    def names_error(self, error: NamesError) -> BatchError:
-        """Return the error of a wrong name, with its place."""
-        return BatchError(f"{self.configuration.where((error.key,))}{str(error).removeprefix(error.key)}")

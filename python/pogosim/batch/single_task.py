@@ -14,7 +14,7 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program
 from pogosim.batch.manifests import TASK, read_manifest, task_entries, write_json
-from pogosim.batch.names import NamesError, file_name, new_columns
+from pogosim.batch.names import file_name, new_columns
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
@@ -140,11 +140,9 @@ def execute_task(
     at_least(0, retry_attempt, "--retry-attempt")
     program = str(given.path("simulator_binary", simulator_binary))
     configuration = Configuration(given.path("config_path", config_path))
-    try:
-        entries = configuration.resolved()
+    entries = configuration.resolved()
+    with configuration.placing_errors():
         name, columns = file_name(entries), new_columns(entries)
-    except NamesError as error:
-        raise BatchError(f"{configuration.where((error.key,))}{str(error).removeprefix(error.key)}") from None
     check_logs_data(entries, configuration)
     folder = given.path("output_dir", output_dir)
     task = task_in(folder, configuration, entries, program, seed, run_index, gui)

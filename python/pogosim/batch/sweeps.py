@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -29,17 +30,22 @@ Entries = dict[str, Any]
 log = logging.getLogger("pogobatch")
 
 
+@contextlib.contextmanager
+def told() -> Iterator[None]:
+    """Raise BatchError for what a block finds wrong with options or names."""
+    try:
+        yield
+    except (NamesError, CombinationsError) as error:
+        raise BatchError(str(error)) from None
+
+
 def build_combinations(config_path: str | Path) -> list[Entries]:
     """Return the configuration of every combination of options in a file, in order; the last option varies fastest.
 
     Raises:
         BatchError: The file cannot be read, or its options are wrong.
     """
-    configuration = Configuration(given.path("config_path", config_path))
-    try:
-        return combinations_of(configuration.entries)
-    except CombinationsError as error:
-        raise configuration.error(error) from None
+    return Configuration(given.path("config_path", config_path)).combinations()
 
 
 def expand_combinations(config: Mapping[str, Any]) -> list[Entries]:
@@ -50,10 +56,8 @@ def expand_combinations(config: Mapping[str, Any]) -> list[Entries]:
     Raises:
         BatchError: The options are wrong.
     """
-    try:
+    with told():
         return combinations_of(plain_entries(config))
-    except CombinationsError as error:
-        raise BatchError(str(error)) from None
 
 
 def count_combinations(config: Mapping[str, Any]) -> int:
@@ -62,12 +66,10 @@ def count_combinations(config: Mapping[str, Any]) -> int:
     Raises:
         BatchError: The options are wrong.
     """
-    try:
+    with told():
         entries = plain_entries(config)
         check_options(entries)
         return count_in(entries, ())
-    except CombinationsError as error:
-        raise BatchError(str(error)) from None
 
 
 def count_in(node: Any, path: tuple[str, ...]) -> int:
@@ -94,10 +96,8 @@ def resolve_batch_defaults(config: Mapping[str, Any]) -> Entries:
     Raises:
         BatchError: Options have no default, or are wrong.
     """
-    try:
+    with told():
         return resolved(plain_entries(config))
-    except CombinationsError as error:
-        raise BatchError(str(error)) from None
 
 
 def make_rundra_sweep_config(config: Mapping[str, Any], seeds: int | str | None = None) -> Entries:
@@ -136,10 +136,8 @@ def compute_result_filename(config: Mapping[str, Any]) -> str:
     Raises:
         BatchError: `result_filename_format` is wrong.
     """
-    try:
+    with told():
         return file_name(plain_entries(config))
-    except (NamesError, CombinationsError) as error:
-        raise BatchError(str(error)) from None
 
 
 def compute_extra_columns(config: Mapping[str, Any]) -> Entries:
@@ -148,10 +146,8 @@ def compute_extra_columns(config: Mapping[str, Any]) -> Entries:
     Raises:
         BatchError: `result_new_columns` is wrong.
     """
-    try:
+    with told():
         return new_columns(plain_entries(config))
-    except (NamesError, CombinationsError) as error:
-        raise BatchError(str(error)) from None
 
 
 def plain_entries(config: Mapping[str, Any]) -> Entries:

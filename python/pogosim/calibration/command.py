@@ -11,11 +11,8 @@ from pogosim.batch.ending import catch_signals
 from pogosim.calibration.parameters import NAMES
 from pogosim.calibration.results import LINES, PICTURE, RESULT, write_protocol
 from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM
-from pogosim.command.new import ProjectError
-from pogosim.command.parser import Parser, complain, positive, whole
-from pogosim.errors import CalibrationError
-from pogosim.installation import InstallationError
-from pogosim.outputs import OutputError, check_readable, told
+from pogosim.command.parser import Parser, complain, guarded, positive, whole
+from pogosim.outputs import check_readable
 
 INTERRUPTED = 130
 MAGNETOMETER = "magnetometer"  # in place of a file: the fit of a magnetometer
@@ -73,10 +70,11 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate"
         return magnetometer.main(given[1:], f"{prog} {MAGNETOMETER}")
     made = parser(prog)
     options = made.parse_args(given)
-    try:
+
+    def run() -> None:
         if options.protocol is not None:
             write_protocol(Path(options.protocol))
-            return 0
+            return
         if options.tracks is None or options.config is None:
             made.error("expected TRACKS and -c CONF.yaml, or --protocol NAME")
         check_readable([options.tracks])
@@ -84,16 +82,14 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate"
         from pogosim.calibration.work import calibrate  # takes a while
 
         calibrate(prog, options)
+
+    try:
+        return guarded(prog, run, f"the folder for temporary files, {tempfile.gettempdir()}")
     except KeyboardInterrupt:
         complain(prog, "interrupted; nothing is written")
         return INTERRUPTED
     except MemoryError:
         return complain(prog, "not enough memory for tracks of this length; use a part of the film")
-    except (CalibrationError, InstallationError, OutputError, ProjectError) as error:
-        return complain(prog, error)
-    except OSError as error:
-        return complain(prog, told(error, f"the folder for temporary files, {tempfile.gettempdir()}"))
-    return 0
 
 
 if __name__ == "__main__":

@@ -12,11 +12,10 @@ import shapely.ops
 
 from pogosim.arguments import number
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError
 from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats, Tracks
 from pogosim.errors import CalibrationError
-from pogosim.geometry.arena_file import ArenaError, Outline
+from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.configured import arena_of
 from pogosim.scene import POGOBOT_RADIUS_MM, read_periodic, type_of
 
@@ -63,13 +62,10 @@ def read_scene(path: Path, category: str | None) -> Scene:
     """Read a configuration.
 
     Raises:
-        CalibrationError: It is none, or it has no such robots or no arena with walls.
+        ToolError: It is none, or it has no such robots or no arena with walls.
     """
-    try:
-        configuration = Configuration(path)
-        entries = configuration.resolved()
-    except BatchError as error:
-        raise CalibrationError(str(error)) from None
+    configuration = Configuration(path)
+    entries = configuration.resolved()
     objects = entries.get("objects")
     found = objects if isinstance(objects, dict) else {}
     robots = [str(name) for name, own in found.items() if isinstance(own, dict) and type_of(own) == "pogobot"]
@@ -90,14 +86,11 @@ def walls_of(entries: dict[str, Any], path: Path) -> Outline:
     """Return the walls in mm, found as the simulator finds them.
 
     Raises:
-        CalibrationError: They cannot be read.
+        ToolError: They cannot be read.
     """
     if not isinstance(entries.get("arena_file"), str):
         raise CalibrationError(f"{path} has no arena_file; expected the arena in which the robots were tracked")
-    try:
-        _, outline = arena_of(entries, path)
-    except ArenaError as error:
-        raise CalibrationError(str(error)) from None
+    _, outline = arena_of(entries, path)
     low, _ = outline.bounds
     return replace(outline, polygons=tuple(polygon - low for polygon in outline.polygons))
 

@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 
 from pogosim.arguments import number
-from pogosim.batch.errors import BatchError
 from pogosim.batch.rows import Runs
 from pogosim.calibration.parameters import BIAS
 from pogosim.calibration.tracks import Floats, Tracks
@@ -93,17 +92,14 @@ class Simulator:
             For each, the columns time (s), robot_id, x, y (mm), angle (rad).
 
         Raises:
-            CalibrationError: A run fails; says what the simulator says.
+            ToolError: A run fails; says what the simulator says.
         """
         made = [self.configuration_of(candidate) for candidate in candidates]
         rows: dict[int, pd.DataFrame] = {}
-        try:
-            for done in self.runs.rows_of(made, [[candidate.seed] for candidate in candidates]):
-                if done.rows is None:
-                    raise CalibrationError(f"{self.runs.program} failed in a trial run: {done.problem}")
-                rows[done.number] = done.rows
-        except BatchError as error:
-            raise CalibrationError(str(error)) from None
+        for done in self.runs.rows_of(made, [[candidate.seed] for candidate in candidates]):
+            if done.rows is None:
+                raise CalibrationError(f"{self.runs.program} failed in a trial run: {done.problem}")
+            rows[done.number] = done.rows
         return [rows[number] for number in range(len(candidates))]
 
     def seen(self, rows: pd.DataFrame) -> Tracks:

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from pogosim.batch.backends import Workers
-from pogosim.batch.errors import BatchError
 from pogosim.batch.rows import Runs
 from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile, tracker_errors
 from pogosim.calibration.parameters import BIAS, chosen, start_bias, start_values
@@ -33,9 +32,8 @@ from pogosim.calibration.units import (
     y_down,
 )
 from pogosim.command.parser import warn
-from pogosim.command.run import RunError, program_of
-from pogosim.errors import CalibrationError
-from pogosim.installation import InstallationError, find_installation
+from pogosim.command.run import program_of
+from pogosim.installation import find_installation
 from pogosim.lines import say
 from pogosim.outputs import partial_output, real_output
 
@@ -99,23 +97,10 @@ def compiled(what: str | None, temporary: Path) -> Path:
     """Return the program that the robots ran.
 
     Raises:
-        CalibrationError: There is none.
+        ToolError: There is none.
     """
     source = Path(what) if what else Path(shutil.copy(PROTOCOL, temporary / "protocol.c"))
-    try:
-        return program_of(source, find_installation())
-    except (InstallationError, RunError, ValueError) as error:
-        raise CalibrationError(str(error)) from None
-
-
-def trial_runs(scene: Scene, program: Path, temporary: Path, workers: int | None) -> Runs:
-    """Return what runs the program in the scene; raises CalibrationError if it is no program of the simulator."""
-    try:
-        return Runs(
-            scene.configuration, str(program), str(temporary), str(temporary), Workers(number=workers), retries=0
-        )
-    except BatchError as error:
-        raise CalibrationError(str(error)) from None
+    return program_of(source, find_installation())
 
 
 def calibrate(prog: str, options: argparse.Namespace) -> None:
@@ -128,7 +113,7 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
     with tempfile.TemporaryDirectory(prefix="pogosim-calibrate-") as folder:
         temporary = Path(folder)
         program = compiled(options.simulator_binary, temporary)
-        runs = trial_runs(scene, program, temporary, options.workers)
+        runs = Runs(scene.configuration, str(program), folder, folder, Workers(number=options.workers), retries=0)
         simulator = Simulator(runs, scene.entries, scene.category, poses, prepared.tracks)
         if not prepared.tracks.has_angles and options.parameters is None:
             free = [name for name in free if name not in NEED_HEADINGS]

@@ -6,6 +6,12 @@ import os
 import shlex
 from typing import NamedTuple
 
+from pogosim.errors import ToolError
+
+
+class CompilerError(ToolError):
+    """What the environment says of a compiler cannot be understood."""
+
 
 class Compiler(NamedTuple):
     """A language's compiler, as make knows it."""
@@ -19,7 +25,7 @@ class Compiler(NamedTuple):
         """Return the compiler and the standard.
 
         Raises:
-            ValueError: A quotation mark is open in the environment variable.
+            CompilerError: A quotation mark is open in the environment variable.
         """
         return [*(words_of(self.variable) or [self.usual]), f"-std={self.standard}"]
 
@@ -34,9 +40,9 @@ def words_of(variable: str) -> list[str]:
     """Return the words of an environment variable, as a shell would split it.
 
     Raises:
-        ValueError: A quotation mark is open.
+        CompilerError: A quotation mark is open.
     """
     try:
         return shlex.split(os.environ.get(variable, ""))
     except ValueError as error:
-        raise ValueError(f"the environment variable {variable} cannot be understood: {error}") from None
+        raise CompilerError(f"the environment variable {variable} cannot be understood: {error}") from None

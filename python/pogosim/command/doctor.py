@@ -17,6 +17,7 @@ from pathlib import Path
 import pogosim
 from pogosim.command.compilers import COMPILERS
 from pogosim.command.parser import Parser
+from pogosim.errors import ToolError
 from pogosim.extras import installing
 from pogosim.installation import PACKAGE, Installation, InstallationError, find_installation
 from pogosim.lines import say
@@ -233,7 +234,7 @@ def checked(purpose: str, found: Installation) -> Finding:
     """Check one thing. What keeps the check itself from working is a finding, too."""
     try:
         return CHECKS[purpose](found)
-    except (ImportError, OSError, ValueError) as error:
+    except (ImportError, OSError, ToolError, ValueError) as error:
         return Finding(purpose, False, f"it cannot be checked: {error}")
 
 

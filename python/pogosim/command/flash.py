@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from pogosim.command.parser import Parser, complain
+from pogosim.errors import ToolError
 from pogosim.flash_archive import (
     FLASH_BYTES,
     LONGEST_CATEGORY,
@@ -29,7 +30,7 @@ EMPTY = bytes_of_head(0)
 DAMAGED = 1  # exit code of show: a checksum is wrong
 
 
-class FlashError(Exception):
+class FlashError(ToolError):
     """What was asked for cannot be done; says why."""
 
 
@@ -210,14 +211,10 @@ def check_nothing_is_lost(name: str) -> None:
 def robots_of(configuration: str) -> list[tuple[str, int]]:
     """Return category and id of all robots and other objects with a program, as the simulator numbers them."""
     from pogosim.batch.configuration import Configuration
-    from pogosim.batch.errors import BatchError
     from pogosim.object_categories import UnknownCategoriesError, ids_of
     from pogosim.scene import RAYS, SPOTS, entries, read_periodic, type_of
 
-    try:
-        tree = Configuration(configuration).of_one_run()
-    except BatchError as error:
-        raise FlashError(str(error)) from None
+    tree = Configuration(configuration).of_one_run()
     bodies = [(name, own) for name, own in entries(tree) if type_of(own) not in SPOTS + RAYS]
     bodies = [(name, {**own, "nb": own.get("nb", len(own.get("poses") or [0]))}) for name, own in bodies]
     try:
@@ -268,7 +265,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim flash") ->
     options = parser(prog).parse_args(arguments)
     try:
         code, lines = ACTIONS[options.action](options)
-    except (FlashError, OutputError) as error:
+    except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, told(error, options.archive))

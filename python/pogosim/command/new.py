@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.command.parser import Parser, complain
-from pogosim.installation import Installation, InstallationError, find_installation
+from pogosim.errors import ToolError
+from pogosim.installation import Installation, find_installation
 from pogosim.lines import say
 
 FILES = ("main.c", "conf/test.yaml", "Makefile", "robot.mk", "README.md", ".gitignore")
@@ -19,7 +20,7 @@ TAKEN = {"all", "sim", "bin", "connect", "clean", "build", "conf", LINK}
 FILES_OF_MAKE = {"makefile", "gnumakefile", "robot.mk", "readme.md"}
 
 
-class ProjectError(Exception):
+class ProjectError(ToolError):
     """The project cannot be made; says why."""
 
 
@@ -80,7 +81,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim new") -> i
     folder: Path = parser.parse_args(arguments).folder
     try:
         make_project(folder, find_installation())
-    except (InstallationError, ProjectError) as error:
+    except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, f"cannot make {folder}: {error.strerror}")

@@ -10,7 +10,9 @@ import warnings
 from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
 
+from pogosim.errors import ToolError
 from pogosim.lines import say_error
+from pogosim.outputs import told
 
 
 class Parser(argparse.ArgumentParser):
@@ -45,6 +47,22 @@ def warnings_told(prog: str, *kinds: type[Warning]) -> Iterator[None]:
 
         warnings.showwarning = show
         yield
+
+
+def guarded(prog: str, run: Callable[[], int | None], place: object = "the output") -> int:
+    """Run a command; says in one line what keeps it from its end, and returns the exit code 2 then.
+
+    Args:
+        prog: Name of the command.
+        run: Returns the exit code; None: 0.
+        place: What is read or written, for errors of the system that name no file.
+    """
+    try:
+        return run() or 0
+    except ToolError as error:
+        return complain(prog, error)
+    except OSError as error:
+        return complain(prog, told(error, str(place)))
 
 
 def complain(prog: str, problem: object) -> int:

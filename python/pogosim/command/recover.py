@@ -6,8 +6,9 @@ import os
 from collections.abc import Sequence
 
 from pogosim.command.parser import Parser, complain
+from pogosim.errors import ToolError
 from pogosim.lines import say
-from pogosim.outputs import OutputError, check_readable
+from pogosim.outputs import check_readable
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") -> int:
@@ -18,12 +19,12 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") 
     options = parser.parse_args(arguments)
     import pyarrow  # takes a while
 
-    from pogosim.recover import RecoverError, recover
+    from pogosim.recover import recover
 
     try:
         check_readable([options.file])
         unfinished = recover(options.file, options.output)
-    except (RecoverError, OutputError) as error:
+    except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         reason = os.strerror(error.errno) if error.errno else error

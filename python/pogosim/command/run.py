@@ -12,14 +12,15 @@ from pathlib import Path
 
 from pogosim.command.compilers import COMPILERS, words_of
 from pogosim.command.parser import Parser, complain, warn
+from pogosim.errors import ToolError
 from pogosim.extensions import let_find_models
-from pogosim.installation import Installation, InstallationError, find_installation
+from pogosim.installation import Installation, find_installation
 
 EPILOG = """All other options are the simulator's: -c CONFIG, -g (no window), -s SEED, --set KEY=VALUE and others.
 Without -c, a project is run with its conf/test.yaml. Paths are relative to the working folder."""
 
 
-class RunError(Exception):
+class RunError(ToolError):
     """There is nothing to run, or it cannot be compiled; says why."""
 
 
@@ -28,7 +29,7 @@ def compile_file(source: Path, pogosim: Installation) -> Path:
 
     Raises:
         RunError: It does not compile. The compiler has said why.
-        ValueError: An environment variable cannot be understood.
+        CompilerError: An environment variable cannot be understood.
     """
     program = source.parent / "build" / source.stem
     program.parent.mkdir(exist_ok=True)
@@ -118,7 +119,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim run") -> i
         return 0
     try:
         program = program_of(what, find_installation())
-    except (InstallationError, RunError, ValueError) as error:
+    except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, f"cannot build {what}: {error.strerror}")

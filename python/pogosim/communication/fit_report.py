@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from pogosim.command.parser import complain, warn
+from pogosim.command.parser import guarded, warn
 from pogosim.communication.fit import Fit, fit
 from pogosim.communication.fit_command import RESIDUALS, RESULTS
-from pogosim.communication.fit_settings import FitError, FitSettings
-from pogosim.communication.measurements import ROBOTS_OWN, MeasurementError, Measurements, read_measurements
+from pogosim.communication.fit_settings import FitSettings
+from pogosim.communication.measurements import ROBOTS_OWN, Measurements, read_measurements
 from pogosim.communication.quality import Quality, compare, quality
 from pogosim.communication.reception_law import (
     LAWS,
@@ -24,7 +24,7 @@ from pogosim.communication.reception_law import (
     parameters_of,
 )
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to, real_output, told
+from pogosim.outputs import OutputError, leads_to, real_output
 
 
 def settings_of(options: argparse.Namespace) -> FitSettings:
@@ -108,18 +108,14 @@ def check_outputs(folder: Path, names: Sequence[str], data: Path) -> None:
 def fit_measurements(options: argparse.Namespace, prog: str) -> int:
     """Do what the command line says. Returns the exit code: 0 done, 2 nothing could be fitted, or written."""
     data = Path(options.data) if options.data else ROBOTS_OWN
-    try:
+
+    def run() -> None:
         settings = settings_of(options)
         measurements = read_measurements(data, options.header_bytes)
-        written = fit_and_report(prog, data, measurements, settings, options.output_dir)
-    except (MeasurementError, FitError, OutputError) as error:
-        return complain(prog, error)
-    except OSError as error:
-        return complain(prog, told(error, options.output_dir or data))
-    if written:
-        say("")
-        say(f"written to {options.output_dir}: {', '.join(written)}")
-    return 0
+        if written := fit_and_report(prog, data, measurements, settings, options.output_dir):
+            say("", f"written to {options.output_dir}: {', '.join(written)}")
+
+    return guarded(prog, run, options.output_dir or data)
 
 
 def fit_and_report(

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pogosim.communication.reception_law import LAWS, parameter_names
+from pogosim.errors import ToolError
 
 Bounds = tuple[float, float]
 
@@ -25,7 +26,7 @@ BOUNDS: dict[str, dict[str, Bounds]] = {
 OBJECTIVES = ("r2", "huber")
 
 
-class FitError(Exception):
+class FitError(ToolError):
     """The fit that was asked for is not possible; says why."""
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from pogosim.communication.reception_law import SHORT_HEADER_BYTES
+from pogosim.errors import ToolError
 
 # On real robots: a focal robot and 1, 2 or 6 neighbours that all send short messages at 60 Hz (the article's data).
 ROBOTS_OWN = Path(__file__).with_name("ir_reception_profile.csv")
@@ -25,7 +26,7 @@ RANGES = {
 }
 
 
-class MeasurementError(Exception):
+class MeasurementError(ToolError):
     """A file holds no measurements that can be used; says which file, what, and what to do."""
 
 

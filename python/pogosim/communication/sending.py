@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass
 
 from pogosim.communication.reception_law import DynamicLaw, Law
+from pogosim.errors import ToolError
 
 # What compute_optimal_psend takes for the four-parameter law. They are not those of `type: realistic`.
 SENDING_DEFAULTS = {"alpha": 1e-6, "beta": 3.0708, "gamma": 2.3234, "delta": 1.1897}
 
 
-class SendingError(Exception):
+class SendingError(ToolError):
     """There is no best chance to send; says why."""
 
 

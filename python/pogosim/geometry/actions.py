@@ -9,7 +9,7 @@ from pathlib import Path
 from pogosim.command.parser import complain, warn
 from pogosim.geometry.arena_file import ArenaError, Outline, as_csv, parse_outline, read_arena, scaled
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to, real_output, told
+from pogosim.outputs import OutputError, leads_to, real_output
 
 PICTURES = ("pdf", "png", "svg")
 
@@ -173,16 +173,6 @@ def convert(prog: str, outline: Outline, path: Path, options: argparse.Namespace
         warn(prog, f"{options.output} cannot say that the arena is periodic")
     say(describe(arena, options.output))
     return 0
-
-
-def guarded(prog: str, run: Callable[[], int]) -> int:
-    """Run an action; says in one line what keeps it from its end, and returns the exit code 2 then."""
-    try:
-        return run()
-    except (ArenaError, OutputError) as error:
-        return complain(prog, error)
-    except OSError as error:
-        return complain(prog, told(error, "the output"))
 
 
 ACTIONS: dict[str, Callable[[str, argparse.Namespace], int]] = {

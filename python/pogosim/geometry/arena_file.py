@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.errors import ToolError
+
 Floats = npt.NDArray[np.float64]
 
 PERIODIC = "boundary_condition: periodic"
@@ -20,7 +22,7 @@ NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 DIGITS = 4  # behind the point, in files that are written: 0.1 um of an arena in mm
 
 
-class ArenaError(Exception):
+class ArenaError(ToolError):
     """An arena cannot be read, used or written; says which file, where, and what to do."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from pogosim.command.parser import Parser, positive
+from pogosim.command.parser import Parser, guarded, positive
 
 DEFAULT_AREA_MM2 = 1.0e6  # of the key arena_surface
 DEFAULT_RADIUS_MM = 26.5  # of robots
@@ -74,6 +74,6 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim arena") ->
     """Run the command. Returns its exit code: 0 done, 2 an arena is not valid, or nothing could be done."""
     options = parser(prog).parse_args(arguments)
     prog = f"{prog} {options.action}"
-    from pogosim.geometry.actions import ACTIONS, guarded  # takes a while
+    from pogosim.geometry.actions import ACTIONS  # takes a while
 
     return guarded(prog, lambda: ACTIONS[options.action](prog, options))

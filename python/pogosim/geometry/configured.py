@@ -20,7 +20,7 @@ def read_entries(path: Path) -> dict[str, Any]:
     """Return the entries of a configuration file, as a single run takes them.
 
     Raises:
-        ArenaError: It is none.
+        ToolError: It is none, or its options have other keys.
         OSError: It cannot be read.
     """
     check_readable([str(path)])
@@ -31,10 +31,7 @@ def read_entries(path: Path) -> dict[str, Any]:
         raise ArenaError(
             text if text.startswith(f"{path} is not a configuration") else f"{path} is not a configuration: {text}"
         ) from None
-    try:
-        return configuration.of_one_run()
-    except BatchError as error:
-        raise ArenaError(str(error)) from None
+    return configuration.of_one_run()
 
 
 def find_arena(name: str, configuration: Path) -> Path:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.command.parser import Parser, complain, finite, warn, whole
-from pogosim.errors import CalibrationError
+from pogosim.errors import ToolError
 from pogosim.lines import say
 from pogosim.outputs import OutputError, check_readable, leads_to, partial_output, real_output, told
 
@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate 
         block = configuration_block(fitted, field_angle_rad)
         with partial_output(place) as partial:
             partial.write_bytes(picture(table, fitted, field_angle_rad))
-    except (CalibrationError, OutputError) as error:
+    except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, told(error, options.picture))

@@ -14,7 +14,6 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.ending import catch_signals
 from pogosim.batch.errors import BatchError, is_text, reason
 from pogosim.batch.names import NamesError
-from pogosim.batch.option_words import CombinationsError
 from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warn, warnings_told
 from pogosim.errors import AmbiguousStepsWarning, OptimizeError
@@ -149,10 +148,8 @@ def space_of(configuration: Configuration) -> Space:
     """
     from pogosim.optimize.variables import Space  # imports NumPy
 
-    try:
+    with configuration.placing_errors():
         return Space(configuration.entries)
-    except CombinationsError as error:
-        raise configuration.error(error) from None
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:

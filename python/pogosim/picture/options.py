@@ -8,8 +8,7 @@ import os
 from collections.abc import Callable
 
 from pogosim.command.parser import complain, warnings_told
-from pogosim.errors import AmbiguousStepsWarning, PictureError
-from pogosim.outputs import OutputError
+from pogosim.errors import AmbiguousStepsWarning, ToolError
 
 
 def positive(text: str) -> float:
@@ -52,7 +51,7 @@ def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
     try:
         with warnings_told(prog, AmbiguousStepsWarning):
             make()
-    except (PictureError, OutputError) as error:
+    except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         if str(error.filename) == data:

@@ -31,18 +31,13 @@ def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[T
     """Return the runs, those without an arena with that of the configuration.
 
     Raises:
-        AnalysisError: There is no configuration, or it has no arena.
+        ToolError: There is no configuration, or it has no arena.
         OSError: A file cannot be read.
     """
     if options.config is None:
         return runs
-    try:
-        entries = read_entries(Path(options.config))
-        return with_arenas_told_apart(
-            [run if run.arena.polygons else with_arena(run, entries, options) for run in runs]
-        )
-    except ArenaError as error:
-        raise AnalysisError(str(error)) from error
+    entries = read_entries(Path(options.config))
+    return with_arenas_told_apart([run if run.arena.polygons else with_arena(run, entries, options) for run in runs])
 
 
 def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: argparse.Namespace) -> Trajectories:

@@ -14,7 +14,7 @@ import pyarrow
 from pogosim.analysis.robot_sizes import DifferentRobotsWarning
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.parser import complain, warn, warnings_told
-from pogosim.errors import AnalysisError
+from pogosim.errors import AnalysisError, ToolError
 from pogosim.fonts import without_tex
 from pogosim.lines import say
 from pogosim.outputs import OutputError, leads_to, told
@@ -106,7 +106,7 @@ def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Na
         with warnings_told(prog, AmbiguousStepsWarning, DifferentRobotsWarning), without_tex():
             work(options, prog)
         say(f"written to {options.output_dir}")
-    except (AnalysisError, OutputError) as error:
+    except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         # Nothing fits a pattern; otherwise, what is written has no name.
