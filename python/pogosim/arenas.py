@@ -12,10 +12,11 @@ from pathlib import Path
 
 from pogosim.command.main import ended
 from pogosim.command.parser import Parser, guarded, positive
-from pogosim.geometry.actions import PICTURES, checked_output, show_arena
+from pogosim.geometry.actions import PICTURES, show_arena
 from pogosim.geometry.arena_file import ArenaError, Outline
 from pogosim.geometry.command import DEFAULT_RADIUS_MM
 from pogosim.geometry.configured import arena_of, read_entries
+from pogosim.outputs import checked_output
 
 
 def parser(prog: str) -> Parser:

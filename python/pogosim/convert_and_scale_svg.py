@@ -11,11 +11,11 @@ from collections.abc import Sequence
 
 from pogosim.command.main import ended
 from pogosim.command.parser import Parser, guarded, positive, warn
-from pogosim.geometry.actions import check_valid, checked_output, describe, write_outline
+from pogosim.geometry.actions import check_valid, describe, write_outline
 from pogosim.geometry.arena_file import scaled
 from pogosim.geometry.svg_file import read_svg
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to
+from pogosim.outputs import OutputError, checked_output, leads_to
 from pogosim.scale_csv_arena import AREA_MM2
 
 

@@ -6,7 +6,7 @@ import contextlib
 import glob
 import os
 import stat
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Union
 
@@ -66,6 +66,58 @@ def real_output(path: PathLike) -> Path:
         return real
     kind = next((words for is_kind, words in KINDS if is_kind(mode)), "something else")
     raise OutputError(f"{path} is {kind}, not a file; choose another output")
+
+
+def checked_output(
+    name: str, source: str, endings: Sequence[str], wrong_ending: str = "", what: str = "output", of: str = ""
+) -> Path:
+    """Return where a tool is to write, without symbolic links.
+
+    Args:
+        name: The output.
+        source: The file that it is made of.
+        endings: How its name may end, in lower case, without the dot.
+        wrong_ending: What is said of a name that ends otherwise; empty: that it does.
+        what: What the output is.
+        of: What the source is, before its name.
+
+    Raises:
+        OutputError: It would take the place of the source, ends otherwise, or is no file.
+        OSError: It cannot be looked at.
+    """
+    if name and leads_to(name, source):
+        own = name if what == "output" else f"the {what} {name}"
+        raise OutputError(f"{own} would take the place of {of}{source}; name another {what}")
+    path = real_output(name)
+    if Path(name).suffix[1:].lower() not in endings:
+        raise OutputError(wrong_ending or f"{name} does not end in .{' or .'.join(endings)}")
+    return path
+
+
+def results_folder(
+    folder: Path, names: Iterable[str], inputs: Sequence[PathLike], lost: str = "is an input, which would be lost"
+) -> None:
+    """Make a folder for results.
+
+    Args:
+        folder: The folder.
+        names: Names of the results in it.
+        inputs: Files that are read.
+        lost: What is said of a result in the place of one of them.
+
+    Raises:
+        OutputError: It is not a folder, or one of the results would take the place of an input.
+        OSError: It cannot be made.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder} is not a folder; choose another one with -o")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        real_output(folder / name)
+        if any(leads_to(folder / name, path) for path in inputs):
+            raise OutputError(f"{folder / name} {lost}; choose another folder with -o")
+    if not os.access(folder, os.W_OK):
+        raise OutputError(f"{folder} cannot be written; choose another folder with -o")
 
 
 @contextlib.contextmanager

@@ -10,8 +10,9 @@ from collections.abc import Sequence
 
 from pogosim.command.main import ended
 from pogosim.command.parser import Parser, guarded, positive
-from pogosim.geometry.actions import checked_output, convert
+from pogosim.geometry.actions import convert
 from pogosim.geometry.arena_file import read_arena
+from pogosim.outputs import checked_output
 
 AREA_MM2 = 150_000.0
 

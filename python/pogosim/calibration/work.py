@@ -18,7 +18,7 @@ from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile,
 from pogosim.calibration.parameters import BIAS, chosen, start_bias, start_values
 from pogosim.calibration.reading import read_track_table
 from pogosim.calibration.result import as_json, bias_is_known, configuration_block, found_parameters, misfits
-from pogosim.calibration.results import LINES, PICTURE, PROTOCOL, RESULT, check_outputs
+from pogosim.calibration.results import LINES, PICTURE, PROTOCOL, RESULT
 from pogosim.calibration.rounding import in_words, noticed, rounding_noise, with_random_digits, with_steps
 from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses
 from pogosim.calibration.simulation import Simulator
@@ -35,7 +35,7 @@ from pogosim.command.parser import warn
 from pogosim.command.run import program_of
 from pogosim.installation import find_installation
 from pogosim.lines import say
-from pogosim.outputs import partial_output, real_output
+from pogosim.outputs import partial_output, real_output, results_folder
 
 NEED_HEADINGS = ("angular_noise_stddev", BIAS)
 
@@ -107,7 +107,7 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
     """Fit, print, and write if a folder is given."""
     free, scene = chosen(options.parameters), read_scene(Path(options.config), options.category)
     if options.output_dir is not None:
-        check_outputs(Path(options.output_dir), [Path(options.tracks), Path(options.config)])
+        results_folder(Path(options.output_dir), (RESULT, LINES, PICTURE), [options.tracks, options.config])
     prepared = prepare(prog, options, scene)
     poses = start_poses(prepared.tracks, scene, lambda text: warn(prog, text))
     with tempfile.TemporaryDirectory(prefix="pogosim-calibrate-") as folder:

@@ -6,7 +6,6 @@ import argparse
 import dataclasses
 import json
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -24,7 +23,7 @@ from pogosim.communication.reception_law import (
     parameters_of,
 )
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to, real_output
+from pogosim.outputs import results_folder
 
 
 def settings_of(options: argparse.Namespace) -> FitSettings:
@@ -92,19 +91,6 @@ def results_text(settings: FitSettings, fitted: Fit, found: Quality, measurement
     return json.dumps(content, indent=2) + "\n"
 
 
-def check_outputs(folder: Path, names: Sequence[str], data: Path) -> None:
-    """Make the folder; raises OutputError or OSError if results cannot be written there."""
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(f"{folder} is not a folder; choose another one with -o")
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in names:
-        real_output(folder / name)
-        if leads_to(folder / name, data):
-            raise OutputError(
-                f"{folder / name} would take the place of the measurements; choose another folder with -o"
-            )
-
-
 def fit_measurements(options: argparse.Namespace, prog: str) -> int:
     """Do what the command line says. Returns the exit code: 0 done, 2 nothing could be fitted, or written."""
     data = Path(options.data) if options.data else ROBOTS_OWN
@@ -128,7 +114,7 @@ def fit_and_report(
         from pogosim.communication import fit_plots
 
         names += [f"{name}.{suffix}" for name in fit_plots.PLOTS for suffix in fit_plots.FORMATS]
-        check_outputs(Path(output), names, data)
+        results_folder(Path(output), names, [data], "would take the place of the measurements")
     fitted = fit(measurements, settings)
     warn_of_bounds(prog, fitted, settings)
     compared = compare(fitted.law, measurements)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pogosim.command.parser import Parser
 from pogosim.film.encoder import FORMATS, PAGE, check_ffmpeg
-from pogosim.outputs import OutputError, check_readable, leads_to, real_output
+from pogosim.outputs import check_readable, checked_output
 from pogosim.picture.options import add_what_to_draw, moment, positive, report
 
 
@@ -23,20 +23,6 @@ def size(text: str) -> tuple[int, int]:
     if not found:
         raise argparse.ArgumentTypeError(f"{text} is no size in pixels, such as 800 or 1280x720")
     return int(found[1]), int(found[2] or found[1])
-
-
-def film_file(name: str, data: str) -> Path:
-    """Return where the film is to be written.
-
-    Raises:
-        OutputError: It is no name of a film, no file, or that of the data.
-    """
-    if name and leads_to(name, data):
-        raise OutputError(f"the film {name} would take the place of the data file {data}; name another film")
-    path = real_output(name)
-    if Path(name).suffix.lower() not in (*FORMATS, PAGE):
-        raise OutputError(f"{name}: unknown format of a film; let it end in {', '.join(FORMATS)} or {PAGE}")
-    return path
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim film") -> int:
@@ -56,7 +42,9 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim film") -> 
     options = parser.parse_args(arguments)
 
     def make() -> None:
-        path = film_file(options.output, options.data)
+        wrong = f"{options.output}: unknown format of a film; let it end in {', '.join(FORMATS)} or {PAGE}"
+        endings = [ending.removeprefix(".") for ending in (*FORMATS, PAGE)]
+        path = checked_output(options.output, options.data, endings, wrong, "film", "the data file ")
         check_readable([options.data])
         if (suffix := Path(options.output).suffix.lower()) in FORMATS:
             check_ffmpeg(suffix)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from pogosim.command.parser import complain, warn
 from pogosim.geometry.arena_file import ArenaError, Outline, as_csv, parse_outline, read_arena, scaled
 from pogosim.lines import say
-from pogosim.outputs import OutputError, leads_to, real_output
+from pogosim.outputs import checked_output
 
 PICTURES = ("pdf", "png", "svg")
 
@@ -21,20 +21,6 @@ def check_valid(outline: Outline) -> None:
     if found := problems(outline):
         more = f" (and {len(found) - 1} more problems)" if len(found) > 1 else ""
         raise ArenaError(f"{outline.source}: {found[0]}{more}")
-
-
-def checked_output(name: str, source: str, suffixes: Sequence[str]) -> Path:
-    """Return where to write.
-
-    Raises:
-        OutputError: It has another suffix, is no file, or the source itself.
-    """
-    if name and leads_to(name, source):
-        raise OutputError(f"{name} would take the place of {source}; name another output")
-    path = real_output(name)
-    if Path(name).suffix[1:].lower() not in suffixes:
-        raise OutputError(f"{name} does not end in .{' or .'.join(suffixes)}")
-    return path
 
 
 def read_any(prog: str, path: str) -> Outline:

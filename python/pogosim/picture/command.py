@@ -3,28 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from pogosim.command.parser import Parser
-from pogosim.outputs import OutputError, check_readable, leads_to, real_output
+from pogosim.outputs import check_readable, checked_output
 from pogosim.picture.options import add_what_to_draw, moment, positive, report
 
 PICTURES = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "svgz", "tif", "tiff", "webp")
-
-
-def picture_file(name: str, data: str) -> Path:
-    """Return where the picture is to be written.
-
-    Raises:
-        OutputError: It is not a picture's file name, not a file, or that of the data.
-    """
-    suffix = Path(name).suffix[1:].lower()
-    if name and leads_to(name, data):
-        raise OutputError(f"the picture {name} would take the place of the data file {data}; name another picture")
-    path = real_output(name)
-    if suffix not in PICTURES:
-        raise OutputError(f"{name} is not a picture file name; expected one that ends in .{', .'.join(PICTURES)}")
-    return path
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "swarm_picture") -> int:
@@ -48,7 +32,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "swarm_picture") ->
     options = parser.parse_args(arguments)
 
     def make() -> None:
-        path = picture_file(options.picture, options.data)
+        wrong = f"{options.picture} is not a picture file name; expected one that ends in .{', .'.join(PICTURES)}"
+        path = checked_output(options.picture, options.data, PICTURES, wrong, "picture", "the data file ")
         check_readable([options.data])
         from pogosim.picture.making import make_picture  # takes a while
 
