@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from pogosim.analysis.listed_neighbours import listed_distance, listed_neighbours
 from pogosim.analysis.trajectories import trajectories_of
 from pogosim.reports.command import main as analyze
-from pogosim.reports.figures import endings
+from pogosim.reports.groups import endings
 from swarms import Floats, brownian_walk, metadata_of, rows_of, write_rows
 
 COMMANDS = ("neighbors", "network", "coverage")

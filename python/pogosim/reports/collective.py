@@ -18,7 +18,7 @@ from pogosim.reports.collective_figures import draw_metric, draw_vorticity_field
 from pogosim.reports.collective_metrics import METRICS, Metric
 from pogosim.reports.collective_summary import write_details, write_summaries
 from pogosim.reports.collective_swarm import Settings, Swarm, Vortices
-from pogosim.reports.figures import groups_of
+from pogosim.reports.groups import by_combination
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
 MAX_BINS = 100_000
@@ -66,7 +66,7 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     folder = output_folder(options)
     tables: dict[str, list[pd.DataFrame]] = {metric.key: [] for metric in METRICS}
     fields: dict[str, Vortices] = {}
-    first = {name: own[0] for name, own in groups_of(runs).items()}
+    first = {name: own[0] for name, own in by_combination(runs, runs).items()}
     for run in runs:
         swarm = Swarm(run, settings)
         for metric in METRICS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import compress
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,8 @@ from pogosim.analysis.trajectories import Trajectories
 from pogosim.fonts import literal
 from pogosim.reports.collective_metrics import Metric
 from pogosim.reports.collective_swarm import Vortices
-from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
+from pogosim.reports.figures import draw_bands, new_figure, save
+from pogosim.reports.groups import by_combination, group_names
 
 ARROWS = 24  # along the longer side
 MAX_PANELS = 12
@@ -24,11 +26,8 @@ MAX_PANELS = 12
 
 def draw_metric(metric: Metric, runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], folder: Path) -> None:
     """Draw the curves of a metric, a panel for each, with bands over the runs of a combination."""
-    groups: dict[str, list[pd.DataFrame]] = {}
-    names = group_names(runs)
-    for run, table in zip(runs, tables, strict=True):
-        if any(name in table and table[name].notna().any() for name in metric.curves):
-            groups.setdefault(group_of(run, names), []).append(table)
+    is_known = [any(name in table and table[name].notna().any() for name in metric.curves) for table in tables]
+    groups = by_combination(list(compress(runs, is_known)), list(compress(tables, is_known)), group_names(runs))
     if not groups:
         return
     rows = 1 if len(metric.curves) < 3 else 2

@@ -12,7 +12,7 @@ from pogosim.analysis.trajectories import Trajectories
 from pogosim.lines import counted
 from pogosim.reports.collective_metrics import METRICS
 from pogosim.reports.collective_swarm import Settings
-from pogosim.reports.figures import groups_of
+from pogosim.reports.groups import by_combination
 
 
 def write_summaries(folder: Path, runs: Sequence[Trajectories], tables: Mapping[str, Sequence[pd.DataFrame]]) -> None:
@@ -28,9 +28,8 @@ def write_summaries(folder: Path, runs: Sequence[Trajectories], tables: Mapping[
     ]
     write(folder / "SUMMARY_global.txt", [f"{'All ' * (len(runs) > 1)}{counted(len(runs), 'run')}", *lines(numbers)])
     per_arena: list[str] = []
-    for name, own in groups_of(runs).items():
-        members = [numbers[index] for index, run in enumerate(runs) if any(run is other for other in own)]
-        per_arena += [f"{name}: {counted(len(own), 'run')}", *lines(members), ""]
+    for name, members in by_combination(runs, numbers).items():
+        per_arena += [f"{name}: {counted(len(members), 'run')}", *lines(members), ""]
     write(folder / "SUMMARY_per_arena.txt", per_arena[:-1])
 
 

@@ -20,8 +20,8 @@ from pogosim.errors import AnalysisError
 from pogosim.fonts import literal
 from pogosim.geometry.arena_file import ArenaError
 from pogosim.geometry.configured import arena_of, read_entries
-from pogosim.reports.figures import draw_bands, group_names, group_of, new_figure, save
-from pogosim.reports.groups import by_arena, by_combination, draw_over_time, save_over_time
+from pogosim.reports.figures import draw_bands, draw_over_time, new_figure, save, save_over_time
+from pogosim.reports.groups import by_arena, by_combination, group_names, group_of
 from pogosim.reports.options import output_folder, read_runs, write_table
 from pogosim.reports.voronoi_diagram import draw_diagrams
 from pogosim.scene import read_periodic

@@ -1,4 +1,4 @@
-"""Figures of the analyses: curves over time with bands over runs, saved as PNG and PDF."""
+"""Figures of the analyses: curves over time with bands over runs, and distributions; saved as PNG and PDF."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.confidence import mean_over_runs
 from pogosim.fonts import any_characters, literal
+from pogosim.reports.groups import by_combination
 
 DPI = 150
 FORMATS = (".pdf", ".png")
@@ -41,44 +42,6 @@ def save(figure: Figure, path: Path) -> None:
             figure.savefig(path.with_name(stem + suffix), dpi=DPI, metadata=METADATA[suffix])
 
 
-def group_names(runs: Sequence[Trajectories]) -> list[str]:
-    """Return the labels whose values differ between runs, apart from the number of the run: those of combinations."""
-    names = dict.fromkeys(name for run in runs for name in run.labels)
-    return [name for name in names if name != "run" and len({str(run.labels.get(name)) for run in runs}) > 1]
-
-
-def group_of(run: Trajectories, names: Sequence[str]) -> str:
-    """Return what a curve of this run's combination is called: its values of these labels; the arena if none differ."""
-    if not names:
-        return run.arena.name
-    return ", ".join(f"{short} {run.labels.get(name)}" for name, short in zip(names, endings(names), strict=True))
-
-
-def endings(names: Sequence[str]) -> list[str]:
-    """Return the shortest ends of dotted names that tell them apart: "speed", but "a.speed" beside "b.speed"."""
-    return [next(end for end in ends_of(name) if is_alone(end, names) or end == name) for name in names]
-
-
-def ends_of(name: str) -> list[str]:
-    """Return "c", "b.c" and "a.b.c" of "a.b.c"."""
-    parts = name.split(".")
-    return [".".join(parts[-count:]) for count in range(1, len(parts) + 1)]
-
-
-def is_alone(end: str, names: Sequence[str]) -> bool:
-    """Tell whether only one of the names ends like that."""
-    return sum(end in ends_of(name) for name in names) == 1
-
-
-def groups_of(runs: Sequence[Trajectories]) -> dict[str, list[Trajectories]]:
-    """Sort runs by combination, so that the runs of each are repetitions of the same."""
-    names = group_names(runs)
-    groups: dict[str, list[Trajectories]] = {}
-    for run in runs:
-        groups.setdefault(group_of(run, names), []).append(run)
-    return groups
-
-
 def draw_bands(axes: Axes, curves: Mapping[str, Iterable[pd.Series[Any]]]) -> None:
     """Draw the mean of several curves of each group, with a band: its 95 % confidence interval.
 
@@ -95,3 +58,70 @@ def draw_bands(axes: Axes, curves: Mapping[str, Iterable[pd.Series[Any]]]) -> No
         axes.fill_between(x, band["low"], band["high"], color=colour, alpha=0.25, linewidth=0)
     if len(curves) > 1:
         axes.legend(frameon=False, fontsize="small")
+
+
+def draw_over_time(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], column: str, label: str) -> None:
+    """Draw a column of the tables over time: the mean over the runs of each combination, with its confidence band.
+
+    Values are not negative, and neither is what the axis shows of the bands.
+    """
+    draw_bands(axes, {name: [table.set_index("time")[column] for table in own] for name, own in groups.items()})
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel(label)
+    axes.set_ylim(bottom=0.0)
+
+
+def draw_each_run(axes: Axes, groups: Mapping[str, Sequence[pd.Series[Any]]]) -> None:
+    """Draw a line for each run, in the colour of its combination."""
+    colours = colormaps["viridis"](np.linspace(0.0, 0.85, max(len(groups), 1)))
+    for colour, (name, curves) in zip(colours, groups.items(), strict=True):
+        for number, curve in enumerate(curves):
+            own = literal(name) if number == 0 else None
+            x = curve.index.to_numpy(dtype=float)
+            axes.plot(x, curve, color=colour, linewidth=0.8, alpha=0.8, label=own, marker="o" if len(x) == 1 else "")
+    if len(groups) > 1:
+        axes.legend(frameon=False, fontsize="small")
+
+
+def draw_violins(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], column: str, label: str) -> None:
+    """Draw the distribution of a column over times and runs for each combination, with median and extremes."""
+    samples = {name: np.concatenate([table[column].to_numpy(float) for table in own]) for name, own in groups.items()}
+    samples = {name: values[np.isfinite(values)] for name, values in samples.items()}
+    good = [(place, values) for place, values in enumerate(samples.values()) if len(values)]
+    if good:
+        places, values = zip(*good, strict=True)
+        drawn = axes.violinplot(values, positions=places, widths=0.8, showmedians=True)
+        colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(samples)))
+        bodies: list[Any] = list(drawn["bodies"])  # type: ignore[call-overload]
+        for place, body in zip(places, bodies, strict=True):
+            body.set(facecolor=colours[place], alpha=0.5)
+        for part in ("cmedians", "cmins", "cmaxes", "cbars"):
+            drawn[part].set(color="black", linewidth=1.0)
+    names = list(samples)
+    axes.set_xticks(range(len(names)), [literal(name) for name in names])
+    if len(names) > 2:
+        axes.tick_params(axis="x", rotation=30)
+    axes.set_xlim(-0.7, len(names) - 0.3)
+    axes.set_ylabel(label)
+    axes.set_ylim(bottom=0.0)
+
+
+def save_over_time(
+    runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path
+) -> None:
+    """Save a figure with a panel for each column; panels: column to label."""
+    figure, axes = new_figure(columns=len(panels))
+    for panel, (column, label) in zip(axes[0], panels.items(), strict=True):
+        draw_over_time(panel, by_combination(runs, tables), column, label)
+    save(figure, path)
+
+
+def save_violins(
+    runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path
+) -> None:
+    """Save a figure with a panel for each column; panels: column to label."""
+    groups = by_combination(runs, tables)
+    figure, axes = new_figure(columns=len(panels), width=max(4.5, 1.5 + 0.7 * len(groups)))
+    for panel, (column, label) in zip(axes[0], panels.items(), strict=True):
+        draw_violins(panel, groups, column, label)
+    save(figure, path)

@@ -13,7 +13,7 @@ from pogosim.analysis.density import count_outside
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.parser import warn
 from pogosim.lines import counted
-from pogosim.reports.figures import group_names, group_of
+from pogosim.reports.groups import by_combination, group_names
 from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
 from pogosim.reports.locomotion_figures import RunTables, draw_all
 from pogosim.reports.locomotion_tables import (
@@ -73,10 +73,7 @@ def warn_of_what_is_left_out(tables: Sequence[RunTables], prog: str) -> None:
 def summary_text(tables: Sequence[RunTables], names: Sequence[str]) -> str:
     """Return the means of all runs of each combination as text."""
     lines = []
-    members: dict[str, list[RunTables]] = {}
-    for own in tables:
-        members.setdefault(group_of(own.run, names), []).append(own)
-    for group, runs in members.items():
+    for group, runs in by_combination([own.run for own in tables], tables, names).items():
         rows = pd.concat([own.summary for own in runs], ignore_index=True)
         count = len(rows)
         last = max(float(own.run.time_s[-1]) for own in runs)

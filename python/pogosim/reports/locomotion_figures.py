@@ -17,7 +17,8 @@ from pogosim.analysis.arena import Floats
 from pogosim.analysis.displacement import diffusion_exponent
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.fonts import literal
-from pogosim.reports.figures import draw_bands, group_of, new_figure, save
+from pogosim.reports.figures import draw_bands, new_figure, save
+from pogosim.reports.groups import by_combination
 from pogosim.reports.locomotion_tables import first_and_last_quarter
 
 MAX_BOXES = 30
@@ -40,10 +41,7 @@ class RunTables:
 
 def groups(tables: Sequence[RunTables], names: Sequence[str]) -> dict[str, list[RunTables]]:
     """Sort runs by combination."""
-    sorted_: dict[str, list[RunTables]] = {}
-    for own in tables:
-        sorted_.setdefault(group_of(own.run, names), []).append(own)
-    return sorted_
+    return by_combination([own.run for own in tables], tables, names)
 
 
 def curves(

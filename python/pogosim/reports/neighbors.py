@@ -29,8 +29,8 @@ from pogosim.confidence import mean_over_runs
 from pogosim.fonts import literal
 from pogosim.outputs import OutputError, leads_to
 from pogosim.reports.command_lines import NEIGHBOURS
-from pogosim.reports.figures import draw_bands, new_figure, save
-from pogosim.reports.groups import by_combination, draw_each_run, draw_over_time
+from pogosim.reports.figures import draw_bands, draw_each_run, draw_over_time, new_figure, save
+from pogosim.reports.groups import by_combination
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
 STATISTICS = "neighbors_stats.pkl"

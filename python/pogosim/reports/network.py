@@ -18,8 +18,8 @@ from pogosim.analysis.network import (
 )
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.parser import warn
-from pogosim.reports.figures import group_names, group_of, groups_of
-from pogosim.reports.groups import by_arena, save_over_time, save_violins
+from pogosim.reports.figures import save_over_time, save_violins
+from pogosim.reports.groups import by_arena, by_combination, group_names, group_of
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
 GRAPH_PANELS = {
@@ -65,7 +65,7 @@ def windows_of(runs: Sequence[Trajectories], window_s: float | None) -> dict[str
         return {"timeavg_eigs": [window_s] * len(runs)}
     # Runs of one combination have the same windows, so that they can be averaged.
     names = group_names(runs)
-    groups = groups_of(runs)
+    groups = by_combination(runs, runs)
     windows = {
         "timeavg_eigs_tau_c": {name: contact_time_s(own) for name, own in groups.items()},
         "timeavg_eigs_10dt": {name: ten_periods_s(own) for name, own in groups.items()},

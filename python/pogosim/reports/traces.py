@@ -16,7 +16,8 @@ from pogosim.analysis.arena import Floats
 from pogosim.analysis.motion import steps
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.fonts import literal
-from pogosim.reports.figures import group_of, new_figure, save
+from pogosim.reports.figures import new_figure, save
+from pogosim.reports.groups import group_of
 from pogosim.reports.heat_maps import arenas_of, draw_arena, folder_name
 
 FRAME_DPI = 80
