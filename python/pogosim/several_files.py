@@ -15,11 +15,9 @@ import pandas as pd
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RUN, is_one_run, run_numbers, tells_runs_apart
 from pogosim.times import with_exact_times
-from pogosim.varied import varied_parameters
+from pogosim.varied import MISSING, in_common, varied_parameters
 
 Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
-
-MISSING = object()
 
 
 def is_pattern(path: PathLike) -> bool:
@@ -58,26 +56,6 @@ def configuration_of(metadata: dict[str, Any]) -> dict[str, Any]:
     """Return the configuration with all defaults if the file has it, otherwise the one that was given."""
     configuration: dict[str, Any] = metadata.get("resolved_configuration") or metadata.get("configuration") or {}
     return configuration
-
-
-def plain(value: Any) -> Any:
-    """Copy nested dictionaries and lists; arrays become lists, which pandas can compare and save."""
-    if isinstance(value, dict):
-        return {key: plain(child) for key, child in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(child) for child in value]
-    return value.tolist() if isinstance(value, np.ndarray) else value
-
-
-def in_common(values: Sequence[Any]) -> Any:
-    """Return what values have in common: the value, of maps the common entries; MISSING if there is nothing."""
-    first = values[0]
-    if all(isinstance(value, dict) for value in values):
-        keys = [key for key in first if all(key in value for value in values)]
-        common = {key: in_common([value[key] for value in values]) for key in keys}
-        kept = {key: value for key, value in common.items() if value is not MISSING}
-        return kept if kept or not first else MISSING
-    return first if all(plain(value) == plain(first) for value in values[1:]) else MISSING
 
 
 def scalar(value: Any) -> Any:

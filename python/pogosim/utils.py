@@ -22,10 +22,11 @@ from pyarrow import feather
 from pogosim.arguments import Arguments
 from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
-from pogosim.several_files import files_that_fit, is_pattern, join_files, plain
+from pogosim.several_files import files_that_fit, is_pattern, join_files
 from pogosim.table_formats import CSV, format_in
 from pogosim.table_metadata import NoMetadataWarning, are_of_runs, metadata_of, shared
 from pogosim.tables import read_other
+from pogosim.varied import plain
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 given = Arguments()

@@ -1,9 +1,13 @@
-"""What differs between configurations."""
+"""What differs between configurations, and what they have in common."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from typing import Any
+
+import numpy as np
+
+MISSING = object()
 
 # What differs between any two runs without being a parameter.
 NO_PARAMETERS = (
@@ -38,3 +42,23 @@ def varied_parameters(configurations: Sequence[dict[str, Any]]) -> dict[str, lis
 def differ(a: Any, b: Any) -> bool:
     """Tell whether two values of configurations differ; two that are not a number do not."""
     return bool(a != b) and not (a != a and b != b)
+
+
+def plain(value: Any) -> Any:
+    """Copy nested dictionaries and lists; arrays become lists, which pandas can compare and save."""
+    if isinstance(value, dict):
+        return {key: plain(child) for key, child in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(child) for child in value]
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def in_common(values: Sequence[Any]) -> Any:
+    """Return what values have in common: the value, of maps the common entries; MISSING if there is nothing."""
+    first = values[0]
+    if all(isinstance(value, dict) for value in values):
+        keys = [key for key in first if all(key in value for value in values)]
+        common = {key: in_common([value[key] for value in values]) for key in keys}
+        kept = {key: value for key, value in common.items() if value is not MISSING}
+        return kept if kept or not first else MISSING
+    return first if all(plain(value) == plain(first) for value in values[1:]) else MISSING

@@ -14,6 +14,7 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.parts import Part
 from pogosim.batch.run_files import without_outputs
 from pogosim.run_columns import NUMBERS
+from pogosim.varied import MISSING, in_common
 from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, parse_yaml, problem_of
 
 RESOLVED = "resolved_configuration"
@@ -74,8 +75,8 @@ def metadata_of(schemas: Sequence[Sequence[pa.Schema]], text: str) -> dict[str, 
     }
     metadata = {key.decode(errors="replace"): value for key, value in common.items()}
     metadata["configuration"] = text.encode()
-    resolved = [configuration_in(part[0].metadata or {}) for part in schemas if part]
-    if shared := shared_entries(resolved):
+    shared = in_common([configuration_in(part[0].metadata or {}) for part in schemas if part])
+    if shared not in (MISSING, {}):
         metadata[RESOLVED] = dump_yaml(shared).encode()
     return metadata
 
@@ -89,23 +90,6 @@ def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
     if not isinstance(entries, dict):
         return {}
     return {key: value for key, value in without_outputs(entries).items() if key != "seed"}
-
-
-def shared_entries(maps: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return the entries that several maps have in common, at any depth."""
-    first, *others = maps
-    shared: dict[str, Any] = {}
-    for key, value in first.items():
-        if not all(key in other for other in others):
-            continue
-        found = [other[key] for other in others]
-        if isinstance(value, dict) and all(isinstance(entry, dict) for entry in found):
-            entries = shared_entries([value, *found])
-            if entries or not value:
-                shared[key] = entries
-        elif all(entry == value for entry in found):
-            shared[key] = value
-    return shared
 
 
 def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows: Sequence[int]) -> list[dict[str, Any]]:
