@@ -87,7 +87,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
         if not parsed.simulator_binary and not parsed.list_outputs:
             options.error("the following arguments are required: -S/--simulator-binary")
         do = run_batch
-    start_logging(getattr(parsed, "verbose", False), prog)
+    start_logging(getattr(parsed, "verbose", False), f"{prog}: %(message)s")
     catch_signals()
     return ended(name or "run", lambda: do(parsed), getattr(parsed, "json", False), getattr(parsed, "temp_base", None))
 

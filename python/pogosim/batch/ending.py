@@ -46,13 +46,20 @@ def catch_signals() -> None:
             signal.signal(number, interrupt)
 
 
-def start_logging(verbose: bool, prog: str) -> None:
-    """Print messages on standard error."""
+def start_logging(verbose: bool, style: str, *others: str) -> None:
+    """Print messages on standard error.
+
+    Args:
+        verbose: Also those for debugging.
+        style: What a line looks like, with the fields of `logging.Formatter`.
+        others: Names of more loggers whose messages are printed.
+    """
     handler = logging.StreamHandler()
-    handler.setFormatter(LineFormatter(f"{prog}: %(message)s"))
-    log.handlers = [handler]
-    log.propagate = False
-    log.setLevel(logging.DEBUG if verbose else logging.INFO)
+    handler.setFormatter(LineFormatter(style, datefmt="%H:%M:%S"))
+    for own in (log, *map(logging.getLogger, others)):
+        own.handlers = [handler]
+        own.propagate = False
+        own.setLevel(logging.DEBUG if verbose else logging.INFO)
 
 
 def ended(operation: str, command: Callable[[], Report], as_json: bool, kept: str | None) -> int:

@@ -61,16 +61,7 @@ def add_run_options(options: argparse.ArgumentParser) -> None:
     add = options.add_argument
     add("-t", "--temp-base", metavar="FOLDER", default="tmp", help="folder for temporary files (tmp)")
     add("-R", "--retries", type=int, default=5, help="how many times a failed run is repeated (%(default)s)")
-    retry = options.add_mutually_exclusive_group()
-    retry.add_argument(
-        "--retry-new-seed", action="store_true", default=None, help="repeat a failed run with another seed"
-    )
-    retry.add_argument(
-        "--retry-same-seed",
-        action="store_false",
-        dest="retry_new_seed",
-        help="repeat a failed run with the same seed",
-    )
+    add_retry_options(options)
     add(
         "--seed-from",
         metavar="run|config",
@@ -87,13 +78,27 @@ def add_run_options(options: argparse.ArgumentParser) -> None:
     add("-v", "--verbose", action="store_true", help="also say tasks, rows, and which runs failed")
 
 
+def add_retry_options(options: argparse.ArgumentParser) -> None:
+    """Add what says with which seed a failed run is repeated; None: neither is given."""
+    retry = options.add_mutually_exclusive_group()
+    retry.add_argument(
+        "--retry-new-seed", action="store_true", default=None, help="repeat a failed run with another seed"
+    )
+    retry.add_argument(
+        "--retry-same-seed",
+        action="store_false",
+        dest="retry_new_seed",
+        help="repeat a failed run with the same seed",
+    )
+
+
 def check_names(arguments: argparse.Namespace) -> None:
     """Check names of files and folders, which stand in configurations and messages.
 
     Raises:
         BatchError: One of them is no text, or has several lines.
     """
-    for name in ("config", "simulator_binary", "temp_base", "output_dir", "only_output"):
+    for name in ("config", "simulator_binary", "temp_base", "output_dir", "only_output", "objective"):
         value = getattr(arguments, name, None) or ""
         if not is_text(value) or "\n" in value:
             flag = f"--{name.replace('_', '-')}"

@@ -11,22 +11,18 @@ from typing import TYPE_CHECKING
 
 import pogosim
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.ending import catch_signals
-from pogosim.batch.errors import BatchError, is_text, reason
+from pogosim.batch.ending import catch_signals, start_logging
+from pogosim.batch.errors import reason
 from pogosim.batch.names import NamesError
+from pogosim.batch.run_options import INTERRUPTED, WRONG, add_retry_options, check_names
 from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warn, warnings_told
-from pogosim.errors import AmbiguousStepsWarning, OptimizeError
-from pogosim.lines import LineFormatter
+from pogosim.errors import AmbiguousStepsWarning, ToolError
 from pogosim.optimize.optimizers.table import OPTIMIZERS, check_optimizer, optimizer_for
 from pogosim.optimize.settings import SECTION, Settings, settings_from
-from pogosim.outputs import OutputError
 
 if TYPE_CHECKING:
     from pogosim.optimize.variables import Space
-
-WRONG = 2
-INTERRUPTED = 130
 
 EPILOG = """Settings can also stand in the section "optimization" of the configuration; the command line comes first.
 Exit codes: 0 the search is complete; 2 usage, configuration or file error; 3 all candidates failed; 130 interrupted."""
@@ -77,11 +73,7 @@ def parser(prog: str, optimizers: Iterable[str] = OPTIMIZERS.own) -> Parser:
     add("-t", "--temp-base", metavar="FOLDER", help=f"folder for temporary files ({usual.temp_base})")
     add("--keep-temp", action=argparse.BooleanOptionalAction, help="keep the folders of single runs")
     add("-R", "--retries", type=int, metavar="N", help=f"how many times a failed run is repeated ({usual.retries})")
-    retry = options.add_mutually_exclusive_group()
-    retry.add_argument("--retry-new-seed", action="store_true", default=None, help="repeat it with another seed")
-    retry.add_argument(
-        "--retry-same-seed", action="store_false", dest="retry_new_seed", help="repeat it with the same seed"
-    )
+    add_retry_options(options)
     add("-v", "--verbose", action="store_true", help="say more")
     add("-V", "--version", action="version", version=f"{prog} {pogosim.__version__}")
     add_quality_diversity_options(options, usual)
@@ -116,30 +108,6 @@ def add_quality_diversity_options(options: argparse.ArgumentParser, usual: Setti
     add("--qd-batch", type=int, metavar="N", help=f"candidates per generation afterwards ({usual.qd_batch})")
 
 
-def start_logging(verbose: bool) -> None:
-    """Print messages on standard error, each with the time: "[15:35:47] [INFO] ..."."""
-    handler = logging.StreamHandler()
-    handler.setFormatter(LineFormatter("[%(asctime)s] [%(levelname)s] %(message)s", datefmt="%H:%M:%S"))
-    for name in ("pogosim.optimize", "pogobatch"):
-        own = logging.getLogger(name)
-        own.handlers = [handler]
-        own.propagate = False
-        own.setLevel(logging.DEBUG if verbose else logging.INFO)
-
-
-def check_names(arguments: argparse.Namespace) -> None:
-    """Check names of files and folders, which stand in configurations and messages.
-
-    Raises:
-        OptimizeError: One of them is no text, or has several lines.
-    """
-    for option in ("config", "simulator_binary", "temp_base", "output_dir", "objective"):
-        name = getattr(arguments, option) or ""
-        if not is_text(name) or "\n" in name:
-            flag = f"--{option.replace('_', '-')}"
-            raise OptimizeError(f"{flag}: the name {name!a} has a line break or bytes that are not UTF-8; rename it")
-
-
 def space_of(configuration: Configuration) -> Space:
     """Return the variables of a configuration.
 
@@ -157,7 +125,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     others = OPTIMIZERS.loaded_others(functools.partial(warn, prog)) if {"-h", "--help"} & set(words) else ()
     parsed = parser(prog, [*OPTIMIZERS.own, *others]).parse_args(words)
-    start_logging(parsed.verbose)
+    start_logging(parsed.verbose, "[%(asctime)s] [%(levelname)s] %(message)s", log.name)
     catch_signals()
     try:
         check_names(parsed)
@@ -171,7 +139,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
 
         with warnings_told(prog, AmbiguousStepsWarning):
             return optimize(parsed, configuration, settings, space, optimizer)
-    except (OptimizeError, BatchError, OutputError, NamesError) as error:
+    except (ToolError, NamesError) as error:
         log.error("%s", error)
     except OSError as error:
         log.error("%s: %s", error.filename or parsed.temp_base or Settings.temp_base, reason(error))
