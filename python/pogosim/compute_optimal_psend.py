@@ -6,12 +6,12 @@ import sys
 from collections.abc import Sequence
 
 from pogosim.command.main import ended
-from pogosim.communication import sending_command
+from pogosim.communication import sending
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "compute_optimal_psend") -> int:
     """Run the command; returns its exit code."""
-    return sending_command.main(arguments, prog)
+    return sending.main(arguments, prog)
 
 
 if __name__ == "__main__":

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import ast
 import json
 from typing import TYPE_CHECKING, Any
 
+import yaml
+
+from pogosim.varied import plain
+from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
+
 if TYPE_CHECKING:
     import pyarrow as pa
-import yaml
 
 # One of these is in each file of a run or a batch.
 OF_RUNS = ("configuration", "resolved_configuration", "arena_polygons", "combinations", "program_version")
@@ -31,6 +36,25 @@ def metadata_of(schema: pa.Schema) -> dict[str, Any]:
     if are_of_runs(texts):
         return texts
     return next((attrs for attrs in saved_attrs(texts) if are_of_runs(attrs)), texts)
+
+
+def parse_configuration(text: Any) -> dict[str, Any]:
+    """Parse the configuration stored in a data file: YAML, JSON or a Python literal; or a map already, as in `attrs`.
+
+    Returns:
+        The configuration; empty if the text is not a map in any of the three.
+    """
+    if isinstance(text, dict):
+        return text
+    for parse in (parse_yaml, json.loads, ast.literal_eval):
+        try:
+            value = parse(text)
+            plain(value)  # unless it refers to itself
+        except (*WRONG_VALUES, SyntaxError, MemoryError):
+            continue
+        if isinstance(value, dict):
+            return value
+    return {}
 
 
 def saved_attrs(texts: dict[str, str]) -> list[dict[str, Any]]:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import functools
-import json
 import logging
 import os
 import warnings
@@ -25,6 +23,7 @@ from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished,
 from pogosim.several_files import files_that_fit, is_pattern, join_files
 from pogosim.table_formats import CSV, format_in
 from pogosim.table_metadata import NoMetadataWarning, are_of_runs, metadata_of, shared
+from pogosim.table_metadata import parse_configuration as parse_configuration
 from pogosim.tables import read_other
 from pogosim.varied import plain
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
@@ -206,25 +205,6 @@ def parse_combinations(stored: Any) -> Any:
         with contextlib.suppress(KeyError, TypeError, ValueError):
             entry["arena_polygons"] = polygons_of(entry["arena_polygons"])
     return combinations
-
-
-def parse_configuration(text: Any) -> dict[str, Any]:
-    """Parse the configuration stored in a data file: YAML, JSON or a Python literal; or a map already, as in `attrs`.
-
-    Returns:
-        The configuration; empty if the text is not a map in any of the three.
-    """
-    if isinstance(text, dict):
-        return text
-    for parse in (parse_yaml, json.loads, ast.literal_eval):
-        try:
-            value = parse(text)
-            plain(value)  # unless it refers to itself
-        except (*WRONG_VALUES, SyntaxError, MemoryError):
-            continue
-        if isinstance(value, dict):
-            return value
-    return {}
 
 
 def init_logging(verbose: bool = False) -> None:

@@ -14,6 +14,7 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.parts import Part
 from pogosim.batch.run_files import without_outputs
 from pogosim.run_columns import NUMBERS
+from pogosim.table_metadata import parse_configuration
 from pogosim.varied import MISSING, in_common
 from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, parse_yaml, problem_of
 
@@ -83,12 +84,7 @@ def metadata_of(schemas: Sequence[Sequence[pa.Schema]], text: str) -> dict[str, 
 
 def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """Return the configuration with all defaults of a run, without what only that run has."""
-    try:
-        entries = parse_yaml(metadata.get(RESOLVED.encode(), b"").decode())
-    except WRONG_VALUES:
-        return {}
-    if not isinstance(entries, dict):
-        return {}
+    entries = parse_configuration(metadata.get(RESOLVED.encode(), b"").decode(errors="replace"))
     return {key: value for key, value in without_outputs(entries).items() if key != "seed"}
 
 

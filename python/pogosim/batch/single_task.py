@@ -26,7 +26,7 @@ from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
 from pogosim.run_columns import SEED
-from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
+from pogosim.table_metadata import parse_configuration
 
 WHICH_RUN = ("seed", "result_filename", "extra_columns")  # entries of a manifest that tell runs in a folder apart
 
@@ -88,11 +88,7 @@ class TaskArtifact:
     @property
     def configuration(self) -> dict[str, Any]:
         """Its entries; empty: they cannot be read."""
-        try:
-            entries = parse_yaml(self.configuration_text)
-        except WRONG_VALUES:
-            return {}
-        return entries if isinstance(entries, dict) else {}
+        return parse_configuration(self.configuration_text)
 
 
 class TaskError(BatchError):

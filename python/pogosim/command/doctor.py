@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pogosim
-from pogosim.command.compilers import COMPILERS
 from pogosim.command.parser import Parser
+from pogosim.command.run import COMPILERS
 from pogosim.errors import ToolError
 from pogosim.extras import installing
 from pogosim.installation import PACKAGE, Installation, InstallationError, find_installation

@@ -41,7 +41,7 @@ COMMANDS = Table(
             "pogosim.calibration.command:main", "fit the motion of simulated robots to tracks of real ones"
         ),
         "fit-comm": Own("pogosim.communication.fit_command:main", "fit a law of reception to measurements"),
-        "best-psend": Own("pogosim.communication.sending_command:main", "compute how often robots should send"),
+        "best-psend": Own("pogosim.communication.sending:main", "compute how often robots should send"),
         "doctor": Own("pogosim.command.doctor:main", "say what works on this machine, and what is missing for what"),
         "path": Own("pogosim.command.path:main", "print the folder of the simulator, POGOSIM_DIR of Makefiles"),
     },

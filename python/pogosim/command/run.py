@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import functools
 import os
+import shlex
 import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from pogosim.command.compilers import COMPILERS, words_of
 from pogosim.command.parser import Parser, complain, warn
 from pogosim.errors import ToolError
 from pogosim.extensions import let_find_models
@@ -22,6 +23,45 @@ Without -c, a project is run with its conf/test.yaml. Paths are relative to the 
 
 class RunError(ToolError):
     """There is nothing to run, or it cannot be compiled; says why."""
+
+
+class CompilerError(ToolError):
+    """What the environment says of a compiler cannot be understood."""
+
+
+class Compiler(NamedTuple):
+    """A language's compiler, as make knows it."""
+
+    variable: str  # environment variable that names another one
+    usual: str
+    flags: str  # environment variable with more flags
+    standard: str
+
+    def command(self) -> list[str]:
+        """Return the compiler and the standard.
+
+        Raises:
+            CompilerError: A quotation mark is open in the environment variable.
+        """
+        return [*(words_of(self.variable) or [self.usual]), f"-std={self.standard}"]
+
+
+COMPILERS = {
+    ".c": Compiler("CC", "cc", "CFLAGS", "gnu11"),
+    ".cpp": Compiler("CXX", "c++", "CXXFLAGS", "gnu++20"),
+}
+
+
+def words_of(variable: str) -> list[str]:
+    """Return the words of an environment variable, as a shell would split it.
+
+    Raises:
+        CompilerError: A quotation mark is open.
+    """
+    try:
+        return shlex.split(os.environ.get(variable, ""))
+    except ValueError as error:
+        raise CompilerError(f"the environment variable {variable} cannot be understood: {error}") from None
 
 
 def compile_file(source: Path, pogosim: Installation) -> Path:

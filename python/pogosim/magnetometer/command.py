@@ -49,8 +49,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim calibrate 
 
         from pogosim.magnetometer.block import configuration_block  # takes a while
         from pogosim.magnetometer.figure import picture
-        from pogosim.magnetometer.fit import check_ellipse, fit_curve
-        from pogosim.magnetometer.outliers import doubt
+        from pogosim.magnetometer.fit import check_ellipse, doubt, fit_curve
         from pogosim.magnetometer.table import read_reading_table
 
         field_angle_rad = math.radians(options.field_angle)
