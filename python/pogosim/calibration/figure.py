@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import io
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pogosim.calibration.statistics import mean_square_displacement, speeds, turn_rates
 from pogosim.calibration.tracks import Floats, Tracks
-from pogosim.fonts import without_tex
+from pogosim.fonts import rendered, without_tex
 
 MEASURED, SIMULATED = "#1b6ca8", "#d98200"
 BINS = 60
@@ -54,6 +52,4 @@ def picture(measured: Tracks, simulated: Tracks) -> bytes:
         axes.grid(color="0.92")
         axes.set_axisbelow(True)
     left.legend()
-    file = io.BytesIO()
-    figure.savefig(file, format="png", dpi=120)
-    return file.getvalue()
+    return rendered(figure, "png", 120)

@@ -89,31 +89,17 @@ def positive(text: str) -> float:
     return value
 
 
-def at_least(least: int) -> Callable[[str], int]:
-    """Return the type of whole numbers that are not less than this."""
+def whole(least: int, most: int | None = None) -> Callable[[str], int]:
+    """Return the type of whole numbers in a range, which includes both ends; None: without an upper end."""
 
     def checked(text: str) -> int:
         try:
             value = int(text)
         except ValueError:
             value = least - 1
-        if value < least:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of {least} or more")
-        return value
-
-    return checked
-
-
-def whole(least: int, most: int) -> Callable[[str], int]:
-    """Return the type of whole numbers in a range, which includes both ends."""
-
-    def checked(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = least - 1
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {least} to {most}")
+        if value < least or (most is not None and value > most):
+            which = f"of {least} or more" if most is None else f"from {least} to {most}"
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number {which}")
         return value
 
     return checked

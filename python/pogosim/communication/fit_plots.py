@@ -6,7 +6,6 @@ with the measurements.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 
 import numpy as np
@@ -19,7 +18,7 @@ from scipy import stats
 from pogosim.communication.measurements import Measurements
 from pogosim.communication.quality import quality
 from pogosim.communication.reception_law import Law
-from pogosim.fonts import without_tex
+from pogosim.fonts import rendered, without_tex
 
 COLOURS = ("#1b6ca8", "#d98200", "#a8321b", "#3c8d5a", "#7a4fa0", "#5f6b73")
 CELLS = 25  # of a surface, along each side
@@ -135,12 +134,8 @@ PLOTS: dict[str, Draw] = {
 @without_tex()
 def pictures(law: Law, measurements: Measurements, compared: pd.DataFrame) -> dict[str, bytes]:
     """Return the pictures by file name; the same ones each time, to the byte."""
-    made = {}
+    made: dict[str, bytes] = {}
     for name, draw in PLOTS.items():
         figure = draw(law, measurements, compared)
-        for suffix in FORMATS:
-            content = io.BytesIO()
-            # Without the time at which it was made.
-            figure.savefig(content, format=suffix, dpi=150, metadata={"CreationDate": None} if suffix == "pdf" else {})
-            made[f"{name}.{suffix}"] = content.getvalue()
+        made |= {f"{name}.{suffix}": rendered(figure, suffix) for suffix in FORMATS}
     return made

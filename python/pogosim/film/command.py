@@ -11,10 +11,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, finite, positive
 from pogosim.film.encoder import FORMATS, PAGE, check_ffmpeg
 from pogosim.outputs import check_readable, checked_output
-from pogosim.picture.options import add_what_to_draw, moment, positive, report
+from pogosim.picture.options import add_what_to_draw, report
 
 
 def size(text: str) -> tuple[int, int]:
@@ -34,8 +34,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim film") -> 
     )
     parser.add_argument("--speed", type=positive, default=1.0, metavar="X", help="times real time (%(default)g)")
     parser.add_argument("--fps", type=positive, default=30.0, help="frames per second of the film (%(default)g)")
-    parser.add_argument("--from", dest="start", type=moment, metavar="SECONDS", help="time of the first frame (first)")
-    parser.add_argument("--to", dest="end", type=moment, metavar="SECONDS", help="time of the last frame (last)")
+    parser.add_argument("--from", dest="start", type=finite, metavar="SECONDS", help="time of the first frame (first)")
+    parser.add_argument("--to", dest="end", type=finite, metavar="SECONDS", help="time of the last frame (last)")
     parser.add_argument("--tail", type=positive, metavar="SECONDS", help="length of the trails (none)")
     parser.add_argument("--size", type=size, metavar="WxH", help="pixels of a frame (the arena has 720)")
     add_what_to_draw(parser)

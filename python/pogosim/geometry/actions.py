@@ -104,7 +104,8 @@ def show_arena(prog: str, outline: Outline, arena: Outline, radius_mm: float, ou
             narrow = f"a passage is narrower than a robot, {2.0 * radius_mm:g} mm"
             warn(prog, f"{outline.source}: {narrow}: it divides the arena into {len(room.parts)} parts")
     if output is not None:
-        from pogosim.geometry.drawing import draw, rendered
+        from pogosim.fonts import rendered
+        from pogosim.geometry.drawing import draw
 
         path, name = output
         validity = "" if not found else ", not valid"

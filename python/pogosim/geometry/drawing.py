@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-
 import numpy as np
 import shapely
 from matplotlib.figure import Figure
@@ -14,7 +12,6 @@ from pogosim.fonts import literal, without_tex
 from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.validity import Room
 
-FORMATS = ("pdf", "png", "svg")
 FLOOR, WALL, HOLE, UNREACHABLE = "#eef2f5", "#29343d", "#a8321b", "#f0c9a8"
 
 
@@ -58,12 +55,3 @@ def draw(outline: Outline, room: Room | None, title: str, figure: Figure | None 
     if axes.get_legend_handles_labels()[0]:
         figure.legend(loc="outside lower right", fontsize=8, frameon=False)
     return figure
-
-
-@without_tex()
-def rendered(figure: Figure, suffix: str) -> bytes:
-    """Return the bytes of a picture, the same each time; `suffix` is one of FORMATS."""
-    metadata = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(suffix, {})
-    content = io.BytesIO()
-    figure.savefig(content, format=suffix, dpi=150, metadata=metadata)
-    return content.getvalue()

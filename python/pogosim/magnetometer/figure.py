@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from typing import Any
 
@@ -11,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pogosim.calibration.figure import MEASURED, SIMULATED
-from pogosim.fonts import without_tex
+from pogosim.fonts import rendered, without_tex
 from pogosim.magnetometer.fit import CurveFit, ellipse_of
 from pogosim.magnetometer.table import AXES, ReadingTable
 
@@ -80,9 +79,6 @@ def drawn(table: ReadingTable, fitted: CurveFit, field_angle_rad: float) -> Figu
     return figure
 
 
-@without_tex()
 def picture(table: ReadingTable, fitted: CurveFit, field_angle_rad: float) -> bytes:
     """Return a PNG picture."""
-    file = io.BytesIO()
-    drawn(table, fitted, field_angle_rad).savefig(file, format="png", dpi=DPI)
-    return file.getvalue()
+    return rendered(drawn(table, fitted, field_angle_rad), "png", DPI)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pogosim.command.parser import Parser
+from pogosim.command.parser import Parser, finite, positive
 from pogosim.outputs import check_readable, checked_output
-from pogosim.picture.options import add_what_to_draw, moment, positive, report
+from pogosim.picture.options import add_what_to_draw, report
 
 PICTURES = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "svgz", "tif", "tiff", "webp")
 
@@ -23,7 +23,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "swarm_picture") ->
     parser.add_argument("--tail", type=positive, metavar="SECONDS", help="length of the trails (whole run)")
     parser.add_argument(
         "--at",
-        type=moment,
+        type=finite,
         nargs="+",
         metavar="SECONDS",
         help="state at that time (the end); of several, a panel each",

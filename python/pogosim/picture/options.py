@@ -3,28 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import math
 import os
 from collections.abc import Callable
 
 from pogosim.command.parser import complain, warnings_told
 from pogosim.errors import AmbiguousStepsWarning, ToolError
-
-
-def positive(text: str) -> float:
-    """Return a number above 0 from the command line."""
-    value = float(text)
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a number above 0")
-    return value
-
-
-def moment(text: str) -> float:
-    """Return a time in s from the command line."""
-    value = float(text)
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text} is not a time in seconds")
-    return value
 
 
 def add_what_to_draw(parser: argparse.ArgumentParser) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pogosim.analysis.defaults import MIN_SPEED_MM_S
-from pogosim.command.parser import Parser, at_least, positive, whole
+from pogosim.command.parser import Parser, positive, whole
 from pogosim.extensions import located
 
 NEIGHBOURS = "neighbors_list"  # the column that programs usually have
@@ -38,24 +38,35 @@ class Analysis:
 
 
 def analysis_parser(prog: str, description: str) -> Parser:
-    """Return a parser with the options that all analyses have."""
+    """Return a parser with the options that all analyses of robots have."""
+    parser = file_parser(
+        prog,
+        description,
+        "data file of a run or a batch, several, or a pattern in quotes (results/result.feather)",
+        "objects to analyse (robots, or all with a program)",
+        default=["results/result.feather"],
+    )
+    parser.add_argument(
+        "--rc", type=positive, metavar="MM", help="neighbours are closer than this (communication_radius + 2 radius)"
+    )
+    return parser
+
+
+def file_parser(prog: str, description: str, files: str, objects: str, default: list[str] | None = None) -> Parser:
+    """Return a parser of what is read and written, and of which objects; `files`, `objects`: help on these."""
     parser = Parser(prog=prog, description=description)
     parser.add_argument(
-        "-i",
-        "--input",
-        "--inputFile",
+        *("-i", "--input", "--inputFile"),
         nargs="+",
-        default=["results/result.feather"],
+        required=default is None,
+        default=default,
         metavar="FILE",
-        help="data file of a run or a batch, several, or a pattern in quotes (results/result.feather)",
+        help=files,
     )
     parser.add_argument(
         "-o", "--output-dir", "--outputDir", default=".", metavar="DIR", help="folder for tables and figures (.)"
     )
-    parser.add_argument("--category", metavar="NAME", help="objects to analyse (robots, or all with a program)")
-    parser.add_argument(
-        "--rc", type=positive, metavar="MM", help="neighbours are closer than this (communication_radius + 2 radius)"
-    )
+    parser.add_argument("--category", metavar="NAME", help=objects)
     return parser
 
 
@@ -83,9 +94,7 @@ def locomotion(prog: str) -> Parser:
         "--characteristic-length", type=positive, metavar="MM", help="length of the Peclet number (2 radius)"
     )
     parser.add_argument("--bins", type=whole(1, 2000), default=30, metavar="N", help="bins of heat maps (%(default)s)")
-    parser.add_argument(
-        "--steps", type=at_least(1), default=20, metavar="N", help="save times of a trace (%(default)s)"
-    )
+    parser.add_argument("--steps", type=whole(1), default=20, metavar="N", help="save times of a trace (%(default)s)")
     parser.add_argument("--gif", action="store_true", help="make films of the traces, too: traces/*.gif")
     return parser
 
@@ -99,9 +108,7 @@ def neighbors(prog: str) -> Parser:
         metavar="COLUMN",
         help=f"neighbours are the robots whose ids are listed there ({NEIGHBOURS}, if the data have it)",
     )
-    parser.add_argument(
-        "--k", type=at_least(1), default=3, metavar="K", help="without lists: the K nearest (%(default)s)"
-    )
+    parser.add_argument("--k", type=whole(1), default=3, metavar="K", help="without lists: the K nearest (%(default)s)")
     parser.add_argument(
         "--statBasis",
         "--stat-basis",
@@ -182,20 +189,12 @@ def collective(prog: str) -> Parser:
 
 def messages(prog: str) -> Parser:
     """Return the parser of `pogosim analyze messages`."""
-    parser = Parser(prog=prog, description="Says what became of messages, and how many got through.")
-    parser.add_argument(
-        "-i",
-        "--input",
-        "--inputFile",
-        nargs="+",
-        required=True,
-        metavar="FILE",
-        help="message log of a run (message_log of its configuration), several, or a pattern in quotes",
+    parser = file_parser(
+        prog,
+        "Says what became of messages, and how many got through.",
+        "message log of a run (message_log of its configuration), several, or a pattern in quotes",
+        "senders to analyse (all)",
     )
-    parser.add_argument(
-        "-o", "--output-dir", "--outputDir", default=".", metavar="DIR", help="folder for tables and figures (.)"
-    )
-    parser.add_argument("--category", metavar="NAME", help="senders to analyse (all)")
     parser.add_argument(
         "--bin", type=positive, default=10.0, metavar="MM", help="width of the bins of distance (%(default)g)"
     )
