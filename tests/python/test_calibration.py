@@ -15,13 +15,17 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from pogosim.batch.backends import Workers
+from pogosim.batch.configuration import Configuration
+from pogosim.batch.rows import Runs
 from pogosim.calibration import rounding, statistics
 from pogosim.calibration.command import main
 from pogosim.calibration.fit import bias_range
 from pogosim.calibration.identifiability import verdicts, weakest_direction, without_own_effect
+from pogosim.calibration.parameters import start_bias, start_values
 from pogosim.calibration.reading import TrackTable, column_of, read_track_table
 from pogosim.calibration.results import PROTOCOL
-from pogosim.calibration.scene_of_tracks import handedness
+from pogosim.calibration.scene_of_tracks import handedness, read_scene
 from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
 from pogosim.calibration.units import UnitOptions, in_millimetres, in_radians, y_down
 from pogosim.errors import CalibrationError
@@ -418,6 +422,20 @@ def test_bad_options_are_refused_in_a_line(
     assert line.startswith("pogosim calibrate: ")
     assert BAD_OPTIONS[options] in line
     assert {path: path.read_bytes() for path in here.iterdir()} == before
+
+
+def test_what_is_known_of_robots_is_what_the_simulator_says(protocol: Path, here: Path) -> None:
+    (here / "own.yaml").write_text("radius: 31\nmax_linear_speed: 77\n")
+    robots = {"type": "pogobot", "nb": 3, "robot_model": "own.yaml", "max_angular_speed": 2.5}
+    write_configuration(here / "conf.yaml", objects={"robots": robots}, time_step=0.008)
+    configuration = Configuration("conf.yaml")
+    runs = Runs(configuration, str(protocol), "tmp", "out", Workers(number=1), retries=0)
+    with runs.opened():
+        scene = read_scene(runs, configuration.resolved(), "robots")
+    assert (scene.radius_mm, scene.time_step_s, scene.size_mm.tolist()) == (31.0, 0.008, [1500.0, 1500.0])
+    values = start_values(scene.settings)
+    assert (values["max_linear_speed"], values["max_angular_speed"]) == (77.0, 2.5)
+    assert (values["linear_noise_stddev"], start_bias(scene.settings)) == (0.0, (0, 0))
 
 
 def test_robots_that_stand_are_not_calibrated(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from pogosim.arguments import number
 from pogosim.errors import CalibrationError
 
 BIAS = "angular_systematic_bias_domain"
@@ -21,7 +20,6 @@ class Parameter:
     Attributes:
         key: Its name.
         unit: What it is in.
-        default: Default of the simulator.
         least: Smallest value of a fit; a fitted value near it is none.
         most: Largest value of a fit.
         start: Where a fit starts if the configuration says 0.
@@ -30,7 +28,6 @@ class Parameter:
 
     key: str
     unit: str
-    default: float
     least: float
     most: float
     start: float
@@ -49,20 +46,20 @@ class Parameter:
 PARAMETERS = {
     parameter.key: parameter
     for parameter in (
-        Parameter("max_linear_speed", "mm/s", 100.0, 1.0, 5000.0, 100.0),
-        Parameter("max_angular_speed", "rad/s", 1.0, 0.01, 200.0, 1.0),
-        Parameter("linear_noise_stddev", "100 mm/s", 0.0, 0.002, 50.0, 0.2),
-        Parameter("angular_noise_stddev", "rad/s", 0.0, 0.005, 100.0, 0.3),
-        Parameter("body_linear_damping", "1/s", 0.0, 0.0, 1000.0, 0.0, is_logarithmic=False),
-        Parameter("body_angular_damping", "1/s", 0.0, 0.0, 1000.0, 0.0, is_logarithmic=False),
+        Parameter("max_linear_speed", "mm/s", 1.0, 5000.0, 100.0),
+        Parameter("max_angular_speed", "rad/s", 0.01, 200.0, 1.0),
+        Parameter("linear_noise_stddev", "100 mm/s", 0.002, 50.0, 0.2),
+        Parameter("angular_noise_stddev", "rad/s", 0.005, 100.0, 0.3),
+        Parameter("body_linear_damping", "1/s", 0.0, 1000.0, 0.0, is_logarithmic=False),
+        Parameter("body_angular_damping", "1/s", 0.0, 1000.0, 0.0, is_logarithmic=False),
     )
 }
 # Fitted with them, so that the noise of the camera is not taken for that of the motors.
 TRACKER = {
     parameter.key: parameter
     for parameter in (
-        Parameter("tracker_noise_mm", "mm", 0.0, 1e-3, 100.0, 0.5),
-        Parameter("tracker_noise_rad", "rad", 0.0, 1e-4, 3.0, 0.01),
+        Parameter("tracker_noise_mm", "mm", 1e-3, 100.0, 0.5),
+        Parameter("tracker_noise_rad", "rad", 1e-4, 3.0, 0.01),
     )
 }
 ALL = PARAMETERS | TRACKER
@@ -87,13 +84,11 @@ def chosen(text: str | None) -> list[str]:
 
 
 def start_values(settings: dict[str, Any]) -> dict[str, float]:
-    """Return the values of a category's entry, or the defaults of the simulator."""
-    return {key: number(settings.get(key), parameter.default) for key, parameter in PARAMETERS.items()}
+    """Return the values of a category's entry, which has all keys."""
+    return {key: float(settings[key]) for key in PARAMETERS}
 
 
 def start_bias(settings: dict[str, Any]) -> tuple[int, int]:
-    """Return the range of the bias of a category's entry."""
-    domain = settings.get(BIAS)
-    if not isinstance(domain, list) or len(domain) != 2:
-        return 0, 0
-    return round(number(domain[0], 0.0)), round(number(domain[1], 0.0))
+    """Return the range of the bias of a category's entry, which has all keys."""
+    low, high = settings[BIAS]
+    return round(low), round(high)

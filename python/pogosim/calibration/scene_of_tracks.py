@@ -10,14 +10,14 @@ import numpy as np
 import shapely
 import shapely.ops
 
-from pogosim.arguments import number
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.rows import Runs
 from pogosim.calibration.reading import Warn
+from pogosim.calibration.simulation import rows_of, trial
 from pogosim.calibration.tracks import Floats, Tracks
 from pogosim.errors import CalibrationError
 from pogosim.geometry.arena_file import Outline
-from pogosim.geometry.configured import arena_of
-from pogosim.scene import POGOBOT_RADIUS_MM, read_periodic, type_of
+from pogosim.scene import read_periodic, type_of
+from pogosim.several_files import configuration_of
 
 CLOSE_MM = 10.0  # a start so far beyond where a robot can be is an error of the tracker
 LEAST_CORRELATION, CLEARLY = 0.5, 1.25  # of turn rates over time
@@ -26,30 +26,26 @@ MARGIN_MM = 1.0  # between a robot and a wall at the start
 
 @dataclass(frozen=True)
 class Scene:
-    """The configuration of the tracked robots.
+    """Where the tracked robots are simulated, and what they are, as the simulator says with all its defaults.
 
     Attributes:
-        configuration: The user's.
-        entries: What a single run takes of it.
+        entries: The configuration, as a single run takes it.
         category: Name of the robots' entry in `objects`.
+        settings: That entry, with the keys of its robot model and all defaults.
+        time_step_s: Time step of the simulator.
         arena: Its walls, in mm.
     """
 
-    configuration: Configuration
     entries: dict[str, Any]
     category: str
+    settings: dict[str, Any]
+    time_step_s: float
     arena: Outline
-
-    @property
-    def settings(self) -> dict[str, Any]:
-        """Entry of the category."""
-        own: dict[str, Any] = self.entries["objects"][self.category]
-        return own
 
     @property
     def radius_mm(self) -> float:
         """Radius of a robot."""
-        return number(self.settings.get("radius"), POGOBOT_RADIUS_MM)
+        return float(self.settings["radius"])
 
     @property
     def size_mm(self) -> Floats:
@@ -58,41 +54,40 @@ class Scene:
         return np.asarray(high - low)
 
 
-def read_scene(path: Path, category: str | None) -> Scene:
-    """Read a configuration.
+def tracked_category(entries: dict[str, Any], path: Path, wanted: str | None) -> str:
+    """Return the name of the robots' entry in `objects` of a configuration.
 
     Raises:
-        ToolError: It is none, or it has no such robots or no arena with walls.
+        CalibrationError: It has no such robots.
     """
-    configuration = Configuration(path)
-    entries = configuration.resolved()
     objects = entries.get("objects")
     found = objects if isinstance(objects, dict) else {}
     robots = [str(name) for name, own in found.items() if isinstance(own, dict) and type_of(own) == "pogobot"]
-    if category is None and len(robots) != 1:
+    if wanted is None and len(robots) != 1:
         what = f"robots of {len(robots)} categories ({', '.join(robots)})" if robots else "no robots of type pogobot"
         raise CalibrationError(f"{path} has {what} in `objects`; name those that were tracked with --category NAME")
-    if category is not None and category not in robots:
+    if wanted is not None and wanted not in robots:
         raise CalibrationError(
-            f"{path} has no robots '{category}' of type pogobot in `objects`; found {', '.join(robots) or 'none'}"
+            f"{path} has no robots '{wanted}' of type pogobot in `objects`; found {', '.join(robots) or 'none'}"
         )
-    arena = walls_of(entries, path)
-    if arena.periodic or read_periodic(entries):
-        raise CalibrationError(f"{path} has a periodic arena; real robots are tracked in one with walls")
-    return Scene(configuration, entries, category or robots[0], arena)
+    return wanted or robots[0]
 
 
-def walls_of(entries: dict[str, Any], path: Path) -> Outline:
-    """Return the walls in mm, found as the simulator finds them.
+def read_scene(runs: Runs, entries: dict[str, Any], category: str) -> Scene:
+    """Let the simulator say what a configuration is, in a run that ends as it begins.
 
     Raises:
-        ToolError: They cannot be read.
+        ToolError: It cannot be run, or has no arena with walls.
     """
-    if not isinstance(entries.get("arena_file"), str):
-        raise CalibrationError(f"{path} has no arena_file; expected the arena in which the robots were tracked")
-    _, outline = arena_of(entries, path)
-    low, _ = outline.bounds
-    return replace(outline, polygons=tuple(polygon - low for polygon in outline.polygons))
+    start = {**trial(entries, category, {"nb": 1}), "simulation_time": 0}
+    (rows,) = rows_of(runs, [start], [0])
+    resolved = configuration_of({str(name): value for name, value in rows.attrs.items()})
+    path = runs.configuration.path
+    if read_periodic(resolved):
+        raise CalibrationError(f"{path} has a periodic arena; real robots are tracked in one with walls")
+    polygons = tuple(np.asarray(polygon, dtype=float) for polygon in rows.attrs["arena_polygons"])
+    arena = Outline(polygons, str(resolved["arena_file"]))
+    return Scene(entries, category, resolved["objects"][category], float(resolved["time_step"]), arena)
 
 
 def in_arena(tracks: Tracks, scene: Scene, warn: Warn) -> Tracks:
@@ -114,7 +109,7 @@ def start_poses(tracks: Tracks, scene: Scene, warn: Warn) -> Floats:
     free = shapely.Polygon(outer, holes).buffer(-(scene.radius_mm + MARGIN_MM))
     if free.is_empty:
         raise CalibrationError(
-            f"{scene.configuration.path}: the arena has no room for a robot of radius {scene.radius_mm:g} mm"
+            f"{scene.arena.source}: the arena has no room for a robot of radius {scene.radius_mm:g} mm"
         )
     poses, moved = [], []
     for robot in range(tracks.robots):

@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from pogosim.arguments import number
 from pogosim.batch.rows import Runs
 from pogosim.calibration.parameters import BIAS
 from pogosim.calibration.tracks import Floats, Tracks
 from pogosim.errors import CalibrationError
 
-TIME_STEP_S = 0.01  # default of the configuration
 PLACEMENT = ("nb", "x", "y", "angle", "poses", "area", "initial_formation")
 OUTPUTS = (
     *("data_logger_fields", "data_logger_category", "message_log"),
     *("frames_name", "console_filename", "delete_old_files"),
 )
+
+# Runs write their rows, and nothing else.
+ROWS_ALONE = {"enable_data_logging": True, "enable_console_logging": False, "save_video_period": -1}
 
 Values = Mapping[str, float]
 Bias = tuple[int, int]
@@ -41,6 +42,28 @@ class Candidate:
         return Candidate(tuple(sorted(values.items())), bias, seed)
 
 
+def trial(entries: dict[str, Any], category: str, own: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration for trial runs: with other keys of a category, placed by them, and with rows alone."""
+    made = {key: value for key, value in copy.deepcopy(entries).items() if key not in OUTPUTS}
+    entry = {key: value for key, value in made["objects"][category].items() if key not in PLACEMENT}
+    made["objects"][category] = {**entry, **own}
+    return {**made, "data_logger_category": [category], **ROWS_ALONE}
+
+
+def rows_of(runs: Runs, configurations: Sequence[dict[str, Any]], seeds: Sequence[int]) -> list[pd.DataFrame]:
+    """Run configurations, one run each; returns the rows of each.
+
+    Raises:
+        ToolError: A run fails; says what the simulator says.
+    """
+    rows: dict[int, pd.DataFrame] = {}
+    for done in runs.rows_of(configurations, [[seed] for seed in seeds]):
+        if done.rows is None:
+            raise CalibrationError(f"{runs.program} failed in a trial run: {done.problem}")
+        rows[done.number] = done.rows
+    return [rows[number] for number in range(len(configurations))]
+
+
 @dataclass(frozen=True)
 class Simulator:
     """A program and a scene in which a category of robots is tried with other values.
@@ -49,6 +72,7 @@ class Simulator:
         runs: Does runs of the program.
         configuration: The user's; its category is changed.
         category: Name of the entry in `objects`.
+        time_step_s: Its time step.
         poses: x, y in mm and angle in rad of each robot at the start. Shape (robots, 3).
         tracks: When and where robots are seen.
     """
@@ -56,32 +80,24 @@ class Simulator:
     runs: Runs
     configuration: dict[str, Any]
     category: str
+    time_step_s: float
     poses: Floats
     tracks: Tracks
 
     def configuration_of(self, candidate: Candidate) -> dict[str, Any]:
         """Return the configuration of a run."""
-        made = copy.deepcopy(self.configuration)
-        entry = {key: value for key, value in made["objects"][self.category].items() if key not in PLACEMENT}
-        entry |= {key: value if value > 0.0 else 0 for key, value in candidate.values}
-        entry[BIAS] = list(candidate.bias)
-        entry["poses"] = [[float(value) for value in pose] for pose in self.poses]
-        made["objects"][self.category] = entry
-        for key in OUTPUTS:
-            made.pop(key, None)
-        made |= {
+        own: dict[str, Any] = {key: value if value > 0.0 else 0 for key, value in candidate.values}
+        own[BIAS] = list(candidate.bias)
+        own["poses"] = [[float(value) for value in pose] for pose in self.poses]
+        return {
+            **trial(self.configuration, self.category, own),
             "simulation_time": self.tracks.length_s + 2.0 * self.tracks.frame_s,
             "save_data_period": self.period_s(),
-            "data_logger_category": [self.category],
-            "enable_data_logging": True,
-            "enable_console_logging": False,
-            "save_video_period": -1,
         }
-        return made
 
     def period_s(self) -> float:
         """Return the time between rows: that of the frames, if it is a multiple of the time step, or else one step."""
-        step_s = number(self.configuration.get("time_step"), TIME_STEP_S)
+        step_s = self.time_step_s
         steps = self.tracks.frame_s / step_s
         return round(steps) * step_s if steps > 0.5 and abs(steps - round(steps)) < 1e-3 * steps else step_s
 
@@ -95,12 +111,7 @@ class Simulator:
             ToolError: A run fails; says what the simulator says.
         """
         made = [self.configuration_of(candidate) for candidate in candidates]
-        rows: dict[int, pd.DataFrame] = {}
-        for done in self.runs.rows_of(made, [[candidate.seed] for candidate in candidates]):
-            if done.rows is None:
-                raise CalibrationError(f"{self.runs.program} failed in a trial run: {done.problem}")
-            rows[done.number] = done.rows
-        return [rows[number] for number in range(len(candidates))]
+        return rows_of(self.runs, made, [candidate.seed for candidate in candidates])
 
     def seen(self, rows: pd.DataFrame) -> Tracks:
         """Return a run as the tracker would have seen it: at its frames, with its gaps, without its errors."""

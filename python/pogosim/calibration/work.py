@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from pogosim.batch.backends import Workers
+from pogosim.batch.configuration import Configuration
 from pogosim.batch.rows import Runs
 from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile, tracker_errors
 from pogosim.calibration.parameters import BIAS, chosen, start_bias, start_values
@@ -20,7 +21,7 @@ from pogosim.calibration.reading import read_track_table
 from pogosim.calibration.result import as_json, bias_is_known, configuration_block, found_parameters, misfits
 from pogosim.calibration.results import LINES, PICTURE, PROTOCOL, RESULT
 from pogosim.calibration.rounding import in_words, noticed, rounding_noise, with_random_digits, with_steps
-from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses
+from pogosim.calibration.scene_of_tracks import Scene, handedness, in_arena, read_scene, start_poses, tracked_category
 from pogosim.calibration.simulation import Simulator
 from pogosim.calibration.statistics import check_motion, noise_bounds, statistics_of, tracker_noise
 from pogosim.calibration.tracks import Tracks, continuous, cut, frame_numbers, on_grid
@@ -105,24 +106,26 @@ def compiled(what: str | None, temporary: Path) -> Path:
 
 def calibrate(prog: str, options: argparse.Namespace) -> None:
     """Fit, print, and write if a folder is given."""
-    free, scene = chosen(options.parameters), read_scene(Path(options.config), options.category)
+    free, configuration = chosen(options.parameters), Configuration(options.config)
+    entries = configuration.resolved()
+    category = tracked_category(entries, configuration.path, options.category)
     if options.output_dir is not None:
         results_folder(Path(options.output_dir), (RESULT, LINES, PICTURE), [options.tracks, options.config])
-    prepared = prepare(prog, options, scene)
-    poses = start_poses(prepared.tracks, scene, lambda text: warn(prog, text))
     with tempfile.TemporaryDirectory(prefix="pogosim-calibrate-") as folder:
-        temporary = Path(folder)
-        program = compiled(options.simulator_binary, temporary)
-        runs = Runs(scene.configuration, str(program), folder, folder, Workers(number=options.workers), retries=0)
-        simulator = Simulator(runs, scene.entries, scene.category, poses, prepared.tracks)
-        if not prepared.tracks.has_angles and options.parameters is None:
-            free = [name for name in free if name not in NEED_HEADINGS]
-            warn(prog, f"without angles, {' and '.join(NEED_HEADINGS)} are not fitted (--parameters to try)")
-        start, bias = start_values(scene.settings), start_bias(scene.settings)
-        settings = Settings(free, start, bias, options.seed, options.runs, noise_bounds(prepared.tracks))
-        matcher = Matcher(simulator, statistics_of(prepared.tracks), settings)
-        progress = say if sys.stdout is not None and sys.stdout.isatty() else (lambda _text: None)
+        program = compiled(options.simulator_binary, Path(folder))
+        runs = Runs(configuration, str(program), folder, folder, Workers(number=options.workers), retries=0)
         with runs.opened():
+            scene = read_scene(runs, entries, category)
+            prepared = prepare(prog, options, scene)
+            poses = start_poses(prepared.tracks, scene, lambda text: warn(prog, text))
+            simulator = Simulator(runs, entries, category, scene.time_step_s, poses, prepared.tracks)
+            if not prepared.tracks.has_angles and options.parameters is None:
+                free = [name for name in free if name not in NEED_HEADINGS]
+                warn(prog, f"without angles, {' and '.join(NEED_HEADINGS)} are not fitted (--parameters to try)")
+            start, bias = start_values(scene.settings), start_bias(scene.settings)
+            settings = Settings(free, start, bias, options.seed, options.runs, noise_bounds(prepared.tracks))
+            matcher = Matcher(simulator, statistics_of(prepared.tracks), settings)
+            progress = say if sys.stdout is not None and sys.stdout.isatty() else (lambda _text: None)
             fitted = fit(matcher, prepared.noise, progress)
     report(prog, options, scene, prepared, matcher, fitted)
 
