@@ -8,7 +8,7 @@ import os
 import stat
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Union
+from typing import IO, Union
 
 from pogosim.errors import ToolError
 
@@ -142,6 +142,19 @@ def partial_output(path: Path) -> Iterator[Path]:
         raise
     finally:
         partial.unlink(missing_ok=True)
+
+
+def lock(file: IO[bytes] | IO[str]) -> bool:
+    """Lock an open file until it is closed; returns False if somewhere else it is. Where there are no locks, True."""
+    try:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except (ImportError, OSError):
+        pass  # no locks on this system, or file system
+    return True
 
 
 def check_readable(names: Iterable[str]) -> None:

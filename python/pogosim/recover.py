@@ -25,7 +25,7 @@ import pyarrow.compute as pc
 from pyarrow import ipc
 
 from pogosim.errors import ToolError
-from pogosim.outputs import PathLike, leads_to, real_output
+from pogosim.outputs import PathLike, leads_to, lock, real_output
 from pogosim.table_formats import CSV, EXPECTED, FEATHER, PARQUET, format_in, format_of, is_our_metadata, metadata_path
 from pogosim.tables import table_writer, write_metadata_beside
 
@@ -172,18 +172,9 @@ def locked(path: Path) -> Iterator[None]:
     Raises:
         RecoverError: A run is writing it.
     """
-    try:
-        import fcntl
-    except ImportError:
-        yield
-        return
     with path.open("rb") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise RecoverError(f"{path} is in use by a run; choose another file with -o") from None
-        except OSError:
-            pass  # no locks on this file system
+        if not lock(file):
+            raise RecoverError(f"{path} is in use by a run; choose another file with -o")
         yield
 
 

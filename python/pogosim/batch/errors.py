@@ -60,15 +60,6 @@ def is_whole(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def is_text(text: str) -> bool:
-    """Tell whether a text can be written in UTF-8; names of files, as Python reads them, need not."""
-    try:
-        text.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
-
-
 def tell(text: str) -> None:
     """Print a line; a batch goes on even if the reader has gone."""
     with contextlib.suppress(OSError):

@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 import uuid
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -96,10 +96,20 @@ def write_json(path: Path, entries: Mapping[str, Any]) -> Path:
     Raises:
         BatchError: It cannot be written.
     """
+    text = json.dumps(entries, indent=2, ensure_ascii=False) + "\n"
+    return write_whole(path, lambda partial: partial.write_text(text, encoding="utf-8"))
+
+
+def write_whole(path: Path, writer: Callable[[Path], object]) -> Path:
+    """Write a file, which appears when it is complete, and the folders that it is in; returns its path.
+
+    Raises:
+        BatchError: It cannot be written.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with partial_output(real_output(path)) as partial:
-            partial.write_text(json.dumps(entries, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            writer(partial)
     except OSError as error:
         raise cannot("write", path, error) from None
     except OutputError as error:

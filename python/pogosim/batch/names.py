@@ -9,7 +9,7 @@ from collections.abc import Container, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any
 
-from pogosim.batch.errors import is_text
+from pogosim.arguments import is_text
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.paths import get_by_dotted_path
 from pogosim.table_formats import EXPECTED, format_of

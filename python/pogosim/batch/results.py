@@ -6,7 +6,6 @@ Rows go through in pieces of at most 65536, so that memory does not grow with th
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import sys
 import tempfile
@@ -21,7 +20,7 @@ from pyarrow import ipc
 from pogosim.batch.errors import BatchError, cannot, check_is_file, is_whole, one_line
 from pogosim.batch.parts import PLAIN, Format, Part, RunFile
 from pogosim.batch.result_metadata import COMBINATIONS, MANIFEST, Earlier, manifest, metadata_of, summary
-from pogosim.outputs import OutputError, real_output
+from pogosim.outputs import OutputError, lock, real_output
 from pogosim.recover import DAMAGED, RecoverError, check_metadata_beside, check_replaceable, reraise_system_error
 from pogosim.run_columns import tells_runs_apart
 from pogosim.table_formats import FEATHER, format_of
@@ -240,14 +239,8 @@ def replacement(path: Path) -> Iterator[Any]:
     """
     scratch = path.with_name(f".{path.name}.pogobatch-new")
     with scratch.open("ab") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise BatchError(
-                f"{path} is being written by another batch; wait for it, or choose another folder"
-            ) from None
-        except OSError:
-            pass  # no locks on this file system
+        if not lock(file):
+            raise BatchError(f"{path} is being written by another batch; wait for it, or choose another folder")
         if not (scratch.exists() and os.path.samestat(scratch.stat(), os.fstat(file.fileno()))):
             raise BatchError(f"{path} has just been written by another batch; choose another folder")
         try:

@@ -6,7 +6,8 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, NoReturn
 
-from pogosim.batch.errors import BatchError, at_least, is_text
+from pogosim.arguments import is_text
+from pogosim.batch.errors import BatchError, at_least
 from pogosim.batch.seeds import seeds_between
 from pogosim.batch.slurm_options import add_slurm_options, slurm_jobs
 from pogosim.lines import say_error

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import hashlib
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
@@ -12,6 +11,7 @@ from pathlib import Path
 
 from pogosim.batch.errors import BatchError, cannot
 from pogosim.batch.run import Task, is_complete_data
+from pogosim.outputs import lock
 
 
 def batch_name(paths: Sequence[str]) -> str:
@@ -50,15 +50,11 @@ class TemporaryFolder:
         try:
             self.done.mkdir(parents=True, exist_ok=True)
             with (self.done / "lock").open("a") as file:
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
+                if not lock(file):
                     raise BatchError(
                         f"the same batch is running already, with its files in {self.done}; wait for it, or choose "
                         "another folder with --temp-base"
-                    ) from None
-                except OSError:
-                    pass  # no locks on this file system
+                    )
                 yield
         except OSError as error:
             raise cannot("use", error.filename or self.path, error) from None

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.batch.configuration import Configuration
+from pogosim.batch.manifests import write_whole
 from pogosim.optimize.optimizers.quality_diversity import MapElites
 from pogosim.optimize.plots import draw_archive
 from pogosim.optimize.results import (
@@ -20,7 +21,6 @@ from pogosim.optimize.results import (
     configuration_text,
     free_name,
     remove_elites,
-    write,
     write_text,
 )
 from pogosim.optimize.search import Search
@@ -61,7 +61,7 @@ def write_archive(folder: Path, search: Search, configuration: Configuration) ->
             }
         )
     for name, own in ((ARCHIVE_TABLE, rows), (QD_ARCHIVE, plain_rows)):
-        write(folder / name, partial(pd.DataFrame(own).to_csv, index=False))
+        write_whole(folder / name, partial(pd.DataFrame(own).to_csv, index=False))
     if len(shape) <= 2:
         draw_archive(folder / ARCHIVE, fitness, optimizer.ranges, names)
     filled = np.isfinite(fitness)

@@ -7,7 +7,6 @@ ended. A last line that is not complete belongs to an evaluation that does not c
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -19,6 +18,7 @@ from pogosim.batch.errors import cannot
 from pogosim.errors import OptimizeError
 from pogosim.lines import counted
 from pogosim.optimize.objective import Judgement
+from pogosim.outputs import lock
 
 JOURNAL = "search.jsonl"
 VERSION = 1
@@ -111,7 +111,10 @@ class Journal:
         self.replaces = False
         self.end: int | None = 0  # of the lines to keep, in bytes; None: only they are there
         try:
-            self.lock()
+            if not lock(self.file):
+                raise OptimizeError(
+                    f"another search is writing to {path.parent}; wait for it, or choose another folder with -o"
+                )
             self.end = self.read(resume)
             if not resume:
                 self.refuse_unfinished()
@@ -135,21 +138,6 @@ class Journal:
             )
         self.replaces = bool(self.known)
         self.known, self.end = {}, 0
-
-    def lock(self) -> None:
-        """Keep another search from writing here.
-
-        Raises:
-            OptimizeError: One does.
-        """
-        try:
-            fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise OptimizeError(
-                f"another search is writing to {self.path.parent}; wait for it, or choose another folder with -o"
-            ) from None
-        except OSError:
-            pass  # no locks on this file system
 
     def read(self, resume: bool) -> int:
         """Read what is there; returns where its last complete line ends, in bytes."""

@@ -16,13 +16,14 @@ import pandas as pd
 from pogosim.batch.combinations import overlay
 from pogosim.batch.configuration import dump_configuration
 from pogosim.batch.errors import cannot
+from pogosim.batch.manifests import write_whole
 from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.batch.run_files import with_files_beside
 from pogosim.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Evaluation
 from pogosim.optimize.settings import SECTION
 from pogosim.optimize.variables import Space, Values, as_json
-from pogosim.outputs import leads_to, partial_output, real_output
+from pogosim.outputs import leads_to
 from pogosim.yaml_1_2 import plain
 
 HISTORY = "opt_history.csv"
@@ -166,22 +167,8 @@ def write_history(folder: Path, history: Sequence[Evaluation]) -> None:
             "error": [e.problem for e in history],
         }
     )
-    write(folder / HISTORY, lambda path: lines.to_csv(path, index=False))
-    write(folder / HISTORY_TABLE, lambda path: history_table(history).to_feather(path))
-
-
-def write(path: Path, writer: Any) -> None:
-    """Write a file, which appears when it is complete.
-
-    Raises:
-        BatchError: It cannot be written.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with partial_output(real_output(path)) as partial:
-            writer(partial)
-    except OSError as error:
-        raise cannot("write", path, error) from None
+    write_whole(folder / HISTORY, lambda path: lines.to_csv(path, index=False))
+    write_whole(folder / HISTORY_TABLE, lambda path: history_table(history).to_feather(path))
 
 
 def configuration_text(space: Space, values: Values, folder: Path, notes: Sequence[str]) -> str:
@@ -207,7 +194,7 @@ def write_text(path: Path, text: str) -> None:
     Raises:
         BatchError: It cannot be written.
     """
-    write(path, lambda partial: partial.write_text(text))
+    write_whole(path, lambda partial: partial.write_text(text))
 
 
 def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
