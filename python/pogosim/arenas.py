@@ -12,9 +12,9 @@ from pathlib import Path
 
 from pogosim.command.main import ended
 from pogosim.command.parser import Parser, guarded, positive
+from pogosim.defaults import POGOBOT_RADIUS_MM
 from pogosim.geometry.actions import PICTURES, show_arena
 from pogosim.geometry.arena_file import ArenaError, Outline
-from pogosim.geometry.command import DEFAULT_RADIUS_MM
 from pogosim.geometry.configured import arena_of, read_entries
 from pogosim.outputs import checked_output
 
@@ -56,7 +56,7 @@ def run(prog: str, options: argparse.Namespace) -> int:
         name = str(Path(options.output_dir, options.outfile))
         Path(name).parent.mkdir(parents=True, exist_ok=True)
         output = (checked_output(name, outline.source, PICTURES), name)
-    code = show_arena(prog, outline, arena, DEFAULT_RADIUS_MM, output)
+    code = show_arena(prog, outline, arena, POGOBOT_RADIUS_MM, output)
     if options.show:
         show_window(arena)
     return code

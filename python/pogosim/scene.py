@@ -11,6 +11,7 @@ import numpy.typing as npt
 from matplotlib.path import Path as Outline
 
 from pogosim.arguments import number
+from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 from pogosim.periodic import minimum_image
 
 Floats = npt.NDArray[np.float64]
@@ -21,10 +22,6 @@ RAYS = ("rotating_ray_of_light", "alternating_rays_of_light")
 SPOTS = ("static_light", "orbiting_static_light", "orbiting_light")
 
 TALKERS = ("pogobot", "pogobject", "active_object")  # bodies with a program
-
-# Defaults of a pogobot: `radius` and `communication_radius`.
-POGOBOT_RADIUS_MM = 26.5
-COMMUNICATION_RADIUS_MM = 80.0
 
 # Levels of light are sensor counts, and sums of them stop here.
 BRIGHTEST = 32767

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.defaults import MIN_SPEED_MM_S
 from pogosim.analysis.motion import velocity
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.defaults import MIN_SPEED_MM_S
 
 
 def unit_vectors(vector: Floats, min_length: float = 0.0) -> Floats:

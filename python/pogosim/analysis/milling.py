@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.defaults import MIN_SPEED_MM_S
 from pogosim.analysis.directions import unit_vectors
 from pogosim.analysis.trajectories import Trajectories
+from pogosim.defaults import MIN_SPEED_MM_S
 from pogosim.errors import AnalysisError
 
 

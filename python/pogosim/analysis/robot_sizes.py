@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from pogosim.analysis.arena import Floats
 from pogosim.arguments import number
-from pogosim.scene import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
+from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 
 Setting = Callable[[str], Any]
 Values = tuple[float, float, float]  # radius in mm, reach in mm, and top speed in mm/s, NaN if unknown

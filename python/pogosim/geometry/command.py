@@ -6,9 +6,7 @@ import argparse
 from collections.abc import Sequence
 
 from pogosim.command.parser import Parser, guarded, positive
-
-DEFAULT_AREA_MM2 = 1.0e6  # of the key arena_surface
-DEFAULT_RADIUS_MM = 26.5  # of robots
+from pogosim.defaults import AREA_MM2, POGOBOT_RADIUS_MM
 
 
 def area(text: str) -> float | None:
@@ -24,10 +22,10 @@ def parser(prog: str) -> Parser:
     show = actions.add_parser("show", help="check an arena, print its size, and draw it")
     show.add_argument("arena", metavar="ARENA.csv", help="arena file, or an SVG drawing")
     show.add_argument("output", nargs="?", metavar="OUT.pdf", help="picture to write, .pdf, .png or .svg")
-    add_area(show, DEFAULT_AREA_MM2, "1e6, as in configurations")
+    add_area(show, AREA_MM2, "1e6, as in configurations")
     show.add_argument("--stretch", action="store_true", help="as with arena_stretch: true")
     show.add_argument(
-        "--radius", type=positive, default=DEFAULT_RADIUS_MM, metavar="MM", help="radius of the robots (%(default)g)"
+        "--radius", type=positive, default=POGOBOT_RADIUS_MM, metavar="MM", help="radius of the robots (%(default)g)"
     )
 
     scale = actions.add_parser("scale", help="scale an arena to an area")

@@ -9,8 +9,8 @@ from typing import Any
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
+from pogosim.defaults import AREA_MM2
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled
-from pogosim.geometry.command import DEFAULT_AREA_MM2
 from pogosim.installation import InstallationError, find_installation
 from pogosim.outputs import check_readable
 from pogosim.yaml_1_2 import plain
@@ -54,7 +54,7 @@ def area_of(value: Any, path: Path) -> float | None:
     if value == "file":
         return None
     if value is None:
-        return DEFAULT_AREA_MM2
+        return AREA_MM2
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
         raise ArenaError(f"{path}: arena_surface is {value}; expected a number above 0 (mm2), or 'file'")
     return float(value)

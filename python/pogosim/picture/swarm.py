@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from pogosim.arguments import Arguments
+from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 from pogosim.errors import PictureError
 from pogosim.far_away import is_near
 from pogosim.object_categories import with_categories
@@ -20,8 +21,6 @@ from pogosim.picture.selection import checked, one_run
 from pogosim.picture.speed import OBJECT as OBJECT_COLUMN
 from pogosim.picture.speed import SPEED, object_steps, with_speed
 from pogosim.scene import (
-    COMMUNICATION_RADIUS_MM,
-    POGOBOT_RADIUS_MM,
     Category,
     Floats,
     Lamp,

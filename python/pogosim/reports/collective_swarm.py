@@ -12,11 +12,11 @@ import pandas as pd
 from pogosim.analysis import motion
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.correlations import VectorCorrelation, vector_correlation
-from pogosim.analysis.defaults import MIN_SPEED_MM_S
 from pogosim.analysis.directions import directions_of_headings, unit_vectors
 from pogosim.analysis.flow import velocity_fields
 from pogosim.analysis.order import LocalAlignment, local_alignment
 from pogosim.analysis.trajectories import Trajectories, need_columns
+from pogosim.defaults import MIN_SPEED_MM_S
 
 VORTICITY_BINS = 80
 

@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pogosim.analysis.defaults import MIN_SPEED_MM_S
 from pogosim.command.parser import Parser, positive, whole
+from pogosim.defaults import MIN_SPEED_MM_S
 from pogosim.extensions import located
 
 NEIGHBOURS = "neighbors_list"  # the column that programs usually have
