@@ -154,6 +154,19 @@ def bounds(polygons: list[Floats]) -> tuple[Floats, Floats]:
     return vertices.min(axis=0), vertices.max(axis=0)
 
 
+def turned(polygon: Floats, clockwise: bool) -> Floats:
+    """Order the vertices clockwise (on the screen) or against it."""
+    x, y = polygon.T
+    area = np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+    return polygon if (area > 0) == clockwise else polygon[::-1]
+
+
+def floor_outline(polygons: list[Floats]) -> Outline:
+    """Return the floor, with holes cut out."""
+    loops = [turned(polygon, clockwise=i == 0) for i, polygon in enumerate(polygons)]
+    return Outline.make_compound_path(*(Outline(np.vstack([p, p[:1]]), closed=True) for p in loops))
+
+
 def entries(configuration: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
     """Entries of `objects` that are maps, each with its name; a category may be a list of several."""
     objects = configuration.get("objects")

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.colors import to_rgb
 from matplotlib.path import Path as Outline
 
 from pogosim.film.brush import Brush, Disks, outline_of
@@ -30,11 +31,6 @@ MAX_TRAIL_COLOURS = 64  # of more, similar ones are one
 
 EDGE_PT = 0.8
 TICK_PT = 1.6
-
-
-def hex_rgb(colour: str) -> Floats:
-    """Return the colour #rrggbb as shape (3,), 0 to 1."""
-    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
 
 
 def by_colour(colours: Floats) -> tuple[Floats, Numbers]:
@@ -184,7 +180,7 @@ class Moving:
         pairs = proximity_pairs(place, self.of_category["range"][kind], self.of_category["radius"][kind], self.box)
         if len(pairs):
             lines = outline_of(self.pixels(link_segments(place, pairs, self.box)), False)
-            brush.draw(lines, line=(*hex_rgb(LINK), 0.5), width_pt=0.8, on_floor=True)
+            brush.draw(lines, line=(*to_rgb(LINK), 0.5), width_pt=0.8, on_floor=True)
 
     def draw_glows(self, brush: Brush, own: Category, place: Floats, angle: Floats, colours: Floats) -> None:
         """Draw how lit LEDs light up the floor around."""
@@ -206,7 +202,7 @@ class Moving:
         half_edge = 0.5 * EDGE_PT * brush.renderer.dpi / 72.0
         disks = (
             Disks(places, on_floor=self.is_cut)
-            .add(radius + half_edge, hex_rgb(EDGE))
+            .add(radius + half_edge, np.array(to_rgb(EDGE)))
             .add(max(radius - half_edge, 0.5 * radius), colours)
         )
         brush.stamp_disks(disks)
@@ -224,7 +220,7 @@ class Moving:
         """Draw bodies with corners; glows, which have an opacity, without an edge and only over the floor."""
         corners = self.pixels(layers.placed(share * own.shape.outline(), place, angle))
         shades, shade = by_colour(colours)
-        edge = (*hex_rgb(EDGE), 1.0)
+        edge = (*to_rgb(EDGE), 1.0)
         for number, colour in enumerate(shades):
             path = outline_of(corners[shade == number], True)
             if opacity is None:
@@ -241,7 +237,7 @@ class Moving:
             mine = which & np.isfinite(angle)
             if mine.any():
                 path = outline_of(ticks[mine], False)
-                brush.draw(path, line=(*hex_rgb(colour), 1.0), width_pt=TICK_PT, on_floor=self.is_cut)
+                brush.draw(path, line=(*to_rgb(colour), 1.0), width_pt=TICK_PT, on_floor=self.is_cut)
 
 
 def is_disk(own: Category) -> bool:

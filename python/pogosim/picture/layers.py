@@ -10,13 +10,12 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import PathPatch
-from matplotlib.path import Path as Outline
 
 from pogosim.picture.images import Box, joined, lines_between, seen_places
 from pogosim.picture.links import box_of, links_at_end
 from pogosim.picture.palette import DARK_LED, DARK_WALL, EDGE, FLOOR, LAMPLIGHT, LINK, MAX_LAMPLIGHT, PAPER, WALL
 from pogosim.picture.swarm import OBJECT, RGB, Swarm
-from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, light_levels
+from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, floor_outline, light_levels
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500
@@ -55,19 +54,6 @@ def trail_segments(rows: pd.DataFrame, extent_mm: Floats, box: Box | None = None
         kept &= (np.abs(np.diff(position, axis=0)) <= extent_mm / 2.0).all(axis=1)
     segments, which = lines_between(position[:-1][kept], position[1:][kept], box)
     return segments, ordered.iloc[1:][kept].iloc[which]
-
-
-def turned(polygon: Floats, clockwise: bool) -> Floats:
-    """Order the vertices clockwise (on the screen) or against it."""
-    x, y = polygon.T
-    area = np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
-    return polygon if (area > 0) == clockwise else polygon[::-1]
-
-
-def floor_outline(polygons: list[Floats]) -> Outline:
-    """Return the floor, with holes cut out."""
-    loops = [turned(polygon, clockwise=i == 0) for i, polygon in enumerate(polygons)]
-    return Outline.make_compound_path(*(Outline(np.vstack([p, p[:1]]), closed=True) for p in loops))
 
 
 def draw_arena(axes: Axes, polygons: list[Floats]) -> PathPatch:

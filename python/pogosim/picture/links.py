@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pandas as pd
 from scipy.spatial import KDTree
 
+from pogosim.periodic import minimum_image
 from pogosim.picture.images import Box, lines_between
 from pogosim.picture.swarm import OBJECT, Swarm
 from pogosim.scene import TALKERS, Floats, bounds
@@ -41,9 +42,7 @@ def proximity_pairs(position_mm: Floats, range_mm: Floats, radius_mm: Floats, bo
         position_mm = np.where(position_mm >= size, 0.0, position_mm)  # of -1e-20, the remainder is rounded up
     pairs = KDTree(position_mm, boxsize=size).query_pairs(furthest, output_type="ndarray").astype(np.int64)
     first, second = pairs.T
-    step = position_mm[second] - position_mm[first]
-    if size is not None:
-        step -= size * np.round(step / size)
+    step = minimum_image(position_mm[second] - position_mm[first], size)
     reach = np.maximum(range_mm[first], range_mm[second])
     near = (np.hypot(*step.T) <= reach + radius_mm[first] + radius_mm[second]) & (reach > 0)
     pairs = pairs[near]

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
-from matplotlib.path import Path as Outline
 
-from pogosim.analysis.arena import Arena, Floats
+from pogosim.analysis.arena import Arena
 from pogosim.analysis.density import DensityGrid, count_density, kernel_density
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.fonts import literal
 from pogosim.reports.figures import new_figure, save
+from pogosim.scene import floor_outline
 
 WALL_COLOUR = "0.25"
 MAX_COLUMNS = 3
@@ -47,26 +47,14 @@ def draw_arena(axes: Axes, arena: Arena) -> PathPatch | None:
     low, high = arena.bounds_mm
     corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
     polygons = [corners] if arena.is_periodic else arena.polygons
-    # Holes must go round the other way to be left out.
-    path = Outline.make_compound_path(*(closed(turned(polygon, n == 0)) for n, polygon in enumerate(polygons)))
     style = "--" if arena.is_periodic else "-"
-    floor = PathPatch(path, facecolor="none", edgecolor=WALL_COLOUR, linewidth=1.2, linestyle=style, zorder=3)
+    floor = PathPatch(
+        floor_outline(polygons), facecolor="none", edgecolor=WALL_COLOUR, linewidth=1.2, linestyle=style, zorder=3
+    )
     axes.add_patch(floor)
     margin = 0.03 * float((high - low).max())
     axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin, low[1] - margin))
     return floor
-
-
-def closed(polygon: Floats) -> Outline:
-    """Return a polygon as a closed path."""
-    return Outline(np.concatenate([polygon, polygon[:1]]), closed=True)
-
-
-def turned(polygon: Floats, positive: bool) -> Floats:
-    """Return the corners of a polygon in the order that gives its area this sign."""
-    x, y = polygon.T
-    area = float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-    return polygon if (area > 0.0) == positive else polygon[::-1]
 
 
 def draw_density(axes: Axes, arena: Arena, grid: DensityGrid, title: str) -> None:
