@@ -76,23 +76,12 @@ def reraise_system_error(error: BaseException) -> None:
         raise error
 
 
-def is_complete(path: Path) -> bool:
-    """Tell whether Feather readers can open the file: it has its footer."""
-    with path.open("rb") as file:
-        try:
-            ipc.open_file(file)
-        except DAMAGED as error:
-            reraise_system_error(error)
-            return False
-        return True
-
-
-def is_whole(path: Path) -> bool:
-    """Tell whether all rows of a file with a footer can be read."""
+def is_complete(path: Path, to_the_last_row: bool = False) -> bool:
+    """Tell whether Feather readers can open the file: it has its footer; or also whether all its rows can be read."""
     with path.open("rb") as file:
         try:
             with ipc.open_file(file) as reader:
-                for i in range(reader.num_record_batches):
+                for i in range(reader.num_record_batches if to_the_last_row else 0):
                     reader.get_batch(i).validate(full=True)
         except DAMAGED as error:
             reraise_system_error(error)
@@ -253,7 +242,7 @@ def recover(path: PathLike, output: PathLike | None = None) -> Unfinished:
     with locked(target) if exists else contextlib.nullcontext():
         unfinished = read_unfinished(source)
         if is_complete(source):
-            if is_whole(source):
+            if is_complete(source, to_the_last_row=True):
                 raise RecoverError(f"{source} is already complete; nothing to recover")
             if in_place:
                 raise RecoverError(
