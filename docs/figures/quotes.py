@@ -76,8 +76,9 @@ def recorded() -> dict[str, dict[str, str]]:
 def made_on(made: Quote) -> dict[str, str]:
     """Return what is to be kept of a quote that was made here."""
     here = {"Platform": drawn_on()["Platform"]}
-    if made.data:  # searches and learners use linear algebra, whose last bits depend on the processor
-        here = {"Data": made.data, "Platform": f"{here['Platform']}, {processor()}, numpy {np.__version__}"}
+    if made.data:  # the last bits of NumPy's functions depend on the instructions that the processor has
+        machine = f"{processor()} with {vector_instructions()}"
+        here = {"Data": made.data, "Platform": f"{here['Platform']}, {machine}, numpy {np.__version__}"}
     return here
 
 
@@ -86,6 +87,13 @@ def processor() -> str:
     about = Path("/proc/cpuinfo")
     found = re.search(r"^model name\s*: (.*)$", about.read_text(), re.MULTILINE) if about.is_file() else None
     return found[1] if found else platform.processor()
+
+
+def vector_instructions() -> str:
+    """Return the widest vector instructions that NumPy has a code of its own for."""
+    about = Path("/proc/cpuinfo")
+    flags = about.read_text().split() if about.is_file() else []
+    return "AVX-512" if "avx512f" in flags else "AVX2" if "avx2" in flags else platform.machine()
 
 
 def keep_quote(name: str, page: Path, made: Quote) -> None:
