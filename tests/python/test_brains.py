@@ -77,10 +77,14 @@ def test_messages_go_out_once_and_are_received_with_sender_and_face(tmp_path: Pa
         assert len(brain.received) == 0
         with pytest.raises(pogosim.ConfigurationError, match="up to 382 bytes"):
             brain.send(0, b"x" * 383)
-        with pytest.raises(pogosim.ConfigurationError, match="a row from 0 to 1"):
+        with pytest.raises(pogosim.ConfigurationError, match="an integer from 0 to 1"):
             brain.send(2, b"x")
-        with pytest.raises(pogosim.ConfigurationError, match="0 to 3, or -1 for all"):
+        with pytest.raises(pogosim.ConfigurationError, match="an integer from -1 to 3"):
             brain.send(0, b"x", face=4)
+        with pytest.raises(pogosim.ConfigurationError, match='expected bytes, such as b"x", found'):
+            brain.send(0, "x")
+        with pytest.raises(AttributeError):
+            brain.motor = 3
         brain.send(0, b"ab")
         sim.step(5)
         brain.send(0, b"c")

@@ -28,6 +28,8 @@ class Brain:
             brain.motors[:, :2] = policy(brain.photosensors)
     """
 
+    __slots__ = ("_category", "_run")  # a misspelt array is an error
+
     def __init__(self, run: Callable[[], RunState], category: str) -> None:
         self._run = run
         self._category = given.text("category", category)
@@ -115,18 +117,18 @@ class Brain:
         """Let a robot (row) send a message of up to 382 bytes at its next tick.
 
         Raises:
-            ConfigurationError: It is too long, or there is no such robot or face.
+            ConfigurationError: It is too long or not of bytes, or there is no such robot or face.
         """
-        if not 0 <= robot < len(self):
-            raise given.refused("robot", f"a row from 0 to {len(self) - 1}", robot)
-        if face not in range(-1, 4):
-            raise given.refused("face", "0 to 3, or -1 for all", face)
+        row = given.integer("robot", robot, least=0, most=max(len(self) - 1, 0))
+        to = given.integer("face", face, least=-1, most=3)
+        if not isinstance(message, (bytes, bytearray)):
+            raise given.refused("message", 'bytes, such as b"x"', message)
         if len(message) > MOST_BYTES:
-            raise given.refused("message", f"up to {MOST_BYTES} bytes", f"{len(message)} bytes")
-        self.send_bytes[robot, : len(message)] = np.frombuffer(message, dtype=np.uint8)
-        self.send_face[robot] = face
-        self.send_length[robot] = len(message)
+            raise given.refused("message", f"up to {MOST_BYTES} bytes", len(message))
+        self.send_bytes[row, : len(message)] = np.frombuffer(message, dtype=np.uint8)
+        self.send_face[row] = to
+        self.send_length[row] = len(message)
 
     def clear_received(self) -> None:
         """Forget the received messages. Without it, further ones are lost once there is no more room for them."""
-        check(library().pogosim_brain_clear_received(self._run().pointer, self._category.encode()))
+        check(library().pogosim_run_clear_received(self._run().pointer, self._category.encode()))

@@ -118,7 +118,7 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_number": (c_int, (c_void_p, c_char_p, POINTER(c_double))),
     "pogosim_run_array": (c_int, (c_void_p, c_char_p, POINTER(ArrayPlace))),
     "pogosim_run_brain_array": (c_int, (c_void_p, c_char_p, c_char_p, POINTER(ArrayPlace))),
-    "pogosim_brain_clear_received": (c_int, (c_void_p, c_char_p)),
+    "pogosim_run_clear_received": (c_int, (c_void_p, c_char_p)),
     "pogosim_run_categories": (c_char_p, (c_void_p,)),
     "pogosim_run_messages": (c_char_p, (c_void_p,)),
     "pogosim_run_set_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),
