@@ -101,7 +101,7 @@ int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* 
 
 /// Forgets the received messages of such a category: "received" is empty, and "received_count" 0. Without it, messages
 /// wait in the robots' mailboxes once there are as many as these hold, and are lost when these are full.
-int pogosim_brain_clear_received(pogosim_run* run, char const* category);
+int pogosim_run_clear_received(pogosim_run* run, char const* category);
 
 /// Names of the categories, a line each. Valid as long as the run.
 char const* pogosim_run_categories(pogosim_run const* run);

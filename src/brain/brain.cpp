@@ -6,9 +6,10 @@ namespace pogosim {
 
 RobotRange robots_of(World const& world, std::uint32_t category) {
     auto const& of_robots = world.robots.category;
-    auto const found = std::ranges::equal_range(of_robots, category);
-    return {.first = static_cast<std::uint32_t>(found.begin() - of_robots.begin()),
-            .last = static_cast<std::uint32_t>(found.end() - of_robots.begin())};
+    auto const first = std::ranges::lower_bound(of_robots, category);
+    auto const last = std::ranges::upper_bound(of_robots, category);
+    return {.first = static_cast<std::uint32_t>(first - of_robots.begin()),
+            .last = static_cast<std::uint32_t>(last - of_robots.begin())};
 }
 
 }  // namespace pogosim

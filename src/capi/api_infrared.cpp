@@ -74,7 +74,7 @@ bool is_message(char const* function, std::uint8_t const* payload, std::uint16_t
 }
 
 /// Sends a packet unless the robot is muted.
-std::uint32_t send(Packet const& packet) {
+std::uint32_t put_on_air(Packet const& packet) {
     if (pogosim::is_muted_for_message(*context.world, context.device)) [[unlikely]] {
         pogosim::note_call();
         return kNotSent;
@@ -111,7 +111,8 @@ std::uint32_t send_long(char const* function, std::uint8_t emitters, std::uint8_
     if (!is_message(function, payload, size)) {
         return kNotSent;
     }
-    return send(pogosim::long_packet(*context.world, context.robot, emitters, list, bytes_of(payload, size), type));
+    return put_on_air(
+        pogosim::long_packet(*context.world, context.robot, emitters, list, bytes_of(payload, size), type));
 }
 
 /// A raw message that is a command. Real robots send it as a message of users: their remote control sends commands.
@@ -131,7 +132,7 @@ std::uint32_t send_short(char const* function, std::uint8_t emitters, std::uint8
     if (!is_message(function, payload, size)) {
         return kNotSent;
     }
-    return send(pogosim::short_packet(*context.world, context.device, emitters, bytes_of(payload, size)));
+    return put_on_air(pogosim::short_packet(*context.world, context.device, emitters, bytes_of(payload, size)));
 }
 
 }  // namespace

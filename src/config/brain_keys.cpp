@@ -163,7 +163,7 @@ BrainSpec read_brain(MapReader& robot, RobotModel const& model) {
     if (node->kind != Node::Kind::map) {
         fail_at({*node, robot.path_of("brain")},
                 fmt::format("expected {}, found {}{}", kBrain, found_text(*node),
-                            did_you_mean(shown(node->scalar), std::vector<std::string>{"program", "host", "script"})));
+                            did_you_mean(shown(node->scalar), std::vector<std::string>{"program", "host"})));
     }
     ScriptSpec script = read_script(robot, *node);
     check_leds(script, model, {*node, robot.path_of("brain")});

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "brain/host_brain.hpp"
+#include "config/values.hpp"
 #include "host/array_places.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
@@ -59,7 +60,7 @@ HostBrain& brain_of(pogosim_run& run, std::string_view category) {
     throw ConfigError(is_known ? fmt::format("category '{}' is not driven by the host: its configuration needs "
                                              "'brain: host'",
                                              category)
-                               : fmt::format("there is no category '{}'", category));
+                               : fmt::format("there is no category '{}'", shown(category)));
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* 
     });
 }
 
-int pogosim_brain_clear_received(pogosim_run* run, char const* category) {
+int pogosim_run_clear_received(pogosim_run* run, char const* category) {
     return with_status_of(*run, [&] {
         brain_of(*run, category).clear_received();
         return POGOSIM_OK;

@@ -1,5 +1,6 @@
 #include "physics/free_places.hpp"
 
+#include <cmath>
 #include <optional>
 
 #include "geometry/shape.hpp"
@@ -10,6 +11,7 @@ namespace {
 
 constexpr float kTolerance = 0.01F;  // of the inner radius
 constexpr int kMostWalls = 3;        // a motion along walls ends at the third one, or in a corner
+constexpr float kFarthestMm = 1e6F;  // as of places in configurations
 
 }  // namespace
 
@@ -17,6 +19,9 @@ bool FreePlaces::is_free(Object const& object, Vec2 centre_mm) const {
     Vec2 const motion = centre_mm - pogosim::centre_mm(world_, object);
     if (object.body == kNone) {
         return motion == Vec2{};
+    }
+    if (std::abs(centre_mm.x) > kFarthestMm || std::abs(centre_mm.y) > kFarthestMm) {
+        return false;  // a float would round it to another place of a periodic arena
     }
     for (std::uint32_t body = object.body; !world_.periodic && body < object.body + object.body_count; ++body) {
         Vec2 const place = world_.bodies.position_mm[body] + motion;

@@ -12,8 +12,7 @@ std::vector<std::uint32_t> moved_bodies(Bodies const& bodies) {
         }
     }
     std::ranges::sort(moved);
-    auto const rest = std::ranges::unique(moved);
-    moved.erase(rest.begin(), rest.end());
+    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
     return moved;
 }
 

@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kWatchPeriodS = 0.25;   // of processor time
 constexpr double kRetryPeriodS = 0.001;  // in which user code is looked for outside of libraries
-constexpr double kLongestRetryS = 1.0;  // a loop of malloc() and free() is outside of them only seldom
+/// A loop of malloc() and free() is outside of libraries only now and then.
+constexpr double kLongestRetryS = 1.0;
 constexpr double kLookPeriodS = 0.05;   // of wall-clock time
 constexpr double kPromptReturnS = 0.1;  // shorter waits are not reported
 constexpr double kPromptEndS = 1.0;     // of a step of the simulator's own, and of the data file

@@ -45,6 +45,9 @@ void write_half(std::byte* place, CellValue const& cell) {
 template <class Integer>
 CellValue whole(ColumnSpec const& column, double value) {
     constexpr double low = std::numeric_limits<Integer>::min();
+    if (std::isnan(value)) {
+        return {};
+    }
     constexpr double high = -low;  // one more than the largest, which a double of 64 bits cannot be
     if (std::trunc(value) != value || value < low || value >= high) {
         throw ConfigError(
@@ -60,6 +63,9 @@ CellValue real(ColumnSpec const& /*column*/, double value) {
 }
 
 CellValue truth(ColumnSpec const& column, double value) {
+    if (std::isnan(value)) {
+        return {};
+    }
     if (value != 0.0 && value != 1.0) {
         throw ConfigError(
             fmt::format("the column '{}' was declared as bool: expected 0 or 1, found {}", column.name, value));

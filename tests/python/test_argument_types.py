@@ -228,7 +228,7 @@ def test_what_is_no_path_is_refused(name: str, sim: pogosim.Simulation, scene: P
         "data_file": lambda value: pogosim.Simulation(sim.program, scene, data_file=value),
     }
     for kind, value in {**NOT_NUMBERS, "empty": ""}.items():
-        if kind in ("text", "path", "surrogate") or (name == "data_file" and value is None):
+        if kind in ("text", "path", "surrogate") or (name in ("program", "data_file") and value is None):
             continue
         text = refusal(lambda value=value: calls[name](value))  # type: ignore[misc]
         assert text.startswith(f"{name}: expected the path of a file"), kind

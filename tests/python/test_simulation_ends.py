@@ -289,7 +289,15 @@ def closed_quietly(runs: pogosim.Simulation | pogosim.VectorSimulation) -> str:
     return "quiet"
 
 
-ARGUMENTS: dict[str, Any] = {"robot": 0, "x": 500, "y": 500, "name": "steps_of_all", "value": 1, "file": "/dev/null"}
+ARGUMENTS: dict[str, Any] = {
+    "robot": 0,
+    "x": 500,
+    "y": 500,
+    "name": "steps_of_all",
+    "value": 1,
+    "file": "/dev/null",
+    "category": "robots",
+}
 
 
 def answers_in_a_child(simulation: pogosim.Simulation) -> str:

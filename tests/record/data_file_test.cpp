@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/half.hpp"
+#include "base/log.hpp"
 #include "scratch.hpp"
 
 namespace pogosim {
