@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pogosim/host.h"
+#include "world/world.hpp"
 
 namespace pogosim {
 
@@ -38,6 +39,12 @@ inline pogosim_array described(void const* data, std::string const& type, std::v
 template <class T>
 pogosim_array numbers(std::vector<T> const& values) {
     return described(values.data(), type_of<T>(), {static_cast<std::int64_t>(values.size())}, {sizeof(T)});
+}
+
+inline pogosim_array leds(std::vector<Leds> const& values) {
+    static_assert(sizeof(Rgb) == 3 && sizeof(Leds) == kLedCount * sizeof(Rgb));
+    return described(values.data(), "|u1", {static_cast<std::int64_t>(values.size()), kLedCount, 3},
+                     {sizeof(Leds), sizeof(Rgb), 1});
 }
 
 /// A table: so many numbers of one type in each row.

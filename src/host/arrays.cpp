@@ -18,12 +18,6 @@ pogosim_array vectors(std::vector<Vec2> const& values) {
                      {sizeof(Vec2), sizeof(float)});
 }
 
-pogosim_array leds(std::vector<Leds> const& values) {
-    static_assert(sizeof(Rgb) == 3 && sizeof(Leds) == kLedCount * sizeof(Rgb));
-    return described(values.data(), "|u1", {static_cast<std::int64_t>(values.size()), kLedCount, 3},
-                     {sizeof(Leds), sizeof(Rgb), 1});
-}
-
 /// One value of each robot, without that of callback_global_step.
 template <class T>
 pogosim_array of_robots(std::vector<T> const& values) {

@@ -1,6 +1,7 @@
 // The arrays that drive the robots of a category, where they are.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -16,11 +17,6 @@ using namespace pogosim;
 namespace {
 
 using Received = HostBrain::Received;
-
-pogosim_array leds(std::vector<Leds> const& values) {
-    return described(values.data(), "|u1", {static_cast<std::int64_t>(values.size()), kLedCount, 3},
-                     {sizeof(Leds), sizeof(Rgb), 1});
-}
 
 pogosim_array received(std::span<Received const> messages) {
     return described(messages.data(), "<i4", {static_cast<std::int64_t>(messages.size()), 5},

@@ -101,7 +101,7 @@ TEST(Brains, WhatAHostWritesIsInTheHash) {
     EXPECT_EQ(one->hash(), other->hash());
     one->host_brain("robots")->inputs().motors[0] = {1, 1, 1};
     EXPECT_NE(one->hash(), other->hash());
-    EXPECT_EQ(one->host_brain("nobody"), nullptr);
+    EXPECT_EQ(one->host_brain("absent"), nullptr);
 }
 
 }  // namespace
