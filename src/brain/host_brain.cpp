@@ -19,18 +19,6 @@ constexpr std::int32_t kNoMessage = -1;
 constexpr std::int8_t kAllDirections = -1;
 constexpr std::int16_t kNoSensor = -1;
 
-template <class T>
-void append(std::vector<std::byte>& bytes, std::span<T const> values) {
-    auto const raw = std::as_bytes(values);
-    bytes.insert(bytes.end(), raw.begin(), raw.end());
-}
-
-template <class T>
-void take(std::span<std::byte const>& bytes, std::span<T> values) {
-    std::memcpy(values.data(), bytes.data(), values.size_bytes());
-    bytes = bytes.subspan(values.size_bytes());
-}
-
 }  // namespace
 
 HostBrain::HostBrain(World& world, std::string_view category, RobotRange robots)
@@ -111,16 +99,18 @@ void HostBrain::read_sensors(std::uint32_t robot) {
 }
 
 void HostBrain::take_messages(std::uint32_t robot) {
-    FrameHeader header;
-    while (received_count_ < most_received_ && !world_.mailboxes.empty(robot)) {
-        std::span const place(received_bytes_.get() + used_bytes_, kMostPayloadBytes);
-        receive(world_, robot, header, place);
+    while (received_count_ < most_received_) {
+        std::optional<Message> const message = receive(world_, robot);
+        if (!message) {
+            return;
+        }
         received_[received_count_++] = {.robot = static_cast<std::int32_t>(robot - range_.first),
-                                        .sender = header.sender_id,
-                                        .face = header.receiver_ir_index,
-                                        .length = header.payload_length,
+                                        .sender = message->header.sender_id,
+                                        .face = message->header.receiver_ir_index,
+                                        .length = message->header.payload_length,
                                         .offset = static_cast<std::int32_t>(used_bytes_)};
-        used_bytes_ += header.payload_length;
+        std::ranges::copy(message->payload, received_bytes_.get() + used_bytes_);
+        used_bytes_ += message->payload.size();
         ++outputs_.received_count[robot - range_.first];
     }
 }
@@ -130,39 +120,36 @@ void HostBrain::clear_received() {
     std::ranges::fill(outputs_.received_count, 0U);
 }
 
+template <class Self, class Visit>
+void HostBrain::visit_state(Self& brain, Visit const& visit) {
+    visit(std::span(brain.inputs_.motors));
+    visit(std::span(brain.inputs_.leds));
+    visit(std::span(brain.inputs_.send_bytes));
+    visit(std::span(brain.inputs_.send_length));
+    visit(std::span(brain.inputs_.send_face));
+    visit(std::span(brain.outputs_.photosensors));
+    visit(std::span(brain.outputs_.acceleration));
+    visit(std::span(brain.outputs_.angular_velocity));
+    visit(std::span(brain.outputs_.battery_mv));
+    visit(std::span(brain.outputs_.received_count));
+    visit(std::span(&brain.received_count_, 1));
+    visit(std::span(&brain.used_bytes_, 1));
+    visit(std::span(brain.received_.get(), brain.received_count_));
+    visit(std::span(brain.received_bytes_.get(), brain.used_bytes_));
+}
+
 void HostBrain::save(std::vector<std::byte>& bytes) const {
-    append<std::array<std::int32_t, kMotorCount>>(bytes, inputs_.motors);
-    append<Leds>(bytes, inputs_.leds);
-    append<std::array<std::byte, kMostPayloadBytes>>(bytes, inputs_.send_bytes);
-    append<std::int32_t>(bytes, inputs_.send_length);
-    append<std::int8_t>(bytes, inputs_.send_face);
-    append<std::array<std::int16_t, kPhotosensorCount>>(bytes, outputs_.photosensors);
-    append<std::array<float, 3>>(bytes, outputs_.acceleration);
-    append<std::array<float, 3>>(bytes, outputs_.angular_velocity);
-    append<std::int16_t>(bytes, outputs_.battery_mv);
-    append<std::uint32_t>(bytes, outputs_.received_count);
-    append<std::size_t>(bytes, std::array{received_count_, used_bytes_});
-    append<Received>(bytes, received());
-    append<std::byte>(bytes, received_bytes());
+    visit_state(*this, [&](auto const values) {
+        auto const raw = std::as_bytes(values);
+        bytes.insert(bytes.end(), raw.begin(), raw.end());
+    });
 }
 
 void HostBrain::restore(std::span<std::byte const>& bytes) {
-    take<std::array<std::int32_t, kMotorCount>>(bytes, inputs_.motors);
-    take<Leds>(bytes, inputs_.leds);
-    take<std::array<std::byte, kMostPayloadBytes>>(bytes, inputs_.send_bytes);
-    take<std::int32_t>(bytes, inputs_.send_length);
-    take<std::int8_t>(bytes, inputs_.send_face);
-    take<std::array<std::int16_t, kPhotosensorCount>>(bytes, outputs_.photosensors);
-    take<std::array<float, 3>>(bytes, outputs_.acceleration);
-    take<std::array<float, 3>>(bytes, outputs_.angular_velocity);
-    take<std::int16_t>(bytes, outputs_.battery_mv);
-    take<std::uint32_t>(bytes, outputs_.received_count);
-    std::array<std::size_t, 2> counts{};
-    take<std::size_t>(bytes, counts);
-    received_count_ = counts[0];
-    used_bytes_ = counts[1];
-    take<Received>(bytes, {received_.get(), received_count_});
-    take<std::byte>(bytes, {received_bytes_.get(), used_bytes_});
+    visit_state(*this, [&](auto const values) {
+        std::memcpy(values.data(), bytes.data(), values.size_bytes());
+        bytes = bytes.subspan(values.size_bytes());
+    });
 }
 
 }  // namespace pogosim

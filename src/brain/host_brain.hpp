@@ -78,6 +78,9 @@ private:
     void send(std::uint32_t robot);
     void read_sensors(std::uint32_t robot);
     void take_messages(std::uint32_t robot);
+    /// Calls visit(span) for each array of the state: numbers of entries before what they count.
+    template <class Self, class Visit>
+    static void visit_state(Self& brain, Visit const& visit);
 
     World& world_;
     std::string category_;

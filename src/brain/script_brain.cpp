@@ -33,8 +33,7 @@ bool ScriptBrain::run_step() {
 }
 
 void ScriptBrain::tick(std::uint32_t robot) {
-    FrameHeader header;
-    while (receive(world_, robot, header, {})) {
+    while (receive(world_, robot)) {
         // It does not listen.
     }
     std::uint32_t& next = next_[robot - range_.first];

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -50,7 +51,7 @@ float send_probability() {
 }
 
 /// Puts one transmission on the air. Robots that receive it pass a packet on unless it is malformed.
-void transmit(Packet const& packet) {
+inline void transmit(Packet const& packet) {
     pogosim::note_call();
     if (context.has_robot() && packet.radiates()) {
         pogosim::take_back_floating_point();
@@ -74,7 +75,7 @@ bool is_message(char const* function, std::uint8_t const* payload, std::uint16_t
 }
 
 /// Sends a packet unless the robot is muted.
-std::uint32_t put_on_air(Packet const& packet) {
+inline std::uint32_t put_on_air(Packet const& packet) {
     if (pogosim::is_muted_for_message(*context.world, context.device)) [[unlikely]] {
         pogosim::note_call();
         return kNotSent;
@@ -141,7 +142,8 @@ struct pogosim_slip_descriptor const slip_send_descriptor = {};
 
 uint32_t pogobot_infrared_sendLongMessage_omniGen(uint8_t* const message, uint16_t const message_size) {
     require_robot(__func__);
-    return send_long(__func__, own_faces(), own_power_list(own_faces()), message, message_size);
+    std::uint8_t const all = own_faces();
+    return send_long(__func__, all, own_power_list(all), message, message_size);
 }
 
 uint32_t pogobot_infrared_sendLongMessage_omniSpe(uint8_t* const message, uint16_t const message_size) {
@@ -255,15 +257,16 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
     require_robot("pogobot_infrared_recover_next_message");
     require_argument(message, "pogobot_infrared_recover_next_message", "message");
     context.controller->program.reads_messages = true;
-    FrameHeader header;
-    std::span const payload = std::as_writable_bytes(std::span(message->payload, max_payload_bytes));
-    if (!context.has_robot() || !pogosim::receive(*context.world, context.robot, header, payload)) {
+    auto const received =
+        context.has_robot() ? pogosim::receive(*context.world, context.robot) : std::optional<pogosim::Message>();
+    if (!received) {
         context.services->warn_once(
             "pogobot_infrared_recover_next_message was called with no message waiting: check "
             "pogobot_infrared_message_available() first");
         return;
     }
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES).
+    FrameHeader header = received->header;
     std::size_t const size = std::min<std::size_t>(header.payload_length, max_payload_bytes);
     if (size < header.payload_length) [[unlikely]] {
         note_slip({"pogobot_infrared_recover_next_message", "the length of the message",
@@ -272,7 +275,8 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
     }
     header.payload_length = static_cast<std::uint16_t>(size);
     std::memcpy(&message->header, &header, sizeof(header));
-    std::ranges::fill(payload.subspan(size), std::byte{0});
+    std::memcpy(message->payload, received->payload.data(), size);
+    std::memset(message->payload + size, 0, max_payload_bytes - size);
 }
 
 void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t ir_index) {

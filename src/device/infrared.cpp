@@ -34,10 +34,6 @@ std::uint8_t sender_index(std::uint8_t emitters, std::uint8_t all) {
 
 }  // namespace
 
-std::uint8_t faces_of_robot(World const& world, std::size_t device) {
-    return device < world.robots.size() ? world.spec_of(device).model.face_bits() : kAllFaces;
-}
-
 Packet long_packet(World const& world, std::uint32_t robot, std::uint8_t emitters, std::uint8_t power_list,
                    std::span<std::byte const> payload, std::uint8_t type) {
     FrameHeader const header{.packet_type = type,
@@ -94,25 +90,6 @@ Packet composed_packet(World const& world, std::size_t device, std::span<std::by
             .header = header,
             .header_bytes = is_short ? kShortHeaderBytes : kLongHeaderBytes,
             .payload = payload};
-}
-
-std::uint8_t power_list(World const& world, std::size_t device, std::uint8_t emitters) {
-    unsigned list = 0;
-    for (unsigned face = 0; face < kMostFaces; ++face) {
-        if ((emitters >> face & 1U) != 0) {
-            list |= static_cast<unsigned>(world.devices.ir_power[device])
-                    << (face * pogobot_infrared_emitter_width_bits);
-        }
-    }
-    return static_cast<std::uint8_t>(list);
-}
-
-std::uint8_t highest_power(std::uint8_t list) {
-    std::uint8_t highest = 0;
-    for (unsigned face = 0; face < kMostFaces; ++face) {
-        highest = std::max<std::uint8_t>(highest, get_infrared_emitter_dir(face, list));
-    }
-    return highest;
 }
 
 std::uint8_t emitters_in(World const& world, std::size_t device, std::uint8_t list) {

@@ -2,8 +2,10 @@
 // it receives waits in its mailbox. Commands of the remote control: remote_control.hpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "world/world.hpp"
@@ -25,7 +27,9 @@ struct Packet {
 };
 
 /// Bit d: the robot has face d. The global step, which is no robot, counts as one that has all.
-std::uint8_t faces_of_robot(World const& world, std::size_t device);
+inline std::uint8_t faces_of_robot(World const& world, std::size_t device) {
+    return device < world.robots.size() ? world.spec_of(device).model.face_bits() : kAllFaces;
+}
 
 /// A long message of this type, by a list of the emitters' powers, as receivers see it.
 Packet long_packet(World const& world, std::uint32_t robot, std::uint8_t emitters, std::uint8_t power_list,
@@ -42,9 +46,20 @@ Packet composed_packet(World const& world, std::size_t device, std::span<std::by
 // Lists of powers have two bits for each emitter.
 
 /// The list that drives these emitters with the power of the robot's port.
-std::uint8_t power_list(World const& world, std::size_t device, std::uint8_t emitters);
+inline std::uint8_t power_list(World const& world, std::size_t device, std::uint8_t emitters) {
+    constexpr std::array<std::uint8_t, kAllFaces + 1> ones{0x00, 0x01, 0x04, 0x05, 0x10, 0x11, 0x14, 0x15,
+                                                           0x40, 0x41, 0x44, 0x45, 0x50, 0x51, 0x54, 0x55};
+    return static_cast<std::uint8_t>(ones[emitters & kAllFaces] * world.devices.ir_power[device]);
+}
+
 /// The largest power of a list; emitters of different power are not told apart.
-std::uint8_t highest_power(std::uint8_t list);
+constexpr std::uint8_t highest_power(std::uint8_t list) {
+    bool const has_three = (list & list >> 1U & 0x55U) != 0;
+    bool const has_two = (list & 0xAAU) != 0;
+    bool const has_one = list != 0;
+    return has_three ? 3 : has_two ? 2 : has_one ? 1 : 0;
+}
+
 /// Emitters of the robot with a power that is not 0.
 std::uint8_t emitters_in(World const& world, std::size_t device, std::uint8_t list);
 
@@ -72,14 +87,11 @@ void set_ir_power(World& world, std::size_t device, std::uint8_t power);
 /// Range of a message that this robot sends at its present emitter power, mm; 0 if it is switched off.
 float ir_range_mm(World const& world, std::uint32_t robot);
 
-/// Takes the oldest message out of the robot's mailbox; `payload` gets as many of its bytes as fit. False if there is
-/// none.
-inline bool receive(World& world, std::uint32_t robot, FrameHeader& header, std::span<std::byte> payload) {
-    if (!world.mailboxes.pop(robot, header, payload)) {
-        return false;
-    }
-    ++world.devices.messages_received[robot];
-    return true;
+/// Takes the oldest message out of the robot's mailbox. Absent: there is none.
+inline std::optional<Message> receive(World& world, std::uint32_t robot) {
+    std::optional<Message> const message = world.mailboxes.take(robot);
+    world.devices.messages_received[robot] += message ? 1 : 0;
+    return message;
 }
 
 }  // namespace pogosim

@@ -4,8 +4,6 @@
 #include <string_view>
 #include <utility>
 
-#include "interface/pogobase_inside.hpp"
-
 namespace pogosim {
 
 namespace {
@@ -17,10 +15,7 @@ constexpr std::array<std::pair<std::string_view, PacketKind>, 3> kCommands{
 
 }  // namespace
 
-PacketKind kind_of_packet(FrameHeader const& header, std::span<std::byte const> payload) {
-    if (header.packet_type != ir_t_cmd) {
-        return PacketKind::message;
-    }
+PacketKind kind_of_command(std::span<std::byte const> payload) {
     std::string_view const text(reinterpret_cast<char const*>(payload.data()), payload.size());
     for (auto const& [command, kind] : kCommands) {
         if (text.starts_with(command)) {

@@ -6,12 +6,18 @@
 #include <cstdint>
 #include <span>
 
+#include "interface/pogobase_inside.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
-/// Command, or not: a packet is one if its type is ir_t_cmd and its payload begins with DEADCAFE, BASECAFE or DEADBEEF.
-PacketKind kind_of_packet(FrameHeader const& header, std::span<std::byte const> payload);
+/// What a packet of type ir_t_cmd with this payload is: a command if it begins with DEADCAFE, BASECAFE or DEADBEEF.
+PacketKind kind_of_command(std::span<std::byte const> payload);
+
+/// Command, or not.
+inline PacketKind kind_of_packet(FrameHeader const& header, std::span<std::byte const> payload) {
+    return header.packet_type == ir_t_cmd ? kind_of_command(payload) : PacketKind::message;
+}
 
 /// The robot's library decodes what has arrived: it is muted or unmuted. Returns whether it is to restart.
 bool obey_commands(World& world, std::uint32_t robot);

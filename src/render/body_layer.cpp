@@ -114,7 +114,7 @@ void draw_lateral_leds(Scene const& scene, Figure const& figure, Vec2 at_mm, flo
         if (!is_lit(led)) {
             continue;
         }
-        if (part.direction == Vec2{} || !part.is_on_rim()) {
+        if (!part.is_on_rim()) {
             Vec2 const centre = scene.to_pixels(at_mm + rotate(part.place.at_mm(figure.radius_mm), figure.axis));
             scene.canvas.disk(centre, radius_px + edge_px, palette::kEdge);
             scene.canvas.disk(centre, radius_px, led_colour(led));

@@ -16,14 +16,18 @@ constexpr std::size_t kHeaderBytes = sizeof(FrameHeader);
 
 }  // namespace
 
-void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader const& header,
-                           std::span<std::byte const> payload) {
+/// Overwrites the messages that have been read, which makes room.
+void Mailboxes::Fifo::move_to_front(std::byte* block) {
+    std::memmove(block, block + head, tail - head);
+    tail -= head;
+    head = 0;
+}
+
+inline void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader const& header,
+                                  std::span<std::byte const> payload) {
     std::size_t const needed = kHeaderBytes + payload.size();
-    if (tail + needed > capacity) {
-        // Overwrites the messages that have been read, which makes room.
-        std::memmove(block, block + head, tail - head);
-        tail -= head;
-        head = 0;
+    if (tail + needed > capacity) [[unlikely]] {
+        move_to_front(block);
     }
     assert(tail + needed <= capacity);
     std::memcpy(block + tail, &header, kHeaderBytes);
@@ -32,19 +36,6 @@ void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader c
     }
     tail += static_cast<std::uint32_t>(needed);
     ++count;
-}
-
-void Mailboxes::Fifo::pop(std::byte const* block, FrameHeader& header, std::span<std::byte> payload) {
-    assert(count > 0 && head + kHeaderBytes <= tail);
-    std::memcpy(&header, block + head, kHeaderBytes);
-    std::size_t const size = std::min<std::size_t>(header.payload_length, payload.size());
-    if (size > 0) {  // payload may be null
-        std::memcpy(payload.data(), block + head + kHeaderBytes, size);
-    }
-    head += static_cast<std::uint32_t>(kHeaderBytes + header.payload_length);
-    if (--count == 0) {
-        head = tail = 0;
-    }
 }
 
 Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes)
@@ -103,16 +94,21 @@ bool operator==(Mailboxes const& a, Mailboxes const& b) {
     return true;
 }
 
-void Mailboxes::append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
+inline void Mailboxes::append(Queue& queue, std::size_t robot, FrameHeader const& header,
+                              std::span<std::byte const> payload) {
     // Once a message is in the far block, so are all later ones: messages in the near block are older.
     bool const all_near = queue.waiting == queue.near.count;
-    if (all_near && queue.near.has_room(kHeaderBytes + payload.size(), kNearBytes)) {
+    ++queue.waiting;
+    if (all_near && queue.near.has_room(kHeaderBytes + payload.size(), kNearBytes)) [[likely]] {
         queue.near.push(queue.near_block.data(), kNearBytes, header, payload);
     } else {
-        FarQueue& far = far_[robot];
-        far.fifo.push(far_blocks_.get() + far.block, far.capacity, header, payload);
+        append_far(robot, header, payload);
     }
-    ++queue.waiting;
+}
+
+void Mailboxes::append_far(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
+    FarQueue& far = far_[robot];
+    far.fifo.push(far_blocks_.get() + far.block, far.capacity, header, payload);
 }
 
 bool Mailboxes::push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
@@ -163,28 +159,13 @@ Mailboxes::Commands Mailboxes::take_commands(std::size_t robot) {
     return std::exchange(commands_[robot], {});
 }
 
-bool Mailboxes::pop(std::size_t robot, FrameHeader& header, std::span<std::byte> payload) {
-    Queue& queue = queues_[robot];
-    if (queue.waiting == 0) {
-        return false;
-    }
-    --queue.waiting;
-    if (queue.near.count > 0) {
-        queue.near.pop(queue.near_block.data(), header, payload);
-    } else {
-        FarQueue& far = far_[robot];
-        far.fifo.pop(far_blocks_.get() + far.block, header, payload);
-    }
-    return true;
-}
-
 std::array<std::span<std::byte const>, 2> Mailboxes::waiting(std::size_t robot) const {
     Queue const& queue = queues_[robot];
     FarQueue const& far = far_[robot];
     return {queue.near.bytes(queue.near_block.data()), far.fifo.bytes(far_blocks_.get() + far.block)};
 }
 
-void Mailboxes::clear(std::size_t robot) {
+void Mailboxes::remove_all(std::size_t robot) {
     queues_[robot].waiting = 0;
     queues_[robot].near = {};
     far_[robot].fifo = {};

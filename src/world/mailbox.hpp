@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -58,6 +60,12 @@ struct TransmissionQueue {
     }
 
     friend bool operator==(TransmissionQueue const&, TransmissionQueue const&) = default;
+};
+
+/// A message taken out of a mailbox. Its payload stays there, until the next message arrives.
+struct Message {
+    FrameHeader header;
+    std::span<std::byte const> payload;
 };
 
 /// Every robot's FIFO of received messages. Messages are stored contiguously in the robot's near block, a few cache
@@ -115,13 +123,28 @@ public:
     bool empty(std::size_t robot) const { return queues_[robot].waiting == 0; }
     int size(std::size_t robot) const { return static_cast<int>(queues_[robot].waiting); }
 
-    /// Removes the oldest message; `payload` gets as many of its payload_length bytes as fit. False if there is none.
-    bool pop(std::size_t robot, FrameHeader& header, std::span<std::byte> payload);
+    /// Removes the oldest message. Absent: there is none.
+    std::optional<Message> take(std::size_t robot) {
+        Queue& queue = queues_[robot];
+        if (queue.waiting == 0) {
+            return std::nullopt;
+        }
+        --queue.waiting;
+        if (queue.near.count > 0) {
+            return queue.near.take(queue.near_block.data());
+        }
+        FarQueue& far = far_[robot];
+        return far.fifo.take(far_blocks_.get() + far.block);
+    }
 
     /// Headers and payloads of the waiting messages, oldest first, in two blocks.
     std::array<std::span<std::byte const>, 2> waiting(std::size_t robot) const;
 
-    void clear(std::size_t robot);
+    void clear(std::size_t robot) {
+        if (!empty(robot)) {
+            remove_all(robot);
+        }
+    }
 
     /// Messages lost to full queues since the start.
     std::uint64_t dropped(std::size_t robot) const { return dropped_[robot]; }
@@ -138,9 +161,20 @@ private:
 
         bool has_room(std::size_t bytes, std::size_t capacity) const { return tail - head + bytes <= capacity; }
         std::span<std::byte const> bytes(std::byte const* block) const { return {block + head, block + tail}; }
+        [[gnu::noinline]] void move_to_front(std::byte* block);
         void push(std::byte* block, std::size_t capacity, FrameHeader const& header,
                   std::span<std::byte const> payload);
-        void pop(std::byte const* block, FrameHeader& header, std::span<std::byte> payload);
+        Message take(std::byte const* block) {
+            assert(count > 0 && head + sizeof(FrameHeader) <= tail);
+            Message message;
+            std::memcpy(&message.header, block + head, sizeof(FrameHeader));
+            message.payload = {block + head + sizeof(FrameHeader), message.header.payload_length};
+            head += static_cast<std::uint32_t>(sizeof(FrameHeader) + message.payload.size());
+            if (--count == 0) {
+                head = tail = 0;
+            }
+            return message;
+        }
     };
 
     static constexpr std::size_t kCacheLine = 64;
@@ -164,8 +198,10 @@ private:
 
     unsigned deliver_special(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
                              PacketKind kind, unsigned faces);
+    void remove_all(std::size_t robot);
     std::size_t far_bytes() const { return far_.empty() ? 0 : far_.back().block + far_.back().capacity; }
     void append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
+    [[gnu::noinline]] void append_far(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
 
     std::vector<Queue> queues_;
     std::vector<FarQueue> far_;

@@ -58,11 +58,6 @@ std::vector<Drive> two_wheels() {
             {.motor = 1, .forward = 1, .linear = 0.5F, .angular = 2.0F}};
 }
 
-std::uint8_t RobotModel::face_bits() const {
-    unsigned const all = (1U << kMostFaces) - 1U;
-    return static_cast<std::uint8_t>(sends_along_outline ? all : (1U << faces.size()) - 1U);
-}
-
 RobotModel head_model() {
     RobotModel model;
     model.faces = four_faces(/*at_centre=*/true);

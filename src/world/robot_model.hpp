@@ -13,6 +13,7 @@
 // Bounds here are those of the radio's header, which has two bits for a face, and of Pogolib.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -50,7 +51,7 @@ struct Part {
     Vec2 direction{};  // from the centre, unit vector; zero at the centre
     PartPlace place{};
 
-    bool is_on_rim() const { return place == PartPlace{.radii = direction}; }
+    bool is_on_rim() const { return direction != Vec2{} && place == PartPlace{.radii = direction}; }
 
     friend bool operator==(Part const&, Part const&) = default;
 };
@@ -87,7 +88,10 @@ struct RobotModel {
 
     bool has_motors() const { return !drives.empty(); }
     /// Bit d: it has face d. An outline counts as all of them.
-    std::uint8_t face_bits() const;
+    std::uint8_t face_bits() const {
+        std::size_t const count = sends_along_outline ? kMostFaces : faces.size();
+        return static_cast<std::uint8_t>((1U << count) - 1U);
+    }
 
     friend bool operator==(RobotModel const&, RobotModel const&) = default;
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -30,14 +31,13 @@ void send(World& world, std::uint32_t robot, std::vector<std::uint8_t> const& pa
 
 struct Received {
     FrameHeader header;
-    std::array<std::byte, 382> payload;
+    std::array<std::byte, kMostPayloadBytes> payload{};
 };
 
 std::vector<Received> take_all(World& world, std::uint32_t robot) {
     std::vector<Received> messages;
-    Received next{};
-    while (world.mailboxes.pop(robot, next.header, next.payload)) {
-        messages.push_back(next);
+    while (auto const message = world.mailboxes.take(robot)) {
+        std::ranges::copy(message->payload, messages.emplace_back(message->header).payload.begin());
     }
     return messages;
 }

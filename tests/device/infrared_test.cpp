@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <string_view>
@@ -19,6 +20,24 @@ constexpr std::uint8_t kLeft = 8U;
 
 std::span<std::byte const> bytes_of(std::string_view text) {
     return std::as_bytes(std::span(text));
+}
+
+TEST(Infrared, ListOfPowersHasTwoBitsForEachEmitter) {
+    World world = testing::world_with_robot();
+    for (std::uint8_t power = 0; power <= kMostIrPower; ++power) {
+        set_ir_power(world, 0, power);
+        for (std::uint8_t emitters = 0; emitters <= kAllFaces; ++emitters) {
+            std::uint8_t const list = power_list(world, 0, emitters);
+            for (unsigned face = 0; face < kMostFaces; ++face) {
+                unsigned const expected = (emitters >> face & 1U) != 0 ? power : 0U;
+                EXPECT_EQ(list >> (2 * face) & 3U, expected);
+            }
+        }
+    }
+    for (unsigned list = 0; list <= 0xFF; ++list) {
+        unsigned const highest = std::max({list & 3U, list >> 2U & 3U, list >> 4U & 3U, list >> 6U & 3U});
+        EXPECT_EQ(highest_power(static_cast<std::uint8_t>(list)), highest);
+    }
 }
 
 TEST(Infrared, LongMessageSaysWhoSendsAndAtWhatPower) {
@@ -82,12 +101,12 @@ TEST(Infrared, ReceivedMessagesAreTheOldestFirstAndCounted) {
     for (std::string_view const text : {"one", "two"}) {
         world.mailboxes.push(0, {.payload_length = 3}, bytes_of(text));
     }
-    FrameHeader header;
-    std::array<std::byte, 3> payload{};
-    ASSERT_TRUE(receive(world, 0, header, payload));
-    EXPECT_EQ(std::memcmp(payload.data(), "one", 3), 0);
-    ASSERT_TRUE(receive(world, 0, header, payload));
-    EXPECT_FALSE(receive(world, 0, header, payload));
+    for (std::string_view const text : {"one", "two"}) {
+        auto const message = receive(world, 0);
+        ASSERT_TRUE(message);
+        EXPECT_TRUE(std::ranges::equal(message->payload, bytes_of(text)));
+    }
+    EXPECT_FALSE(receive(world, 0));
     EXPECT_EQ(world.devices.messages_received[0], 2U);
 }
 

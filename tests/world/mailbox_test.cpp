@@ -8,6 +8,7 @@
 #include <cstring>
 #include <deque>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/random.hpp"
@@ -54,10 +55,10 @@ TEST(Mailbox, CopiesThatFindNoRoomAreCountedOneByOne) {
     EXPECT_FALSE(push(boxes, 0, payload_of(1, 1)));
     EXPECT_EQ(boxes.dropped(0), 6U);
     // Those that found room name their faces, lowest first.
-    FrameHeader header;
     for (int const face : {0, 2, 0}) {
-        ASSERT_TRUE(boxes.pop(0, header, {}));
-        EXPECT_EQ(header.receiver_ir_index, face);
+        auto const message = boxes.take(0);
+        ASSERT_TRUE(message);
+        EXPECT_EQ(message->header.receiver_ir_index, face);
     }
 }
 
@@ -69,16 +70,14 @@ TEST(Mailbox, GivesMessagesBackFirstInFirstOut) {
     push(boxes, 0, payload_of(0, 0));
     push(boxes, 0, payload_of(382, 3));
     EXPECT_EQ(boxes.size(0), 3);
-    FrameHeader header;
-    std::array<std::byte, kMaxPayload> payload{};
-    ASSERT_TRUE(boxes.pop(0, header, payload));
-    EXPECT_EQ(header.payload_length, 2);
-    EXPECT_EQ(payload[1], std::byte{1});
-    ASSERT_TRUE(boxes.pop(0, header, payload));
-    EXPECT_EQ(header.payload_length, 0);
-    ASSERT_TRUE(boxes.pop(0, header, payload));
-    EXPECT_EQ(payload[381], std::byte{3});
-    EXPECT_FALSE(boxes.pop(0, header, payload));
+    for (auto const& [length, value] : {std::pair(2U, 1), std::pair(0U, 0), std::pair(382U, 3)}) {
+        auto const message = boxes.take(0);
+        ASSERT_TRUE(message);
+        EXPECT_EQ(message->header.payload_length, length);
+        ASSERT_EQ(message->payload.size(), length);
+        EXPECT_TRUE(std::ranges::all_of(message->payload, [&](std::byte b) { return b == std::byte(value); }));
+    }
+    EXPECT_FALSE(boxes.take(0));
 }
 
 TEST(Mailbox, BehavesAsAPlainQueueForAnySequenceOfMessages) {
@@ -96,13 +95,10 @@ TEST(Mailbox, BehavesAsAPlainQueueForAnySequenceOfMessages) {
                 expected[robot].push_back(message);
             }
         } else {
-            FrameHeader header;
-            std::array<std::byte, kMaxPayload> payload{};
-            ASSERT_EQ(boxes.pop(robot, header, payload), !expected[robot].empty());
-            if (!expected[robot].empty()) {
-                auto const& message = expected[robot].front();
-                ASSERT_EQ(header.payload_length, message.size());
-                EXPECT_TRUE(std::equal(message.begin(), message.end(), payload.begin()));
+            auto const message = boxes.take(robot);
+            ASSERT_EQ(message.has_value(), !expected[robot].empty());
+            if (message) {
+                EXPECT_TRUE(std::ranges::equal(message->payload, expected[robot].front()));
                 expected[robot].pop_front();
             }
         }
