@@ -61,17 +61,14 @@ struct SpotSpec {
     friend bool operator==(SpotSpec const&, SpotSpec const&) = default;
 };
 
-/// A lighthouse with a rotating beam: `rotating_ray_of_light`. Its light replaces all other light.
-struct RotatingRaySpec {
-    Shape shape;                       // the area that it can light
-    Vec2 centre_mm;                    // where it stands; global and arena: from the centre of the arena's bounding box
+/// Beams that rotate, and flashes of white light. Their light replaces all other light.
+struct RaySpec {
+    Shape shape;                       // the area that they can light
+    Vec2 centre_mm;                    // of the shape; global and arena: from the centre of the arena's bounding box
     int value = 10;                    // of the beam, sensor counts
     double half_width_rad = 0.1;       // above 0 to pi
-    double angular_speed_rad_s = 3.0;  // > 0: clockwise on the screen; 0: the beam stays at angle 0
-    double white_frame_duration_s = 0.03;  // flash at the start and each time the beam is back at angle 0; it waits
+    double angular_speed_rad_s = 3.0;  // > 0: clockwise on the screen; 0: the beam stays where it is at first
     int white_frame_value = 32767;
-    double photo_start_at_s = -1.0;  // >= 0: dark until the end of the photo start, then the first flash
-    double photo_start_duration_s = 1.0;
 
     static constexpr bool kAddsUp = false;
     Vec2 start_mm() const { return centre_mm; }
@@ -80,29 +77,24 @@ struct RotatingRaySpec {
         value = scaled_level(value, intensity);
         white_frame_value = scaled_level(white_frame_value, intensity);
     }
+
+    friend bool operator==(RaySpec const&, RaySpec const&) = default;
+};
+
+/// A lighthouse in the centre, whose beam begins at angle 0: `rotating_ray_of_light`.
+struct RotatingRaySpec : RaySpec {
+    double white_frame_duration_s = 0.03;  // flash at the start and each time the beam is back at angle 0; it waits
+    double photo_start_at_s = -1.0;        // >= 0: dark until the end of the photo start, then the first flash
+    double photo_start_duration_s = 1.0;
 
     friend bool operator==(RotatingRaySpec const&, RotatingRaySpec const&) = default;
 };
 
 /// Two lighthouses in turn, each through a right angle, a flash before each: `alternating_rays_of_light`. They stand at
-/// the corners (xmin, ymax) and (xmax, ymax) of the shape's bounding box. Their light replaces all other light.
-struct AlternatingRaysSpec {
-    Shape shape;                       // what they can light
-    Vec2 centre_mm;                    // of the shape; global and arena: from the centre of the arena's bounding box
-    int value = 10;                    // of the beams, sensor counts
-    double half_width_rad = 0.1;       // above 0 to pi
-    double angular_speed_rad_s = 3.0;  // > 0: clockwise on the screen; 0: the first beam never moves
+/// the corners (xmin, ymax) and (xmax, ymax) of the shape's bounding box.
+struct AlternatingRaysSpec : RaySpec {
     double long_white_frame_duration_s = 1.0;    // before the first beam
     double short_white_frame_duration_s = 0.03;  // before the second beam
-    int white_frame_value = 32767;
-
-    static constexpr bool kAddsUp = false;
-    Vec2 start_mm() const { return centre_mm; }
-    int brightest() const { return std::max(value, white_frame_value); }
-    void scale_levels(float intensity) {
-        value = scaled_level(value, intensity);
-        white_frame_value = scaled_level(white_frame_value, intensity);
-    }
 
     friend bool operator==(AlternatingRaysSpec const&, AlternatingRaysSpec const&) = default;
 };

@@ -122,20 +122,22 @@ LampSpec random_lamp(RandomStream& random) {
     int const value = static_cast<int>(random.below(20000));
     double const speed = 6.0 * random.uniform() - 3.0;
     switch (random.below(3)) {
-        case 0:
-            return RotatingRaySpec{.shape = shape,
-                                   .centre_mm = centre,
-                                   .value = value,
-                                   .half_width_rad = 0.01 + 3.0 * random.uniform(),
-                                   .angular_speed_rad_s = speed,
-                                   .white_frame_duration_s = 0.1 * random.uniform(),
-                                   .photo_start_at_s = 4.0 * random.uniform() - 2.0};
+        case 0: {
+            RotatingRaySpec ray{{.shape = shape,
+                                 .centre_mm = centre,
+                                 .value = value,
+                                 .half_width_rad = 0.01 + 3.0 * random.uniform(),
+                                 .angular_speed_rad_s = speed}};
+            ray.white_frame_duration_s = 0.1 * random.uniform();
+            ray.photo_start_at_s = 4.0 * random.uniform() - 2.0;
+            return ray;
+        }
         case 1:
-            return AlternatingRaysSpec{.shape = shape,
-                                       .centre_mm = centre,
-                                       .value = value,
-                                       .half_width_rad = 0.01 + 3.0 * random.uniform(),
-                                       .angular_speed_rad_s = speed};
+            return AlternatingRaysSpec{{.shape = shape,
+                                        .centre_mm = centre,
+                                        .value = value,
+                                        .half_width_rad = 0.01 + 3.0 * random.uniform(),
+                                        .angular_speed_rad_s = speed}};
         default: {
             SpotSpec spot;
             spot.shape = shape;

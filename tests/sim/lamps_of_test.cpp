@@ -148,7 +148,7 @@ TEST(LampsOf, OrbitsStartAtTheirPhase) {
     EXPECT_EQ(area.shape, spot.shape);
     EXPECT_NEAR(area.centre_mm.x, 500.0F, 1e-3F);
     EXPECT_NEAR(area.centre_mm.y, 400.0F, 1e-3F);
-    EXPECT_EQ(area_at_start(RotatingRaySpec{.shape = {}, .centre_mm = {7, 8}}).centre_mm, (Vec2{7, 8}));
+    EXPECT_EQ(area_at_start(RotatingRaySpec{{.shape = {}, .centre_mm = {7, 8}}}).centre_mm, (Vec2{7, 8}));
 }
 
 TEST(LampsOf, ThereAreAsManyAsTheFileSays) {
