@@ -108,7 +108,7 @@ void call_main(int (*function)(), char** arguments) {
 
 Controllers::Controllers(ProgramImage image, World& world, RunServices& services, std::uint64_t seed,
                          std::size_t stack_bytes)
-    : image_(std::move(image)), world_(world), services_(services), chips_(world), fibers_(stack_bytes) {
+    : image_(std::move(image)), world_(world), services_(services), fibers_(stack_bytes) {
     services_.controllers = this;
     std::size_t const count = world.robots.size();
     auto const purpose = [&] {
@@ -485,9 +485,6 @@ void Controllers::begin_step() {
     if (is_restart_due_.exchange(false)) [[unlikely]] {
         restart_robots();
     }
-    for (std::uint32_t const robot : chips_.begin_step(world_, step_us_)) {
-        set_alive(world_, robot, false);
-    }
     warn_of_unreturned_calls_if_due();
     if (callback_global_step != nullptr && step_us_ >= world_.devices.clock_us[world_.device_of(kNone)]) {
         enter(kNone, Phase::global_step);
@@ -496,7 +493,6 @@ void Controllers::begin_step() {
         leave();
         without_exceptions([this] { services_.edit.settle_light(); });
     }
-    hold_switched_off(world_);
 }
 
 void Controllers::take_over(Outbox& outbox) {

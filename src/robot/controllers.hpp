@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "brain/brain.hpp"
-#include "device/step_chips.hpp"
 #include "process/fibers.hpp"
 #include "process/guarded_memory.hpp"
 #include "process/program_image.hpp"
@@ -80,8 +79,8 @@ public:
     /// How many robots this program drives: not a host, nor a script.
     std::size_t driven_count() const;
 
-    /// The part of a step before the robots: restarts, chips that work at each step, and the global step. While a robot
-    /// is switched off, only callback_export_data, callback_robot_end and callback_robot_click run.
+    /// The part of a step before the robots: restarts, and the global step. While a robot is switched off, only
+    /// callback_export_data, callback_robot_end and callback_robot_click run.
     void begin_step();
 
     /// The robots from `first` to `last` - 1 that are due. Those that share nothing may run on several threads at a
@@ -211,7 +210,6 @@ private:
     std::vector<Controller> controllers_;  // one for each robot of the world
     std::vector<RobotRange> ranges_;       // of those that the program drives, ascending
     Controller system_;                    // of the global step
-    StepChips chips_;
     GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step

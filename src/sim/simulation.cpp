@@ -16,8 +16,9 @@
 #include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
-#include "brain/script_brain.hpp"
+#include "brain/make_brains.hpp"
 #include "config/places.hpp"
+#include "device/clock.hpp"
 #include "device/switched_off.hpp"
 #include "process/source_place.hpp"
 #include "robot/program_checks.hpp"
@@ -79,59 +80,6 @@ Lighting make_lighting(Scenario const& scenario, World& world) {
     return {lamps, world};
 }
 
-bool is_driven_by_host(Category const& category) {
-    return category.spec.robot && std::holds_alternative<HostSpec>(category.spec.robot->brain);
-}
-
-/// Several entries of a configuration may have the name of one category.
-std::unique_ptr<Brain> host_brain_of_entries(World& world, std::uint32_t first, std::uint32_t last) {
-    std::string const& name = world.categories[first].name;
-    bool const has_others = std::ranges::any_of(std::span(world.categories).subspan(last), [&](Category const& other) {
-        return other.name == name && is_driven_by_host(other);
-    });
-    if (has_others) {
-        throw ConfigError(
-            fmt::format("category '{}': its entries with brain: host have others between them; put them one behind "
-                        "the other",
-                        name));
-    }
-    RobotRange const robots{.first = robots_of(world, first).first, .last = robots_of(world, last - 1).last};
-    return std::make_unique<HostBrain>(world, name, robots);
-}
-
-std::vector<std::unique_ptr<Brain>> make_brains(World& world) {
-    std::vector<std::unique_ptr<Brain>> brains;
-    auto const count = static_cast<std::uint32_t>(world.categories.size());
-    for (std::uint32_t next = 0; next < count;) {
-        std::uint32_t const first = next++;
-        Category const& category = world.categories[first];
-        if (is_driven_by_host(category)) {
-            while (next < count && world.categories[next].name == category.name &&
-                   is_driven_by_host(world.categories[next])) {
-                ++next;
-            }
-            brains.push_back(host_brain_of_entries(world, first, next));
-        } else if (category.spec.robot && std::holds_alternative<ScriptSpec>(category.spec.robot->brain)) {
-            brains.push_back(std::make_unique<ScriptBrain>(world, first));
-        }
-    }
-    return brains;
-}
-
-/// Throws ConfigError if a category needs a program.
-void check_needs_no_program(World const& world) {
-    for (std::uint32_t i = 0; i < world.categories.size(); ++i) {
-        Category const& category = world.categories[i];
-        bool const has_robots = robots_of(world, i).size() > 0;
-        if (has_robots && category.spec.robot && needs_program(category.spec.robot->brain)) {
-            throw ConfigError(
-                fmt::format("category '{}' needs a program, and none is given: name one, or say what drives its robots "
-                            "(brain: host, or a script)",
-                            category.name));
-        }
-    }
-}
-
 }  // namespace
 
 Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions options)
@@ -146,7 +94,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
                    static_cast<std::size_t>(scenario_.robot_stack_kib) * 1024),
       flash_state_(scenario_, world_),
       lighting_(make_lighting(scenario_, world_)),
-      program_(controllers_, crash_handler_, workers_),
+      chips_(world_),
       brains_(make_brains(world_)),
       workers_(thread_count(scenario_, world_)),
       physics_(make_physics(scenario_, world_, workers_)),
@@ -156,6 +104,9 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
     if (controllers_.image().main == nullptr) {
         check_needs_no_program(world_);
     }
+    auto native = std::make_unique<NativeProgram>(controllers_, crash_handler_, workers_);
+    program_ = native.get();
+    brains_.insert(brains_.begin(), std::move(native));
     services_.edit.is_free = [this](Object const& object, Vec2 place_mm) {
         return free_places().is_free(object, place_mm);
     };
@@ -398,7 +349,7 @@ std::optional<UserFailure> Simulation::start() {
     }
     if (controllers_.image().main != nullptr) {
         controllers_.warn_of_shared_variables();
-        program_.share_steps(options_.shares_nothing);
+        program_->share_steps(options_.shares_nothing);
     }
     fit_time_step();
     check_motion(scenario_, physics_->motion_limits(), world_.time_step_s);
@@ -414,11 +365,9 @@ std::optional<UserFailure> Simulation::start() {
     return failure;
 }
 
-/// The program comes first.
 std::optional<UserFailure> Simulation::call_brains(bool (Brain::*part)()) {
-    bool const all_go_on =
-        (program_.*part)() && std::ranges::all_of(brains_, [part](auto const& brain) { return (*brain.*part)(); });
-    return all_go_on ? std::nullopt : program_.failure();
+    bool const all_go_on = std::ranges::all_of(brains_, [part](auto const& brain) { return (*brain.*part)(); });
+    return all_go_on ? std::nullopt : program_->failure();
 }
 
 HostBrain* Simulation::host_brain(std::string_view category) {
@@ -435,9 +384,13 @@ std::optional<UserFailure> Simulation::step() {
     stages_.begin_step();
     lighting_.update(world_);
     stages_.end(Stage::light);
+    for (std::uint32_t const robot : chips_.begin_step(world_, time_us(world_))) {
+        pogosim::set_alive(world_, robot, false);  // its battery is empty
+    }
     if (auto failure = call_brains(&Brain::run_step)) {
         return failure;
     }
+    hold_switched_off(world_);
     stages_.end(Stage::robots);
     channel_.deliver(world_, recorder_.deliveries(), &workers_);
     stages_.end(Stage::messages);

@@ -15,6 +15,7 @@
 #include "comms/ir_channel.hpp"
 #include "config/scenario.hpp"
 #include "config/user_parameters.hpp"
+#include "device/step_chips.hpp"
 #include "light/lighting.hpp"
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
@@ -222,8 +223,9 @@ private:
     FlashState flash_state_;
     Lighting lighting_;
     IrChannel channel_;
-    NativeProgram program_;
-    std::vector<std::unique_ptr<Brain>> brains_;  // of the categories that need no program, in their order
+    StepChips chips_;
+    std::vector<std::unique_ptr<Brain>> brains_;  // the program, which comes first, then others by their categories
+    NativeProgram* program_ = nullptr;            // one of them
     WorkerPool workers_;
     std::unique_ptr<PhysicsEngine> physics_;
     SavedColumns saved_columns_;

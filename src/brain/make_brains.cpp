@@ -1,0 +1,73 @@
+#include "brain/make_brains.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "base/error.hpp"
+#include "brain/host_brain.hpp"
+#include "brain/script_brain.hpp"
+
+namespace pogosim {
+
+namespace {
+
+bool is_driven_by_host(Category const& category) {
+    return category.spec.robot && std::holds_alternative<HostSpec>(category.spec.robot->brain);
+}
+
+/// Several entries of a configuration may have the name of one category.
+std::unique_ptr<Brain> host_brain_of_entries(World& world, std::uint32_t first, std::uint32_t last) {
+    std::string const& name = world.categories[first].name;
+    bool const has_others = std::ranges::any_of(std::span(world.categories).subspan(last), [&](Category const& other) {
+        return other.name == name && is_driven_by_host(other);
+    });
+    if (has_others) {
+        throw ConfigError(
+            fmt::format("category '{}': its entries with brain: host have others between them; put them one behind "
+                        "the other",
+                        name));
+    }
+    RobotRange const robots{.first = robots_of(world, first).first, .last = robots_of(world, last - 1).last};
+    return std::make_unique<HostBrain>(world, name, robots);
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<Brain>> make_brains(World& world) {
+    std::vector<std::unique_ptr<Brain>> brains;
+    auto const count = static_cast<std::uint32_t>(world.categories.size());
+    for (std::uint32_t next = 0; next < count;) {
+        std::uint32_t const first = next++;
+        Category const& category = world.categories[first];
+        if (is_driven_by_host(category)) {
+            while (next < count && world.categories[next].name == category.name &&
+                   is_driven_by_host(world.categories[next])) {
+                ++next;
+            }
+            brains.push_back(host_brain_of_entries(world, first, next));
+        } else if (category.spec.robot && std::holds_alternative<ScriptSpec>(category.spec.robot->brain)) {
+            brains.push_back(std::make_unique<ScriptBrain>(world, first));
+        }
+    }
+    return brains;
+}
+
+void check_needs_no_program(World const& world) {
+    for (std::uint32_t i = 0; i < world.categories.size(); ++i) {
+        Category const& category = world.categories[i];
+        bool const has_robots = robots_of(world, i).size() > 0;
+        if (has_robots && category.spec.robot && needs_program(category.spec.robot->brain)) {
+            throw ConfigError(
+                fmt::format("category '{}' needs a program, and none is given: name one, or say what drives its robots "
+                            "(brain: host, or a script)",
+                            category.name));
+        }
+    }
+}
+
+}  // namespace pogosim
