@@ -130,6 +130,21 @@ def test_arrays_are_views_that_outlive_the_brain(tmp_path: Path) -> None:
     assert motors.sum() == 6 * 7  # the memory is still there
 
 
+def test_arrays_of_the_run_before_a_reset_cannot_be_written(tmp_path: Path) -> None:
+    with hosted(tmp_path, HOST) as sim:
+        brain = sim.brain("robots")
+        names = ("motors", "leds", "send_bytes", "send_length", "send_face")
+        before = [getattr(brain, name) for name in names]
+        assert brain.motors is before[0]
+        sim.reset()
+        for array in before:
+            with pytest.raises(ValueError, match="read-only"):
+                array[:] = 1
+        brain.motors[:, :2] = 1023  # those of the new run
+        sim.run(1.0)
+        assert sim.positions[0] == pytest.approx([600, 500], abs=3)
+
+
 def test_categories_of_one_run_may_have_different_brains(tmp_path: Path) -> None:
     text = """
     #include "pogobase.h"

@@ -143,6 +143,8 @@ def test_arrays_outlive_the_run(hosted: Path, scene: Path) -> None:
     gc.collect()
     assert np.array_equal(positions, copy)
     assert data["state"].tolist() == [7, 7, 7]
+    with pytest.raises(ValueError, match="read-only"):
+        data["state"] = 8
 
 
 def test_user_data_have_the_types_of_the_program(sim: pogosim.Simulation) -> None:

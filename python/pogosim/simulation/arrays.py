@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from ctypes import byref, c_double, c_void_p, string_at
 from typing import Any
 
@@ -60,6 +60,7 @@ class RunState:
         self._run = run
         self._process = os.getpid()
         self._arrays: dict[str, npt.NDArray[Any]] = {}
+        self._writable: dict[str, npt.NDArray[Any]] = {}
         self._rows_of_robots: slice | npt.NDArray[Any] | None = None
 
     @property
@@ -106,6 +107,17 @@ class RunState:
                 return found
             self._arrays[key] = found
         return self._arrays[key]
+
+    def kept_writable(self, name: str, make: Callable[[], npt.NDArray[Any]]) -> npt.NDArray[Any]:
+        """Return the writable array that `make` gave at first. `retire` finds it by this."""
+        if name not in self._writable:
+            self._writable[name] = make()
+        return self._writable[name]
+
+    def retire(self) -> None:
+        """Let writing raise, since nothing reads these arrays any more: another run begins."""
+        for array in self._writable.values():
+            array.flags.writeable = False
 
     def texts(self, name: str) -> list[str] | None:
         """Return a column of strings; None if it is one of numbers."""

@@ -23,6 +23,12 @@ class Brain:
     `motors`, `leds` and messages, and read the rest: nothing is copied. Each robot takes what is written at its next
     tick, 60 times per second of its own clock, and its sensors are those of its last tick.
 
+    Powers are integers from -1023 to 1023. NumPy cuts off fractions without a word, so a power of 0.8 becomes 0: scale
+    what is from -1 to 1, as in `brain.motors[:, :2] = np.rint(1023 * policy)`.
+
+    Arrays belong to a run: ask for them again after `Simulation.reset`. Writing to one of the run before raises
+    ValueError (of NumPy: read-only); but not to a part of it, such as `brain.motors[:, 0]`, that was kept.
+
         brain = sim.brain("robots")
         while sim.step():
             brain.motors[:, :2] = policy(brain.photosensors)
@@ -38,6 +44,11 @@ class Brain:
     def _array(self, name: str) -> npt.NDArray[Any]:
         return self._run().brain_array(self._category, name)
 
+    def _writable(self, name: str) -> npt.NDArray[Any]:
+        run = self._run()
+        array = run.brain_array(self._category, name)
+        return run.kept_writable(f"{self._category}\0{name}", lambda: writable(array))
+
     def __len__(self) -> int:
         return len(self._array("motors"))
 
@@ -47,27 +58,27 @@ class Brain:
     @property
     def motors(self) -> npt.NDArray[np.int32]:
         """Powers, -1023 to 1023, positive is forward. Shape (robots, 3): right, left, back; to be written."""
-        return writable(self._array("motors"))
+        return self._writable("motors")
 
     @property
     def leds(self) -> npt.NDArray[np.uint8]:
         """Colours of the LEDs, to be written. Shape (robots, 5, 3): head, front, right, back, left; channels."""
-        return writable(self._array("leds"))
+        return self._writable("leds")
 
     @property
     def send_bytes(self) -> npt.NDArray[np.uint8]:
         """Messages to send, in the first `send_length` bytes. Shape (robots, 382); to be written."""
-        return writable(self._array("send_bytes"))
+        return self._writable("send_bytes")
 
     @property
     def send_length(self) -> npt.NDArray[np.int32]:
         """Bytes to send, 0 to 382, -1: none; set back to -1 when they are sent. Shape (robots,); to be written."""
-        return writable(self._array("send_length"))
+        return self._writable("send_length")
 
     @property
     def send_face(self) -> npt.NDArray[np.int8]:
         """Where to: 0 front, 1 right, 2 back, 3 left, -1 in all directions. Shape (robots,); to be written."""
-        return writable(self._array("send_face"))
+        return self._writable("send_face")
 
     @property
     def photosensors(self) -> npt.NDArray[np.int16]:

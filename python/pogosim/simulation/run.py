@@ -193,7 +193,6 @@ class Simulation:
     def _open(self, seed: int | None) -> None:
         self._current.open(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
         self._seed = self.seed
-        self._user_data: tuple[RunState, npt.NDArray[Any]] | None = None
         self._parameter_values = {
             key.removeprefix("parameters."): value
             for key, value in self._settings.items()
@@ -253,7 +252,8 @@ class Simulation:
     def reset(self, seed: int | None = None) -> None:
         """Start again with a freshly loaded program, whose variables are reset, and the parameters set so far.
 
-        Other threads that look at the simulation meanwhile see the end of the run before.
+        Arrays that were kept (`user_data`, those of a `Brain`) belong to the run before: writing to them raises
+        ValueError, so ask for them again. Other threads that look at the simulation meanwhile see the end of that run.
 
         Args:
             seed: Seed of the new run; None: that of this one.
@@ -265,6 +265,7 @@ class Simulation:
                 raise SimulationError(CLOSED)
             try:
                 if self._current.run is not None:
+                    self._current.run.retire()
                     self._end()
                 self._open(self._seed if seed is None else seed)
             except BaseException:
@@ -282,7 +283,6 @@ class Simulation:
                 if self._current.run is not None:
                     self._end()
             finally:
-                self._user_data = None
                 self._current.clean_up()
                 self._finish.cancel()
 
@@ -456,13 +456,15 @@ class Simulation:
         Raises:
             SimulationError: The program has no user data, or was compiled without `-g`.
         """
-        run, known = self._run, self._user_data
-        if known is None or known[0] is not run:
-            if self.program is None:
-                raise SimulationError("the simulation has no program, and so no user data")
-            kind = user_data_type(self.program, int(run.number("user_data_bytes")))
-            self._user_data = known = (run, writable(run.array("robots.user_data")).view(kind))
-        return known[1]
+        run, program = self._run, self.program
+        if program is None:
+            raise SimulationError("the simulation has no program, and so no user data")
+
+        def typed() -> npt.NDArray[Any]:
+            kind = user_data_type(program, int(run.number("user_data_bytes")))
+            return writable(run.array("robots.user_data")).view(kind)
+
+        return run.kept_writable("user_data", typed)
 
     def brain(self, category: str) -> Brain:
         """Return the arrays that drive the robots of a category whose configuration says `brain: host`, see `Brain`.
