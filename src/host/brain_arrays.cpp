@@ -1,9 +1,12 @@
 // The arrays that drive the robots of a category, where they are.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.hpp"
 #include "brain/host_brain.hpp"
@@ -46,17 +49,31 @@ constexpr std::array kArrays{
     NamedArray{"received_bytes", [](HostBrain& b) { return bytes(b.received_bytes()); }},
 };
 
+/// Categories with such a brain, each once, as a message names them.
+std::string categories_of_host(pogosim_run& run) {
+    std::vector<std::string> names;
+    for (Category const& category : run.simulation().world().categories) {
+        bool const is_known = std::ranges::find(names, category.name) != names.end();
+        if (!is_known && run.simulation().host_brain(category.name) != nullptr) {
+            names.push_back(category.name);
+        }
+    }
+    return names.empty() ? "no category has 'brain: host'" : fmt::format("a host drives {}", fmt::join(names, ", "));
+}
+
 /// Throws ConfigError.
 HostBrain& brain_of(pogosim_run& run, std::string_view category) {
     if (HostBrain* const found = run.simulation().host_brain(category)) {
         return *found;
     }
-    bool const is_known = std::ranges::find(run.simulation().world().categories, category, &Category::name) !=
-                          run.simulation().world().categories.end();
-    throw ConfigError(is_known ? fmt::format("category '{}' is not driven by the host: its configuration needs "
-                                             "'brain: host'",
-                                             category)
-                               : fmt::format("there is no category '{}'", shown(category)));
+    World const& world = run.simulation().world();
+    bool const is_known = std::ranges::find(world.categories, category, &Category::name) != world.categories.end();
+    throw ConfigError(
+        is_known ? fmt::format("category '{}' is not driven by the host: its configuration needs 'brain: host'; {}",
+                               category, categories_of_host(run))
+                 : fmt::format("there is no category '{}'{}; {}", shown(category),
+                               world.periodic ? ": a periodic arena has no walls, so a pogowall is not created" : "",
+                               categories_of_host(run)));
 }
 
 }  // namespace

@@ -261,11 +261,19 @@ def test_mistakes_are_told(tmp_path: Path) -> None:
     strong = {"script": [{"time_s": 0, "motors": [5000, 0, 0]}]}
     assert "from -1023 to 1023" in error_of(tmp_path, {**ALONE, brain: strong})
     for settings, category, message in (
-        (HOST, "robot", "there is no category 'robot'"),
-        ({**ALONE, brain: {"script": []}}, "robots", "is not driven by the host"),
+        (HOST, "robot", "there is no category 'robot'; a host drives robots$"),
+        ({**ALONE, brain: {"script": []}}, "robots", "is not driven by the host: .*; no category has 'brain: host'$"),
     ):
         with hosted(tmp_path, settings) as sim, pytest.raises(pogosim.ConfigurationError, match=message):
             sim.brain(category)
+
+
+def test_walls_that_a_periodic_arena_leaves_out_have_no_brain(tmp_path: Path) -> None:
+    walls = {"type": "pogowall", "geometry": "arena", "brain": "host"}
+    with hosted(tmp_path, {**HOST, "boundary_condition": "periodic", "objects.walls": walls}) as sim:
+        message = "there is no category 'walls': a periodic arena has no walls, .*; a host drives robots$"
+        with pytest.raises(pogosim.ConfigurationError, match=message):
+            sim.brain("walls")
 
 
 def test_command_line_has_no_host(program: Compile, tmp_path: Path) -> None:
