@@ -1,15 +1,20 @@
 #include "config/brain_keys.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/counted.hpp"
+#include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "config/find_file.hpp"
 #include "config/shape_keys.hpp"
@@ -23,6 +28,8 @@ constexpr std::string_view kBrain = "program, host, or {script: FILE}";
 constexpr std::string_view kScript = "the name of a file with a list `script`, or that list";
 constexpr std::string_view kMotors = "a list of three powers, right, left and back, from -1023 to 1023";
 constexpr std::string_view kLed = "a list of red, green and blue, from 0 to 255";
+
+constexpr double kFullPower = 1023.0;
 
 using Entry = ScriptSpec::Entry;
 
@@ -54,16 +61,47 @@ std::array<int, 3> read_three(MapReader& reader, std::string_view key, Range con
     return values;
 }
 
+/// Powers that are meant as shares of full power would let the robot stand still.
+void look_for_shares(Place const& motors) {
+    std::vector<long> scaled;
+    bool are_whole = true;
+    if (motors.node.items.size() != kMotorCount) {
+        return;
+    }
+    for (Node const& item : motors.node.items) {
+        std::optional<double> const power = number_of(item);
+        if (!power || std::abs(*power) > 1.0) {
+            return;
+        }
+        scaled.push_back(std::lround(*power * kFullPower));
+        are_whole = are_whole && std::trunc(*power) == *power;
+    }
+    if (std::ranges::all_of(scaled, [](long power) { return power == 0; })) {
+        return;
+    }
+    std::string const hint = fmt::format("powers are from -1023 to 1023; if you meant shares of full power, write [{}]",
+                                         fmt::join(scaled, ", "));
+    if (!are_whole) {
+        fail_at(motors, hint);
+    }
+    log().warn("{}: {}: {}", motors.node.where(), shown(motors.path), hint);
+}
+
 Entry read_entry(MapReader& reader) {
     Entry entry;
     reader.read(entry_keys(), entry);
-    if (reader.find("motors") != nullptr) {
+    if (Node const* const motors = reader.find("motors")) {
+        look_for_shares({*motors, reader.path_of("motors")});
         std::ranges::copy(read_three(reader, "motors", between(-1023, 1023), kMotors), entry.motors.begin());
     }
     if (reader.find("led") != nullptr) {
         auto const [red, green, blue] = read_three(reader, "led", between(0, 255), kLed);
         entry.led =
             Rgb{static_cast<std::uint8_t>(red), static_cast<std::uint8_t>(green), static_cast<std::uint8_t>(blue)};
+    }
+    if (reader.find("led_id") != nullptr && !entry.led) {
+        reader.refuse("led_id",
+                      "says which LED `led` colours, and there is no `led`; add one, such as led: [0, 255, 0]");
     }
     if (entry.message.size() > kMostPayloadBytes) {
         fail_at({*reader.find("message"), reader.path_of("message")},
@@ -161,9 +199,12 @@ BrainSpec read_brain(MapReader& robot, RobotModel const& model) {
         return HostSpec();
     }
     if (node->kind != Node::Kind::map) {
+        bool const is_file = node->scalar.ends_with(".yaml") || node->scalar.ends_with(".yml");
+        std::string const hint = is_file
+                                     ? fmt::format("; did you mean brain: {{script: {}}}?", shown(node->scalar))
+                                     : did_you_mean(shown(node->scalar), std::vector<std::string>{"program", "host"});
         fail_at({*node, robot.path_of("brain")},
-                fmt::format("expected {}, found {}{}", kBrain, found_text(*node),
-                            did_you_mean(shown(node->scalar), std::vector<std::string>{"program", "host"})));
+                fmt::format("expected {}, found {}{}", kBrain, found_text(*node), hint));
     }
     ScriptSpec script = read_script(robot, *node);
     check_leds(script, model, {*node, robot.path_of("brain")});

@@ -229,6 +229,26 @@ void check_light_levels(Scenario const& scenario) {
     }
 }
 
+/// Warns of robots that would never do anything.
+void check_scripts(Scenario const& scenario) {
+    for (ObjectConfig const& object : scenario.objects) {
+        auto const* const script = object.spec.robot ? std::get_if<ScriptSpec>(&object.spec.robot->brain) : nullptr;
+        if (script == nullptr || object.nb == 0) {
+            continue;
+        }
+        if (script->entries.empty()) {
+            log().warn("{}: objects.{}.brain: the script is empty, so these robots do nothing", object.line,
+                       shown(object.category));
+        } else if (script->entries.front().time_s >= scenario.simulation_time_s) {
+            log().warn(
+                "{}: objects.{}.brain: the script begins at {} s, after the end of the run (simulation_time: {}), "
+                "so these robots do nothing",
+                object.line, shown(object.category), number_text(script->entries.front().time_s),
+                number_text(scenario.simulation_time_s));
+        }
+    }
+}
+
 void check_formation(Scenario const& scenario) {
     constexpr std::array<std::string_view, 3> kArena{"arena", "null", ""};
     std::string const& root = scenario.formation.root_object;
@@ -262,6 +282,7 @@ void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& r
         collect([&] { check_object_count(scenario); });
         collect([&] { check_recorded_categories(scenario); });
         collect([&] { check_light_levels(scenario); });
+        collect([&] { check_scripts(scenario); });
     }
     collect([&] { check_file_names(scenario); });
     collect([&] { check_frames_name(scenario); });

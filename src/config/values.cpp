@@ -220,8 +220,10 @@ void fail_expected(Place const& place, std::string_view expected) {
     if (is_open_option(place.node)) {
         fail_at(place, place.node.scalar);
     }
-    bool const takes_list = expected.starts_with('[');
-    fail_at(place, fmt::format("expected {}, found {}{}", expected, found_text(place.node),
+    bool const is_list = place.node.kind == Node::Kind::sequence;
+    bool const takes_list = expected.starts_with('[') || (is_list && expected.starts_with("a list"));
+    std::string const length = is_list && takes_list ? fmt::format(" of {}", place.node.items.size()) : "";
+    fail_at(place, fmt::format("expected {}, found {}{}{}", expected, found_text(place.node), length,
                                takes_list ? "" : option_hint(place.node)));
 }
 

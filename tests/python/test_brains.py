@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
+import logging
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -266,6 +268,39 @@ def test_mistakes_are_told(tmp_path: Path) -> None:
     ):
         with hosted(tmp_path, settings) as sim, pytest.raises(pogosim.ConfigurationError, match=message):
             sim.brain(category)
+
+
+@pytest.mark.parametrize(
+    ("brain", "message"),
+    [
+        ("dance.yaml", r"found 'dance.yaml'; did you mean brain: {script: dance.yaml}\?"),
+        ({"time_s": 0, "motors": [5, 5]}, "motors: expected a list of three powers, .*, found a list of 2$"),
+        ({"time_s": 0, "led": [5, 5, 5, 5]}, "led: expected a list of red, .*, found a list of 4$"),
+        ({"time_s": 0, "motors": [0.5, -1, 0]}, r"if you meant shares of full power, write \[512, -1023, 0\]"),
+        ({"time_s": 0, "led_id": 2}, "led_id: says which LED `led` colours, and there is no `led`; add one"),
+    ],
+)
+def test_mistakes_in_scripts_are_told(tmp_path: Path, brain: object, message: str) -> None:
+    script = brain if isinstance(brain, str) else {"script": [brain]}
+    assert re.search(message, error_of(tmp_path, {**ALONE, "objects.robots.brain": script}))
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ([], r": objects\.robots\.brain: the script is empty, so these robots do nothing"),
+        ([{"time_s": 10, "motors": [9, 9, 0]}], r"the script begins at 10 s, after the end .* \(simulation_time: 10\)"),
+        ([{"time_s": 0, "motors": [1, 1, 0]}], r"if you meant shares of full power, write \[1023, 1023, 0\]"),
+        ([{"time_s": 9, "motors": [2, 1, 0]}, {"time_s": 11, "motors": [0, 0, 0]}], None),
+    ],
+)
+def test_script_that_does_nothing_is_warned_of(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, entries: list[Any], message: str | None
+) -> None:
+    with hosted(tmp_path, {**ALONE, "objects.robots.brain": {"script": entries}}):
+        texts = [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
+    assert bool(texts) == (message is not None)
+    assert message is None or re.search(message, "".join(texts))
 
 
 def test_walls_that_a_periodic_arena_leaves_out_have_no_brain(tmp_path: Path) -> None:

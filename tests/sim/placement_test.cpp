@@ -174,7 +174,7 @@ TEST(Placement, SaysWhatIsWrongWhere) {
         {"angle: 1", ".angle: angle without x and y; it is the heading of objects placed at x and y"},
         {"nb: 3, poses: [[1, 2]]", ".nb: expected 1, the number of poses, found 3; nb may be omitted"},
         {"poses: []", ".poses: the list is empty; specify one pose per object, or omit the key"},
-        {"poses: [[500, 500], [1]]", ".poses.1: expected [x, y] or [x, y, angle] (mm, rad), found a list"},
+        {"poses: [[500, 500], [1]]", ".poses.1: expected [x, y] or [x, y, angle] (mm, rad), found a list of 1"},
         {"poses: [[500, 5000]]",
          ".poses: (500, 5000) is outside the arena, which extends from (0.0, 0.0) to (1000.0, 1000.0) mm"},
         {"x: 1, y: 2, poses: [[1, 2]]", ".poses: cannot be combined with 'x'; use one or the other"},
