@@ -19,6 +19,22 @@ bool is_misspelling(std::string_view typed, std::string_view name, std::size_t d
     return distance <= kMostLetters && 3 * distance <= std::min(typed.size(), name.size());
 }
 
+/// The only one that is what was typed and a unit, such as angle_deg for angle; empty: there is none.
+std::string name_with_unit(std::string_view typed, std::span<std::string const> known) {
+    constexpr std::size_t kLongestUnit = 6;  // "_rad_s"
+    std::string found;
+    for (std::string const& name : known) {
+        bool const begins = !typed.empty() && name.starts_with(typed) && name.substr(typed.size()).starts_with('_');
+        if (begins && name.size() - typed.size() <= kLongestUnit) {
+            if (!found.empty()) {
+                return "";
+            }
+            found = name;
+        }
+    }
+    return found;
+}
+
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -50,7 +66,10 @@ std::string nearest_name(std::string_view typed, std::span<std::string const> kn
 }
 
 std::string did_you_mean(std::string_view typed, std::span<std::string const> known) {
-    std::string const nearest = nearest_name(typed, known);
+    std::string nearest = nearest_name(typed, known);
+    if (nearest.empty()) {
+        nearest = name_with_unit(typed, known);
+    }
     return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
 }
 

@@ -14,7 +14,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// change at most, and a third of the shorter name.
 std::string nearest_name(std::string_view typed, std::span<std::string const> known);
 
-/// "; did you mean 'x'?", or an empty string when nothing is close enough.
+/// "; did you mean 'x'?", also for a name without its unit (`angle`: `angle_deg`); empty when nothing is close enough.
 std::string did_you_mean(std::string_view typed, std::span<std::string const> known);
 
 }  // namespace pogosim

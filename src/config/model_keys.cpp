@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "config/shape_keys.hpp"
 
@@ -263,6 +264,34 @@ void refuse_parts_of_outline(MapReader const& reader, RobotModel const& model) {
     }
 }
 
+/// Notes angles that are probably in radians: nearly all of those have a fraction, and few angles in degrees do.
+void look_for_radians(MapReader const& reader, UnitSlips& slips) {
+    constexpr double kFullTurnRad = 6.3;
+    for (char const* const key : {"angle_deg", "emission_deg", "reception_deg"}) {
+        Node const* const node = reader.find(key);
+        std::optional<double> const angle = node == nullptr ? std::nullopt : number_of(*node);
+        if (angle && std::trunc(*angle) != *angle) {
+            slips.look_at({*node, reader.path_of(key)}, {kDegrees.usually_from(kFullTurnRad), "degrees"});
+        }
+    }
+}
+
+/// Such as faces whose angles were forgotten.
+void refuse_equal_faces(MapReader const& reader, std::vector<Face> const& faces) {
+    Node const* const list = reader.find("faces");
+    for (std::size_t i = 1; list != nullptr && i < faces.size(); ++i) {
+        auto const is_equal = [&face = faces[i]](Face const& other) {
+            return other.normal == face.normal && other.place == face.place;
+        };
+        auto const end = faces.begin() + static_cast<std::ptrdiff_t>(i);
+        if (auto const equal = std::find_if(faces.begin(), end, is_equal); equal != end) {
+            fail_at({list->items[i], fmt::format("{}.{}", reader.path_of("faces"), i)},
+                    fmt::format("is where face {} is, and looks the same way; give it an `angle_deg` of its own",
+                                equal - faces.begin()));
+        }
+    }
+}
+
 template <class T>
 std::vector<KeyDescription> described(std::span<Key<T> const> keys, T const& defaults) {
     std::vector<KeyDescription> descriptions;
@@ -277,10 +306,23 @@ void read_model(MapReader& reader, RobotSpec& robot) {
     RobotModel& model = robot.model;
     reader.read(part_keys(), robot);
     reader.collect([&] { refuse_parts_of_outline(reader, model); });
-    reader.collect([&] { read_list(reader, "faces", kFaces, 1, kMostFaces, model.faces, read_face); });
-    reader.collect([&] { read_list(reader, "leds", kLeds, 0, kLedCount, model.leds, read_part); });
+    UnitSlips radians;
+    auto const face = [&](MapReader& map) {
+        look_for_radians(map, radians);
+        return read_face(map);
+    };
+    auto const part = [&](MapReader& map) {
+        look_for_radians(map, radians);
+        return read_part(map);
+    };
+    reader.collect([&] {
+        read_list(reader, "faces", kFaces, 1, kMostFaces, model.faces, face);
+        refuse_equal_faces(reader, model.faces);
+    });
+    reader.collect([&] { read_list(reader, "leds", kLeds, 0, kLedCount, model.leds, part); });
     reader.collect(
-        [&] { read_list(reader, "light_sensors", kSensors, 0, kPhotosensorCount, model.light_sensors, read_part); });
+        [&] { read_list(reader, "light_sensors", kSensors, 0, kPhotosensorCount, model.light_sensors, part); });
+    radians.warn();
     reader.collect([&] { read_motors(reader, robot); });
     WrittenFlash flash{};
     reader.read(flash_keys(), flash);
@@ -291,6 +333,26 @@ void read_model(MapReader& reader, RobotSpec& robot) {
         model.clock_hz = static_cast<std::uint32_t>(processor.clock_hz);
         model.memory_bytes = static_cast<std::uint32_t>(processor.memory_bytes);
     });
+}
+
+void warn_of_parts_outside(MapReader const& reader, RobotModel const& model, float radius_mm) {
+    constexpr float kRounded = 1.01F;  // places on the rim, as they are written
+    if (model.sends_along_outline) {
+        return;
+    }
+    auto const look = [&](char const* key, auto const& parts) {
+        Node const* const list = reader.find(key);
+        for (std::size_t i = 0; list != nullptr && i < parts.size(); ++i) {
+            if (float const distance_mm = length(parts[i].place.offset_mm); distance_mm > kRounded * radius_mm) {
+                log().warn(
+                    "{}: {}.{}.place: is {:.4g} mm from the centre, outside of the body, whose radius is {:.4g} mm",
+                    list->items[i].where(), reader.path_of(key), i, distance_mm, radius_mm);
+            }
+        }
+    };
+    look("faces", model.faces);
+    look("leds", model.leds);
+    look("light_sensors", model.light_sensors);
 }
 
 std::vector<ModelTable> model_tables() {

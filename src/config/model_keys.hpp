@@ -14,6 +14,9 @@ namespace pogosim {
 /// defaults in all others.
 void read_model(MapReader& reader, RobotSpec& robot);
 
+/// Warns of places [x, y] beyond the bounding circle of the body, once these robots' shape is known.
+void warn_of_parts_outside(MapReader const& reader, RobotModel const& model, float radius_mm);
+
 /// The tables of the maps in a model, for the configuration reference.
 struct ModelTable {
     std::string_view name;

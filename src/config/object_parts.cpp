@@ -230,6 +230,7 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model
     RobotSpec& robot = object.spec.robot.emplace();
     robot.model = model;
     read_model(reader, robot);
+    warn_of_parts_outside(reader, robot.model, bounding_radius(object.spec.shape));
     reader.read(robot_keys(), robot);
     reader.read(sensor_model_keys(), robot.sensors);
     reader.read(sensor_keys(), robot.sensors);

@@ -29,6 +29,14 @@ TEST(NearestName, IsEmptyWhenNothingIsClose) {
     EXPECT_EQ(nearest_name("b", known), "");
 }
 
+TEST(DidYouMean, NamesTheOneWhoseUnitIsMissing) {
+    std::array<std::string, 4> const known{"angle_deg", "linear_mm_s", "wall_mm", "wall_deg"};
+    EXPECT_EQ(did_you_mean("angle", known), "; did you mean 'angle_deg'?");
+    EXPECT_EQ(did_you_mean("linear", known), "; did you mean 'linear_mm_s'?");
+    EXPECT_EQ(did_you_mean("wall", known), "");
+    EXPECT_EQ(did_you_mean("", known), "");
+}
+
 TEST(NearestName, IsNotALongNameInWhichAWordIsAnother) {
     std::array<std::string, 2> const known{"turn_duration_ms", "body_linear_damping"};
     EXPECT_EQ(nearest_name("run_duration_min", known), "");

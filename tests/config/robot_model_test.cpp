@@ -203,6 +203,37 @@ TEST(RobotModel, WrongPartsAreRefused) {
               std::string::npos);
 }
 
+TEST(RobotModel, FacesWhoseAnglesWereForgottenAreRefused) {
+    std::string const text = "is where face 0 is, and looks the same way; give it an `angle_deg` of its own";
+    EXPECT_EQ(error_in("    faces: [{}, {}]\n"), "x.yaml:6: objects.robots.faces.1: " + text);
+    EXPECT_EQ(error_in("    faces: [{angle_deg: 0}, {angle_deg: 90}, {angle_deg: 360}]\n"),
+              "x.yaml:6: objects.robots.faces.2: " + text);
+    EXPECT_EQ(robot("    faces: [{place: [9, 5]}, {place: [9, -5]}]\n").model.faces.size(), 2U);
+    EXPECT_EQ(robot("    faces: [{place: centre}, {place: centre, angle_deg: 90}]\n").model.faces.size(), 2U);
+    Warnings const warnings;
+    robot("    leds: [{angle: 90}]\n");
+    EXPECT_EQ(warnings.text(),
+              "x.yaml:6: unknown key 'objects.robots.leds.0.angle' is ignored; did you mean 'angle_deg'?\n");
+}
+
+TEST(RobotModel, AnglesInRadiansAreTold) {
+    Warnings const warnings;
+    robot("    faces: [{angle_deg: 0}, {angle_deg: 1.5708}, {angle_deg: 3.14159, reception_deg: 2.1}]\n");
+    EXPECT_EQ(warnings.text(),
+              "x.yaml:6: objects.robots.faces.1.angle_deg: 1.5708 degrees is unusually small, like 2 other numbers of "
+              "this list; if you meant radians, write 90.0002\n");
+    robot("    faces: [{angle_deg: 0}, {angle_deg: 5}, {angle_deg: 22.5}]\n");
+    EXPECT_EQ(warnings.lines().size(), 1U);
+}
+
+TEST(RobotModel, PartsOutsideOfTheBodyAreTold) {
+    Warnings const warnings;
+    robot("    leds: [{place: [18.75, 18.75]}, {place: [40, 30]}, {angle_deg: 90}]\n");
+    EXPECT_EQ(warnings.text(),
+              "x.yaml:6: objects.robots.leds.1.place: is 50 mm from the centre, outside of the body, whose radius is "
+              "26.5 mm\n");
+}
+
 TEST(RobotModel, WithoutItsKeysNothingIsAddedToTheRunsConfiguration) {
     Scenario const scenario = load(kRobots);
     Node const& values = scenario.source->values;

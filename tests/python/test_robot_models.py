@@ -124,6 +124,7 @@ def test_light_is_read_where_the_sensors_are(parts: Path, tmp_path: Path) -> Non
     settings = {
         "objects.lamp": lamp,
         "objects.robots.robot_model": model_file(tmp_path, sensors),
+        "objects.robots.radius": 200,
         "light_map_nb_bin_x": 200,
         "light_map_nb_bin_y": 200,
     }
