@@ -355,6 +355,24 @@ void warn_of_parts_outside(MapReader const& reader, RobotModel const& model, flo
     look("light_sensors", model.light_sensors);
 }
 
+void tell_of_turns(MapReader const& reader, RobotSpec const& robot, float of_motors_rad_s) {
+    Node const* const motors = reader.find("motors");
+    Node const* const key = reader.find("max_angular_speed");
+    constexpr float kTurns = 4.0F;  // of two_wheels(): both against each other
+    float const chosen_rad_s = robot.max_angular_speed_rad_s;
+    if (motors == nullptr || key == nullptr || !robot.model.has_motors() || chosen_rad_s == of_motors_rad_s) {
+        return;
+    }
+    // An old configuration that takes a model gets a new meaning unawares, but not one that has written both.
+    auto const level = motors->source == key->source ? spdlog::level::info : spdlog::level::warn;
+    log().log(
+        level,
+        "{}: {}: with `motors` ({}), this is the fastest turn, {:.4g} rad/s; without them, it would be {:.4g} rad/s. "
+        "Remove it to turn as fast as the motors say, {:.4g} rad/s",
+        key->where(), reader.path_of("max_angular_speed"), motors->where(), chosen_rad_s, kTurns * chosen_rad_s,
+        of_motors_rad_s);
+}
+
 std::vector<ModelTable> model_tables() {
     std::vector<KeyDescription> face = described(place_keys(), WrittenPart());
     std::ranges::copy(described(aperture_keys(), WrittenPart()), std::back_inserter(face));

@@ -231,7 +231,9 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model
     robot.model = model;
     read_model(reader, robot);
     warn_of_parts_outside(reader, robot.model, bounding_radius(object.spec.shape));
+    float const fastest_turn_rad_s = robot.max_angular_speed_rad_s;
     reader.read(robot_keys(), robot);
+    tell_of_turns(reader, robot, fastest_turn_rad_s);
     reader.read(sensor_model_keys(), robot.sensors);
     reader.read(sensor_keys(), robot.sensors);
     reader.read(brain_keys(), robot);

@@ -234,6 +234,22 @@ TEST(RobotModel, PartsOutsideOfTheBodyAreTold) {
               "26.5 mm\n");
 }
 
+TEST(RobotModel, SpeedOfTheCategoryIsToldWhatItMeansWithTheMotorsOfAFile) {
+    Warnings const warnings;
+    robot("    motors: {left: {angular_rad_s: 2}}\n    max_angular_speed: 1\n");  // both are written there
+    Folder const folder;
+    Folder::write("m.yaml", "motors: {left: {angular_rad_s: 2}, right: {angular_rad_s: -2}}\n");
+    Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml}\n");
+    load_scenario("x.yaml", {});
+    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=4"}});  // the same as the motors say
+    load_scenario("x.yaml", {.overrides = {"objects.robots.max_linear_speed=40"}});  // means what it has always meant
+    EXPECT_EQ(warnings.text(), "");
+    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=2"}});
+    EXPECT_EQ(warnings.text(),
+              "--set: objects.robots.max_angular_speed: with `motors` (m.yaml:1), this is the fastest turn, 2 rad/s; "
+              "without them, it would be 8 rad/s. Remove it to turn as fast as the motors say, 4 rad/s\n");
+}
+
 TEST(RobotModel, WithoutItsKeysNothingIsAddedToTheRunsConfiguration) {
     Scenario const scenario = load(kRobots);
     Node const& values = scenario.source->values;
