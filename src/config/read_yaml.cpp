@@ -142,8 +142,8 @@ Node parse_yaml(std::string const& text, std::string const& source) {
 Node read_yaml_file(std::string const& path) {
     Node root = parse_yaml(read_text(path), path);
     if (root.kind == Node::Kind::null) {
-        throw ConfigError(
-            fmt::format("{}: the file is empty; a configuration is a map of keys, with at least 'objects'", path));
+        throw ConfigError(fmt::format(
+            "{}: the file is empty; expected a map of keys, in a configuration with at least 'objects'", path));
     }
     if (root.kind != Node::Kind::map) {
         throw ConfigError(

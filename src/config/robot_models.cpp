@@ -39,6 +39,10 @@ std::filesystem::path path_of_model(Place const& place, std::filesystem::path co
 
 Node read_model_file(std::string const& path) {
     Node model = read_yaml_file(path);
+    if (Node const* const other = model.find(kKey)) {
+        fail_at({*other, std::string(kKey)},
+                "a robot model cannot name another one; copy the keys of that one into this file");
+    }
     for (auto const& [key, value] : model.entries) {
         if (std::ranges::find(kNotOfModels, key) != kNotOfModels.end()) {
             fail_at({value, key},

@@ -106,7 +106,7 @@ TEST(ReadYaml, EndlessFileIsNoConfiguration) {
 TEST(ReadYaml, EmptyFileSaysWhatIsNeeded) {
     for (char const* text : {"", "\n\n", "# nothing\n", "---\n", "~\n"}) {
         EXPECT_EQ(read_error(text),
-                  "x.yaml: the file is empty; a configuration is a map of keys, with at least 'objects'")
+                  "x.yaml: the file is empty; expected a map of keys, in a configuration with at least 'objects'")
             << text;
     }
 }

@@ -165,6 +165,8 @@ TEST(RobotModel, MistakesNameTheFileAndTheLineOfTheModel) {
     EXPECT_EQ(error("type: pogobot\n"),
               "m.yaml:1: type: a robot model says what robots have, not which there are or where; move this key into "
               "the category that names the model");
+    EXPECT_EQ(error("robot_model: other.yaml\n"),
+              "m.yaml:1: robot_model: a robot model cannot name another one; copy the keys of that one into this file");
     EXPECT_NE(error("faces: [").find("m.yaml"), std::string::npos);
     std::filesystem::remove("m.yaml");
     EXPECT_EQ(error_of([] { load_scenario("x.yaml", {}); })
