@@ -1,6 +1,7 @@
 // What main() of an executable does: one run of its program, as the command line says.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -146,6 +147,19 @@ void check_needs_no_host(Scenario const& scenario) {
     }
 }
 
+/// A program that has nothing to do was perhaps to do something.
+void tell_of_idle_program(Scenario const& scenario) {
+    auto const& objects = scenario.objects;
+    bool const has_robots =
+        std::ranges::any_of(objects, [](ObjectConfig const& object) { return object.spec.robot && object.nb > 0; });
+    bool const is_idle = std::ranges::none_of(objects, [](ObjectConfig const& object) {
+        return object.spec.robot && object.nb > 0 && needs_program(object.spec.robot->brain);
+    });
+    if (has_robots && is_idle) {
+        log().info("no category needs the program: all robots follow scripts (brain: {script: ...})");
+    }
+}
+
 /// --check-config.
 Ended check(pogosim_program const& program, CommandLine const& options) {
     start_logging(logging_of(options));
@@ -197,6 +211,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     if (restarted) {
         log().info("restarted with seed {}", restarted->seed);
     }
+    tell_of_idle_program(scenario);
     bool const window = scenario.view.gui && !options.no_gui;
     RunOptions run_options{.progress_bar = options.progress_bar,
                            .measure_stages = false,

@@ -303,6 +303,15 @@ def test_script_that_does_nothing_is_warned_of(
     assert message is None or re.search(message, "".join(texts))
 
 
+def test_program_that_no_category_needs_is_told(program: Compile, tmp_path: Path) -> None:
+    idle = "no category needs the program: all robots follow scripts"
+    script = {"script": [{"time_s": 0, "motors": [9, 9, 0]}]}
+    settings = {**ALONE, "simulation_time": 0.1, "objects.robots.brain": script}
+    assert run(program("sample.c"), tmp_path, settings).text.count(f"{idle} (brain: {{script: ...}})\n") == 1
+    driven = {"type": "pogobot", "nb": 1}
+    assert idle not in run(program("sample.c"), tmp_path, {**settings, "objects.driven": driven}).text
+
+
 def test_walls_that_a_periodic_arena_leaves_out_have_no_brain(tmp_path: Path) -> None:
     walls = {"type": "pogowall", "geometry": "arena", "brain": "host"}
     with hosted(tmp_path, {**HOST, "boundary_condition": "periodic", "objects.walls": walls}) as sim:

@@ -207,13 +207,23 @@ def test_run_warns_of_shared_variables_and_gives_the_exit_code(tmp_path: Path) -
     ("arguments", "said"),
     [
         (["nothing"], "there is no project, source file or program nothing"),
-        ([], ". is not a project: it has no Makefile (pogosim new NAME makes a project)"),
+        (["folder"], "folder is not a project: it has no Makefile (pogosim new NAME makes a project)"),
         (["text"], "text is neither a folder, a .c or .cpp file, nor a program"),
     ],
 )
 def test_what_cannot_be_run_is_one_line(arguments: list[str], said: str, tmp_path: Path) -> None:
     (tmp_path / "text").write_text("some text")
+    (tmp_path / "folder").mkdir()
     assert refusal(command(tmp_path, "run", *arguments)) == f"pogosim run: {said}"
+
+
+@pytest.mark.parametrize("arguments", [(), ("-c", "conf.yaml")])
+def test_run_without_a_program_says_how_to_name_one(arguments: tuple[str, ...], tmp_path: Path) -> None:
+    said = refusal(command(tmp_path, "run", *arguments))
+    assert said.startswith(
+        "pogosim run: no program is named, and this folder is not a project: it has no Makefile. Name"
+    )
+    assert said.endswith("(brain: host, or a script) runs in Python: pogosim.Simulation(None, CONFIG)")
 
 
 def test_missing_compiler_is_one_line(tmp_path: Path) -> None:

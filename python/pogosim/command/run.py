@@ -102,6 +102,12 @@ def make_project(folder: Path, pogosim: Installation) -> Path:
         RunError: It fails. make has said why.
     """
     if not (folder / "Makefile").is_file():
+        if folder == Path():  # perhaps none was meant
+            raise RunError(
+                "no program is named, and this folder is not a project: it has no Makefile. Name a project, a .c file "
+                "or a program first (pogosim new NAME makes a project); a configuration that needs no program "
+                "(brain: host, or a script) runs in Python: pogosim.Simulation(None, CONFIG)"
+            )
         raise RunError(f"{folder} is not a project: it has no Makefile (pogosim new NAME makes a project)")
     command = ["make", "--silent", "--no-print-directory", "-C", str(folder), "sim"]
     has_own = (folder / "pogosim").exists() or "POGOSIM_DIR" in os.environ
