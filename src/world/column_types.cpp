@@ -58,7 +58,26 @@ CellValue whole(ColumnSpec const& column, double value) {
     return static_cast<std::int64_t>(value);
 }
 
-CellValue real(ColumnSpec const& /*column*/, double value) {
+/// Infinity is as good as any number, but not what another one should become. `largest`: of the type.
+CellValue real_in_cell(ColumnSpec const& column, double value, bool becomes_infinite, double largest) {
+    if (becomes_infinite && std::isfinite(value)) {
+        throw ConfigError(fmt::format(
+            "the column '{}' was declared as {}, which {} is not: expected a number from {:g} to {:g}, or infinity",
+            column.name, row_of(column.type).name, value, -largest, largest));
+    }
+    return value;
+}
+
+CellValue real16(ColumnSpec const& column, double value) {
+    constexpr unsigned infinity = 0x7C00;
+    return real_in_cell(column, value, (to_half(value) & 0x7FFFU) == infinity, 65504.0);
+}
+
+CellValue real32(ColumnSpec const& column, double value) {
+    return real_in_cell(column, value, std::isinf(static_cast<float>(value)), std::numeric_limits<float>::max());
+}
+
+CellValue real64(ColumnSpec const& /*column*/, double value) {
     return value;
 }
 
@@ -88,9 +107,9 @@ constexpr std::array kTypes{
     row_of_whole<std::int16_t>(ColumnType::int16, "int16", "<i2"),
     row_of_whole<std::int32_t>(ColumnType::int32, "int32", "<i4"),
     row_of_whole<std::int64_t>(ColumnType::int64, "int64", "<i8"),
-    ColumnTypeRow{ColumnType::float16, "float16", "<f2", sizeof(std::uint16_t), write_half, real},
-    ColumnTypeRow{ColumnType::float32, "float", "<f4", sizeof(float), write<float>, real},
-    ColumnTypeRow{ColumnType::float64, "double", "<f8", sizeof(double), write<double>, real},
+    ColumnTypeRow{ColumnType::float16, "float16", "<f2", sizeof(std::uint16_t), write_half, real16},
+    ColumnTypeRow{ColumnType::float32, "float", "<f4", sizeof(float), write<float>, real32},
+    ColumnTypeRow{ColumnType::float64, "double", "<f8", sizeof(double), write<double>, real64},
     ColumnTypeRow{ColumnType::boolean, "bool", "|b1", sizeof(bool), write<bool>, truth},
     ColumnTypeRow{ColumnType::text, "string", "text", 0, nullptr, refuse_text},
 };

@@ -85,6 +85,18 @@ TEST(ColumnTypes, OfRealNumbersTakeAllAndWriteNoneAsNotANumber) {
     EXPECT_GT(written<std::uint16_t>(ColumnType::float16, {}) & 0x7FFF, 0x7C00);
 }
 
+TEST(ColumnTypes, OfRealNumbersRefuseWhatWouldBecomeInfinite) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_TRUE(refuses(ColumnType::float32, 1e300));
+    EXPECT_TRUE(refuses(ColumnType::float32, -1e39));
+    EXPECT_TRUE(refuses(ColumnType::float16, 65520.0));
+    EXPECT_FALSE(refuses(ColumnType::float16, -65519.0));  // rounded to 65504
+    EXPECT_EQ(written<double>(ColumnType::float64, cell(ColumnType::float64, 1e300)), 1e300);
+    EXPECT_EQ(written<float>(ColumnType::float32, cell(ColumnType::float32, 1e38)), 1e38F);
+    EXPECT_EQ(written<float>(ColumnType::float32, cell(ColumnType::float32, infinity)),
+              std::numeric_limits<float>::infinity());
+}
+
 TEST(ColumnTypes, OfTruthTakeZeroAndOneAndOfTextNoNumber) {
     EXPECT_EQ(written<bool>(ColumnType::boolean, cell(ColumnType::boolean, 1.0)), true);
     EXPECT_EQ(written<bool>(ColumnType::boolean, cell(ColumnType::boolean, 0.0)), false);
