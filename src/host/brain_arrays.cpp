@@ -72,7 +72,7 @@ HostBrain& brain_of(pogosim_run& run, std::string_view category) {
         is_known ? fmt::format("category '{}' is not driven by the host: its configuration needs 'brain: host'; {}",
                                category, categories_of_host(run))
                  : fmt::format("there is no category '{}'{}; {}", shown(category),
-                               world.periodic ? ": a periodic arena has no walls, so a pogowall is not created" : "",
+                               world.periodic ? " (walls are not created in a periodic arena)" : "",
                                categories_of_host(run)));
 }
 

@@ -315,7 +315,7 @@ def test_program_that_no_category_needs_is_told(program: Compile, tmp_path: Path
 def test_walls_that_a_periodic_arena_leaves_out_have_no_brain(tmp_path: Path) -> None:
     walls = {"type": "pogowall", "geometry": "arena", "brain": "host"}
     with hosted(tmp_path, {**HOST, "boundary_condition": "periodic", "objects.walls": walls}) as sim:
-        message = "there is no category 'walls': a periodic arena has no walls, .*; a host drives robots$"
+        message = r"there is no category 'walls' \(walls are not created in a periodic arena\); a host drives robots$"
         with pytest.raises(pogosim.ConfigurationError, match=message):
             sim.brain("walls")
 
