@@ -13,11 +13,11 @@ from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.execution import Execution
-from pogosim.batch.parts import Part, RunFile
+from pogosim.batch.parts import Part
 from pogosim.batch.results import replacement, write_results
 from pogosim.batch.run import Outcome, Task
+from pogosim.batch.run_data import read_run
 from pogosim.batch.tasks import Combination
-from pogosim.batch.temporary import TemporaryFolder
 from pogosim.utils import load_dataframe
 from pyarrow import feather
 
@@ -69,10 +69,10 @@ def test_warnings_of_runs_are_shown_once_and_those_of_failed_ones_are_in_their_l
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     tasks = [task(tmp_path, key) for key in "abc"]
-    for key in "ab":
-        write_data(tmp_path / f"{key}.feather")
+    first, second = (read_run(write_data(tmp_path / f"{key}.feather"), 0, 0) for key in "ab")
     execution = execution_of(tmp_path, [Combination("x", {}, {}, tasks)])
-    take(execution, Outcome("a", log="w\nv"), Outcome("b", log="v"), Outcome("c", "exit code 3", log="other"))
+    failed = Outcome("c", "exit code 3", log="other")
+    take(execution, Outcome("a", log="w\nv", file=first), Outcome("b", log="v", file=second), failed)
     assert caplog.messages == ["warning of a run: w", "warning of a run: v"]
 
 
@@ -86,27 +86,25 @@ def test_failure_that_all_runs_would_have_ends_the_batch(tmp_path: Path) -> None
 def test_columns_are_checked_of_runs_that_are_done_and_of_those_that_end(
     column: str, constant: str, tmp_path: Path
 ) -> None:
-    temporary = TemporaryFolder(tmp_path, "b", is_kept=False)
-    temporary.done.mkdir()
-    runs = [task(temporary.done, key) for key in "ab"]
+    runs = [task(tmp_path, key) for key in "ab"]
     execution = execution_of(tmp_path, [Combination("x", {constant: 1}, {}, runs)])
-    write_data(runs[0].result)
-    assert execution.waiting(temporary) == [runs[1]]
-    write_data(runs[1].result, column)
+    write_data(runs[0].result_of(0))
+    assert execution.waiting() == [runs[1]]
+    file = read_run(write_data(runs[1].result_of(0), column), 0, 0)
     with pytest.raises(BatchError, match=f"program writes a column '{column}'"):
-        take(execution, Outcome("b"))
+        take(execution, Outcome("b", file=file))
     with pytest.raises(BatchError, match=f"program writes a column '{column}'"):
-        execution_of(tmp_path, [Combination("x", {constant: 1}, {}, runs)]).waiting(temporary)
+        execution_of(tmp_path, [Combination("x", {constant: 1}, {}, runs)]).waiting()
 
 
 # ---- Results ----
 
 
-@pytest.mark.parametrize(("seeds", "shown"), [((0, 1), None), ((None, None), None), ((0, 7), [0, 7])])
+@pytest.mark.parametrize(("seeds", "shown"), [((0, 1), None), ((0, 7), [0, 7])])
 def test_seeds_are_in_the_results_only_if_they_are_not_the_numbers_of_the_runs(
-    seeds: tuple[int | None, ...], shown: list[int] | None, tmp_path: Path
+    seeds: tuple[int, ...], shown: list[int] | None, tmp_path: Path
 ) -> None:
-    runs = [RunFile(write_data(tmp_path / str(run)), run, seed) for run, seed in enumerate(seeds)]
+    runs = [read_run(write_data(tmp_path / str(run)), run, seed) for run, seed in enumerate(seeds)]
     write_results(str(tmp_path / "out.feather"), [Part({"p": 1}, runs, failed=[2])], "")
     (combination,) = load_dataframe(tmp_path / "out.feather")[1]["combinations"]
     assert combination.get("seeds") == shown
@@ -115,7 +113,7 @@ def test_seeds_are_in_the_results_only_if_they_are_not_the_numbers_of_the_runs(
 
 def test_two_batches_do_not_write_one_file_at_once(tmp_path: Path) -> None:
     path = tmp_path / "out.feather"
-    runs = [RunFile(write_data(tmp_path / "a"), 0)]
+    runs = [read_run(write_data(tmp_path / "a"), 0, 0)]
     with replacement(path) as file:
         with pytest.raises(BatchError, match=r"out\.feather is being written by another batch; wait for it"):
             write_results(str(path), [Part({}, runs)], "")

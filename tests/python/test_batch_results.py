@@ -11,8 +11,9 @@ import pytest
 from batches import batch, batch_apart, ended, results, write_options
 from conftest import Compile
 from pogosim.batch.errors import BatchError
-from pogosim.batch.parts import Part, RunFile
-from pogosim.batch.results import ROWS_PER_BATCH, write_results
+from pogosim.batch.parts import Part
+from pogosim.batch.results import write_results
+from pogosim.batch.run_data import ROWS_PER_BATCH, RunFile, read_run
 from pogosim.utils import load_dataframe
 from pyarrow import feather, ipc
 from running import ROOT, example, run_command
@@ -75,6 +76,19 @@ def test_dask_writes_the_same_bytes(done: Path, tmp_path: Path) -> None:
     write_options(tmp_path)
     result = batch_apart(tmp_path, "-r", "3", "--backend", "ray")
     assert (result.code, result.errors) == (0, "pogobatch: --backend ray is replaced by --backend dask\n")
+    assert results(tmp_path) == results(done)
+
+
+def test_data_file_of_a_run_is_opened_when_the_run_has_ended_and_when_it_is_joined(
+    done: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[Path] = []
+    memory_map = pa.memory_map
+    monkeypatch.setattr(pa, "memory_map", lambda path: (opened.append(Path(path)), memory_map(path))[1])
+    write_options(tmp_path)
+    assert batch(tmp_path, "-r", "3", "--backend", "sequential").code == 0
+    assert [path.name for path in opened[:6]] == ["data.feather"] * 6
+    assert len(set(opened)) == len(opened) == 12
     assert results(tmp_path) == results(done)
 
 
@@ -257,7 +271,7 @@ def test_outputs_are_listed_and_chosen_by_name_or_path(tmp_path: Path) -> None:
 def run_file(path: Path, number: int, **columns: pa.Array) -> RunFile:
     table = pa.table({"time": pa.array(np.arange(3), pa.float32()), **columns})
     feather.write_feather(table.replace_schema_metadata({"configuration": "{}"}), str(path))
-    return RunFile(path, number)
+    return read_run(path, number, number)
 
 
 def test_columns_that_only_some_runs_have_are_null_in_the_others(tmp_path: Path) -> None:
@@ -290,7 +304,7 @@ def test_rows_are_written_in_pieces_of_one_size_however_the_runs_are_cut(tmp_pat
             for size in sizes:
                 writer.write_table(table.slice(start, size).replace_schema_metadata({"configuration": "{}"}))
                 start += size
-        write_results(str(tmp_path / f"{name}.out"), [Part({}, [RunFile(tmp_path / name, 0)])], "")
+        write_results(str(tmp_path / f"{name}.out"), [Part({}, [read_run(tmp_path / name, 0, 0)])], "")
     assert (tmp_path / "whole.out").read_bytes() == (tmp_path / "pieces.out").read_bytes()
     with ipc.open_file(str(tmp_path / "whole.out")) as reader:
         rows = [reader.get_batch(i).num_rows for i in range(reader.num_record_batches)]

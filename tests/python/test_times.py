@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-from pogosim.batch.parts import Part, RunFile
+from pogosim.batch.parts import Part
 from pogosim.batch.results import write_results
+from pogosim.batch.run_data import read_run
 from pogosim.film.making import frame_times
 from pogosim.picture.swarm import read_recording
 from pogosim.times import as_float64
@@ -65,7 +66,7 @@ def test_rows_of_old_and_new_files_have_the_same_times(tmp_path: Path) -> None:
     rows, _ = load_dataframe(files)
     assert rows["time"].dtype == np.float64
     assert rows.groupby("time").size().tolist() == [2] * 5
-    write_results(str(tmp_path / "r.feather"), [Part({}, [RunFile(file, i) for i, file in enumerate(files)])], "{}")
+    write_results(str(tmp_path / "r.feather"), [Part({}, [read_run(file, i, i) for i, file in enumerate(files)])], "{}")
     joined = pd.read_feather(tmp_path / "r.feather")
     assert joined.groupby("time").size().tolist() == [2] * 5
 

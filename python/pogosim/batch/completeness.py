@@ -130,11 +130,11 @@ def warn_of_indistinguishable(output: str, runs: Sequence[TaskArtifact], earlier
     firsts = [first for first, _ in by_combination(runs)]
     keys: dict[str, None] = {}
     for columns in dict.fromkeys(run.columns_text for run in firsts):
-        alike = [configuration_in(run.metadata) for run in firsts if run.columns_text == columns]
+        alike = [configuration_in(run.file.metadata) for run in firsts if run.columns_text == columns]
         found = list(varied_parameters(alike))
         if earlier is not None and earlier.has_columns(columns):
             # Metadata say only what all earlier runs have in common.
-            there = dict(leaves(configuration_in(earlier.schema.metadata or {})))
+            there = dict(leaves(configuration_in(earlier.metadata)))
             own = dict(leaves(alike[0]))
             found += [key for key in own if key in there and differ(own[key], there[key])]
         keys.update(dict.fromkeys(key for key in found if key not in NOT_COMPARED))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 from collections.abc import Generator, Sequence
 from dataclasses import replace
@@ -10,16 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError, tell
+from pogosim.batch.errors import BatchError
 from pogosim.batch.manifests import TASK, task_entries, write_json
 from pogosim.batch.option_words import chosen_in
 from pogosim.batch.parts import PLAIN, Format
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import Failure, Progress, Replaced, report_warnings
-from pogosim.batch.results import check_columns, schema_of
+from pogosim.batch.results import check_columns
 from pogosim.batch.run import Outcome, Task
+from pogosim.batch.run_data import RunFile, shared
 from pogosim.batch.tasks import Combination
-from pogosim.batch.temporary import TemporaryFolder
 from pogosim.varied import varied_parameters
 
 log = logging.getLogger("pogobatch")
@@ -30,7 +31,7 @@ class Execution:
 
     Attributes:
         failures: Runs that failed.
-        finished: With which replacement of its seed a run is done (0: its own seed), by key.
+        finished: Data files of runs that are done, by key.
         simulator_s: Wall-clock time of simulators, in s, added up.
     """
 
@@ -45,31 +46,47 @@ class Execution:
         self.combinations = combinations
         self.configuration = configuration
         self.tasks = {task.key: task for combination in combinations for task in combination.tasks}
-        self.first_of = {task.key: combination for combination in reversed(combinations) for task in combination.tasks}
-        self.numbers = {id(combination): number for number, combination in enumerate(combinations)}
+        numbered = reversed(list(enumerate(combinations)))
+        self.first_of = {task.key: number for number, combination in numbered for task in combination.tasks}
         self.program = program  # its name in messages
         self.layout = layout
         self.shows_warnings = shows_warnings
-        self.finished: dict[str, int] = {}
+        self.finished: dict[str, RunFile] = {}
         self.checked: set[tuple[str | None, ...]] = set()  # names of columns
         self.failures: list[Failure] = []
         self.problems: dict[str, str] = {}  # of first attempts of runs that are done, by key
         self.simulator_s = 0.0
 
-    def waiting(self, temporary: TemporaryFolder) -> list[Task]:
+    def waiting(self) -> list[Task]:
         """Return the runs that are not done yet, in order.
 
         Raises:
             BatchError: The columns of one that is done are wrong.
         """
         for task in self.tasks.values():
-            if (replacement := temporary.finished(task)) is not None:
-                self.finished[task.key] = replacement
+            if (file := task.finished()) is not None:
+                self.finished[task.key] = shared(file)
                 self.check_run(task)
-        waiting = [task for task in self.tasks.values() if task.key not in self.finished]
-        if len(waiting) < len(self.tasks):
-            tell(f"{len(self.tasks) - len(waiting)} of {len(self.tasks)} runs are done already, in {temporary.done}")
-        return waiting
+        return [task for task in self.tasks.values() if task.key not in self.finished]
+
+    def ended(self, outcomes: Generator[Outcome, None, None]) -> Generator[tuple[Task, Outcome], None, None]:
+        """Let a backend do runs; yields each that has ended, with what became of it.
+
+        Raises:
+            BatchError: The others would fail in the same way as one that did.
+        """
+        with contextlib.closing(outcomes):
+            for outcome in outcomes:
+                task = self.tasks[outcome.key]
+                self.simulator_s += outcome.simulator_s
+                if outcome.is_fatal:
+                    raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
+                if outcome.problem:
+                    log.debug("run %d failed: %s", task.run, outcome.problem)
+                if outcome.file is not None:
+                    self.finished[task.key] = shared(outcome.file)
+                said, first = self.messages(outcome.log, task), self.messages(outcome.first_problem, task)
+                yield task, replace(outcome, log=said, first_problem=first)
 
     def take(self, outcomes: Generator[Outcome, None, None], total: int, with_progress: bool = False) -> None:
         """Let a backend do runs, and show how many are done; on a terminal always, elsewhere as asked for.
@@ -80,58 +97,46 @@ class Execution:
         warnings: dict[str, None] = {}
         bar = Progress(total, is_asked_for=with_progress)
         try:
-            for outcome in outcomes:
-                task = self.tasks[outcome.key]
-                self.simulator_s += outcome.simulator_s
-                if not outcome.problem:
-                    warnings.update(dict.fromkeys(self.messages(outcome.log, task).splitlines()))
-                    self.finished[task.key] = outcome.replacement
-                    if outcome.first_problem:
-                        self.problems[task.key] = self.messages(outcome.first_problem, task)
-                        log.debug("run %d failed at first: %s", task.run, self.problems[task.key])
-                    self.check_run(task)
-                    self.keep_manifest(task, outcome)
-                elif outcome.is_fatal:
-                    raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
-                else:
-                    self.failures.append(self.failure(outcome, task))
-                    log.debug("run %d failed: %s", task.run, outcome.problem)
-                bar.update()
+            with contextlib.closing(self.ended(outcomes)) as ended:
+                for task, outcome in ended:
+                    if outcome.problem:
+                        self.failures.append(self.failure(outcome, task))
+                    else:
+                        warnings.update(dict.fromkeys(outcome.log.splitlines()))
+                        if outcome.first_problem:
+                            self.problems[task.key] = outcome.first_problem
+                            log.debug("run %d failed at first: %s", task.run, outcome.first_problem)
+                        self.check_run(task)
+                        self.keep_manifest(task, outcome.folder)
+                    bar.update()
         finally:
             bar.close()
-            outcomes.close()
             if self.shows_warnings:
                 report_warnings(warnings)
         self.failures.sort(key=lambda failure: (failure.output, failure.task.run, failure.task.key))
 
     def messages(self, said: str, task: Task) -> str:
         """Return what a run has said, with places in the file of the user."""
-        return in_the_users_file(said, task, self.first_of[task.key].entries, self.configuration)
+        return in_the_users_file(said, task, self.combination_of(task).entries, self.configuration)
+
+    def combination_of(self, task: Task) -> Combination:
+        """Return the first combination that has a run."""
+        return self.combinations[self.first_of[task.key]]
 
     def failure(self, outcome: Outcome, task: Task) -> Failure:
         """Return what is said of a run that has failed."""
-        combination = self.first_of[task.key]
-        number = self.number_of(combination)
-        options = self.options_of(number)
-        outcome = replace(outcome, log=self.messages(outcome.log, task))
-        return Failure(task, outcome, combination.output, options, number)
+        number = self.first_of[task.key]
+        return Failure(task, outcome, self.combinations[number].output, chosen_in(self.varied, number), number)
 
     @property
     def replaced(self) -> list[Replaced]:
         """Runs that failed, and were done with other seeds; in order."""
         return [
-            Replaced(task, self.finished[key], self.problems.get(key, ""), first.output, self.number_of(first))
+            Replaced(task, file.retry_attempt, self.problems.get(key, ""), self.combinations[number].output, number)
             for key, task in self.tasks.items()
-            if self.finished.get(key) and (first := self.first_of[key])
+            if (file := self.finished.get(key)) and file.retry_attempt
+            for number in [self.first_of[key]]
         ]
-
-    def number_of(self, combination: Combination) -> int:
-        """Return which one a combination is, from 0 on."""
-        return self.numbers[id(combination)]
-
-    def options_of(self, number: int) -> dict[str, Any]:
-        """Return what tells a combination from the others: keys and their values."""
-        return chosen_in(self.varied, number)
 
     @cached_property
     def varied(self) -> dict[str, list[Any]]:
@@ -140,18 +145,16 @@ class Execution:
 
     def check_run(self, task: Task) -> None:
         """Check the columns of a finished run; those that many runs have are checked once."""
-        combination = self.first_of[task.key]
-        schema = schema_of(task.result_of(self.finished[task.key]))
+        combination = self.combination_of(task)
+        schema = self.finished[task.key].schema
         names = (*schema.names, None, *combination.columns)
         if names not in self.checked:
             self.checked.add(names)
             check_columns(schema, list(combination.columns), self.program, self.layout)
 
-    def keep_manifest(self, task: Task, outcome: Outcome) -> None:
-        """Write down what a run is whose folder stays."""
-        if not outcome.folder:
-            return
-        combination = self.first_of[task.key]
-        number = self.number_of(combination)
-        entries = task_entries(combination, task, outcome.replacement, number, self.options_of(number))
-        write_json(Path(outcome.folder) / TASK, entries)
+    def keep_manifest(self, task: Task, folder: str) -> None:
+        """Write down in the folder of a finished run, if it stays, what the run is."""
+        if folder:
+            number, replacement = self.first_of[task.key], self.finished[task.key].retry_attempt
+            choices = chosen_in(self.varied, number)
+            write_json(Path(folder) / TASK, task_entries(self.combinations[number], task, replacement, number, choices))

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Generator, Mapping, Sequence
+from dataclasses import replace
 
 from pogosim.batch.errors import cannot
 from pogosim.batch.manifests import config_hash
-from pogosim.batch.parts import PLAIN, Format, Part, RunFile
+from pogosim.batch.parts import PLAIN, Format, Part
 from pogosim.batch.results import check_output, write_results
-from pogosim.batch.run import Outcome, Task
+from pogosim.batch.run import Outcome
+from pogosim.batch.run_data import RunFile
 from pogosim.batch.tasks import Combination
 from pogosim.table_formats import CSV, format_of, metadata_path
 
@@ -53,37 +55,36 @@ def removing_stale(outputs: Sequence[str], outcomes: Generator[Outcome, None, No
         outcomes.close()
 
 
-def file_of(task: Task, replacement: int) -> RunFile:
-    """Return the data file of a finished run."""
-    return RunFile(task.result_of(replacement), task.run, task.seed_of(replacement), replacement)
+def part_of(combination: Combination, finished: Mapping[str, RunFile], layout: Format) -> Part:
+    """Return what a combination adds to a file of results, see `join`."""
+    return Part(
+        combination.columns,
+        [replace(finished[task.key], run=task.run) for task in combination.tasks if task.key in finished],
+        [task.run for task in combination.tasks if task.key not in finished],
+        config_hash(combination.entries) if layout.with_manifest else "",
+    )
 
 
-def join(combinations: Sequence[Combination], finished: Mapping[str, int], text: str, layout: Format = PLAIN) -> bool:
+def join(
+    combinations: Sequence[Combination], finished: Mapping[str, RunFile], text: str, layout: Format = PLAIN
+) -> bool:
     """Write one file of results. Returns whether there was anything to write.
 
     Args:
         combinations: Those whose results are in it, at least one.
-        finished: Runs that are done, by key, with the replacement of their seed; others are missing in the results.
+        finished: Runs that are done, by key; others are missing in the results.
         text: Configuration of the batch.
         layout: What the file has beside the rows of the runs.
 
     Raises:
         BatchError: It cannot be written.
     """
-    parts = [
-        Part(
-            combination.columns,
-            [file_of(task, finished[task.key]) for task in combination.tasks if task.key in finished],
-            [task.run for task in combination.tasks if task.key not in finished],
-            config_hash(combination.entries) if layout.with_manifest else "",
-        )
-        for combination in combinations
-    ]
+    parts = [part_of(combination, finished, layout) for combination in combinations]
     output = combinations[0].output
     if not any(part.runs for part in parts):
         log.error("%s is not written: none of its runs ended well", output)
         return False
-    written = write_results(output, parts, text, layout)
-    of_each = f" ({', '.join(map(str, written.rows))})" if len(written.rows) > 1 else ""
-    log.debug("Created %s with %d rows%s", output, sum(written.rows), of_each)
+    write_results(output, parts, text, layout)
+    rows = [part.rows for part in parts]
+    log.debug("Created %s with %d rows%s", output, sum(rows), f" ({', '.join(map(str, rows))})" if rows[1:] else "")
     return True

@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from pyarrow import ipc
+
 from pogosim.batch.completeness import (
     Expected,
     MissingRun,
@@ -20,12 +22,13 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, given
 from pogosim.batch.manifests import TASK, read_manifest
 from pogosim.batch.names import is_linked_out, leads_out
-from pogosim.batch.parts import OF_CAMPAIGNS, Part, RunFile
+from pogosim.batch.parts import OF_CAMPAIGNS, Part
 from pogosim.batch.result_metadata import COMBINATIONS, Earlier, columns_as_text, manifest
-from pogosim.batch.results import check_columns, check_output, schema_of, write_results
+from pogosim.batch.results import check_columns, check_output, write_results
+from pogosim.batch.run_data import RunFile, opened
 from pogosim.batch.single_task import TaskArtifact
 from pogosim.outputs import PathLike
-from pogosim.run_columns import RETRY, RUN, SEED, run_numbers
+from pogosim.run_columns import RUN, SEED, run_numbers
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
@@ -107,7 +110,7 @@ def merge_runs(
         by_output.setdefault(output_of(artifact, folder), []).append(artifact)
     expected = None if config_path is None else Expected(Configuration(given.path("config_path", config_path)))
     for artifact in artifacts:
-        check_columns(artifact.schema, list(artifact.columns), str(artifact.folder), OF_CAMPAIGNS)
+        check_columns(artifact.file.schema, list(artifact.columns), str(artifact.folder), OF_CAMPAIGNS)
     parts = {output: parts_of(own) for output, own in by_output.items()}
     earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
     parts = {output: numbered(own, earlier[output]) for output, own in parts.items()}
@@ -152,7 +155,7 @@ def parts_of(artifacts: Sequence[TaskArtifact]) -> list[Part]:
     parts: dict[tuple[str, ...], list[TaskArtifact]] = {}
     for artifact in artifacts:
         parts.setdefault(artifact.combination, []).append(artifact)
-    return [Part(runs[0].columns, [file_of(run) for run in runs], (), which[0]) for which, runs in parts.items()]
+    return [Part(runs[0].columns, [run.file for run in runs], (), which[0]) for which, runs in parts.items()]
 
 
 def numbered(parts: Sequence[Part], earlier: Earlier | None) -> list[Part]:
@@ -181,12 +184,6 @@ def with_own_numbers(runs: Sequence[RunFile], taken: Iterable[int]) -> list[RunF
     return [replace(run, run=next(free)) if index in again else run for index, run in enumerate(runs)]
 
 
-def file_of(artifact: TaskArtifact) -> RunFile:
-    """Return the data file of a run."""
-    manifest = artifact.manifest
-    return RunFile(artifact.data, manifest["logical_run"], manifest["seed"], int(manifest.get(RETRY) or 0))
-
-
 def earlier_results(output: str, parts: Sequence[Part]) -> Earlier | None:
     """Return the results that are there, to which others are appended; None: there are none.
 
@@ -198,8 +195,10 @@ def earlier_results(output: str, parts: Sequence[Part]) -> Earlier | None:
         return None
     if format_of(real) != FEATHER:
         raise BatchError(f"{output}: --append needs results in Feather; join all runs anew, without it")
-    schema = schema_of(real)
-    if not {RUN, SEED} <= set(schema.names):
+    with opened(real) as file:
+        schema = ipc.open_file(file).schema
+        names = set(schema.names)
+    if not {RUN, SEED} <= names:
         raise BatchError(f"{output} has no columns run and seed: pogobatch run, or merge, did not write it")
     try:
         combinations = parse_yaml((schema.metadata or {})[COMBINATIONS.encode()].decode())

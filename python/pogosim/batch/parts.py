@@ -4,24 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
+from pogosim.batch.run_data import RunFile
 from pogosim.run_columns import RETRY, RUN, SEED
-
-
-@dataclass(frozen=True)
-class RunFile:
-    """The data file of a finished run."""
-
-    path: Path
-    run: int
-    seed: int | None = None
-    retry_attempt: int = 0  # which replacement its seed is; 0: its own seed
-
-    def column(self, name: str) -> int | None:
-        """Return what a column has for the run."""
-        return {RUN: self.run, SEED: self.seed, RETRY: self.retry_attempt}[name]
 
 
 @dataclass(frozen=True)
@@ -32,6 +18,11 @@ class Part:
     runs: Sequence[RunFile]
     failed: Sequence[int] = ()  # runs without a data file
     config_hash: str = ""  # see pogosim.batch.manifests
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of all runs."""
+        return sum(run.rows for run in self.runs)
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,11 @@ class Earlier:
     schema: pa.Schema
     combinations: list[dict[str, Any]]
 
+    @property
+    def metadata(self) -> dict[bytes, bytes]:
+        """The metadata of the file."""
+        return self.schema.metadata or {}
+
     def has_columns(self, text: str) -> bool:
         """Tell whether a combination has these constant columns, see `columns_as_text`."""
         return any(columns_as_text(entry["columns"]) == text for entry in self.combinations)
@@ -50,7 +55,7 @@ def columns_as_text(columns: Mapping[str, Any]) -> str:
 
 def manifest(parts: Sequence[Part], earlier: Earlier | None) -> bytes:
     """Return the metadata entry `pogobatch_manifest`, in JSON: how many runs there are, and of which configurations."""
-    known = json.loads((earlier.schema.metadata or {}).get(MANIFEST.encode(), b"{}")) if earlier else {}
+    known = json.loads(earlier.metadata.get(MANIFEST.encode(), b"{}")) if earlier else {}
     hashes = [*known.get("config_hashes", []), *(part.config_hash for part in parts if part.runs)]
     entries = {
         "schema_version": 1,
@@ -60,13 +65,15 @@ def manifest(parts: Sequence[Part], earlier: Earlier | None) -> bytes:
     return json.dumps(entries).encode()
 
 
-def metadata_of(schemas: Sequence[Sequence[pa.Schema]], text: str) -> dict[str, bytes]:
+def metadata_of(parts: Sequence[Part], text: str, earlier: Earlier | None) -> dict[str, bytes]:
     """Return the metadata of a file of results.
 
     They are what all runs have in common, with `configuration`, the configuration with all its options, and
     `resolved_configuration`, the entries that are the same in all runs. `summary` adds what differs.
     """
-    all_metadata = [schema.metadata or {} for part in schemas for schema in part]
+    before = [] if earlier is None else [[earlier.metadata]]
+    of_parts = [*before, *([run.metadata for run in part.runs] for part in parts if part.runs)]
+    all_metadata = [metadata for part in of_parts for metadata in part]
     first = all_metadata[0]
     skipped = (b"configuration", RESOLVED.encode())
     common = {
@@ -76,7 +83,7 @@ def metadata_of(schemas: Sequence[Sequence[pa.Schema]], text: str) -> dict[str, 
     }
     metadata = {key.decode(errors="replace"): value for key, value in common.items()}
     metadata["configuration"] = text.encode()
-    shared = in_common([configuration_in(part[0].metadata or {}) for part in schemas if part])
+    shared = in_common([configuration_in(part[0]) for part in of_parts])
     if shared not in (MISSING, {}):
         metadata[RESOLVED] = dump_yaml(shared).encode()
     return metadata
@@ -88,24 +95,23 @@ def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
     return {key: value for key, value in without_outputs(entries).items() if key != "seed"}
 
 
-def summary(parts: Sequence[Part], schemas: Sequence[Sequence[pa.Schema]], rows: Sequence[int]) -> list[dict[str, Any]]:
+def summary(parts: Sequence[Part]) -> list[dict[str, Any]]:
     """Return the metadata entry `combinations`.
 
     A list with the columns of each combination, its number of runs and rows, the runs that failed, the seeds of the
     others if they are not their numbers, those numbers if they are not 0, 1, ... without the runs that failed, and the
     polygons of its arena if they are not the same everywhere.
     """
-    polygons = [(part[0].metadata or {}).get(POLYGONS.encode()) if part else None for part in schemas]
+    polygons = [part.runs[0].metadata.get(POLYGONS.encode()) if part.runs else None for part in parts]
     differ = len({text for text in polygons if text is not None}) > 1
     entries = []
-    for i, part in enumerate(parts):
-        entry = {"columns": part.columns, "runs": len(part.runs), "rows": rows[i], "failed_runs": list(part.failed)}
+    for part, text in zip(parts, polygons, strict=True):
+        entry = {"columns": part.columns, "runs": len(part.runs), "rows": part.rows, "failed_runs": list(part.failed)}
         numbers = [run for run in range(len(part.runs) + len(part.failed)) if run not in part.failed]
-        if any(run.seed is not None and run.seed != number for run, number in zip(part.runs, numbers, strict=True)):
+        if any(run.seed != number for run, number in zip(part.runs, numbers, strict=True)):
             entry["seeds"] = [run.seed for run in part.runs]
         if [run.run for run in part.runs] != numbers:
             entry[NUMBERS] = [run.run for run in part.runs]
-        text = polygons[i]
         if differ and text is not None:
             try:
                 entry[POLYGONS] = parse_yaml(text.decode())

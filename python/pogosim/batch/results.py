@@ -10,74 +10,22 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-from pyarrow import ipc
 
-from pogosim.batch.errors import BatchError, cannot, check_is_file, is_whole, one_line
-from pogosim.batch.parts import PLAIN, Format, Part, RunFile
+from pogosim.batch.errors import BatchError, cannot, is_whole, one_line
+from pogosim.batch.parts import PLAIN, Format, Part
 from pogosim.batch.result_metadata import COMBINATIONS, MANIFEST, Earlier, manifest, metadata_of, summary
+from pogosim.batch.run_data import ROWS_PER_BATCH, batches_of, told_as_damaged
 from pogosim.outputs import OutputError, lock, real_output
-from pogosim.recover import DAMAGED, RecoverError, check_metadata_beside, check_replaceable, reraise_system_error
+from pogosim.recover import RecoverError, check_metadata_beside, check_replaceable
 from pogosim.run_columns import tells_runs_apart
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.tables import TableWriter, table_writer, write_metadata_beside
 from pogosim.times import as_float64
-from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, plain
-
-ROWS_PER_BATCH = 65536
-
-
-@dataclass(frozen=True)
-class Written:
-    """A file of results."""
-
-    path: str
-    rows: Sequence[int]  # of each part
-
-
-def open_run(file: Any, path: Path, fields: list[int] | None = None) -> ipc.RecordBatchFileReader:
-    """Open the data file of a run.
-
-    Args:
-        file: The open file.
-        path: Its name, for messages.
-        fields: Numbers of the columns to read; None: all.
-
-    Raises:
-        BatchError: It is damaged.
-    """
-    try:
-        return ipc.open_file(file, options=ipc.IpcReadOptions(included_fields=fields))
-    except DAMAGED as error:
-        reraise_system_error(error)
-        raise BatchError(f"{path} is damaged: {one_line(error)}; remove it, then give the same command again") from None
-
-
-@contextlib.contextmanager
-def told_as_damaged(path: Path) -> Iterator[None]:
-    """Raise BatchError, with the name of a data file, for whatever a block finds wrong in it."""
-    try:
-        yield
-    except (*DAMAGED, *WRONG_VALUES) as error:
-        reraise_system_error(error)
-        raise BatchError(f"{path} is damaged: {one_line(error)}; remove it, then try again") from None
-
-
-def schema_of(path: Path) -> pa.Schema:
-    """Return columns and metadata of the data file of a run.
-
-    Raises:
-        BatchError: It is no file, or damaged.
-    """
-    check_is_file(path)
-    with pa.OSFile(str(path)) as file, open_run(file, path) as reader, told_as_damaged(path):
-        schema = reader.schema
-        list(schema.names)  # which damaged bytes need not be
-        return schema
+from pogosim.yaml_1_2 import dump_yaml, plain
 
 
 def check_columns(schema: pa.Schema, columns: Sequence[str], program: str, layout: Format = PLAIN) -> None:
@@ -133,16 +81,6 @@ def joint_schema(schemas: Sequence[pa.Schema]) -> pa.Schema:
         return pa.unify_schemas(distinct, promote_options="permissive")
     except pa.ArrowException as error:
         raise BatchError(f"runs have columns that do not fit together: {one_line(error)}") from None
-
-
-def batches_of(path: Path) -> Iterator[pa.RecordBatch]:
-    """Yield the rows of a data file in pieces."""
-    with pa.memory_map(str(path)) as file, open_run(file, path) as reader:
-        for i in range(reader.num_record_batches):
-            with told_as_damaged(path):
-                batch = reader.get_batch(i)
-            for start in range(0, batch.num_rows, ROWS_PER_BATCH):
-                yield batch.slice(start, ROWS_PER_BATCH)
 
 
 def with_columns(batch: pa.RecordBatch, schema: pa.Schema, constants: dict[str, Any]) -> pa.RecordBatch:
@@ -256,7 +194,7 @@ def replacement(path: Path) -> Iterator[Any]:
 
 def write_results(
     path: str, parts: Sequence[Part], text: str, layout: Format = PLAIN, earlier: Earlier | None = None
-) -> Written:
+) -> None:
     """Join runs into one file.
 
     Args:
@@ -267,24 +205,19 @@ def write_results(
         layout: What the file has beside the rows.
         earlier: Results whose rows come first, those that are there.
 
-    Returns:
-        What was written.
-
     Raises:
         BatchError: A file cannot be read or written, or columns do not fit together.
     """
     real = check_output(path)
     try:
-        before = [] if earlier is None else [[earlier.schema]]
-        schemas = [*before, *([schema_of(run.path) for run in part.runs] for part in parts)]
-        rows = [rows_of(part.runs) for part in parts]
-        own = joint_schema([schema for part in schemas for schema in part])
+        before = [] if earlier is None else [earlier.schema]
+        own = joint_schema([*before, *(run.schema for part in parts for run in part.runs)])
         names = list(dict.fromkeys(name for part in parts for name in part.columns))
         types = {name: column_type([part.columns.get(name) for part in parts]) for name in names}
         added = [*((name, pa.int64()) for name in layout.run_columns), *types.items()]
         schema = with_added(own, added)
-        metadata = metadata_of(schemas, text)
-        entries = [*(earlier.combinations if earlier else []), *summary(parts, schemas[len(before) :], rows)]
+        metadata = metadata_of(parts, text, earlier)
+        entries = [*(earlier.combinations if earlier else []), *summary(parts)]
         metadata[COMBINATIONS] = dump_yaml(entries).encode()
         if layout.with_manifest:
             metadata[MANIFEST] = manifest(parts, earlier)
@@ -307,15 +240,3 @@ def write_results(
             write_metadata_beside(real, kind, schema)
     except OSError as error:
         raise cannot("write", path, error) from None
-    return Written(path, rows)
-
-
-def rows_of(runs: Sequence[RunFile]) -> int:
-    """Return the number of rows of some runs."""
-    return sum(rows_in(run.path) for run in runs)
-
-
-def rows_in(path: Path) -> int:
-    """Return the number of rows of a data file."""
-    with pa.memory_map(str(path)) as file, open_run(file, path, [0]) as reader, told_as_damaged(path):
-        return sum(reader.get_batch(i).num_rows for i in range(reader.num_record_batches))  # one column will do

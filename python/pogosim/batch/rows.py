@@ -5,8 +5,8 @@ from __future__ import annotations
 import contextlib
 import logging
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,15 +15,15 @@ import pandas as pd
 from pogosim.batch.backends import Do, Workers
 from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError
+from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, world_digest
-from pogosim.batch.joining import file_of
+from pogosim.batch.joining import part_of
 from pogosim.batch.names import ambiguous, new_columns, value_at
-from pogosim.batch.parts import WITH_SEEDS, Part
-from pogosim.batch.places import in_the_users_file
+from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.reports import report_warnings
-from pogosim.batch.results import check_columns, schema_of, write_results
-from pogosim.batch.run import Outcome, Task, with_last_line
+from pogosim.batch.results import write_results
+from pogosim.batch.run import Outcome, with_last_line
+from pogosim.batch.run_data import RunFile
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.utils import load_dataframe
@@ -68,7 +68,7 @@ class Wanted:
     text: str  # its metadata entry "configuration"
     combinations: list[Combination]
     waiting: set[str] = field(default_factory=set)  # keys of runs
-    finished: dict[str, int] = field(default_factory=dict)  # by key, the replacement of the seed of a run
+    replacement: int = 0  # the greatest one of the seeds of its runs
     problem: str = ""
 
 
@@ -153,32 +153,35 @@ class Runs:
         """
         assert self.do is not None  # within opened()
         wanted = [self.wanted(number, entries, seeds[number]) for number, entries in enumerate(configurations)]
-        tasks = {task.key: task for one in wanted for part in one.combinations for task in part.tasks}
-        entries = {task.key: part.entries for one in wanted for part in one.combinations for task in part.tasks}
-        uses = {key: [one for one in wanted if key in one.waiting] for key in tasks}
+        combinations = [combination for one in wanted for combination in one.combinations]
+        execution = Execution(combinations, self.program, self.configuration, WITH_SEEDS)
+        uses = {key: [one for one in wanted if key in one.waiting] for key in execution.tasks}
         left = {key: len(ones) for key, ones in uses.items()}
 
-        def take(key: str, problem: str, replacement: int) -> Iterator[Finished]:
+        def take(key: str, replacement: int, problem: str = "") -> Iterator[Finished]:
             for one in uses[key]:
                 one.waiting.discard(key)
-                one.finished[key] = replacement
+                one.replacement = max(one.replacement, replacement)
                 one.problem = one.problem or problem
                 if not one.waiting:
-                    yield self.finished(one, save(one.number) if save is not None else None)
+                    yield self.finished(one, execution.finished, save(one.number) if save is not None else None)
                     for own in {task.key for part in one.combinations for task in part.tasks}:
                         left[own] -= 1
-                        if left[own] == 0 and not self.temporary.is_kept:
-                            tasks[own].result_of(one.finished.get(own, 0)).unlink(missing_ok=True)
+                        if left[own] == 0 and own in execution.finished and not self.temporary.is_kept:
+                            execution.finished.pop(own).path.unlink(missing_ok=True)
 
-        for key, task in tasks.items():
-            if (replacement := self.temporary.finished(task)) is not None:
-                yield from take(key, "", replacement)
-        waiting = [task for key, task in tasks.items() if any(key in one.waiting for one in uses[key])]
-        with contextlib.closing(self.do(waiting)) as outcomes:
-            for outcome in outcomes:
-                task = tasks[outcome.key]
-                said = in_the_users_file(outcome.log, task, entries[outcome.key], self.configuration)
-                yield from take(outcome.key, self.problem_of(replace(outcome, log=said), task), outcome.replacement)
+        waiting = execution.waiting()
+        for key, file in list(execution.finished.items()):
+            yield from take(key, file.retry_attempt)
+        try:
+            with contextlib.closing(execution.ended(self.do(waiting))) as ended:
+                for task, outcome in ended:
+                    problem = self.problem_of(outcome)
+                    if not problem:
+                        execution.check_run(task)
+                    yield from take(task.key, task.replacement_in(outcome.attempts - 1), problem)
+        finally:
+            self.simulator_s += execution.simulator_s
 
     def wanted(self, number: int, entries: dict[str, Any], seeds: Sequence[int]) -> Wanted:
         """Return the runs of a configuration."""
@@ -193,39 +196,24 @@ class Runs:
         keys = {task.key for part in combinations for task in part.tasks}
         return Wanted(number, self.configuration.text, combinations, keys)
 
-    def problem_of(self, outcome: Outcome, task: Task) -> str:
-        """Return why a run has failed, or nothing; warnings of simulators are passed on, each once.
-
-        Raises:
-            BatchError: All runs would fail in the same way.
-        """
-        self.simulator_s += outcome.simulator_s
-        if outcome.is_fatal:
-            raise BatchError(f"run {task.run} with seed {task.seed}: {outcome.problem}")
+    def problem_of(self, outcome: Outcome) -> str:
+        """Return why a run has failed, or nothing; warnings of simulators are passed on, each once."""
         if outcome.problem:
-            log.debug("run %d failed: %s", task.run, outcome.problem)
             return f"{RUN_FAILED}: {with_last_line(outcome.problem, outcome.log)}"
         new = {kind_of(line): line for line in outcome.log.splitlines() if kind_of(line) not in self.warned}
         self.warned.update(new)
         report_warnings(new.values())
         return ""
 
-    def finished(self, one: Wanted, target: tuple[Path, str] | None) -> Finished:
+    def finished(self, one: Wanted, files: Mapping[str, RunFile], target: tuple[Path, str] | None) -> Finished:
         """Return the rows of a configuration whose runs are done."""
-        replacement = max(one.finished.values())
         if one.problem:
-            return Finished(one.number, None, one.problem, replacement=replacement)
-        seeds = tuple(task.seed_of(one.finished[task.key]) for task in one.combinations[0].tasks)
-        parts = []
-        for combination in one.combinations:
-            for task in combination.tasks[:1]:
-                result = task.result_of(one.finished[task.key])
-                check_columns(schema_of(result), list(combination.columns), self.program, WITH_SEEDS)
-            files = [file_of(task, one.finished[task.key]) for task in combination.tasks]
-            parts.append(Part(combination.columns, files))
+            return Finished(one.number, None, one.problem, replacement=one.replacement)
+        parts = [part_of(combination, files, WITH_SEEDS) for combination in one.combinations]
+        seeds = tuple(run.seed for run in parts[0].runs)
         scratch = self.temporary.done / f"joined_{one.number}.feather"
         path, text = (scratch, one.text) if target is None else target
         write_results(str(path), parts, text, WITH_SEEDS)
         rows, _ = load_dataframe(path)
         scratch.unlink(missing_ok=True)
-        return Finished(one.number, rows, "", seeds, replacement)
+        return Finished(one.number, rows, "", seeds, one.replacement)

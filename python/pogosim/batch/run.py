@@ -18,13 +18,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pogosim.batch.errors import reason
+from pogosim.batch.errors import BatchError, reason
 from pogosim.batch.identity import PYTHON
+from pogosim.batch.run_data import RunFile, read_run
 from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.running import Watch
 from pogosim.extensions import MODELS_VARIABLE
 from pogosim.lines import printable
-from pogosim.recover import DAMAGED, is_complete
 
 LOG = "log.txt"
 CONFIGURATION = "test.yaml"
@@ -82,10 +82,19 @@ class Task:
         """Return which replacement of its seed an attempt has: 0 if it is its own seed again."""
         return attempt if self.replacements else 0
 
-    @property
-    def result(self) -> Path:
-        """Where the data file is when the run is done with its own seed."""
-        return self.result_of(0)
+    def read(self, data: Path, replacement: int) -> RunFile | None:
+        """Return a data file of the run, with its own seed (0) or a replacement; None: it is damaged."""
+        with contextlib.suppress(BatchError, OSError):
+            return read_run(data, self.run, self.seed_of(replacement), replacement)
+        return None
+
+    def finished(self) -> RunFile | None:
+        """Return the data file of the run if it is done already, with its own seed or a replacement."""
+        for replacement in range(len(self.replacements) + 1):
+            result = self.result_of(replacement)
+            if result.is_file() and (file := self.read(result, replacement)) is not None:
+                return file
+        return None
 
 
 @dataclass(frozen=True)
@@ -97,7 +106,7 @@ class Outcome:
     is_fatal: bool = False  # other runs would end in the same way
     is_certain: bool = False  # the same run would end in the same way: its configuration is refused
     attempts: int = 1
-    replacement: int = 0  # of its seed, with which the run was done; 0: its own seed
+    file: RunFile | None = None  # None: it has failed
     first_problem: str = ""  # of an attempt before, with the last line of its log; empty: there was none
     command: str = ""
     log: str = ""  # its last lines; of a run that is done, its warnings
@@ -264,8 +273,10 @@ def attempt(task: Task, number: int) -> Outcome:
     is_kept = task.keep_temp
     try:
         outcome = attempt_in(folder, task, number)
-        if not outcome.problem:
-            keep(folder / FRAMES / task.data, task.result_of(outcome.replacement), as_copy=task.keep_temp)
+        if outcome.file is not None:
+            result = task.result_of(outcome.file.retry_attempt)
+            keep(outcome.file.path, result, as_copy=task.keep_temp)
+            outcome = replace(outcome, file=replace(outcome.file, path=result))
         is_kept |= bool(outcome.problem)
         return replace(outcome, folder=str(folder) if is_kept else "")
     finally:
@@ -293,7 +304,7 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
     code, simulator_s = simulators.run(command, task.working_folder, folder / LOG, task.models_path)
     data = folder / FRAMES / task.data
     problem, is_fatal, is_certain = "", False, False
-    log = ""
+    file, log = None, ""
     if code != 0:
         log = tail(folder / LOG)
         problem = ending(code)
@@ -304,7 +315,7 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
     elif not data.is_file():
         problem = f"it ended without writing its data file: is {task.program} a program compiled for Pogosim?"
         is_fatal = True
-    elif not is_complete_data(data):
+    elif (file := task.read(data, task.replacement_in(number))) is None:
         problem = "its data file is damaged"
     else:
         log = warnings_in(folder)
@@ -314,7 +325,7 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
         is_fatal,
         is_certain,
         attempts=number + 1,
-        replacement=task.replacement_in(number),
+        file=file,
         command=shlex.join(command),
         log=log,
         simulator_s=simulator_s,
@@ -329,14 +340,6 @@ def starting(program: str) -> list[str]:
 def disk_full(task: Task) -> str:
     """Return what is said when a run cannot write."""
     return f"the disk of {task.temp_folder} is full; free space, then give the same command again"
-
-
-def is_complete_data(path: Path) -> bool:
-    """Tell whether a data file can be read."""
-    try:
-        return is_complete(path)
-    except DAMAGED:
-        return False
 
 
 def keep(data: Path, result: Path, as_copy: bool) -> None:

@@ -269,10 +269,12 @@ class PogobotBatchRunner:
         execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, shows_warnings)
         self.failures, self.replaced, self.simulator_s, self.generated = execution.failures, [], 0.0, []
         outputs = list(dict.fromkeys(combination.output for combination in combinations))
-        waiting = execution.waiting(self.temporary)
+        waiting = execution.waiting()
+        if done := len(execution.finished):
+            tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
         with self.workers.opened() as do:
             outcomes = do(waiting)
-            if len(waiting) == len(execution.tasks):
+            if not done:
                 outcomes = removing_stale(outputs, outcomes)
             else:
                 for output in outputs:

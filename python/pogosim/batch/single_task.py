@@ -8,8 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program
@@ -19,13 +17,14 @@ from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.result_metadata import columns_as_text
-from pogosim.batch.results import check_columns, schema_of
+from pogosim.batch.results import check_columns
 from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, Task, attempt_in, simulators, with_last_line
+from pogosim.batch.run_data import RunFile, read_run, shared
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
-from pogosim.run_columns import SEED
+from pogosim.run_columns import RETRY, SEED
 from pogosim.table_metadata import parse_configuration
 
 WHICH_RUN = ("seed", "result_filename", "extra_columns")  # entries of a manifest that tell runs in a folder apart
@@ -63,27 +62,23 @@ class TaskArtifact:
         """What tells the combination of the run from others: its configuration, columns and file of results."""
         return (str(self.manifest.get("config_hash", "")), self.columns_text, str(self.manifest["result_filename"]))
 
-    @property
-    def schema(self) -> pa.Schema:
-        """Columns and metadata of the data file.
+    @cached_property
+    def file(self) -> RunFile:
+        """The data file, and what it has beside its rows.
 
         Raises:
             BatchError: It cannot be read.
         """
+        manifest = self.manifest
         try:
-            return schema_of(self.data)
+            return shared(read_run(self.data, manifest["logical_run"], manifest[SEED], manifest.get(RETRY) or 0))
         except OSError as error:
             raise cannot("read", self.data, error) from None
 
     @property
-    def metadata(self) -> dict[bytes, bytes]:
-        """The metadata of the data file."""
-        return self.schema.metadata or {}
-
-    @property
     def configuration_text(self) -> str:
         """The configuration in the data file."""
-        return self.metadata.get(b"configuration", b"").decode(errors="replace")
+        return self.file.metadata.get(b"configuration", b"").decode(errors="replace")
 
     @property
     def configuration(self) -> dict[str, Any]:
@@ -154,10 +149,10 @@ def execute_task(
         outcome = attempt_in(folder.absolute(), task, retry_attempt, EFFECTIVE)
     except OSError as error:
         raise cannot("use", error.filename or folder, error) from None
-    if outcome.problem:
+    if outcome.file is None:
         said = in_the_users_file(outcome.log, task, entries, configuration)
         raise TaskError(f"the run with seed {seed} failed: {with_last_line(outcome.problem, said)}", outcome)
-    check_columns(schema_of(folder / FRAMES / task.data), list(columns), program, WITH_SEEDS)
+    check_columns(outcome.file.schema, list(columns), program, WITH_SEEDS)
     write_json(folder / TASK, manifest)
     return TaskArtifact(folder, manifest)
 

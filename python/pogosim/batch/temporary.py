@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pogosim.batch.errors import BatchError, cannot
-from pogosim.batch.run import Task, is_complete_data
 from pogosim.outputs import lock
 
 
@@ -58,14 +57,6 @@ class TemporaryFolder:
                 yield
         except OSError as error:
             raise cannot("use", error.filename or self.path, error) from None
-
-    def finished(self, task: Task) -> int | None:
-        """Return with which replacement of its seed a run is done already (0: its own seed); None: it is not."""
-        for replacement in range(len(task.replacements) + 1):
-            result = task.result_of(replacement)
-            if result.is_file() and is_complete_data(result):
-                return replacement
-        return None
 
     def remove_leftovers(self) -> None:
         """Remove what runs of an interrupted batch have left, unless folders are kept."""
