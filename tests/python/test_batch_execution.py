@@ -18,13 +18,16 @@ from pogosim.batch.results import replacement, write_results
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.run_data import read_run
 from pogosim.batch.tasks import Combination
+from pogosim.batch.temporary import TemporaryFolder
 from pogosim.utils import load_dataframe
 from pyarrow import feather
 
 
 def task(folder: Path, key: str, run: int = 0) -> Task:
     """Return a run whose data file would be in a folder."""
-    return Task(key, run, run, "/p", "", (), "d", "/", "/t", str(folder), "b", retries=0, gui=False, keep_temp=False)
+    temporary = TemporaryFolder(folder, "b", is_kept=False)
+    temporary.done.mkdir(exist_ok=True)
+    return Task(key, run, run, "/p", "", (("data_filename", "d"),), "/", temporary, retries=0, gui=False)
 
 
 def write_data(path: Path, *columns: str) -> Path:

@@ -84,7 +84,12 @@ def test_data_file_of_a_run_is_opened_when_the_run_has_ended_and_when_it_is_join
 ) -> None:
     opened: list[Path] = []
     memory_map = pa.memory_map
-    monkeypatch.setattr(pa, "memory_map", lambda path: (opened.append(Path(path)), memory_map(path))[1])
+
+    def counted(path: str) -> pa.MemoryMappedFile:
+        opened.append(Path(path))
+        return memory_map(path)
+
+    monkeypatch.setattr(pa, "memory_map", counted)
     write_options(tmp_path)
     assert batch(tmp_path, "-r", "3", "--backend", "sequential").code == 0
     assert [path.name for path in opened[:6]] == ["data.feather"] * 6

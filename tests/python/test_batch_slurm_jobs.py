@@ -24,6 +24,7 @@ from pogosim.batch.slurm import (
 )
 from pogosim.batch.slurm_jobs import LOST_PER_JOB, Jobs, own_folder
 from pogosim.batch.slurm_options import SlurmJobs
+from pogosim.batch.temporary import TemporaryFolder
 
 SBATCH = 'cat > script; echo "sbatch $*" >> asked; echo x >> jobs; echo "$(wc -l < jobs);cluster"'
 SQUEUE = 'echo "squeue $*" >> asked; cat states 2>/dev/null'
@@ -129,8 +130,8 @@ def test_units_of_memory_are_those_of_sbatch(memory: str, size: int) -> None:
 
 def task(folder: Path, retries: int = 0) -> Task:
     """Return a run."""
-    done = str(folder / "done")
-    return Task("key", 0, 0, "/p", "", (), "d", "/", str(folder), done, "batch", retries, gui=False, keep_temp=False)
+    temporary = TemporaryFolder(folder, "batch", is_kept=False)
+    return Task("key", 0, 0, "/p", "", (("data_filename", "d"),), "/", temporary, retries, gui=False)
 
 
 class Started:

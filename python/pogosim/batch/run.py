@@ -23,6 +23,7 @@ from pogosim.batch.identity import PYTHON
 from pogosim.batch.run_data import RunFile, read_run
 from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.running import Watch
+from pogosim.batch.temporary import TemporaryFolder
 from pogosim.extensions import MODELS_VARIABLE
 from pogosim.lines import printable
 
@@ -57,17 +58,18 @@ class Task:
     program: str
     text: str  # configuration, without the names of its outputs, or with `place_of` them
     outputs: tuple[tuple[str, str], ...]  # keys of the configuration, and the basenames of the files
-    data: str  # basename of the data file
     working_folder: str
-    temp_folder: str
-    done_folder: str
-    batch: str
+    temporary: TemporaryFolder
     retries: int
     gui: bool
-    keep_temp: bool
     replacements: tuple[int, ...] = ()  # seeds of its second, third, ... attempt; empty: its own seed
     says: tuple[str, ...] = QUIET
     models_path: str = ""  # folders of robot models, as POGOSIM_PATH of the simulator
+
+    @property
+    def data(self) -> str:
+        """Basename of the data file."""
+        return dict(self.outputs)["data_filename"]
 
     def seed_of(self, attempt: int) -> int:
         """Return the seed of an attempt, from 0 on."""
@@ -76,7 +78,7 @@ class Task:
     def result_of(self, replacement: int) -> Path:
         """Return where the data file is when the run is done, with its own seed (0) or a replacement (1, ...)."""
         suffix = f"_{replacement}_{self.seed_of(replacement)}" if replacement else ""
-        return Path(self.done_folder) / f"{self.key}{suffix}.feather"
+        return self.temporary.done / f"{self.key}{suffix}.feather"
 
     def replacement_in(self, attempt: int) -> int:
         """Return which replacement of its seed an attempt has: 0 if it is its own seed again."""
@@ -268,14 +270,14 @@ def attempt(task: Task, number: int) -> Outcome:
         OSError: A file cannot be written, or the program not be started.
         StoppedError: The batch ends.
     """
-    prefix = f"sim_{task.run}_try{number}_{task.batch}_"
-    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=task.temp_folder))
-    is_kept = task.keep_temp
+    prefix = f"sim_{task.run}_try{number}_{task.temporary.batch}_"
+    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=task.temporary.path))
+    is_kept = task.temporary.is_kept
     try:
         outcome = attempt_in(folder, task, number)
         if outcome.file is not None:
             result = task.result_of(outcome.file.retry_attempt)
-            keep(outcome.file.path, result, as_copy=task.keep_temp)
+            keep(outcome.file.path, result, as_copy=task.temporary.is_kept)
             outcome = replace(outcome, file=replace(outcome.file, path=result))
         is_kept |= bool(outcome.problem)
         return replace(outcome, folder=str(folder) if is_kept else "")
@@ -339,7 +341,7 @@ def starting(program: str) -> list[str]:
 
 def disk_full(task: Task) -> str:
     """Return what is said when a run cannot write."""
-    return f"the disk of {task.temp_folder} is full; free space, then give the same command again"
+    return f"the disk of {task.temporary.path} is full; free space, then give the same command again"
 
 
 def keep(data: Path, result: Path, as_copy: bool) -> None:
@@ -366,14 +368,14 @@ def do_run(task: Task) -> Outcome:
     outcome = Outcome(task.key)
     simulator_s, first_problem = 0.0, ""
     for number in range(task.retries + 1):
-        if outcome.folder and not task.keep_temp:
+        if outcome.folder and not task.temporary.is_kept:
             shutil.rmtree(outcome.folder, ignore_errors=True)
         try:
             outcome = attempt(task, number)
         except OSError as error:
             is_full = error.errno in (errno.ENOSPC, errno.EDQUOT)
             # What starts the program names it; what cannot be written has no name, and is in the temporary folder.
-            problem = disk_full(task) if is_full else f"{error.filename or task.temp_folder}: {reason(error)}"
+            problem = disk_full(task) if is_full else f"{error.filename or task.temporary.path}: {reason(error)}"
             is_fatal = is_full or error.errno == errno.ENOEXEC
             outcome = Outcome(task.key, problem, is_fatal=is_fatal, attempts=number + 1)
         simulator_s += outcome.simulator_s
