@@ -114,7 +114,7 @@ class PogobotLauncher:
         """
         if seeds is not None and len(seeds) < self.runner.runs:
             raise BatchError(f"expected {self.runner.runs} seeds, one per run; found {len(seeds)}")
-        self.runner.seeds = seeds
+        self.runner.seeds = range(self.runner.runs) if seeds is None else seeds
         return self.runner.run_launcher_for_combination(self.path, self.output)
 
 

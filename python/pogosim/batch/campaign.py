@@ -169,7 +169,7 @@ def entries_of(runner: PogobotBatchRunner) -> dict[str, Any]:
         "config": runner.multi_config_file,
         "task_count": count,
         "combinations": runner.combination_count,
-        "seeds": list(runner.asked_seeds),
+        "seeds": list(runner.seeds),
         "backend": runner.workers.name,
         "jobs": min(runner.workers.at_once, count),
         "retry_new_seed": runner.retry_new_seed,

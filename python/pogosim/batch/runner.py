@@ -110,15 +110,18 @@ class PogobotBatchRunner:
         simulator_output: str = "normal",
     ) -> None:
         self.multi_config_file = str(given.path("multi_config_file", multi_config_file))
-        self.seeds: Sequence[int] | None = None
         self.runs = 0
+        self.seeds: Sequence[int] = ()  # of each combination, before `compute_seed` makes others of them
         if seeds is None:
             self.runs = at_least(1, runs, "--runs")
+            self.seeds = range(self.runs)
         elif not (isinstance(seeds, str) and seeds == CONFIGURED):
             self.seeds = listed_seeds(seeds, "--seeds")
             self.runs = len(self.seeds)
             if runs is not None and runs != self.runs:
                 raise BatchError(f"--runs: expected {self.runs}, as many as there are seeds; found {runs}")
+            if seed_from == "config":
+                raise BatchError("--seed-from config goes with --runs; the seeds are given already")
         self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
         self.temp_base = str(given.path("temp_base", temp_base))
         self.output_dir = str(given.path("output_dir", output_dir))
@@ -145,8 +148,6 @@ class PogobotBatchRunner:
         self.written: dict[str, tuple[str, dict[str, Any]]] = {}
         if seed_from not in ("run", "config"):
             raise BatchError(f"--seed-from: expected run or config; found '{seed_from}'")
-        if seed_from == "config" and self.seeds is not None:
-            raise BatchError("--seed-from config goes with --runs; the seeds are given already")
         if simulator_output not in SIMULATOR_OUTPUTS:
             known = ", ".join(SIMULATOR_OUTPUTS)
             raise BatchError(f"simulator_output: expected one of {known}; found '{simulator_output}'")
@@ -154,7 +155,7 @@ class PogobotBatchRunner:
         if not self.runs:
             asked_for = self.configuration.seeds or range(1)
             self.runs = len(asked_for)
-            self.seeds = asked_for if seed_from == "run" else None
+            self.seeds = asked_for if seed_from == "run" else range(self.runs)
 
     # ---- What can be overridden ----
 
@@ -185,10 +186,8 @@ class PogobotBatchRunner:
 
     def compute_seed(self, comb_config: dict[str, Any], run: int) -> int:
         """Return the seed of a run, 0 to 2^32-1. Runs are numbered 0, 1, ..."""
-        if self.seeds is not None:
-            return self.seeds[run]
         if self.seed_from == "run":
-            return run
+            return self.seeds[run]
         seed = comb_config.get("seed")
         if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**32:
             where = self.configuration.where(("seed",))
@@ -325,11 +324,6 @@ class PogobotBatchRunner:
                 yield
             finally:
                 self.temporary.tidy(self.written)
-
-    @property
-    def asked_seeds(self) -> Sequence[int]:
-        """Seeds of the runs of each combination, before `compute_seed` makes others of them."""
-        return range(self.runs) if self.seeds is None else self.seeds
 
     def checked_selection(self) -> list[tuple[dict[str, Any], str]]:
         """Return the combinations to do, each with its file of results, after all checks that need no program.

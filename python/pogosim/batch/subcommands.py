@@ -60,7 +60,7 @@ def plan(arguments: argparse.Namespace) -> Report:
     return {
         "config": arguments.config,
         "combinations": combinations,
-        "seeds": list(runner.asked_seeds),
+        "seeds": list(runner.seeds),
         "task_count": len(tasks),
         "outputs": outputs,
         "tasks": tasks,
