@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from pogosim.batch.errors import cannot
@@ -35,7 +35,7 @@ def remove_stale(output: str) -> None:
         raise cannot("remove", output, error) from None
 
 
-def removing_stale(outputs: Sequence[str], outcomes: Generator[Outcome, None, None]) -> Generator[Outcome, None, None]:
+def removing_stale(outputs: Iterable[str], outcomes: Generator[Outcome, None, None]) -> Generator[Outcome, None, None]:
     """Pass on what became of runs. The first one that ends well removes results of an earlier batch.
 
     Until then, they stay: a mistake in the configuration loses nothing.

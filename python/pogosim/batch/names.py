@@ -45,21 +45,21 @@ def without_folder(value: Any) -> Any:
     return path.stem if is_path and path.stem else value
 
 
-def value_at(combination: dict[str, Any], path: str, is_whole: bool = False) -> Any:
+def value_at(entries: dict[str, Any], path: str, is_whole: bool = False) -> Any:
     """Return what stands for a key in results: the name of the chosen alternative, the stem of a path, or the value.
 
     Args:
-        combination: Its configuration.
+        entries: The configuration of a combination.
         path: The key.
         is_whole: A path is not reduced to its stem.
 
     Raises:
         KeyError: There is no such key.
     """
-    choices = combination.get(CHOICES)
+    choices = entries.get(CHOICES)
     if isinstance(choices, dict) and path in choices:
         return choices[path]
-    value = plain(get_by_dotted_path(combination, path))
+    value = plain(get_by_dotted_path(entries, path))
     return value if is_whole else without_folder(value)
 
 
@@ -85,13 +85,13 @@ class DottedFormatter(string.Formatter):
         return value, field_name
 
 
-def file_name(combination: dict[str, Any]) -> str:
+def file_name(entries: dict[str, Any]) -> str:
     """Return the name of the file with the results of a combination.
 
     Raises:
         NamesError: `result_filename_format` is wrong.
     """
-    pattern = combination.get(FORMAT, DEFAULT_FORMAT)
+    pattern = entries.get(FORMAT, DEFAULT_FORMAT)
     if not isinstance(pattern, str) or not pattern:
         raise NamesError(
             FORMAT, f"expected a name such as result_{{objects.robots.nb}}.feather, found {shown(pattern)}"
@@ -99,7 +99,7 @@ def file_name(combination: dict[str, Any]) -> str:
     if WIDE.search(pattern):
         raise NamesError(FORMAT, f"'{shown(pattern)}' makes a name too long for a file")
     try:
-        name = DottedFormatter().vformat(pattern, (), combination)
+        name = DottedFormatter().vformat(pattern, (), entries)
     except NamesError:
         raise
     except (ValueError, TypeError, AttributeError, KeyError, IndexError) as error:
@@ -136,47 +136,47 @@ def ambiguous(combinations: Sequence[dict[str, Any]]) -> frozenset[str]:
     """
     found = set()
     paths: dict[tuple[str, str], str] = {}  # by key and stem
-    for combination in combinations:
-        for name, stem in new_columns(combination).items():
-            whole = cell(combination, name, is_whole=True)
+    for entries in combinations:
+        for name, stem in new_columns(entries).items():
+            whole = cell(entries, name, is_whole=True)
             if isinstance(whole, str) and paths.setdefault((name, stem), whole) != whole:
                 found.add(name)
     return frozenset(found)
 
 
-def new_columns(combination: dict[str, Any], whole: Container[str] = ()) -> dict[str, Any]:
+def new_columns(entries: dict[str, Any], whole: Container[str] = ()) -> dict[str, Any]:
     """Return the constant columns of a combination: names (dotted paths), and values (None: it has no such key).
 
     Args:
-        combination: Its configuration.
+        entries: The configuration of a combination.
         whole: Keys whose paths are not reduced to their stems.
 
     Raises:
         NamesError: `result_new_columns` is wrong.
     """
-    names = combination.get(COLUMNS)
+    names = entries.get(COLUMNS)
     if names is None:
         return {}
     if isinstance(names, str):
         names = [names]
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise NamesError(COLUMNS, f"expected a list of keys, such as [arena_file], found {shown(names)}")
-    return {name: cell(combination, name, name in whole) for name in names}
+    return {name: cell(entries, name, name in whole) for name in names}
 
 
-def cell(combination: dict[str, Any], path: str, is_whole: bool = False) -> Any:
+def cell(entries: dict[str, Any], path: str, is_whole: bool = False) -> Any:
     """Return what a column has for a key: a single value, lists and maps as YAML, or None if there is no such key."""
     try:
-        value = value_at(combination, path, is_whole)
+        value = value_at(entries, path, is_whole)
     except KeyError:
         return None
     return dump_yaml(value, is_flow=True).strip() if isinstance(value, (dict, list)) else plain(value)
 
 
-def has_key(combination: dict[str, Any], path: str) -> bool:
+def has_key(entries: dict[str, Any], path: str) -> bool:
     """Tell whether a combination has a key, or an alternative chosen there."""
     try:
-        value_at(combination, path)
+        value_at(entries, path)
     except KeyError:
         return False
     return True

@@ -6,7 +6,7 @@ import contextlib
 import logging
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -65,9 +65,8 @@ class Wanted:
     """A configuration whose runs are being done."""
 
     number: int
-    text: str  # its metadata entry "configuration"
     combinations: list[Combination]
-    waiting: set[str] = field(default_factory=set)  # keys of runs
+    waiting: set[str]  # keys of runs
     replacement: int = 0  # the greatest one of the seeds of its runs
     problem: str = ""
 
@@ -165,7 +164,7 @@ class Runs:
                 one.problem = one.problem or problem
                 if not one.waiting:
                     yield self.finished(one, execution.finished, save(one.number) if save is not None else None)
-                    for own in {task.key for part in one.combinations for task in part.tasks}:
+                    for own in {task.key for combination in one.combinations for task in combination.tasks}:
                         left[own] -= 1
                         if left[own] == 0 and own in execution.finished and not self.temporary.is_kept:
                             execution.finished.pop(own).path.unlink(missing_ok=True)
@@ -188,13 +187,12 @@ class Runs:
         with self.configuration.placing_errors():
             combined = combinations_of(entries)
         combinations, whole = [], ambiguous(combined)
-        for combination in combined:
-            check_logs_data(combination, self.configuration)
-            columns = new_columns(combination, whole)
-            columns.setdefault(ARENA, value_at(combination, ARENA) if ARENA in combination else None)
-            combinations.append(Combination("", columns, combination, tasks_of(combination, seeds, self.settings)))
-        keys = {task.key for part in combinations for task in part.tasks}
-        return Wanted(number, self.configuration.text, combinations, keys)
+        for own in combined:
+            check_logs_data(own, self.configuration)
+            columns = new_columns(own, whole)
+            columns.setdefault(ARENA, value_at(own, ARENA) if ARENA in own else None)
+            combinations.append(Combination("", columns, own, tasks_of(own, seeds, self.settings)))
+        return Wanted(number, combinations, {task.key for combination in combinations for task in combination.tasks})
 
     def problem_of(self, outcome: Outcome) -> str:
         """Return why a run has failed, or nothing; warnings of simulators are passed on, each once."""
@@ -212,7 +210,7 @@ class Runs:
         parts = [part_of(combination, files, WITH_SEEDS) for combination in one.combinations]
         seeds = tuple(run.seed for run in parts[0].runs)
         scratch = self.temporary.done / f"joined_{one.number}.feather"
-        path, text = (scratch, one.text) if target is None else target
+        path, text = (scratch, self.configuration.text) if target is None else target
         write_results(str(path), parts, text, WITH_SEEDS)
         rows, _ = load_dataframe(path)
         scratch.unlink(missing_ok=True)

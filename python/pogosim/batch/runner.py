@@ -252,8 +252,8 @@ class PogobotBatchRunner:
             self.queue = []
             try:
                 outputs = []
-                for config, output in selected:
-                    path = self.write_temp_yaml(config)
+                for entries, output in selected:
+                    path = self.write_temp_yaml(entries)
                     log.debug("Task: Config file %s -> Output: %s", path, output)
                     outputs.append(self.run_launcher_for_combination(path, output))
                 queue = self.queue
@@ -267,16 +267,18 @@ class PogobotBatchRunner:
         shows_warnings = self.simulator_output != "quiet"
         execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, shows_warnings)
         self.failures, self.replaced, self.simulator_s, self.generated = execution.failures, [], 0.0, []
-        outputs = list(dict.fromkeys(combination.output for combination in combinations))
+        by_output: dict[str, list[Combination]] = {}
+        for combination in combinations:
+            by_output.setdefault(combination.output, []).append(combination)
         waiting = execution.waiting()
         if done := len(execution.finished):
             tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
         with self.workers.opened() as do:
             outcomes = do(waiting)
             if not done:
-                outcomes = removing_stale(outputs, outcomes)
+                outcomes = removing_stale(by_output, outcomes)
             else:
-                for output in outputs:
+                for output in by_output:
                     remove_stale(output)
             try:
                 execution.take(outcomes, len(waiting), self.progress)
@@ -285,8 +287,7 @@ class PogobotBatchRunner:
         self.replaced = execution.replaced
         report_replaced(self.replaced, len(execution.tasks), RETRY if RETRY in self.layout.run_columns else None)
         report_failures(self.failures)
-        for output in outputs:
-            of_output = [combination for combination in combinations if combination.output == output]
+        for output, of_output in by_output.items():
             if join(of_output, execution.finished, self.configuration.text, self.layout):
                 self.generated.append(output)
         if self.failures:
@@ -337,8 +338,8 @@ class PogobotBatchRunner:
             wanted = f"{self.runs} runs of {len(selected)} combination(s)"
             raise BatchError(f"--runs: {wanted} are more than {MAX_RUNS}; make several batches")
         with self.configuration.placing_errors():
-            check_columns_exist([config for config, _ in selected])
-        columns = [(config, output, self.compute_new_columns(config)) for config, output in selected]
+            check_columns_exist([entries for entries, _ in selected])
+        columns = [(entries, output, self.compute_new_columns(entries)) for entries, output in selected]
         for name in self.layout.run_columns:
             if any(name in own for _, _, own in columns):
                 log.warning("%s: the column '%s' has that of each run", self.configuration.where((COLUMNS,)), name)
@@ -356,9 +357,8 @@ class PogobotBatchRunner:
         combinations = self.get_combinations(self.configuration.entries)
         with self.configuration.placing_errors():
             self.whole = ambiguous(combinations)
-        return with_output(
-            [(config, self.compute_output_filename(config)) for config in combinations], self.only_output
-        )
+        named = [(entries, self.compute_output_filename(entries)) for entries in combinations]
+        return with_output(named, self.only_output)
 
     def combination_of(self, path: str, output: str) -> Combination:
         """Return the runs of a combination."""

@@ -25,8 +25,8 @@ def with_output(named: Sequence[tuple[dict[str, Any], str]], wanted: str) -> lis
     if not wanted:
         return list(named)
     kept = [
-        (config, output)
-        for config, output in named
+        (entries, output)
+        for entries, output in named
         if wanted in (output, Path(output).name) or Path(output).absolute() == Path(wanted).absolute()
     ]
     if not kept:
@@ -36,14 +36,14 @@ def with_output(named: Sequence[tuple[dict[str, Any], str]], wanted: str) -> lis
     return kept
 
 
-def check_columns_exist(configs: Sequence[dict[str, Any]]) -> None:
+def check_columns_exist(combinations: Sequence[dict[str, Any]]) -> None:
     """Check that each of the new columns is a key in some combination.
 
     Raises:
         NamesError: One is in none of them.
     """
-    for name in new_columns(configs[0]):
-        if not any(has_key(config, name) for config in configs):
+    for name in new_columns(combinations[0]):
+        if not any(has_key(entries, name) for entries in combinations):
             raise NamesError(
                 COLUMNS,
                 f"there is no key '{name}' in the configuration; expected the dotted paths of keys, such as "
@@ -58,10 +58,10 @@ def indistinguishable(selected: Sequence[tuple[dict[str, Any], str, dict[str, An
         selected: Configurations, each with its file of results and its new columns.
     """
     alike: dict[tuple[str, str], list[dict[str, Any]]] = {}
-    for config, output, columns in selected:
-        alike.setdefault((output, repr(columns)), []).append(config)
+    for entries, output, columns in selected:
+        alike.setdefault((output, repr(columns)), []).append(entries)
     keys: dict[str, list[str]] = {}
-    for (output, _), configs in alike.items():
-        varied = [key.removeprefix(f"{CHOICES}.") for key in varied_parameters(configs)]
+    for (output, _), combinations in alike.items():
+        varied = [key.removeprefix(f"{CHOICES}.") for key in varied_parameters(combinations)]
         keys[output] = list(dict.fromkeys([*keys.get(output, []), *varied]))
     return {output: varied for output, varied in keys.items() if varied}

@@ -74,14 +74,14 @@ def planned(runner: PogobotBatchRunner) -> Iterator[dict[str, Any]]:
     from pogosim.varied import varied_parameters
 
     selected = runner.checked_selection()
-    varied = varied_parameters([config for config, _ in selected])
-    for number, (config, output) in enumerate(selected):
+    varied = varied_parameters([entries for entries, _ in selected])
+    for number, (entries, output) in enumerate(selected):
         choices = chosen_in(varied, number)
         for run in range(runner.runs):
             yield {
                 "combination_ordinal": number,
                 "logical_run": run,
-                "seed": runner.compute_seed(config, run),
+                "seed": runner.compute_seed(entries, run),
                 "output": output,
                 "batch_choices": for_json(choices),
             }
