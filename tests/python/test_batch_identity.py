@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
-from pogosim.batch.identity import program_digest
-from pogosim.batch.manifests import config_hash
+from pogosim.batch.identity import config_hash, program_digest
 from pogosim.batch.run import Task
 from pogosim.batch.run_files import found_beside
 from pogosim.batch.tasks import RunSettings, tasks_of

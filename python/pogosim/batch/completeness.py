@@ -14,7 +14,8 @@ from typing import Any
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
-from pogosim.batch.manifests import config_hash, for_json
+from pogosim.batch.identity import config_hash
+from pogosim.batch.manifests import for_json
 from pogosim.batch.option_words import CHOICES, chosen_in, shown
 from pogosim.batch.result_metadata import Earlier, configuration_in
 from pogosim.batch.run_files import ALL_OUTPUTS, FILES_BESIDE

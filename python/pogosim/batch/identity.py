@@ -7,7 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -119,6 +119,19 @@ def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: di
                     digest.update(digests[path].encode())
                     break
     return digest.hexdigest()
+
+
+def config_hash(entries: dict[str, Any]) -> str:
+    """Return the SHA-256 of a configuration in YAML, with sorted keys, without the names of outputs of a run."""
+    kept = {key: value for key, value in without_outputs(entries).items() if key != CHOICES}
+    return hashlib.sha256(dump_yaml(in_order(kept)).encode(errors="surrogatepass")).hexdigest()
+
+
+def in_order(value: Any) -> Any:
+    """Return a value whose maps have their keys sorted."""
+    if isinstance(value, Mapping):
+        return {key: in_order(value[key]) for key in sorted(value, key=str)}
+    return [in_order(item) for item in value] if isinstance(value, list) else value
 
 
 def run_key(world: str, program: str, seed: int) -> str:

@@ -7,7 +7,6 @@ from collections.abc import Generator, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from pogosim.batch.errors import cannot
-from pogosim.batch.manifests import config_hash
 from pogosim.batch.parts import PLAIN, Format, Part
 from pogosim.batch.results import check_output, write_results
 from pogosim.batch.run import Outcome
@@ -61,7 +60,7 @@ def part_of(combination: Combination, finished: Mapping[str, RunFile], layout: F
         combination.columns,
         [replace(finished[task.key], run=task.run) for task in combination.tasks if task.key in finished],
         [task.run for task in combination.tasks if task.key not in finished],
-        config_hash(combination.entries) if layout.with_manifest else "",
+        combination.config_hash if layout.with_manifest else "",
     )
 
 

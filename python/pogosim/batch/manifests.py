@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import uuid
@@ -13,13 +12,12 @@ from typing import Any
 import pogosim
 from pogosim.arguments import is_text
 from pogosim.batch.errors import BatchError, cannot, check_is_file, given, is_whole, one_line
-from pogosim.batch.option_words import CHOICES, shown
+from pogosim.batch.option_words import shown
 from pogosim.batch.run import FRAMES, Task
-from pogosim.batch.run_files import without_outputs
 from pogosim.batch.seeds import LARGEST
 from pogosim.batch.tasks import Combination
 from pogosim.outputs import OutputError, partial_output, real_output
-from pogosim.yaml_1_2 import dump_yaml, plain
+from pogosim.yaml_1_2 import plain
 
 TASK = "pogobatch_task.json"
 TASK_VERSION = 2
@@ -35,19 +33,6 @@ KNOWN = {
     **{"retry_attempt": MOST, "combination_ordinal": MOST, "config_hash": None},
 }
 NEEDED = list(KNOWN)[:4]
-
-
-def config_hash(entries: dict[str, Any]) -> str:
-    """Return the SHA-256 of a configuration in YAML, with sorted keys, without the names of outputs of a run."""
-    kept = {key: value for key, value in without_outputs(entries).items() if key != CHOICES}
-    return hashlib.sha256(dump_yaml(in_order(kept)).encode(errors="surrogatepass")).hexdigest()
-
-
-def in_order(value: Any) -> Any:
-    """Return a value whose maps have their keys sorted."""
-    if isinstance(value, Mapping):
-        return {key: in_order(value[key]) for key in sorted(value, key=str)}
-    return [in_order(item) for item in value] if isinstance(value, list) else value
 
 
 def for_json(value: Any) -> Any:
@@ -72,7 +57,7 @@ def task_entries(
         ordinal: Number of the combination, from 0 on.
         choices: What tells the combination from others: keys and values.
     """
-    digest, seed = config_hash(combination.entries), task.seed_of(replacement)
+    digest, seed = combination.config_hash, task.seed_of(replacement)
     return {
         "schema_version": TASK_VERSION,
         # The same run always has the same one.

@@ -17,7 +17,7 @@ class Part:
     columns: dict[str, Any]  # constant columns
     runs: Sequence[RunFile]
     failed: Sequence[int] = ()  # runs without a data file
-    config_hash: str = ""  # see pogosim.batch.manifests
+    config_hash: str = ""  # see pogosim.batch.identity
 
     @property
     def rows(self) -> int:

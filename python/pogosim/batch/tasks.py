@@ -6,12 +6,13 @@ import logging
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError
-from pogosim.batch.identity import run_key, world_digest
+from pogosim.batch.identity import config_hash, run_key, world_digest
 from pogosim.batch.run import QUIET, Task
 from pogosim.batch.run_files import outputs_of, with_files_beside, with_places
 from pogosim.batch.seeds import replacements
@@ -32,6 +33,11 @@ class Combination:
     entries: dict[str, Any]
     tasks: list[Task] = field(default_factory=list)
     name: str = ""  # of the output, in the folder of the results
+
+    @cached_property
+    def config_hash(self) -> str:
+        """What manifests know it by."""
+        return config_hash(self.entries)
 
 
 @dataclass(frozen=True)
