@@ -15,7 +15,7 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.execution import Execution
 from pogosim.batch.parts import Part
 from pogosim.batch.results import replacement, write_results
-from pogosim.batch.run import Outcome, Task
+from pogosim.batch.run import Outcome, RunSettings, Task
 from pogosim.batch.run_data import read_run
 from pogosim.batch.tasks import Combination
 from pogosim.batch.temporary import TemporaryFolder
@@ -27,7 +27,8 @@ def task(folder: Path, key: str, run: int = 0) -> Task:
     """Return a run whose data file would be in a folder."""
     temporary = TemporaryFolder(folder, "b", is_kept=False)
     temporary.done.mkdir(exist_ok=True)
-    return Task(key, run, run, "/p", "", (("data_filename", "d"),), "/", temporary, retries=0, gui=False)
+    settings = RunSettings(Path("/p"), "", folder, temporary, retries=0, gui=False)
+    return Task(key, run, run, "", (("data_filename", "d"),), settings)
 
 
 def write_data(path: Path, *columns: str) -> Path:

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 import yaml
 from pogosim.batch.identity import config_hash, program_digest
-from pogosim.batch.run import Task
+from pogosim.batch.run import RunSettings, Task
 from pogosim.batch.run_files import found_beside
-from pogosim.batch.tasks import RunSettings, tasks_of
+from pogosim.batch.tasks import tasks_of
 from pogosim.batch.temporary import TemporaryFolder
 from running import LIBRARY
 
@@ -37,7 +37,7 @@ def tasks(tmp_path: Path, beside: Path, monkeypatch: pytest.MonkeyPatch) -> Task
 
     def make(entries: dict[str, Any], program: str = "") -> list[Task]:
         settings = RunSettings(Path("/program"), program, beside, temporary, retries=0, gui=False)
-        return tasks_of(entries, [5, 6], settings)
+        return tasks_of(entries, [5, 6], settings, {})
 
     return make
 

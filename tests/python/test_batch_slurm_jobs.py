@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from pogosim.batch.errors import BatchError
-from pogosim.batch.run import Outcome, Task
+from pogosim.batch.run import Outcome, RunSettings, Task
 from pogosim.batch.slurm import (
     SlurmWorkers,
     bytes_of,
@@ -131,7 +131,8 @@ def test_units_of_memory_are_those_of_sbatch(memory: str, size: int) -> None:
 def task(folder: Path, retries: int = 0) -> Task:
     """Return a run."""
     temporary = TemporaryFolder(folder, "batch", is_kept=False)
-    return Task("key", 0, 0, "/p", "", (("data_filename", "d"),), "/", temporary, retries, gui=False)
+    settings = RunSettings(Path("/p"), "", folder, temporary, retries, gui=False)
+    return Task("key", 0, 0, "", (("data_filename", "d"),), settings)
 
 
 class Started:

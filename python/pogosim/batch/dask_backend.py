@@ -92,7 +92,8 @@ def outcomes_of(
     try:
         as_completed: Any = importlib.import_module("distributed").as_completed
         futures = [
-            client.submit(do, task, key=f"pogosim-{task.temporary.batch}-{task.key}", pure=False) for task in tasks
+            client.submit(do, task, key=f"pogosim-{task.settings.temporary.batch}-{task.key}", pure=False)
+            for task in tasks
         ]
         left = {future.key: task for future, task in zip(futures, tasks, strict=True)}
         for future in finished(as_completed(futures, raise_errors=False), poll):

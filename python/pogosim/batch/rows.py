@@ -22,9 +22,9 @@ from pogosim.batch.names import ambiguous, new_columns, value_at
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import write_results
-from pogosim.batch.run import Outcome, with_last_line
+from pogosim.batch.run import Outcome, RunSettings, with_last_line
 from pogosim.batch.run_data import RunFile
-from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
+from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.utils import load_dataframe
 
@@ -110,7 +110,8 @@ class Runs:
         self.settings = RunSettings(
             path, program_digest(path), beside, self.temporary, retries, gui=False, retry_new_seed=retry_new_seed
         )
-        world = world_digest(configuration.entries, self.settings.folders, self.settings.digests)
+        self.file_digests: dict[Path, str] = {}
+        world = world_digest(configuration.entries, self.settings.folders, self.file_digests)
         self.digests = {"configuration": world, "program": self.settings.program_digest}
         self.simulator_s = 0.0
         self.warned: dict[str, str] = {}  # the first warning of each kind
@@ -191,7 +192,7 @@ class Runs:
             check_logs_data(own, self.configuration)
             columns = new_columns(own, whole)
             columns.setdefault(ARENA, value_at(own, ARENA) if ARENA in own else None)
-            combinations.append(Combination("", columns, own, tasks_of(own, seeds, self.settings)))
+            combinations.append(Combination("", columns, own, tasks_of(own, seeds, self.settings, self.file_digests)))
         return Wanted(number, combinations, {task.key for combination in combinations for task in combination.tasks})
 
     def problem_of(self, outcome: Outcome) -> str:

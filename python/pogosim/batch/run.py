@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import logging
 import os
 import re
 import shlex
@@ -15,7 +16,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from pogosim.batch.errors import BatchError, reason
@@ -24,7 +25,7 @@ from pogosim.batch.run_data import RunFile, read_run
 from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.running import Watch
 from pogosim.batch.temporary import TemporaryFolder
-from pogosim.extensions import MODELS_VARIABLE
+from pogosim.extensions import MODELS_VARIABLE, models_path
 from pogosim.lines import printable
 
 LOG = "log.txt"
@@ -40,6 +41,8 @@ MAX_WARNINGS = 1000  # of one run
 LONGEST_LINE = 10_000  # bytes of a line that are read at once
 DISK_FULL = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
 
+log = logging.getLogger("pogobatch")
+
 # Dies with the thread that starts it, whatever ends that one; and starts nothing if that has happened already.
 WATCHED = ("setpriv", "--pdeathsig", "KILL", "sh", "-c", '[ "$PPID" = "$0" ] && exec "$@"')
 
@@ -49,22 +52,43 @@ class StoppedError(Exception):
 
 
 @dataclass(frozen=True)
+class RunSettings:
+    """What all runs of a batch have in common. All paths are absolute."""
+
+    program: Path
+    program_digest: str
+    configuration_folder: Path  # where files that configurations name are searched, too
+    temporary: TemporaryFolder
+    retries: int
+    gui: bool
+    retry_new_seed: bool = False  # a run that failed is repeated with another seed
+    says: tuple[str, ...] = QUIET
+    working_folder: Path = field(default_factory=Path.cwd)
+    models_path: str = field(default_factory=lambda: models_path(log.warning))  # as POGOSIM_PATH of the simulator
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Folders in which files that a configuration names are searched, in this order."""
+        models = map(Path, filter(None, self.models_path.split(os.pathsep)))
+        return (self.working_folder, self.configuration_folder, *models)
+
+
+@dataclass(frozen=True)
 class Task:
-    """A run to do. All paths are absolute."""
+    """A run to do."""
 
     key: str
     run: int
     seed: int
-    program: str
     text: str  # configuration, without the names of its outputs, or with `place_of` them
     outputs: tuple[tuple[str, str], ...]  # keys of the configuration, and the basenames of the files
-    working_folder: str
-    temporary: TemporaryFolder
-    retries: int
-    gui: bool
+    settings: RunSettings
     replacements: tuple[int, ...] = ()  # seeds of its second, third, ... attempt; empty: its own seed
-    says: tuple[str, ...] = QUIET
-    models_path: str = ""  # folders of robot models, as POGOSIM_PATH of the simulator
+
+    @property
+    def retries(self) -> int:
+        """How many times the run is repeated if it fails: there may be too few seeds for as many as are asked for."""
+        return len(self.replacements) if self.settings.retry_new_seed else self.settings.retries
 
     @property
     def data(self) -> str:
@@ -78,7 +102,7 @@ class Task:
     def result_of(self, replacement: int) -> Path:
         """Return where the data file is when the run is done, with its own seed (0) or a replacement (1, ...)."""
         suffix = f"_{replacement}_{self.seed_of(replacement)}" if replacement else ""
-        return self.temporary.done / f"{self.key}{suffix}.feather"
+        return self.settings.temporary.done / f"{self.key}{suffix}.feather"
 
     def replacement_in(self, attempt: int) -> int:
         """Return which replacement of its seed an attempt has: 0 if it is its own seed again."""
@@ -130,7 +154,7 @@ class Simulators:
         self.watch.begin()
         self.slots = threading.BoundedSemaphore(at_once)
 
-    def run(self, command: Sequence[str], folder: str, log: Path, models_path: str) -> tuple[int, float]:
+    def run(self, command: Sequence[str], folder: Path, log: Path, models_path: str) -> tuple[int, float]:
         """Run a program to its end.
 
         Returns:
@@ -145,7 +169,7 @@ class Simulators:
             code = self.run_now(command, folder, log, models_path)
             return code, time.monotonic() - started_s
 
-    def run_now(self, command: Sequence[str], folder: str, log: Path, models_path: str) -> int:
+    def run_now(self, command: Sequence[str], folder: Path, log: Path, models_path: str) -> int:
         """Do what `run` does, at once; returns the exit code."""
         if self.is_stopping:
             raise StoppedError
@@ -270,14 +294,15 @@ def attempt(task: Task, number: int) -> Outcome:
         OSError: A file cannot be written, or the program not be started.
         StoppedError: The batch ends.
     """
-    prefix = f"sim_{task.run}_try{number}_{task.temporary.batch}_"
-    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=task.temporary.path))
-    is_kept = task.temporary.is_kept
+    temporary = task.settings.temporary
+    prefix = f"sim_{task.run}_try{number}_{temporary.batch}_"
+    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=temporary.path))
+    is_kept = temporary.is_kept
     try:
         outcome = attempt_in(folder, task, number)
         if outcome.file is not None:
             result = task.result_of(outcome.file.retry_attempt)
-            keep(outcome.file.path, result, as_copy=task.temporary.is_kept)
+            keep(outcome.file.path, result, as_copy=temporary.is_kept)
             outcome = replace(outcome, file=replace(outcome.file, path=result))
         is_kept |= bool(outcome.problem)
         return replace(outcome, folder=str(folder) if is_kept else "")
@@ -301,9 +326,10 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
     """
     (folder / FRAMES).mkdir(exist_ok=True)
     path = write_configuration(task, folder, configuration)
-    arguments = ["-c", str(path), *task.says, "--seed", str(task.seed_of(number))]
-    command = [*starting(task.program), *arguments, *([] if task.gui else ["-g"])]
-    code, simulator_s = simulators.run(command, task.working_folder, folder / LOG, task.models_path)
+    settings = task.settings
+    arguments = ["-c", str(path), *settings.says, "--seed", str(task.seed_of(number))]
+    command = [*starting(str(settings.program)), *arguments, *([] if settings.gui else ["-g"])]
+    code, simulator_s = simulators.run(command, settings.working_folder, folder / LOG, settings.models_path)
     data = folder / FRAMES / task.data
     problem, is_fatal, is_certain = "", False, False
     file, log = None, ""
@@ -313,9 +339,9 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
         is_certain = code == REFUSED and f"Error: {OWN}:" in log
         is_fatal = any(words in log for words in DISK_FULL)
         if is_fatal:
-            problem = disk_full(task)
+            problem = disk_full(settings.temporary)
     elif not data.is_file():
-        problem = f"it ended without writing its data file: is {task.program} a program compiled for Pogosim?"
+        problem = f"it ended without writing its data file: is {settings.program} a program compiled for Pogosim?"
         is_fatal = True
     elif (file := task.read(data, task.replacement_in(number))) is None:
         problem = "its data file is damaged"
@@ -339,9 +365,9 @@ def starting(program: str) -> list[str]:
     return [sys.executable, program] if program.endswith(PYTHON) else [program]
 
 
-def disk_full(task: Task) -> str:
+def disk_full(temporary: TemporaryFolder) -> str:
     """Return what is said when a run cannot write."""
-    return f"the disk of {task.temporary.path} is full; free space, then give the same command again"
+    return f"the disk of {temporary.path} is full; free space, then give the same command again"
 
 
 def keep(data: Path, result: Path, as_copy: bool) -> None:
@@ -365,17 +391,17 @@ def do_run(task: Task) -> Outcome:
     Raises:
         StoppedError: The batch ends.
     """
-    outcome = Outcome(task.key)
+    temporary, outcome = task.settings.temporary, Outcome(task.key)
     simulator_s, first_problem = 0.0, ""
     for number in range(task.retries + 1):
-        if outcome.folder and not task.temporary.is_kept:
+        if outcome.folder and not temporary.is_kept:
             shutil.rmtree(outcome.folder, ignore_errors=True)
         try:
             outcome = attempt(task, number)
         except OSError as error:
             is_full = error.errno in (errno.ENOSPC, errno.EDQUOT)
             # What starts the program names it; what cannot be written has no name, and is in the temporary folder.
-            problem = disk_full(task) if is_full else f"{error.filename or task.temporary.path}: {reason(error)}"
+            problem = disk_full(temporary) if is_full else f"{error.filename or temporary.path}: {reason(error)}"
             is_fatal = is_full or error.errno == errno.ENOEXEC
             outcome = Outcome(task.key, problem, is_fatal=is_fatal, attempts=number + 1)
         simulator_s += outcome.simulator_s

@@ -21,11 +21,11 @@ from pogosim.batch.names import COLUMNS, ambiguous, file_name, is_linked_out, ne
 from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
-from pogosim.batch.run import QUIET
+from pogosim.batch.run import QUIET, RunSettings
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
-from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
+from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.run_columns import RETRY
 
@@ -144,6 +144,7 @@ class PogobotBatchRunner:
         self.whole: frozenset[str] = frozenset()  # columns whose paths are not reduced to their stems
         self.queue: list[Combination] | None = None
         self.run_settings: RunSettings | None = None
+        self.digests: dict[Path, str] = {}  # of files that configurations name
         # Configurations of combinations that were written: their text and entries by path.
         self.written: dict[str, tuple[str, dict[str, Any]]] = {}
         if seed_from not in ("run", "config"):
@@ -309,6 +310,7 @@ class PogobotBatchRunner:
         """Look at the program, and keep the folder for temporary files for this batch meanwhile."""
         program = find_program(self.simulator_binary)
         beside = Path(self.multi_config_file).absolute().parent
+        self.digests = {}
         self.run_settings = RunSettings(
             program,
             program_digest(program),
@@ -374,4 +376,4 @@ class PogobotBatchRunner:
         columns = {name: value for name, value in columns.items() if name not in self.layout.run_columns}
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
         name = os.path.relpath(output, self.output_dir)
-        return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings), name)
+        return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings, self.digests), name)

@@ -18,10 +18,10 @@ from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.result_metadata import columns_as_text
 from pogosim.batch.results import check_columns
-from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, Task, attempt_in, simulators, with_last_line
+from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, RunSettings, Task, attempt_in, simulators, with_last_line
 from pogosim.batch.run_data import RunFile, read_run, shared
 from pogosim.batch.seeds import listed_seeds
-from pogosim.batch.tasks import Combination, RunSettings, check_logs_data, tasks_of
+from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RETRY, SEED
@@ -184,5 +184,5 @@ def task_in(
     path = find_program(program)
     temporary = TemporaryFolder(folder.absolute(), batch_name([str(folder)]), is_kept=True)
     settings = RunSettings(path, "", configuration.path.absolute().parent, temporary, retries=0, gui=gui)
-    (task,) = tasks_of(entries, [seed], settings)
+    (task,) = tasks_of(entries, [seed], settings, {})
     return replace(task, run=run_index)

@@ -115,7 +115,7 @@ class SlurmWorkers:
         with contextlib.suppress(Exception):
             self.client.close(timeout=5)
         close(self.cluster, self.jobs, folder)
-        if self.is_well and not self.first_task.temporary.is_kept:
+        if self.is_well and not self.first_task.settings.temporary.is_kept:
             shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -232,12 +232,12 @@ def bytes_of(memory: str) -> int:
 
 def log_folder(task: Task) -> Path:
     """Return the folder for logs of jobs."""
-    return task.temporary.path / f"slurm_{task.temporary.batch}"
+    return task.settings.temporary.path / f"slurm_{task.settings.temporary.batch}"
 
 
 def job_name(task: Task) -> str:
     """Return the name of all jobs of a batch: the same whenever the same command is given."""
-    return f"pogobatch-{hashlib.sha256(str(task.temporary.done).encode()).hexdigest()[:8]}"
+    return f"pogobatch-{hashlib.sha256(str(task.settings.temporary.done).encode()).hexdigest()[:8]}"
 
 
 def idle_jobs(cluster: Any, jobs: Jobs, left: int) -> list[str]:

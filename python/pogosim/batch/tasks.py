@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import logging
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,15 +11,11 @@ from typing import Any
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import config_hash, run_key, world_digest
-from pogosim.batch.run import QUIET, Task
+from pogosim.batch.run import RunSettings, Task
 from pogosim.batch.run_files import outputs_of, with_files_beside, with_places
 from pogosim.batch.seeds import replacements
-from pogosim.batch.temporary import TemporaryFolder
-from pogosim.extensions import models_path
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.yaml_1_2 import plain
-
-log = logging.getLogger("pogobatch")
 
 
 @dataclass
@@ -40,27 +34,6 @@ class Combination:
         return config_hash(self.entries)
 
 
-@dataclass(frozen=True)
-class RunSettings:
-    """What all runs of a batch have in common."""
-
-    program: Path
-    program_digest: str
-    configuration_folder: Path  # where files that configurations name are searched, too; absolute
-    temporary: TemporaryFolder
-    retries: int
-    gui: bool
-    retry_new_seed: bool = False  # a run that failed is repeated with another seed
-    says: tuple[str, ...] = QUIET
-    digests: dict[Path, str] = field(default_factory=dict)  # of files that configurations name
-    models_path: str = field(default_factory=lambda: models_path(log.warning))
-
-    @property
-    def folders(self) -> tuple[Path, ...]:
-        """Folders in which files that a configuration names are searched, in this order."""
-        return (Path.cwd(), self.configuration_folder, *map(Path, filter(None, self.models_path.split(os.pathsep))))
-
-
 def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> None:
     """Check that runs write data.
 
@@ -72,30 +45,26 @@ def check_logs_data(entries: dict[str, Any], configuration: Configuration) -> No
         raise BatchError(f"{where}: is false, so runs write no data to join; set it to true")
 
 
-def tasks_of(entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings) -> list[Task]:
-    """Return the runs of a configuration, one per seed."""
+def tasks_of(
+    entries: dict[str, Any], seeds: Sequence[int], settings: RunSettings, digests: dict[Path, str]
+) -> list[Task]:
+    """Return the runs of a configuration, one per seed; `digests` are of files that configurations name."""
     outputs = outputs_of(entries)
     world = with_files_beside(with_places(entries, list(outputs)), settings.configuration_folder)
     if format_of(outputs["data_filename"]) != FEATHER:  # that of the results is another matter
         outputs["data_filename"] = f"{Path(outputs['data_filename']).stem}.feather"
     text = dump_configuration(world) if world else ""
-    digest = world_digest(world, settings.folders, settings.digests)
+    digest = world_digest(world, settings.folders, digests)
     others = replacements(seeds, settings.retries) if settings.retry_new_seed else [()] * len(seeds)
     return [
         Task(
             key=run_key(digest, settings.program_digest, seed),
             run=run,
             seed=seed,
-            program=str(settings.program),
             text=text,
             outputs=tuple(outputs.items()),
-            working_folder=str(Path.cwd()),
-            temporary=settings.temporary,
-            retries=len(others[run]) if settings.retry_new_seed else settings.retries,
-            gui=settings.gui,
+            settings=settings,
             replacements=others[run],
-            says=settings.says,
-            models_path=settings.models_path,
         )
         for run, seed in enumerate(seeds)
     ]
