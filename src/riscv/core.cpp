@@ -1,0 +1,420 @@
+#include "riscv/core.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace pogosim {
+
+namespace {
+
+/// x0 to x31, then one for results that nothing reads.
+using Registers = std::array<std::uint32_t, 33>;
+
+/// A step, and the cycles that were left before the sum of all steps in front of it, see Code.
+struct Position {
+    Step const* step;
+    std::int64_t cycles;
+};
+
+/// Why a part of a run ended, and where: no instruction was begun there.
+struct Outcome {
+    Position at;
+    StopReason reason;
+    std::uint32_t address = 0;
+};
+
+constexpr std::int32_t as_signed(std::uint32_t value) {
+    return static_cast<std::int32_t>(value);
+}
+
+constexpr std::uint32_t as_unsigned(std::int32_t value) {
+    return static_cast<std::uint32_t>(value);
+}
+
+/// The upper half of a product.
+constexpr std::uint32_t upper(std::uint64_t product) {
+    return static_cast<std::uint32_t>(product >> 32);
+}
+
+/// With its sign.
+constexpr std::int64_t wide(std::uint32_t value) {
+    return as_signed(value);
+}
+
+// Division by zero, and the quotient that does not fit, have results (table 7.1 of the manual).
+constexpr bool overflows(std::uint32_t dividend, std::uint32_t divisor) {
+    return dividend == 0x80000000U && divisor == 0xffffffffU;
+}
+
+constexpr std::uint32_t quotient(std::uint32_t a, std::uint32_t b) {
+    return b == 0 ? 0xffffffffU : overflows(a, b) ? a : as_unsigned(as_signed(a) / as_signed(b));
+}
+
+constexpr std::uint32_t remainder(std::uint32_t a, std::uint32_t b) {
+    return b == 0 ? a : overflows(a, b) ? 0 : as_unsigned(as_signed(a) % as_signed(b));
+}
+
+bool is_taken(Operation branch, std::uint32_t a, std::uint32_t b) {
+    switch (branch) {
+        case Operation::beq:
+            return a == b;
+        case Operation::bne:
+            return a != b;
+        case Operation::blt:
+            return as_signed(a) < as_signed(b);
+        case Operation::bge:
+            return as_signed(a) >= as_signed(b);
+        case Operation::bltu:
+            return a < b;
+        default:
+            return a >= b;
+    }
+}
+
+/// How many bits a shift has beyond the first.
+constexpr std::int64_t further_bits(std::uint32_t shift) {
+    return std::max<std::int64_t>(shift % 32, 1) - 1;
+}
+
+std::uint32_t address_of(Step const* step, Code const& code) {
+    return code.address + static_cast<std::uint32_t>(4 * (step - code.steps.data()));
+}
+
+/// Null if no instruction is at an address.
+Step const* step_at(std::uint32_t address, Code const& code) {
+    std::uint32_t const offset = address - code.address;
+    return offset % 4 == 0 && offset < code.bytes() ? code.steps.data() + offset / 4 : nullptr;
+}
+
+std::int64_t cycles_left(Position at, Code const& code) {
+    return at.cycles - code.cycles_before[static_cast<std::size_t>(at.step - code.steps.data())];
+}
+
+/// What jalr to another step adds to (cycles that have passed) - (cycles_before).
+std::int64_t jump_cycles(Step const* jump, Step const* target, Code const& code) {
+    Step const* const first = code.steps.data();
+    return std::int64_t{code.cycles_before[static_cast<std::size_t>(jump - first)]} + jump->other_cycles -
+           code.cycles_before[static_cast<std::size_t>(target - first)];
+}
+
+void branch(bool is_taken, Position& at) {
+    if (is_taken) {
+        at.cycles -= at.step->other_cycles;
+        at.step += at.step->immediate;
+    } else {
+        ++at.step;
+    }
+}
+
+/// False, without any effect, if that is a fault. Number says how many bytes, and whether they have a sign.
+template <class Number>
+bool load(Memory const& memory, std::uint32_t address, std::uint32_t& destination) {
+    std::byte const* const place = memory.readable<sizeof(Number)>(address);
+    if (place == nullptr) [[unlikely]] {
+        return false;
+    }
+    destination = static_cast<std::uint32_t>(static_cast<Number>(read_little_endian<sizeof(Number)>(place)));
+    return true;
+}
+
+/// The same, also for a place in the code.
+template <class Number>
+bool store(Memory& memory, std::uint32_t address, std::uint32_t value, Code const& code) {
+    if (address - code.address < code.bytes()) [[unlikely]] {
+        return false;
+    }
+    std::byte* const place = memory.writable<sizeof(Number)>(address);
+    if (place == nullptr) [[unlikely]] {
+        return false;
+    }
+    write_little_endian<sizeof(Number)>(place, value);
+    return true;
+}
+
+StopReason reason_of(AccessFault fault) {
+    switch (fault) {
+        case AccessFault::unaligned:
+            return StopReason::unaligned_access;
+        case AccessFault::read_only:
+            return StopReason::store_into_flash;
+        case AccessFault::outside:
+            return StopReason::outside_access;
+        case AccessFault::none:
+            break;
+    }
+    return StopReason::store_into_code;
+}
+
+// Each operation ends with a jump to that of the next step, so that the processor of this machine predicts each of these
+// jumps on its own: a switch in a loop, with one jump for all, took twice as long (bench_riscv).
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"  // addresses of labels are an extension of gcc and clang
+
+#define POGOSIM_GO_ON                                                \
+    do {                                                             \
+        if (LooksAtEachStep && cycles_left(at, code) <= 0) {         \
+            return {at, StopReason::budget_used};                    \
+        }                                                            \
+        a = x[at.step->rs1];                                         \
+        b = x[at.step->rs2];                                         \
+        immediate = as_unsigned(at.step->immediate);                 \
+        address = a + immediate;                                     \
+        goto* kLabels[static_cast<std::size_t>(at.step->operation)]; \
+    } while (false)
+
+#define POGOSIM_NEXT   \
+    do {               \
+        ++at.step;     \
+        POGOSIM_GO_ON; \
+    } while (false)
+
+// After what has changed the sum of cycles.
+#define POGOSIM_LOOK_AND_GO_ON                                         \
+    do {                                                               \
+        if (!LooksAtEachStep && at.cycles <= at.step->cycles_to_end) { \
+            return {at, StopReason::budget_used};                      \
+        }                                                              \
+        POGOSIM_GO_ON;                                                 \
+    } while (false)
+
+/// Executes steps until the core has to stop. If it must not look for the end of the budget before each of them, it
+/// ends near it, where it would have to look, with budget_used.
+template <bool LooksAtEachStep>
+Outcome execute(Registers& x, Memory& memory, Code const& code, Position at) {
+    // In the order of Operation.
+    static constexpr void const* kLabels[] = {
+        &&illegal, &&lui,   &&auipc, &&jal,    &&jalr,        &&beq,          &&bne,           &&blt,  &&bge,
+        &&bltu,    &&bgeu,  &&lb,    &&lh,     &&lw,          &&lbu,          &&lhu,           &&sb,   &&sh,
+        &&sw,      &&addi,  &&slti,  &&sltiu,  &&xori,        &&ori,          &&andi,          &&slli, &&srli,
+        &&srai,    &&add,   &&sub,   &&sll,    &&slt,         &&sltu,         &&xor_,          &&srl,  &&sra,
+        &&or_,     &&and_,  &&mul,   &&mulh,   &&mulhsu,      &&mulhu,        &&div,           &&divu, &&rem,
+        &&remu,    &&fence, &&ecall, &&ebreak, &&intercepted, &&jump_outside, &&branch_outside};
+    static_assert(std::size(kLabels) == static_cast<std::size_t>(Operation::branch_outside) + 1);
+
+    std::uint32_t a = 0;  // rs1
+    std::uint32_t b = 0;  // rs2
+    std::uint32_t immediate = 0;
+    std::uint32_t address = 0;  // rs1 + immediate
+    POGOSIM_GO_ON;
+
+lui:
+    x[at.step->rd] = immediate;
+    POGOSIM_NEXT;
+addi:
+    x[at.step->rd] = a + immediate;
+    POGOSIM_NEXT;
+slti:
+    x[at.step->rd] = as_signed(a) < as_signed(immediate) ? 1 : 0;
+    POGOSIM_NEXT;
+sltiu:
+    x[at.step->rd] = a < immediate ? 1 : 0;
+    POGOSIM_NEXT;
+xori:
+    x[at.step->rd] = a ^ immediate;
+    POGOSIM_NEXT;
+ori:
+    x[at.step->rd] = a | immediate;
+    POGOSIM_NEXT;
+andi:
+    x[at.step->rd] = a & immediate;
+    POGOSIM_NEXT;
+slli:
+    x[at.step->rd] = a << immediate;
+    POGOSIM_NEXT;
+srli:
+    x[at.step->rd] = a >> immediate;
+    POGOSIM_NEXT;
+srai:
+    x[at.step->rd] = as_unsigned(as_signed(a) >> immediate);
+    POGOSIM_NEXT;
+add:
+    x[at.step->rd] = a + b;
+    POGOSIM_NEXT;
+sub:
+    x[at.step->rd] = a - b;
+    POGOSIM_NEXT;
+slt:
+    x[at.step->rd] = as_signed(a) < as_signed(b) ? 1 : 0;
+    POGOSIM_NEXT;
+sltu:
+    x[at.step->rd] = a < b ? 1 : 0;
+    POGOSIM_NEXT;
+xor_:
+    x[at.step->rd] = a ^ b;
+    POGOSIM_NEXT;
+or_:
+    x[at.step->rd] = a | b;
+    POGOSIM_NEXT;
+and_:
+    x[at.step->rd] = a & b;
+    POGOSIM_NEXT;
+sll:
+    x[at.step->rd] = a << (b % 32);
+    at.cycles -= further_bits(b) * at.step->other_cycles;
+    ++at.step;
+    POGOSIM_LOOK_AND_GO_ON;
+srl:
+    x[at.step->rd] = a >> (b % 32);
+    at.cycles -= further_bits(b) * at.step->other_cycles;
+    ++at.step;
+    POGOSIM_LOOK_AND_GO_ON;
+sra:
+    x[at.step->rd] = as_unsigned(as_signed(a) >> (b % 32));
+    at.cycles -= further_bits(b) * at.step->other_cycles;
+    ++at.step;
+    POGOSIM_LOOK_AND_GO_ON;
+
+mul:
+    x[at.step->rd] = a * b;
+    POGOSIM_NEXT;
+mulh:
+    x[at.step->rd] = upper(static_cast<std::uint64_t>(wide(a) * wide(b)));
+    POGOSIM_NEXT;
+mulhsu:
+    x[at.step->rd] = upper(static_cast<std::uint64_t>(wide(a) * std::int64_t{b}));
+    POGOSIM_NEXT;
+mulhu:
+    x[at.step->rd] = upper(std::uint64_t{a} * b);
+    POGOSIM_NEXT;
+div:
+    x[at.step->rd] = quotient(a, b);
+    POGOSIM_NEXT;
+divu:
+    x[at.step->rd] = b == 0 ? 0xffffffffU : a / b;
+    POGOSIM_NEXT;
+rem:
+    x[at.step->rd] = remainder(a, b);
+    POGOSIM_NEXT;
+remu:
+    x[at.step->rd] = b == 0 ? a : a % b;
+    POGOSIM_NEXT;
+
+lb:
+    if (!load<std::int8_t>(memory, address, x[at.step->rd])) {
+        return {at, reason_of(memory.fault_of_load(address, 1)), address};
+    }
+    POGOSIM_NEXT;
+lh:
+    if (!load<std::int16_t>(memory, address, x[at.step->rd])) {
+        return {at, reason_of(memory.fault_of_load(address, 2)), address};
+    }
+    POGOSIM_NEXT;
+lw:
+    if (!load<std::uint32_t>(memory, address, x[at.step->rd])) {
+        return {at, reason_of(memory.fault_of_load(address, 4)), address};
+    }
+    POGOSIM_NEXT;
+lbu:
+    if (!load<std::uint8_t>(memory, address, x[at.step->rd])) {
+        return {at, reason_of(memory.fault_of_load(address, 1)), address};
+    }
+    POGOSIM_NEXT;
+lhu:
+    if (!load<std::uint16_t>(memory, address, x[at.step->rd])) {
+        return {at, reason_of(memory.fault_of_load(address, 2)), address};
+    }
+    POGOSIM_NEXT;
+sb:
+    if (!store<std::uint8_t>(memory, address, b, code)) {
+        return {at, reason_of(memory.fault_of_store(address, 1)), address};
+    }
+    POGOSIM_NEXT;
+sh:
+    if (!store<std::uint16_t>(memory, address, b, code)) {
+        return {at, reason_of(memory.fault_of_store(address, 2)), address};
+    }
+    POGOSIM_NEXT;
+sw:
+    if (!store<std::uint32_t>(memory, address, b, code)) {
+        return {at, reason_of(memory.fault_of_store(address, 4)), address};
+    }
+    POGOSIM_NEXT;
+
+beq:
+    branch(a == b, at);
+    POGOSIM_LOOK_AND_GO_ON;
+bne:
+    branch(a != b, at);
+    POGOSIM_LOOK_AND_GO_ON;
+blt:
+    branch(as_signed(a) < as_signed(b), at);
+    POGOSIM_LOOK_AND_GO_ON;
+bge:
+    branch(as_signed(a) >= as_signed(b), at);
+    POGOSIM_LOOK_AND_GO_ON;
+bltu:
+    branch(a < b, at);
+    POGOSIM_LOOK_AND_GO_ON;
+bgeu:
+    branch(a >= b, at);
+    POGOSIM_LOOK_AND_GO_ON;
+jal:
+    x[at.step->rd] = address_of(at.step, code) + 4;
+    branch(true, at);
+    POGOSIM_LOOK_AND_GO_ON;
+jalr : {
+    std::uint32_t const target = address & ~1U;
+    Step const* const next = step_at(target, code);
+    if (next == nullptr) [[unlikely]] {
+        return {at, StopReason::jump_outside, target};
+    }
+    x[at.step->rd] = address_of(at.step, code) + 4;
+    at = {next, at.cycles - jump_cycles(at.step, next, code)};
+    POGOSIM_LOOK_AND_GO_ON;
+}
+
+fence:  // one core sees its own accesses in order
+    POGOSIM_NEXT;
+branch_outside:
+    if (is_taken(static_cast<Operation>(at.step->rd), a, b)) {
+        return {at, StopReason::jump_outside, immediate};
+    }
+    POGOSIM_NEXT;
+jump_outside:
+    return {at, StopReason::jump_outside, immediate};
+intercepted:
+    return {at, StopReason::intercepted};
+ecall:
+    return {at, StopReason::ecall};
+ebreak:
+    return {at, StopReason::ebreak};
+illegal:
+auipc:  // has become lui
+    return {at, StopReason::illegal_instruction};
+}
+
+#undef POGOSIM_LOOK_AND_GO_ON
+#undef POGOSIM_NEXT
+#undef POGOSIM_GO_ON
+#pragma GCC diagnostic pop
+
+}  // namespace
+
+Stop run(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles) {
+    Step const* const step = step_at(core.pc, code);
+    if (step == nullptr) {
+        return {StopReason::jump_outside, core.pc, core.pc};
+    }
+    Registers x{};
+    std::ranges::copy(core.x, x.begin());
+    x[0] = 0;
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max() / 2;
+    auto const budget = static_cast<std::int64_t>(std::min(most_cycles, kMost));
+
+    std::int64_t const begin = budget + code.cycles_before[static_cast<std::size_t>(step - code.steps.data())];
+    Outcome outcome{{step, begin}, StopReason::budget_used};
+    if (begin > step->cycles_to_end) {
+        outcome = execute<false>(x, memory, code, outcome.at);
+    }
+    if (outcome.reason == StopReason::budget_used) {
+        outcome = execute<true>(x, memory, code, outcome.at);
+    }
+
+    std::copy_n(x.begin(), core.x.size(), core.x.begin());
+    core.pc = address_of(outcome.at.step, code);
+    core.cycles += static_cast<std::uint64_t>(budget - cycles_left(outcome.at, code));
+    return {outcome.reason, core.pc, outcome.address};
+}
+
+}  // namespace pogosim
