@@ -17,15 +17,15 @@ namespace pogosim {
 /// steps they go on instead of bytes; a result that nothing reads goes to kUnread instead of x0.
 struct Step {
     Operation operation = Operation::illegal;
-    std::uint8_t rd = 0;  ///< of branch_outside: the operation of the branch
+    std::uint8_t rd = 0;  // of branch_outside: the operation of the branch
     std::uint8_t rs1 = 0;
     std::uint8_t rs2 = 0;
-    std::int32_t immediate = 0;       ///< of jump_outside and branch_outside: the address that is jumped to
-    std::int32_t other_cycles = 0;    ///< see Code
-    std::uint32_t cycles_to_end = 0;  ///< see Code
+    std::int32_t immediate = 0;       // of jump_outside and branch_outside: the address that is jumped to
+    std::int32_t other_cycles = 0;    // see Code
+    std::uint32_t cycles_to_end = 0;  // see Code
 };
 
-inline constexpr std::uint8_t kUnread = 32;  ///< a register after x31, in the place of x0 as a destination
+inline constexpr std::uint8_t kUnread = 32;  // a register after x31, in the place of x0 as a destination
 
 /// Read-only while robots run it, on any number of threads. Robots cannot change their code.
 ///
@@ -39,9 +39,9 @@ inline constexpr std::uint8_t kUnread = 32;  ///< a register after x31, in the p
 ///                     jal, jalr, a shift by a register, or a stop. If a core has more cycles left, it need not look
 ///                     before it gets there, or takes a branch.
 struct Code {
-    std::uint32_t address = 0;                 ///< of the first instruction; a multiple of 4
-    std::vector<Step> steps;                   ///< one for each word, then one that stops at the end
-    std::vector<std::uint32_t> cycles_before;  ///< of each step
+    std::uint32_t address = 0;                 // of the first instruction; a multiple of 4
+    std::vector<Step> steps;                   // one for each word, then one that stops at the end
+    std::vector<std::uint32_t> cycles_before;  // of each step
 
     std::uint32_t bytes() const { return static_cast<std::uint32_t>(4 * (steps.size() - 1)); }
 };

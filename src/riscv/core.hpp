@@ -13,9 +13,9 @@
 namespace pogosim {
 
 struct Core {
-    std::array<std::uint32_t, 32> x{};  ///< x[0] is 0 to programs, whatever is written here
-    std::uint32_t pc = 0;               ///< address of the next instruction
-    std::uint64_t cycles = 0;           ///< that have passed since the core began
+    std::array<std::uint32_t, 32> x{};  // x[0] is 0 to programs, whatever is written here
+    std::uint32_t pc = 0;               // address of the next instruction
+    std::uint64_t cycles = 0;           // that have passed since the core began
 
     bool operator==(Core const&) const = default;
 };
@@ -26,10 +26,10 @@ enum class StopReason : std::uint8_t {
     // The instruction at pc cannot be executed.
     illegal_instruction,
     unaligned_access,
-    outside_access,    ///< no memory is there
-    store_into_flash,  ///< which is read-only
-    store_into_code,   ///< which has been decoded already
-    jump_outside,      ///< a jump to where there is no code or, at pc, no code at all
+    outside_access,    // no memory is there
+    store_into_flash,  // which is read-only
+    store_into_code,   // which has been decoded already
+    jump_outside,      // a jump to where there is no code or, at pc, no code at all
     ecall,
     ebreak,
 };
@@ -37,8 +37,8 @@ enum class StopReason : std::uint8_t {
 /// Why, and where, a core stopped.
 struct Stop {
     StopReason reason = StopReason::budget_used;
-    std::uint32_t pc = 0;       ///< as in the core
-    std::uint32_t address = 0;  ///< that was accessed, or jumped to; else 0
+    std::uint32_t pc = 0;       // as in the core
+    std::uint32_t address = 0;  // that was accessed, or jumped to; else 0
 
     bool operator==(Stop const&) const = default;
 };

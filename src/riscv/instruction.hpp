@@ -10,7 +10,7 @@ namespace pogosim {
 
 /// Named as in the manual. An underscore follows names that C++ has taken.
 enum class Operation : std::uint8_t {
-    illegal,  ///< nothing that this processor has: compressed, atomic, floating-point, CSRs, fence.i
+    illegal,  // nothing that this processor has: compressed, atomic, floating-point, CSRs, fence.i
     lui,
     auipc,
     jal,
@@ -61,8 +61,8 @@ enum class Operation : std::uint8_t {
     ebreak,
     // No instructions, but what Code has in the place of some.
     intercepted,
-    jump_outside,    ///< jal to where there is no code, or the end of the code
-    branch_outside,  ///< a branch to where there is no code
+    jump_outside,    // jal to where there is no code, or the end of the code
+    branch_outside,  // a branch to where there is no code
 };
 
 /// Fields that an operation does not have are 0.
@@ -71,7 +71,7 @@ struct Instruction {
     std::uint8_t rd = 0;
     std::uint8_t rs1 = 0;
     std::uint8_t rs2 = 0;
-    std::int32_t immediate = 0;  ///< as it is added: lui's and auipc's in its upper 20 bits; for shifts, 0 to 31
+    std::int32_t immediate = 0;  // as it is added: lui's and auipc's in its upper 20 bits; for shifts, 0 to 31
 
     bool operator==(Instruction const&) const = default;
 };

@@ -12,16 +12,16 @@
 
 namespace pogosim {
 
-inline constexpr std::uint32_t kMemoryBytes = 131072;     ///< of a Pogobot; key 'memory_bytes' of a robot model
-inline constexpr std::uint32_t kFlashAddress = 0x200000;  ///< of a Pogobot
+inline constexpr std::uint32_t kMemoryBytes = 131072;     // of a Pogobot; key 'memory_bytes' of a robot model
+inline constexpr std::uint32_t kFlashAddress = 0x200000;  // of a Pogobot
 inline constexpr std::uint32_t kPageBytes = 1024;
 
 /// What all robots of a firmware begin with. Sizes count in whole words: a part of a word at the end is no memory.
 struct MemoryImage {
-    std::uint32_t address = 0;  ///< a multiple of 4
+    std::uint32_t address = 0;  // a multiple of 4
     std::vector<std::byte> bytes = std::vector<std::byte>(kMemoryBytes);
-    std::uint32_t flash_address = kFlashAddress;  ///< a multiple of 4
-    std::vector<std::byte> flash;                 ///< empty: none
+    std::uint32_t flash_address = kFlashAddress;  // a multiple of 4
+    std::vector<std::byte> flash;                 // empty: none
 };
 
 /// Why memory could not be accessed. An address that is both unaligned and outside is unaligned.

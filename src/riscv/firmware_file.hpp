@@ -1,0 +1,55 @@
+// A firmware: the ELF file that the robots' compiler has made of a program, ready to run on their processor.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "riscv/code.hpp"
+#include "riscv/memory_image.hpp"
+
+namespace pogosim {
+
+/// A function or a variable of a firmware.
+struct FirmwareSymbol {
+    std::uint32_t address = 0;
+    std::uint32_t bytes = 0;  // 0: the file does not say
+    bool is_function = false;
+    std::string name;
+};
+
+struct Firmware {
+    MemoryImage image;                    // as it is when the robot starts
+    Code code;                            // of its executable sections
+    std::uint32_t entry = 0;              // where it starts
+    std::vector<FirmwareSymbol> symbols;  // ascending by address
+
+    /// Absent: null. Of several with one name, the first one.
+    FirmwareSymbol const* find(std::string_view name) const;
+
+    /// The function at an address; null: none is known there.
+    FirmwareSymbol const* function_at(std::uint32_t address) const;
+};
+
+/// Where a robot's memory is.
+struct FirmwareMemory {
+    std::uint32_t address = 0;
+    std::uint32_t bytes = kMemoryBytes;
+};
+
+/// Reads a firmware out of the bytes of its file. As when a firmware is uploaded, its parts are at their physical
+/// addresses (those of `objcopy -O binary`), and the rest of the memory is zero.
+///
+/// Throws ConfigError that begins with `file`, the name of the file in messages, for what is no ELF file of 32 bits,
+/// little-endian, for RISC-V, executable, without compressed instructions and floating-point registers; is cut off; has no
+/// symbols; or does not fit into the memory.
+///
+/// Sources: Tool Interface Standard, Executable and Linking Format Specification, version 1.2 (1995); RISC-V ELF psABI
+/// Specification, version 1.0 (2022), chapter "ELF Object Files".
+Firmware read_firmware(std::string_view file, std::span<std::byte const> bytes, FirmwareMemory const& memory = {},
+                       CycleCosts const& costs = {});
+
+}  // namespace pogosim
